@@ -1,0 +1,22 @@
+# How every target of this project is compiled. Third-party headers are included as SYSTEM.
+add_library(sonard_flags INTERFACE)
+target_include_directories(sonard_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+target_compile_options(sonard_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
+  # GCC before 14 reports false positives of these in optimised standard library code.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow>)
+if(SONARD_SANITIZE)
+  target_compile_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE})
+endif()
+
+# sonard_library(NAME SOURCES...) and sonard_program(NAME SOURCES...)
+function(sonard_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_link_libraries(${name} PUBLIC sonard_flags)
+endfunction()
+
+function(sonard_program name)
+  add_executable(${name} ${ARGN})
+  target_link_libraries(${name} PRIVATE sonard_flags)
+endfunction()

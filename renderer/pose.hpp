@@ -1,0 +1,34 @@
+// Rigid transforms in double precision.
+#pragma once
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+namespace sonard::render {
+
+/// A rigid transform named T_a_b: it maps coordinates of frame b to frame a.
+/// World frame: right-handed, z up. Sonar frame: x along the acoustic axis, y to port, z up.
+/// `orientation` is a unit quaternion; whoever builds a Pose from outside data has checked that.
+struct Pose {
+  glm::dvec3 position_m{0.0};
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
+};
+
+/// T_a_c = T_a_b * T_b_c.
+inline Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
+  return {T_a_b.position_m + T_a_b.orientation * T_b_c.position_m,
+          glm::normalize(T_a_b.orientation * T_b_c.orientation)};
+}
+
+/// T_b_a of T_a_b.
+inline Pose inverse(const Pose& T_a_b) {
+  const glm::dquat back = glm::conjugate(T_a_b.orientation);
+  return {back * -T_a_b.position_m, back};
+}
+
+/// Point p_b expressed in frame a.
+inline glm::dvec3 operator*(const Pose& T_a_b, const glm::dvec3& p_b) {
+  return T_a_b.position_m + T_a_b.orientation * p_b;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,96 @@
+// The world as both samplers see it: plain triangles with acoustic materials, grouped in bodies that move.
+// No scene graph and no graphics types here: a sampler builds its own acceleration data from this.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "renderer/pose.hpp"
+
+namespace sonard::render {
+
+/// How a surface answers sound. See docs/worlds.md for the named table and how an SDF file sets it.
+struct AcousticMaterial {
+  std::string name = "default";
+  /// Reflectance rho of mode `paper` (Cerqueira et al. 2017, 3.2): the echo intensity is min(1, rho cos phi). >= 0.
+  double reflectance = 0.35;
+  /// Lambert coefficient mu of mode `physical`: s_b = mu cos^2(phi). Linear, in (0, 1/pi] for a passive surface.
+  double lambert_mu = 0.0063;
+};
+
+/// Triangles in the coordinates of the body part, metres. Validated: every index is in range, every
+/// position is finite, no triangle has zero area. `normals`, `texcoords` and `tangents` are empty or as
+/// long as `positions`; without normals the geometric normal of each triangle is used.
+struct TriangleMesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;    ///< unit, outward
+  std::vector<glm::vec2> texcoords;
+  std::vector<glm::vec4> tangents;   ///< unit xyz, w = handedness of the bitangent (+1 or -1)
+  std::vector<std::uint32_t> indices;  ///< three per triangle, counter-clockwise seen from outside
+
+  std::size_t triangle_count() const { return indices.size() / 3; }
+};
+
+/// A tangent-space normal map, 8-bit RGB, row 0 at texture coordinate v = 0, repeated beyond [0, 1].
+struct NormalMap {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+struct BodyPart {
+  std::shared_ptr<const TriangleMesh> mesh;
+  Pose T_body_part;
+  AcousticMaterial material;
+  std::shared_ptr<const NormalMap> normal_map;  ///< null when the surface is smooth
+};
+
+/// One top-level model of the world. Its parts keep their relative poses; the whole can be moved at run time.
+struct Body {
+  std::string name;
+  Pose T_world_body;
+  std::vector<BodyPart> parts;
+};
+
+/// What a loader had to repair or drop; shown by `sonard check`.
+struct MeshDiagnostics {
+  std::size_t degenerate_triangles = 0;   ///< zero area or repeated corner: dropped
+  std::size_t non_finite_triangles = 0;   ///< NaN, infinite or above 1e12 m: dropped
+  std::size_t bad_normals = 0;            ///< zero or non-finite: the geometric normal is used
+  MeshDiagnostics& operator+=(const MeshDiagnostics& other);
+};
+
+struct World {
+  std::string name;
+  std::vector<Body> bodies;  ///< names are unique
+  /// Height of the water surface in the world frame; a sonar above it is out of the water.
+  std::optional<double> water_surface_z_m;
+  MeshDiagnostics diagnostics;
+  std::vector<std::string> warnings;  ///< one line each, naming the file
+
+  std::size_t triangle_count() const;
+  /// Null when no body has this name.
+  const Body* find_body(const std::string& body_name) const;
+};
+
+/// Thrown by everything that loads a world. what() is one line: "file:line: message" as far as known.
+struct WorldError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Loads an SDF 1.x world file with all it includes (renderer/scene/sdf_world.cpp; docs/worlds.md).
+/// Relative URIs are resolved against the folder of the file that names them. Nothing is fetched from a network.
+/// @throws WorldError naming file and element for a missing mesh, zero triangles, an unknown material, ...
+World load_world(const std::filesystem::path& sdf_file);
+
+}  // namespace sonard::render

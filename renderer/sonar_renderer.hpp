@@ -1,0 +1,101 @@
+// The door of the renderer: a world and a ping request go in, an echo image and the device's samples come out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "renderer/pose.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Mean echo intensity before speckle, noise and gain. Linear; mode `physical`: re the source intensity at
+/// 1 m, per beam and native line; mode `paper`: the paper's I_bin in [0, 1].
+struct EchoImage {
+  int beams = 0;
+  int lines = 0;
+  std::vector<float> intensity;  ///< [beam * lines + line]
+
+  float at(int beam, int line) const {
+    return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) + static_cast<std::size_t>(line)];
+  }
+};
+
+/// What the receiver hands to the device, ready to be sent: line after line, each from port to starboard.
+struct PingSamples {
+  int beams = 0;
+  int lines = 0;                     ///< after range compression
+  std::vector<std::uint8_t> u8;      ///< [line * beams + beam], when 8 bit were asked for
+  std::vector<std::uint16_t> u16;    ///< the same, when 16 bit were asked for
+};
+
+struct PingRequest {
+  Pose T_world_sonar;
+  SonarSettings settings;
+  std::uint64_t ping_number = 0;  ///< enters the random numbers; never wraps
+  std::uint64_t seed = 0;
+};
+
+/// Seconds spent, and how much work there was. For logs, metrics and the benchmark.
+struct PingStatistics {
+  double visibility_s = 0.0;
+  double binning_s = 0.0;
+  double receiver_s = 0.0;
+  std::uint64_t samples = 0;
+  std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
+};
+
+/// No usable GL, a lost context, a failed self test. The process must not go on serving: it would serve zeros.
+struct RendererError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Settings that no ping can be made of (range <= 0, no beams, beyond GL limits, NaN pose, ...).
+/// what() names the value.
+struct RequestError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Renders pings of one world. Every call, construction and destruction included, comes from one thread, which
+/// owns the GL context. Several sonars may share one renderer; each gives its own `stream` number, which keeps
+/// their speckle apart.
+class SonarRenderer {
+ public:
+  /// @throws RendererError when no OpenGL 4.5 context can be made.
+  explicit SonarRenderer(const World& world);
+  ~SonarRenderer();
+  SonarRenderer(const SonarRenderer&) = delete;
+  SonarRenderer& operator=(const SonarRenderer&) = delete;
+
+  /// "vendor / renderer / version" of the GL in use.
+  const std::string& gl_description() const;
+
+  /// Moves a body of the world. @return false when the world has no body of that name.
+  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+
+  /// Mean echo only: no speckle, noise or gain.
+  /// @throws RequestError, RendererError
+  EchoImage render_echo(const PingRequest& request);
+
+  /// The whole chain. The result is the same bytes for the same history of requests of this stream; with
+  /// speckle `frozen` or `per_ping` it depends on this request alone.
+  /// @throws RequestError, RendererError
+  PingSamples render_ping(const PingRequest& request, int stream = 0);
+
+  const PingStatistics& last_statistics() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2).
+/// @return the RMS error over bins above 1e-2 of the beam's maximum.
+/// @throws RendererError when GL fails, the image is empty or the error exceeds 5 %.
+double run_self_test();
+
+}  // namespace sonard::render
