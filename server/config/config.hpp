@@ -1,0 +1,167 @@
+// The whole configuration of the daemon as plain values: SI units, radians, absolute paths, parsed addresses.
+// server/config/loader.hpp makes it from YAML; everything else of the server only reads it.
+// docs/configuration.md lists the keys with their units and defaults.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/gemini/device.hpp"
+#include "renderer/pose.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::server {
+
+/// IPv4 address, first octet most significant (127.0.0.1 = 0x7F000001).
+using Ipv4 = std::uint32_t;
+
+/// Where a datagram goes to, or what a socket is bound to.
+struct Endpoint {
+  Ipv4 address = 0;        ///< 0 binds all addresses
+  std::uint16_t port = 0;  ///< 0 lets the kernel choose (bind only)
+
+  bool operator==(const Endpoint&) const = default;
+};
+
+/// Block of addresses, "127.0.0.0/8".
+struct Cidr {
+  Ipv4 network = 0;        ///< host bits are zero
+  int prefix_length = 32;  ///< 0..32
+
+  bool contains(Ipv4 address) const;
+  bool operator==(const Cidr&) const = default;
+};
+
+/// Whom a socket listens to. A datagram or connection from elsewhere is counted and dropped.
+using AllowList = std::vector<Cidr>;
+
+/// True when one of the blocks contains the address; an empty list allows nobody.
+bool allows(const AllowList& list, Ipv4 address);
+
+enum class LogLevel { trace, debug, info, warn, error };
+
+/// What the sonars swim in. Everything derived from it (absorption, true speed of sound) is already in the
+/// heads' settings; kept for the log and `sonard check`.
+struct WaterConfig {
+  double temperature_c = 10.0;
+  double salinity_ppt = 35.0;
+  double depth_m = 10.0;
+  double ph = 8.0;
+  double absorption_db_per_m = 0.0;  ///< one way, at the frequency of the device; by the loader
+  double sound_speed_mps = 0.0;      ///< of this water (Mackenzie or Medwin); by the loader
+};
+
+/// A UDP socket that takes one pose message per datagram (docs/poses.md).
+struct UdpPoseInput {
+  Endpoint bind;
+  AllowList allow;
+};
+
+/// A TCP listener that takes varint-delimited pose messages (docs/poses.md).
+struct TcpPoseInput {
+  Endpoint bind;
+  AllowList allow;
+  int max_clients = 8;  ///< further connections are closed at once
+};
+
+/// A trajectory file played in real time from the start of the daemon.
+struct TrajectoryInput {
+  std::filesystem::path file;  ///< CSV or TUM, told apart by its content (docs/poses.md)
+  bool loop = false;           ///< false: the last pose stays the newest one
+  double speed = 1.0;          ///< factor on the time stamps, > 0
+};
+
+/// What a head does when the newest pose is older than the extrapolation limit.
+enum class StalePolicy {
+  hold,     ///< goes on pinging from the last pose
+  silence,  ///< sends status packets only, until a pose arrives
+};
+
+struct PoseConfig {
+  /// T_world_vehicle that holds until the first pose arrives; without it the heads answer but do not ping.
+  std::optional<render::Pose> T_world_vehicle_initial;
+  std::optional<UdpPoseInput> udp;
+  std::optional<TcpPoseInput> tcp;
+  std::optional<TrajectoryInput> trajectory;
+  /// Past the newest pose the twist is followed this long (without a twist the pose is held); >= 0.
+  std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};
+  StalePolicy stale_policy = StalePolicy::hold;
+};
+
+/// Where the 1 Hz status packets go.
+struct StatusDestination {
+  enum class Mode {
+    limited_broadcast,   ///< 255.255.255.255, as the device does
+    directed_broadcast,  ///< the broadcast address of the alternate address under its netmask
+    unicast,             ///< each of `hosts`
+  };
+  Mode mode = Mode::limited_broadcast;
+  std::vector<Ipv4> hosts;  ///< for `unicast` only, then not empty
+};
+
+/// Faults put on datagrams of one direction, each drawn anew for each datagram.
+struct LinkFaults {
+  double loss = 0.0;                   ///< probability, [0, 1]
+  double duplicate = 0.0;              ///< probability that a second copy goes too, [0, 1]
+  double reorder = 0.0;                ///< probability to be held back behind the next datagram, [0, 1]
+  std::chrono::nanoseconds delay{0};   ///< added to each datagram, >= 0
+  std::chrono::nanoseconds jitter{0};  ///< plus a uniform draw from [0, jitter], >= 0
+
+  /// True when every datagram passes at once and unchanged.
+  bool transparent() const {
+    return loss == 0.0 && duplicate == 0.0 && reorder == 0.0 && delay.count() == 0 && jitter.count() == 0;
+  }
+};
+
+/// Faults of the link between a head and its surface, to test drivers with. Seeded: the same datagrams in
+/// the same order meet the same fate.
+struct LinkConfig {
+  LinkFaults to_surface;
+  LinkFaults from_surface;
+  std::uint64_t seed = 1;
+};
+
+/// One Gemini 720i.
+struct GeminiHeadConfig {
+  std::string name;  ///< unique in the daemon; appears in every log line of this head
+  /// Identity, addresses and timing. `water_sound_speed_mps` is already chosen (0: follow the ping
+  /// configuration).
+  gemini::DeviceConfig device;
+  /// Address of the command socket: one of this machine, or 0 for all of them.
+  Ipv4 bind_address = 0x7F000002;
+  std::uint16_t command_port = 52901;  ///< the head listens here and sends from here
+  std::uint16_t surface_port = 52900;  ///< every reply goes to this port of the surface
+  StatusDestination status;
+  AllowList allow;  ///< surfaces that are served; status packets are not affected
+
+  render::Pose T_vehicle_sonar;  ///< mount; the sonar's x axis is the acoustic axis, so a down tilt is in it
+  /// Everything of a ping that its configuration command does not say. `aperture.beam_edges_rad` and `range`
+  /// are filled in per ping from the device's bearing table and the ping job.
+  render::SonarSettings acoustics;
+  std::uint64_t seed = 1;  ///< of speckle and noise
+  /// How long before its transmit time a ping may be rendered, so that the image is ready in time; the pose
+  /// is then extrapolated by so much. >= 0.
+  std::chrono::nanoseconds render_lead{0};
+
+  LinkConfig link;
+  /// A UDP socket whose every datagram counts as one edge of the external trigger (run mode 2).
+  std::optional<Endpoint> trigger;
+  /// Folder that receives the samples of every ping as the renderer handed them over, for tests and
+  /// debugging.
+  std::optional<std::filesystem::path> dump_directory;
+};
+
+struct DaemonConfig {
+  std::filesystem::path file;  ///< the configuration file itself
+  LogLevel log_level = LogLevel::info;
+  std::filesystem::path world_file;  ///< SDF
+  WaterConfig water;
+  PoseConfig poses;
+  std::vector<GeminiHeadConfig> heads;  ///< at least one
+};
+
+}  // namespace sonard::server
