@@ -1,0 +1,30 @@
+// The one place where the daemon reads time.
+#pragma once
+
+#include <chrono>
+
+namespace sonard::server {
+
+/// Nanoseconds on the clock of this process; only differences matter, and it never goes backwards. Everything
+/// in the daemon that has a time (arrival of a pose, deadline of a head, transmit time of a ping) has it here.
+using TimePoint = std::chrono::nanoseconds;
+
+/// Tells the time. Components take a Clock, so a test can step time by hand. Callable from any thread.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual TimePoint now() const = 0;
+};
+
+/// Real time: std::chrono::steady_clock, which is also the clock of Asio's steady_timer.
+class SteadyClock final : public Clock {
+ public:
+  TimePoint now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
+};
+
+/// The same instant for an Asio steady_timer.
+inline std::chrono::steady_clock::time_point to_steady(TimePoint time) {
+  return std::chrono::steady_clock::time_point{time};
+}
+
+}  // namespace sonard::server
