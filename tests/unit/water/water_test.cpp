@@ -1,0 +1,108 @@
+// Absorption and speed of sound against the check tables of docs/physics.md 2.2 and published check values.
+#include "renderer/acoustics/water.hpp"
+
+#include <cmath>
+#include <ostream>
+
+#include <gtest/gtest.h>
+
+namespace sonard::render {
+namespace {
+
+struct AbsorptionCase {
+  double f_khz;
+  Water water;
+  double francois_garrison_db_per_km;
+  double ainslie_mccolm_db_per_km;
+};
+
+std::ostream& operator<<(std::ostream& out, const AbsorptionCase& c) {
+  return out << c.f_khz << " kHz, " << c.water.temperature_c << " degC, " << c.water.salinity_ppt << " ppt, "
+             << c.water.depth_m << " m, pH " << c.water.ph;
+}
+
+class Absorption : public testing::TestWithParam<AbsorptionCase> {};
+
+TEST_P(Absorption, francois_garrison_meets_the_table) {
+  const AbsorptionCase& c = GetParam();
+  // The table has five or six digits.
+  EXPECT_NEAR(francois_garrison_absorption_db_per_m(c.f_khz * 1e3, c.water) * 1e3,
+              c.francois_garrison_db_per_km, 2e-5 * c.francois_garrison_db_per_km);
+}
+
+TEST_P(Absorption, ainslie_mccolm_meets_the_table) {
+  const AbsorptionCase& c = GetParam();
+  EXPECT_NEAR(ainslie_mccolm_absorption_db_per_m(c.f_khz * 1e3, c.water) * 1e3, c.ainslie_mccolm_db_per_km,
+              2e-5 * c.ainslie_mccolm_db_per_km);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, Absorption,
+                         testing::Values(AbsorptionCase{720, {10, 35, 10, 8.0}, 208.513, 223.278},
+                                         AbsorptionCase{720, {20, 35, 10, 8.0}, 208.748, 221.227},
+                                         AbsorptionCase{720, {4, 35, 10, 8.0}, 239.187, 248.997},
+                                         AbsorptionCase{720, {10, 0, 5, 7.0}, 161.088, 175.341},
+                                         AbsorptionCase{720, {26, 37, 8, 8.1}, 239.959, 256.429},
+                                         AbsorptionCase{700, {10, 35, 10, 8.0}, 199.659, 213.645},
+                                         AbsorptionCase{750, {10, 35, 10, 8.0}, 222.255, 238.231},
+                                         AbsorptionCase{1200, {10, 35, 10, 8.0}, 495.172, 535.240},
+                                         AbsorptionCase{2100, {10, 35, 10, 8.0}, 1418.02, 1539.63},
+                                         AbsorptionCase{100, {10, 35, 0, 8.0}, 33.630, 34.341}));
+
+TEST(Absorption, francois_garrison_meets_the_public_toolbox_value) {
+  EXPECT_NEAR(francois_garrison_absorption_db_per_m(50e3, {27, 35, 10, 8.1}) * 1e3, 10.710, 5e-4);
+}
+
+TEST(Absorption, acidity_hardly_matters_at_sonar_frequencies) {
+  const double acid = francois_garrison_absorption_db_per_m(720e3, {10, 35, 10, 7.7});
+  const double alkaline = francois_garrison_absorption_db_per_m(720e3, {10, 35, 10, 8.2});
+  EXPECT_GT(alkaline, acid);
+  EXPECT_LT((alkaline - acid) * 1e3, 0.2);
+}
+
+TEST(Absorption, is_finite_and_not_negative_far_outside_the_stated_range) {
+  for (const double f : {0.0, 1.0, 1e3, 1e6, 1e7}) {
+    for (const double t : {-2.0, 0.0, 20.0, 20.001, 40.0}) {
+      for (const double s : {0.0, 1e-9, 35.0, 45.0}) {
+        for (const double d : {0.0, 11000.0}) {
+          const Water water{t, s, d, 8.0};
+          const double fg = francois_garrison_absorption_db_per_m(f, water);
+          const double am = ainslie_mccolm_absorption_db_per_m(f, water);
+          EXPECT_TRUE(std::isfinite(fg) && fg >= 0.0)
+              << f << " Hz " << t << " C " << s << " ppt " << d << " m";
+          EXPECT_TRUE(std::isfinite(am) && am >= 0.0)
+              << f << " Hz " << t << " C " << s << " ppt " << d << " m";
+        }
+      }
+    }
+  }
+}
+
+TEST(Absorption, knows_where_the_formula_was_stated) {
+  EXPECT_TRUE(in_absorption_range(723380, {10, 35, 10, 8}));
+  EXPECT_FALSE(in_absorption_range(1.2e6, {10, 35, 10, 8}));
+  EXPECT_FALSE(in_absorption_range(723380, {31, 35, 10, 8}));
+  EXPECT_FALSE(in_absorption_range(723380, {10, 0, 10, 8}));
+}
+
+TEST(SoundSpeed, mackenzie_meets_its_published_check_value) {
+  EXPECT_NEAR(mackenzie_sound_speed_mps({25, 35, 1000, 8}), 1550.744, 5e-4);
+}
+
+TEST(SoundSpeed, both_formulas_meet_the_table) {
+  EXPECT_NEAR(mackenzie_sound_speed_mps({10, 35, 10, 8}), 1489.97, 5e-3);
+  EXPECT_NEAR(medwin_sound_speed_mps({10, 35, 10, 8}), 1490.15, 5e-3);
+}
+
+TEST(SoundSpeed, takes_mackenzie_in_its_range_and_medwin_outside) {
+  const Water sea{10, 35, 10, 8};
+  const Water lake{10, 0, 10, 7};
+  const Water polar{-1, 34, 10, 8};
+  EXPECT_EQ(sound_speed_mps(sea), mackenzie_sound_speed_mps(sea));
+  EXPECT_EQ(sound_speed_mps(lake), medwin_sound_speed_mps(lake));
+  EXPECT_EQ(sound_speed_mps(polar), medwin_sound_speed_mps(polar));
+  // Fresh water at 10 degC: 1447.3 m/s (Del Grosso & Mader 1972).
+  EXPECT_NEAR(sound_speed_mps({10, 0, 0, 7}), 1447.3, 1.5);
+}
+
+}  // namespace
+}  // namespace sonard::render
