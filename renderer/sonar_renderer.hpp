@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "renderer/errors.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/sonar_settings.hpp"
@@ -47,17 +47,6 @@ struct PingStatistics {
   double receiver_s = 0.0;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
-};
-
-/// No usable GL, a lost context, a failed self test. The process must not go on serving: it would serve zeros.
-struct RendererError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// Settings that no ping can be made of (range <= 0, no beams, beyond GL limits, NaN pose, ...).
-/// what() names the value.
-struct RequestError : std::runtime_error {
-  using std::runtime_error::runtime_error;
 };
 
 /// Renders pings of one world. Every call, construction and destruction included, comes from one thread, which

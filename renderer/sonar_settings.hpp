@@ -1,25 +1,28 @@
 // What one ping asks of the renderer: aperture, range lines, water, receiver. All angles in radians.
 #pragma once
 
-#include <cstdint>
-#include <string>
 #include <vector>
 
 namespace sonard::render {
 
-/// The fan of a sonar in its own frame.
+/// The fan of a sonar in its own frame (docs/frames-and-units.md).
 struct Aperture {
   /// Edges of the beams: beam_count + 1 azimuths psi, strictly falling from port (psi > 0) to starboard,
   /// so beam 0 is the port-most. Inside (-pi, pi].
   std::vector<double> beam_edges_rad;
-  /// -3 dB full width of the vertical beam. The fan is cut at +-1/2 of it by `Elevation::top_hat` and at
-  /// +-1.25/2 of it by `Elevation::sinc`.
+  /// -3 dB full width of the vertical beam, in (0, pi).
   double vertical_beamwidth_rad = 0.349065850398866;  // 20 degrees
+  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern
+  /// (docs/physics.md 2.5), rendered out to 1.25 beamwidths.
   enum class Elevation { top_hat, sinc } elevation = Elevation::top_hat;
+  /// -3 dB width of one receive beam at broadside; sets the grain of speckle and noise across beams.
+  double receive_beamwidth_rad = 0.0174532925199433;  // 1 degree
 
-  int beam_count() const { return static_cast<int>(beam_edges_rad.size()) - 1; }
+  int beam_count() const { return beam_edges_rad.empty() ? 0 : static_cast<int>(beam_edges_rad.size()) - 1; }
   /// Half of the rendered elevation fan.
   double elevation_limit_rad() const;
+  /// One-way power pattern at an elevation; 1 on the axis.
+  double elevation_weight(double elevation_rad) const;
 };
 
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.
@@ -28,11 +31,11 @@ std::vector<double> equal_angle_edges(int beam_count, double width_rad);
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
 /// Native range lines: line i holds echoes from [i, i+1) * step_m. The output lines are averages (or peaks) of
-/// 2^compression_log2 native lines.
+/// 2^compression_log2 native lines; a remainder is dropped, as the device does.
 struct RangeLines {
-  int count = 1;               ///< native lines, >= 1
-  double step_m = 0.01;        ///< > 0
-  int compression_log2 = 0;    ///< 0..4
+  int count = 1;             ///< native lines, >= 1
+  double step_m = 0.01;      ///< > 0
+  int compression_log2 = 0;  ///< 0..4
   bool compression_peak = false;
 
   double max_range_m() const { return count * step_m; }
@@ -44,37 +47,48 @@ enum class Model {
   physical,  ///< sonar equation per solid angle, Rayleigh speckle, additive noise, TVG
 };
 
-/// Mode `paper`: readings of the paper where it is silent.
+/// Mode `paper`, with a reading for each place where the paper is silent (docs/physics.md 1.2).
 struct PaperModel {
-  double sigmoid_slope = 18.0;
-  double sigmoid_centre = 2.0 / 3.0;
-  double speckle_mean = 0.40;  ///< Gaussian, clamped at 0
+  double sigmoid_slope = 18.0;           ///< A1
+  double sigmoid_centre = 2.0 / 3.0;     ///< A1
+  bool two_sided = true;                 ///< A3; false: back faces are invisible
+  bool legacy_bin_index = false;         ///< A4; floor(r / R_max (N - 1)) instead of floor(r / R_max N)
+  bool legacy_columns = false;           ///< A7; a column belongs whole to the beam of its centre
+  bool elevation_mask = true;            ///< false: the whole planar view counts, as in the paper
+  bool footprint = true;                 ///< false: a sample is a point in range
+  double attenuation_per_m = 0.0;        ///< A10; a of exp(-2 a r), applied before the sigmoid
+  double gain = 0.5;                     ///< A9; 0.5 is neutral, applied after speckle with a clamp at 1
+  enum class Speckle { off, gaussian, folded_gaussian } speckle = Speckle::gaussian;  ///< A8
+  double speckle_mean = 0.40;
   double speckle_sd = 0.15;
-  bool legacy_bin_index = false;  ///< floor(r / R_max (N - 1)) instead of floor(r / R_max N)
-  bool footprint = true;          ///< false: a sample is a point in range
+  double speckle_floor = 0.0;
+
+  /// What the authors' later public releases did: folded N(0.95, 0.30) with floor 0.03, attenuation on.
+  static PaperModel release_2018(double attenuation_per_m);
 };
 
-/// Mode `physical`: water, source and receiver.
+/// Mode `physical`: water, source and receiver (docs/physics.md 2.1-2.9, 2.16). Levels are intensities in dB.
 struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
   enum class Speckle { off, frozen, per_ping, ou } speckle = Speckle::ou;
+  double aperture_m = 0.1;  ///< array length; sets over which motion speckle stays the same (`ou`)
   bool noise = true;
-  /// Noise intensity re the source level at 1 m, dB, before TVG: NL - DI + 10 log10 B - SL.
+  /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
   double noise_level_db = -138.2;
-  double tvg_log_coefficient = 30.0;      ///< X of X log10 r
-  double tvg_absorption_db_per_m = 0.2085;  ///< one way, applied twice
-  double tvg_max_db = 75.0;
-  /// Output level of unit intensity after TVG, dB re full scale; a device's gain setting is added to it.
+  double tvg_log_coefficient = 30.0;        ///< X of X log10 r + 2 alpha r
+  double tvg_absorption_db_per_m = 0.2085;  ///< one way; what the device believes the water to be
+  double tvg_max_db = 75.0;                 ///< ceiling of the two terms together
+  /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it.
   double gain_db = 60.0;
-  double near_field_blank_m = 0.0;   ///< output lines nearer than this are exactly 0
-  double broadside_stripe_db = 0.0;  ///< extra noise in the middle of the fan, 0 = off
-  double side_lobe_floor_db = 0.0;   ///< leakage along a range line, negative; 0 = off
-  double aperture_m = 0.1;           ///< array length; sets how far speckle survives motion
+  double near_field_blank_m = 0.0;   ///< output is exactly 0 nearer than this
+  double broadside_stripe_db = 0.0;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
+  /// Leakage of an echo along its whole range line, re the echo; negative, 0 = off.
+  double side_lobe_floor_db = 0.0;
 };
 
 /// How finely the world is sampled.
 struct Sampling {
-  int views = 3;              ///< side-by-side frusta; each spans at most 60 degrees
+  int views = 3;  ///< side-by-side frusta; more are used where one would exceed 60 degrees
   int columns_per_view = 256;
   int rows = 512;
 };

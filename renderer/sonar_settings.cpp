@@ -1,0 +1,58 @@
+#include "renderer/sonar_settings.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace sonard::render {
+
+namespace {
+constexpr double sinc_fan_widening = 1.25;  // the pattern is followed to this multiple of the half width
+
+double sinc(double x) {
+  const double y = std::numbers::pi * x;
+  return std::abs(y) < 1e-9 ? 1.0 : std::sin(y) / y;
+}
+}  // namespace
+
+double Aperture::elevation_limit_rad() const {
+  const double half = vertical_beamwidth_rad / 2;
+  return elevation == Elevation::sinc ? sinc_fan_widening * half : half;
+}
+
+double Aperture::elevation_weight(double elevation_rad) const {
+  if (elevation == Elevation::top_hat) {
+    return 1.0;
+  }
+  // docs/physics.md 2.5: 0.443 makes the squared sinc one half at half the -3 dB width.
+  const double amplitude = sinc(0.443 * std::sin(elevation_rad) / std::sin(vertical_beamwidth_rad / 2));
+  return amplitude * amplitude;
+}
+
+std::vector<double> equal_angle_edges(int beam_count, double width_rad) {
+  std::vector<double> edges(static_cast<std::size_t>(beam_count) + 1);
+  for (int i = 0; i <= beam_count; ++i) {
+    edges[static_cast<std::size_t>(i)] = width_rad * (0.5 - static_cast<double>(i) / beam_count);
+  }
+  return edges;
+}
+
+std::vector<double> equal_sine_edges(int beam_count, double half_width_rad) {
+  std::vector<double> edges(static_cast<std::size_t>(beam_count) + 1);
+  const double sine = std::sin(half_width_rad);
+  for (int i = 0; i <= beam_count; ++i) {
+    edges[static_cast<std::size_t>(i)] = std::asin(sine * (1.0 - 2.0 * i / beam_count));
+  }
+  return edges;
+}
+
+PaperModel PaperModel::release_2018(double attenuation_per_m) {
+  PaperModel model;
+  model.attenuation_per_m = attenuation_per_m;
+  model.speckle = Speckle::folded_gaussian;
+  model.speckle_mean = 0.95;
+  model.speckle_sd = 0.30;
+  model.speckle_floor = 0.03;
+  return model;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,177 @@
+#include "renderer/visibility/sample_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "renderer/errors.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr double widest_view_rad = std::numbers::pi / 3;  // beyond, pixels grow too unequal (docs/physics.md 1.3)
+constexpr double widest_single_view_rad = 2.8;            // planar projection ends below pi
+
+void check(const Aperture& aperture, const Sampling& sampling) {
+  const auto& edges = aperture.beam_edges_rad;
+  if (edges.size() < 2) {
+    throw RequestError("aperture: no beams");
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!std::isfinite(edges[i]) || (i > 0 && !(edges[i] < edges[i - 1]))) {
+      throw RequestError("aperture: beam edge " + std::to_string(i) + " is not finite or not falling");
+    }
+  }
+  if (edges.front() - edges.back() > 2 * std::numbers::pi + 1e-9) {
+    throw RequestError("aperture: the fan is wider than a full turn");
+  }
+  const double limit = aperture.elevation_limit_rad();
+  if (!(limit > 0) || !(limit < std::numbers::pi / 2 * 0.97)) {
+    throw RequestError("aperture: vertical beamwidth out of range");
+  }
+  if (sampling.views < 1 || sampling.columns_per_view < 1 || sampling.rows < 1 || sampling.views > 64 ||
+      sampling.columns_per_view > 16384 || sampling.rows > 16384) {
+    throw RequestError("sampling: views, columns or rows out of range");
+  }
+}
+
+std::vector<SubView> make_views(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+  const double port = aperture.beam_edges_rad.front();
+  const double width = port - aperture.beam_edges_rad.back();
+  int count = sampling.views;
+  if (options.elevation_mask) {
+    count = std::max(count, static_cast<int>(std::ceil(width / widest_view_rad - 1e-9)));
+  } else if (width / count > widest_single_view_rad) {
+    throw RequestError("sampling: one planar view cannot span the fan; raise views");
+  }
+  std::vector<SubView> views(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    SubView& view = views[static_cast<std::size_t>(i)];
+    const double half = width / count / 2;
+    view.azimuth_rad = port - (2 * i + 1) * half;
+    view.tan_half_width = std::tan(half);
+    // The elevation limit is highest in the plane of the view at its sides. Without the mask the paper's
+    // frustum is kept: the limit holds on the axis only.
+    view.tan_half_height =
+        std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
+    view.columns = sampling.columns_per_view;
+    view.rows = sampling.rows;
+  }
+  return views;
+}
+
+/// Builds the parts of one aperture; a class only to keep the running vectors together.
+class GridBuilder {
+ public:
+  GridBuilder(const Aperture& aperture, const GridOptions& options, SampleGrid& grid)
+      : aperture_(aperture), options_(options), grid_(grid) {}
+
+  void add_beam(double port_edge_rad, double starboard_edge_rad) {
+    for (std::size_t v = 0; v < grid_.views.size(); ++v) {
+      const SubView& view = grid_.views[v];
+      const double half = std::atan(view.tan_half_width);
+      // Azimuth to starboard of the view axis; edges outside the view are cut at its side.
+      const double from = std::clamp(view.azimuth_rad - port_edge_rad, -half, half);
+      const double to = std::clamp(view.azimuth_rad - starboard_edge_rad, -half, half);
+      if (to > from) {
+        add_columns(static_cast<int>(v), std::tan(from), std::tan(to));
+      }
+    }
+    grid_.beam_parts.push_back(static_cast<int>(grid_.parts.size()));
+  }
+
+ private:
+  void add_columns(int view_index, double x_from, double x_to) {
+    const SubView& view = grid_.views[static_cast<std::size_t>(view_index)];
+    const double step = view.pixel_width();
+    const auto column_of = [&](double x) { return (x + view.tan_half_width) / step; };
+    const int first = std::clamp(static_cast<int>(std::floor(column_of(x_from))), 0, view.columns - 1);
+    const int last = std::clamp(static_cast<int>(std::ceil(column_of(x_to))), 1, view.columns);
+    for (int column = first; column < last; ++column) {
+      const double left = -view.tan_half_width + column * step;
+      double part_from = std::max(x_from, left);
+      double part_to = std::min(x_to, left + step);
+      if (options_.whole_columns) {
+        const double centre = left + step / 2;
+        if (centre < x_from || centre >= x_to) {
+          continue;
+        }
+        part_from = left;
+        part_to = left + step;
+      }
+      if (part_to - part_from > 1e-9 * step) {
+        add_part(view_index, column, part_from, part_to);
+      }
+    }
+  }
+
+  void add_part(int view_index, int column, double x_from, double x_to) {
+    const SubView& view = grid_.views[static_cast<std::size_t>(view_index)];
+    const double x = (x_from + x_to) / 2;
+    const double centre = -view.tan_half_width + (column + 0.5) * view.pixel_width();
+    const double limit = options_.elevation_mask ? std::tan(grid_.elevation_limit_rad) * std::hypot(1.0, x)
+                                                 : view.tan_half_height;
+    ColumnPart part;
+    part.view = view_index;
+    part.column = column;
+    part.x_offset = static_cast<float>(x - centre);
+    part.width = static_cast<float>(x_to - x_from);
+    add_rows(view, x, std::min(limit, view.tan_half_height), part);
+    grid_.parts.push_back(part);
+  }
+
+  void add_rows(const SubView& view, double x, double limit, ColumnPart& part) {
+    const double step = view.pixel_height();
+    const auto row_of = [&](double y) { return (y + view.tan_half_height) / step; };
+    part.row_begin = std::clamp(static_cast<int>(std::floor(row_of(-limit) + 1e-9)), 0, view.rows - 1);
+    part.row_end = std::clamp(static_cast<int>(std::ceil(row_of(limit) - 1e-9)), part.row_begin + 1, view.rows);
+    part.weights = grid_.weights.size();
+    for (int row = part.row_begin; row < part.row_end; ++row) {
+      const double bottom = -view.tan_half_height + row * step;
+      const double from = std::max(bottom, -limit);
+      const double to = std::min(bottom + step, limit);
+      const double y = (from + to) / 2;
+      const double height = std::max(0.0, to - from);
+      if (row == part.row_begin) {
+        part.first_y_offset = static_cast<float>(y - bottom - step / 2);
+        part.first_height = static_cast<float>(height);
+      }
+      if (row + 1 == part.row_end) {
+        part.last_y_offset = static_cast<float>(y - bottom - step / 2);
+        part.last_height = static_cast<float>(height);
+      }
+      const double q = 1 + x * x + y * y;
+      const double solid_angle = part.width * height / (q * std::sqrt(q));
+      const double elevation_rad = std::atan(y / std::hypot(1.0, x));
+      grid_.weights.push_back(static_cast<float>(solid_angle * aperture_.elevation_weight(elevation_rad)));
+    }
+  }
+
+  const Aperture& aperture_;
+  const GridOptions& options_;
+  SampleGrid& grid_;
+};
+
+}  // namespace
+
+SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+  check(aperture, sampling);
+  SampleGrid grid;
+  grid.views = make_views(aperture, sampling, options);
+  grid.elevation_limit_rad = aperture.elevation_limit_rad();
+  grid.beam_parts.push_back(0);
+  GridBuilder builder(aperture, options, grid);
+  for (int beam = 0; beam < aperture.beam_count(); ++beam) {
+    const auto b = static_cast<std::size_t>(beam);
+    builder.add_beam(aperture.beam_edges_rad[b], aperture.beam_edges_rad[b + 1]);
+    if (grid.beam_parts[b + 1] == grid.beam_parts[b]) {
+      throw RequestError("sampling: beam " + std::to_string(beam) +
+                         " gets no column; raise columns per view");
+    }
+  }
+  return grid;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,60 @@
+// Where the fan is sampled: side-by-side planar views, and which part of which pixel belongs to which beam.
+#pragma once
+
+#include <vector>
+
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// One planar view. A ray of the view is q(x, y) = axis + x * starboard + y * up with tangents x and y;
+/// the axis lies in the sonar's xy plane at azimuth `azimuth_rad`. Pixel (column c, row j) is centred at
+/// x = -tan_half_width + (c + 1/2) * pixel_width(), y = -tan_half_height + (j + 1/2) * pixel_height():
+/// columns run to starboard, rows upwards.
+struct SubView {
+  double azimuth_rad = 0.0;  ///< psi of the axis, positive to port
+  double tan_half_width = 0.0;
+  double tan_half_height = 0.0;
+  int columns = 0;
+  int rows = 0;
+
+  double pixel_width() const { return 2 * tan_half_width / columns; }
+  double pixel_height() const { return 2 * tan_half_height / rows; }
+};
+
+/// The part of one pixel column that lies inside one beam, cut at the beam's edges and at the elevation limit.
+struct ColumnPart {
+  int view = 0;
+  int column = 0;
+  float x_offset = 0.0F;  ///< centre of the part minus centre of the column, tangent units
+  float width = 0.0F;     ///< tangent units
+  int row_begin = 0;      ///< rows [row_begin, row_end) are inside the fan
+  int row_end = 0;
+  /// First and last row are cut: offset of the part's centre from the pixel centre, and its height.
+  float first_y_offset = 0.0F, first_height = 0.0F;
+  float last_y_offset = 0.0F, last_height = 0.0F;
+  /// Index into SampleGrid::weights of row `row_begin`.
+  std::size_t weights = 0;
+};
+
+/// The sampling of one aperture: pure geometry, made once per configuration and shared by both samplers.
+struct SampleGrid {
+  std::vector<SubView> views;
+  std::vector<ColumnPart> parts;      ///< sorted by beam
+  std::vector<int> beam_parts;        ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
+  std::vector<float> weights;         ///< solid angle times elevation pattern, steradians; per part and row
+  double elevation_limit_rad = 0.0;
+
+  int beam_count() const { return static_cast<int>(beam_parts.size()) - 1; }
+};
+
+/// How the fan is cut into pixels. The defaults are what accuracy wants; the others reproduce the paper.
+struct GridOptions {
+  bool whole_columns = false;   ///< a column belongs to the beam that holds its centre
+  bool elevation_mask = true;   ///< false: every row of a column counts
+};
+
+/// @throws RequestError when the aperture or the sampling cannot be gridded, or when a beam would get no column.
+SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options = {});
+
+}  // namespace sonard::render
