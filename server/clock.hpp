@@ -6,7 +6,8 @@
 namespace sonard::server {
 
 /// Nanoseconds on the clock of this process; only differences matter, and it never goes backwards. Everything
-/// in the daemon that has a time (arrival of a pose, deadline of a head, transmit time of a ping) has it here.
+/// in the daemon that has a time (arrival of a pose, deadline of a head, transmit time of a ping) has it
+/// here.
 using TimePoint = std::chrono::nanoseconds;
 
 /// Tells the time. Components take a Clock, so a test can step time by hand. Callable from any thread.

@@ -1,0 +1,18 @@
+// A datagram between a head and the other end, with both ends named.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "server/config/config.hpp"
+
+namespace sonard::server {
+
+struct Datagram {
+  Endpoint remote;  ///< where it goes to or came from
+  /// Our address: the one it was sent to, or the one it shall come from. 0: the kernel chooses by its routes.
+  Ipv4 local = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+}  // namespace sonard::server

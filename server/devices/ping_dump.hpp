@@ -1,0 +1,39 @@
+// Keeps what the renderer handed over, so that a test can compare it with what arrived.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "server/render_service.hpp"
+
+namespace sonard::server {
+
+/// CRC-32 (zlib's polynomial) of the samples as they lie on the wire before any run-length coding: line after
+/// line, port to starboard; 16-bit samples most significant byte first.
+std::uint32_t samples_crc32(const render::PingSamples& samples);
+
+/// Writes each ping of one head as a NumPy file, <head>-<ping number, 8 digits>.npy, shape (lines, beams),
+/// dtype |u1 or <u2, and adds a row to <head>.csv in the same folder:
+///
+///     number,id,transmit_us,lines,beams,crc32
+///
+/// `id` is the ping ID on the wire, `crc32` is samples_crc32() in hexadecimal. Used by the render thread
+/// only. A file that cannot be written is logged, once, and costs nothing else.
+class PingDump {
+ public:
+  /// Makes the folder and starts the CSV file anew.
+  /// @throws std::runtime_error naming the path
+  PingDump(std::filesystem::path folder, std::string head);
+
+  void write(const RenderJob& job, const render::PingSamples& samples);
+
+ private:
+  std::filesystem::path folder_;
+  std::string head_;
+  std::ofstream index_;
+  bool failed_ = false;
+};
+
+}  // namespace sonard::server

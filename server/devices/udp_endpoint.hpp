@@ -1,0 +1,73 @@
+// A UDP socket that knows on which of its addresses it was addressed, and never drops what it shall send.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "server/devices/datagram.hpp"
+
+namespace boost::asio {
+class io_context;
+}
+
+namespace sonard::server {
+
+/// The OS refused a socket. what() names operation, address and reason.
+struct SocketError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// They only grow.
+struct UdpEndpointCounters {
+  std::uint64_t received = 0;
+  std::uint64_t truncated = 0;       ///< longer than any message of a device: dropped
+  std::uint64_t kernel_dropped = 0;  ///< lost because the receive buffer was full
+  std::uint64_t sent = 0;
+  std::uint64_t send_failed = 0;  ///< refused by the OS (no route, ...): dropped
+  std::uint64_t blocked = 0;      ///< times the socket was full and sending had to wait
+  std::uint64_t overflowed = 0;   ///< dropped because kMostQueued datagrams were waiting
+};
+
+/// Belongs to the I/O thread, as every handler of its does. Receives and sends in batches (recvmmsg,
+/// sendmmsg). When bound to all addresses, `Datagram::local` of a received one says which address it was sent
+/// to (IP_PKTINFO), and `Datagram::local` of one to be sent chooses its source address, and with it the
+/// interface a broadcast leaves by.
+///
+/// Shutdown: close() cancels the waits; their handlers still run on the io_context, find the socket closed
+/// and do nothing. They share ownership of the inner state, so the endpoint may be destroyed before they run.
+/// No callback is called after close(), which may be called from within one.
+class UdpEndpoint {
+ public:
+  /// More than three of the largest pings. Reached only when the network takes nothing for seconds.
+  static constexpr std::size_t kMostQueued = 65536;
+
+  using Receive = std::function<void(const Datagram&)>;
+
+  /// Binds. Port 0 lets the kernel choose.
+  /// @throws SocketError
+  UdpEndpoint(boost::asio::io_context& io, const Endpoint& bind);
+  ~UdpEndpoint();
+  UdpEndpoint(const UdpEndpoint&) = delete;
+  UdpEndpoint& operator=(const UdpEndpoint&) = delete;
+
+  /// Begins to receive. `drained` is called each time after a full socket has taken all that was waiting.
+  void start(Receive receive, std::function<void()> drained = {});
+  /// Sends now what the socket takes; the rest follows, in order, as it drains.
+  void send(std::vector<Datagram> datagrams);
+  /// True while datagrams wait for the socket.
+  bool blocked() const;
+  void close();
+
+  Endpoint local_endpoint() const;
+  const UdpEndpointCounters& counters() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::server

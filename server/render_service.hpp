@@ -1,0 +1,97 @@
+// The render thread: owns the renderer and its GL context, takes jobs from the I/O thread, hands results
+// back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/pose.hpp"
+#include "renderer/sonar_renderer.hpp"
+
+namespace sonard::server {
+
+/// The renderer as the service sees it, so that tests can put another in its place. All calls come from the
+/// render thread.
+class PingRenderer {
+ public:
+  virtual ~PingRenderer() = default;
+  /// One line for the log: who makes the pixels.
+  virtual std::string description() const = 0;
+  /// @return false when the world has no such body.
+  virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
+  /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can)
+  virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
+  /// Of the last render_ping().
+  virtual render::PingStatistics last_statistics() const = 0;
+};
+
+/// Makes the renderer; called once, on the render thread, where a GL context must be born.
+using RendererFactory = std::function<std::unique_ptr<PingRenderer>()>;
+
+struct PosedBody {
+  std::string name;
+  render::Pose T_world_body;
+};
+
+/// One ping to render.
+struct RenderJob {
+  int stream = 0;                ///< one per head, 0, 1, 2, ...
+  std::string head;              ///< name of the head, for logs and dumps
+  std::int64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
+  render::PingRequest request;
+  std::vector<PosedBody> bodies;  ///< moved before the ping is rendered
+};
+
+struct RenderResult {
+  render::PingSamples samples;  ///< empty when `error` is not
+  std::string error;            ///< why this ping cannot be made; the service goes on
+  render::PingStatistics statistics;
+};
+
+/// Runs a function on the I/O thread, later. Callable from any thread.
+using Post = std::function<void(std::function<void()>)>;
+
+struct RenderServiceHooks {
+  Post post;  ///< to the I/O thread
+  /// Called once, on the I/O thread, when the renderer fails for good. Nothing is rendered after that: a
+  /// daemon that goes on would serve zeros.
+  std::function<void(const std::string& what)> on_failure;
+  /// Optional; sees each rendered ping on the render thread before it is handed back.
+  std::function<void(const RenderJob&, const render::PingSamples&)> observe;
+};
+
+/// Owns the render thread. Every member function may be called from any thread; stop() and the destructor
+/// from one at a time.
+///
+/// Jobs wait in a queue of `stream_count` places: each head has at most one job outstanding, so it cannot
+/// overflow. Shutdown: stop() forgets the waiting jobs, lets the ping being rendered finish, and joins.
+/// Results already posted may still arrive after stop(); whoever submitted must bear that.
+class RenderService {
+ public:
+  using Done = std::function<void(RenderResult)>;
+
+  /// Returns when the renderer is made.
+  /// @throws whatever the factory threw
+  RenderService(const RendererFactory& make_renderer, int stream_count, RenderServiceHooks hooks);
+  ~RenderService();
+  RenderService(const RenderService&) = delete;
+  RenderService& operator=(const RenderService&) = delete;
+
+  /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
+  /// @throws std::logic_error when the queue is full: somebody submits more than one job per stream
+  void submit(RenderJob job, Done done);
+  /// Ends the render thread after the ping it is working on. Harmless when called again.
+  void stop();
+
+  const std::string& renderer_description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::server
