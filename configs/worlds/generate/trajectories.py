@@ -1,0 +1,58 @@
+"""Survey trajectories: a smooth closed loop on an arc around a target, the sonar's fan held on it.
+
+Poses are of the vehicle body (x forward, y left, z up) in the world frame (x east, y north, z up).
+"""
+
+import math
+
+
+def quaternion(roll, pitch, yaw):
+    """(x, y, z, w) of Rz(yaw) Ry(pitch) Rx(roll)."""
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return (sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy)
+
+
+def arc_survey(target, start_deg, sweep_deg, radius_m, closer_m, height_m, lower_m, period_s, rate_hz=10):
+    """Rows (t, x, y, z, qx, qy, qz, qw). Starts and ends at rest at bearing `start_deg` from the target.
+
+    Half-way round it stands at start_deg + sweep_deg, `closer_m` nearer and `lower_m` lower than at the start.
+    """
+    rows = []
+    for k in range(int(period_s * rate_hz) + 1):
+        t = k / rate_hz
+        phase = 2.0 * math.pi * t / period_s
+        out = 0.5 * (1.0 - math.cos(phase))
+        bearing = math.radians(start_deg + sweep_deg * out)
+        radius = radius_m - closer_m * out
+        x = target[0] + radius * math.cos(bearing)
+        y = target[1] + radius * math.sin(bearing)
+        z = target[2] + height_m - lower_m * out + 0.10 * math.sin(3.0 * phase)
+        yaw = bearing + math.pi + math.radians(6.0) * math.sin(2.0 * phase)
+        roll = math.radians(1.5) * math.sin(7.0 * phase)
+        pitch = math.radians(1.0) * math.sin(5.0 * phase)
+        rows.append((t, x, y, z, *quaternion(roll, pitch, yaw)))
+    return rows
+
+
+def csv_text(rows):
+    lines = ["t,x,y,z,qx,qy,qz,qw"]
+    lines += [f"{r[0]:.1f}," + ",".join(f"{v:.3f}" for v in r[1:4]) + "," + ",".join(f"{v:.6f}" for v in r[4:]) for r in rows]
+    return "\n".join(lines) + "\n"
+
+
+def tum_text(rows):
+    lines = ["# t x y z qx qy qz qw"]
+    lines += [f"{r[0]:.1f} " + " ".join(f"{v:.3f}" for v in r[1:4]) + " " + " ".join(f"{v:.6f}" for v in r[4:]) for r in rows]
+    return "\n".join(lines) + "\n"
+
+
+def trajectories():
+    """{path below configs/trajectories: bytes}."""
+    dock = arc_survey(target=(0.0, 0.2, -30.0), start_deg=-100.0, sweep_deg=115.0, radius_m=13.2, closer_m=1.2, height_m=4.4,
+                      lower_m=0.5, period_s=80.0)
+    valve = arc_survey(target=(0.0, 0.0, -42.0), start_deg=-70.0, sweep_deg=-100.0, radius_m=13.5, closer_m=1.0, height_m=4.5,
+                       lower_m=0.3, period_s=80.0)
+    return {"docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
+            "ssiv_demo.tum": tum_text(valve).encode("ascii")}

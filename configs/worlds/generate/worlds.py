@@ -1,0 +1,181 @@
+"""The two worlds: where everything lies. Each function returns {path below configs/worlds: bytes}."""
+
+import math
+
+from boulders import boulder
+from docking_station import rov_mesh, station_meshes, umbilical_mesh
+from mesh import Mesh, placed, yawed
+from noise import smoothstep, uniform
+from pipeline import Pipeline
+from sdf import World
+from seabed import Seabed
+from ssiv import BASE, PIPE_RADIUS, TIE_IN, ssiv_meshes
+
+# Boulder shapes, reused at several places and scales.
+BOULDER_SIZES = {"a": (1.9, 1.5, 1.2), "b": (1.2, 1.1, 0.9), "c": (0.9, 0.7, 0.6), "d": (2.6, 1.7, 1.3)}
+
+
+def _boulder_files(folder):
+    return {f"{folder}/boulder_{name}.ply": boulder(40 + k, size).ply()
+            for k, (name, size) in enumerate(BOULDER_SIZES.items())}
+
+
+def _pose(x, y, z, yaw):
+    return f"{x:.3f} {y:.3f} {z:.3f} 0 0 {yaw:.3f}"
+
+
+def _cobbles(seabed, seed, count, keep_out):
+    """Stones of 10 to 40 cm, scattered in clusters and half sunk; one mesh."""
+    stones = [boulder(70 + k, (1.0, 0.85, 0.7), levels=1) for k in range(3)]
+    field = Mesh()
+    placed_count, attempt = 0, 0
+    while placed_count < count:
+        attempt += 1
+        cluster = attempt % 9
+        reach = 1.0 + 2.5 * uniform(0.0, 1.0, seed, attempt, 1)
+        angle = uniform(0.0, 2.0 * math.pi, seed, attempt, 2)
+        x = uniform(-15.0, 15.0, seed, cluster, 3) + reach * math.cos(angle)
+        y = uniform(-15.0, 15.0, seed, cluster, 4) + reach * math.sin(angle)
+        if keep_out(x, y):
+            continue
+        size = 0.10 + 0.30 * uniform(0.0, 1.0, seed, attempt, 5) ** 2
+        yaw = uniform(0.0, 2.0 * math.pi, seed, attempt, 6)
+        turn = yawed(yaw)
+        move = placed((x, y, seabed.height(x, y) + 0.10 * size), yaw)
+        field.merge(stones[attempt % 3], lambda p, s=size, m=move: m((p[0] * s, p[1] * s, p[2] * s)), turn)
+        placed_count += 1
+    return field
+
+
+def docking_station():
+    folder = "meshes/docking_station"
+    seabed = Seabed(seed=3, depth_m=30.0, undulation_m=0.38, ripple_height_m=0.085, ripple_length_m=1.35,
+                    ripple_heading_rad=math.radians(68.0))
+
+    def sway(x):
+        return -4.6 + 0.9 * math.sin((x + 3.0) / 15.0) ** 2 - 0.35 * math.sin(x / 6.5)
+
+    def burial(x):
+        return 0.20 + 0.14 * math.sin(x / 4.3 + 0.8)
+
+    pipe = Pipeline(seabed, sway, -29.0, 29.0, diameter_m=0.60, burial=burial)
+    level = round(seabed.natural(0.0, 0.6), 3)
+    seabed.flatten((0.0, 0.6), (2.3, 1.7), level, 2.4)
+    station = placed((0.0, 0.6, level))
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            seabed.scour((sx * 2.25, 0.6 + sy * 1.75), 0.55, 0.13)
+    boulders = [  # name, shape, x, y, scale, yaw
+        ("boulder_1", "d", 7.4, 3.2, 1.0, 0.4), ("boulder_2", "b", 6.1, 4.5, 1.0, 2.0), ("boulder_3", "a", -7.2, 5.6, 1.0, 1.1),
+        ("boulder_4", "c", -5.9, 4.6, 1.0, 0.2), ("boulder_5", "b", -8.8, -7.6, 1.1, 3.0), ("boulder_6", "c", 5.2, -7.4, 1.0, 0.9),
+        ("boulder_7", "a", 10.8, -2.2, 0.9, 5.1), ("boulder_8", "c", 1.6, 8.1, 1.2, 4.0), ("boulder_9", "d", -13.5, 2.1, 0.8, 2.5),
+        ("boulder_10", "b", 12.9, 9.4, 1.3, 0.7)]
+    for _, shape, x, y, scale, _ in boulders:
+        seabed.scour((x, y), 0.55 * BOULDER_SIZES[shape][0] * scale, 0.10 * BOULDER_SIZES[shape][0] * scale)
+
+    def keep_out(x, y):
+        return abs(y - sway(x)) < 0.9 or (abs(x) < 3.2 and abs(y - 0.6) < 2.6)
+
+    files = _boulder_files("meshes/boulders")
+    parts = station_meshes()
+    files |= {
+        f"{folder}/seabed.ply": seabed.mesh(30.0, 14.0, 0.23, 1.085).ply(),
+        f"{folder}/cobbles.ply": _cobbles(seabed, 5, 130, keep_out).ply(),
+        f"{folder}/pipe.ply": pipe.pipe_mesh().ply(),
+        f"{folder}/anodes.ply": pipe.anode_mesh((-21.0, -8.9, 3.4, 15.6)).ply(),
+        f"{folder}/clamps.ply": pipe.clamp_mesh((-4.0, 8.6)).ply(),
+        f"{folder}/mattress_west.ply": pipe.mattress_mesh(-12.6, 7).ply(),
+        f"{folder}/mattress_east.ply": pipe.mattress_mesh(12.0, 8).ply(),
+        f"{folder}/station_structure.ply": parts["structure"].ply(),
+        f"{folder}/station_equipment.ply": parts["equipment"].ply(),
+        f"{folder}/umbilical.ply": umbilical_mesh(seabed, station, ((-1.6, 3.6), (-4.2, 4.4), (-7.5, 9.0), (-12.0, 11.5), (-20.0, 19.0))).ply(),
+        f"{folder}/rov.ply": rov_mesh().ply(),
+    }
+    world = World("docking_station", "A docking station beside a pipeline on a rippled seabed.")
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel"),
+                             ("clamps", f"{folder}/clamps.ply", "steel")])
+    world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])
+    world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", "concrete")])
+    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", "steel"),
+                                    ("equipment", f"{folder}/station_equipment.ply", "steel")],
+                pose=_pose(0.0, 0.6, level, 0.0), comment="4 x 3 x 2.5 m, entered from the west")
+    world.model("umbilical", [("cable", f"{folder}/umbilical.ply", "rubber")])
+    for name, shape, x, y, scale, yaw in boulders:
+        z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale
+        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", "rock")], _pose(x, y, z, yaw), True,
+                    None if scale == 1.0 else f"{scale} {scale} {scale}")
+    world.model("rov", [("vehicle", f"{folder}/rov.ply", "aluminium")], _pose(-6.2, 1.4, seabed.height(-6.2, 1.4) + 1.5, -0.1),
+                static=False, comment="Hovers before the station's entrance; moved by body poses")
+    files["docking_station.sdf"] = world.text().encode("ascii")
+    return files
+
+
+def ssiv():
+    folder = "meshes/ssiv"
+    seabed = Seabed(seed=29, depth_m=42.0, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.6,
+                    ripple_heading_rad=math.radians(20.0))
+
+    def sway(x):
+        out = max(0.0, abs(x) - 6.0)
+        return 0.004 * out * out * (1.0 if x > 0.0 else -0.6)
+
+    def burial(x):
+        # Negative: the pipe is carried above the bed from the frame to its touch-down point.
+        at_frame = 0.5 * (1.0 - TIE_IN / PIPE_RADIUS)
+        t = smoothstep(BASE[0] + 0.3, 10.0, abs(x))
+        return at_frame * (1.0 - t) + (0.22 + 0.10 * math.sin(x / 5.0)) * t
+
+    level = round(seabed.natural(0.0, 0.0), 3)
+    seabed.flatten((0.0, 0.0), (4.2, 3.2), level, 3.0)
+    natural = seabed.natural
+
+    def natural_at_frame(x, y):
+        keep = smoothstep(4.2, 7.2, math.hypot(x, y))
+        return level * (1.0 - keep) + natural(x, y) * keep
+
+    seabed.natural = natural_at_frame
+    reach = BASE[0] + 0.3
+    west = Pipeline(seabed, sway, -29.0, -reach, 2.0 * PIPE_RADIUS, burial)
+    east = Pipeline(seabed, sway, reach, 29.0, 2.0 * PIPE_RADIUS, burial)
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            seabed.scour((sx * 3.9, sy * 3.1), 0.7, 0.12)
+    boulders = [("boulder_1", "b", -8.5, 5.2, 1.0, 0.3), ("boulder_2", "a", 9.5, 6.5, 0.9, 1.9), ("boulder_3", "c", 6.0, -6.2, 1.0, 4.4),
+                ("boulder_4", "c", -6.6, -7.1, 1.2, 2.7), ("boulder_5", "d", 2.5, 10.5, 0.8, 0.8)]
+    for _, shape, x, y, scale, _ in boulders:
+        seabed.scour((x, y), 0.55 * BOULDER_SIZES[shape][0] * scale, 0.10 * BOULDER_SIZES[shape][0] * scale)
+
+    def keep_out(x, y):
+        return abs(y - sway(x)) < 0.9 or (abs(x) < 5.0 and abs(y) < 4.0)
+
+    pipes, anodes = Mesh(), Mesh()
+    for part in (west, east):
+        pipes.merge(part.pipe_mesh())
+    anodes.merge(west.anode_mesh((-18.0, -8.0)))
+    anodes.merge(east.anode_mesh((8.0, 18.0)))
+    parts = ssiv_meshes()
+    files = _boulder_files("meshes/boulders")
+    files |= {f"{folder}/ssiv_{name}.ply": mesh.ply() for name, mesh in parts.items()}
+    files |= {
+        f"{folder}/seabed.ply": seabed.mesh(30.0, 13.0, 0.28, 1.1).ply(),
+        f"{folder}/cobbles.ply": _cobbles(seabed, 9, 70, keep_out).ply(),
+        f"{folder}/pipe.ply": pipes.ply(),
+        f"{folder}/anodes.ply": anodes.ply(),
+        f"{folder}/mattress_west.ply": west.mattress_mesh(-12.5, 17, along=11, across=7).ply(),
+        f"{folder}/mattress_east.ply": east.mattress_mesh(12.5, 18, along=11, across=7).ply(),
+    }
+    world = World("ssiv", "A subsea isolation valve in its protective frame, tied in to a pipeline.")
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel")])
+    world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])
+    world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", "concrete")])
+    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", "steel"), ("piping", f"{folder}/ssiv_piping.ply", "steel"),
+                         ("equipment", f"{folder}/ssiv_equipment.ply", "steel"), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
+                pose=_pose(0.0, 0.0, level, 0.0), comment="7.2 x 5 m at the base, 3.2 m high; covers are glass-fibre plastic")
+    for name, shape, x, y, scale, yaw in boulders:
+        z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale
+        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", "rock")], _pose(x, y, z, yaw), True,
+                    None if scale == 1.0 else f"{scale} {scale} {scale}")
+    files["ssiv.sdf"] = world.text().encode("ascii")
+    return files
