@@ -1,0 +1,51 @@
+// Everything a user may set about a simulated Gemini 720i, as plain values.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "protocol/gemini/gain_law.hpp"
+
+namespace sonard::gemini {
+
+/// Time on any monotonic clock of the caller's choice; only differences matter.
+using TimePoint = std::chrono::nanoseconds;
+
+/// IPv4 address, first octet most significant (10.61.19.200 = 0x0A3D13C8).
+using Ipv4 = std::uint32_t;
+
+/// Section numbers are those of docs/protocols/gemini.md. The Device constructor refuses what is out of
+/// range.
+struct DeviceConfig {
+  std::uint16_t sonar_id = 513;  ///< >= 2 (1.4)
+  Ipv4 fixed_address = 0x0A3D13C8;
+  Ipv4 alternate_address =
+      0;                      ///< what the head reports beside it: reachable by the client and non-zero (1.2)
+  Ipv4 netmask = 0xFFFFFF00;  ///< the real mask of the interface served, or later clients stay silent
+  std::array<std::uint8_t, 6> mac{0x00, 0x12, 0x34, 0x00, 0x02, 0x01};
+  bool accept_id_zero = false;  ///< also take commands with header ID 0
+
+  /// True speed of sound at the head; 0: the water has the speed of the ping configuration, so that the
+  /// client's ranges are true (6.7). Otherwise > 0.
+  double water_sound_speed_mps = 0.0;
+  bool snap_sound_speed = false;  ///< report speeds on the device's grid of 3.2 m/s from 1400 m/s (5)
+  GainLaw gain;
+
+  std::chrono::nanoseconds status_period{std::chrono::seconds{1}};    ///< > 0 (1.3)
+  std::chrono::nanoseconds min_ping_period{33'300'000};               ///< start to start, > 0 (8.4)
+  std::chrono::nanoseconds surface_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
+  std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};      ///< of silence, >= 0 (3.9)
+
+  std::chrono::nanoseconds line_period{27'000};     ///< least mean distance of ping datagrams, > 0 (8.5)
+  int burst_lines = 32;                             ///< most ping datagrams sent back to back, 1..1024
+  std::chrono::nanoseconds retry_hold{10'000'000};  ///< a new head waits this long after the last retry (7.3)
+  std::chrono::nanoseconds retry_hold_max{50'000'000};  ///< but never longer than this
+
+  /// How long before its transmit time a ping may be handed out for rendering; >= 0. With 0 it is handed out
+  /// at its transmit time, when the pose is known. More lets the ping be rendered while the previous one is
+  /// still being sent, which shortens the shortest ping period by as much, and the pose is then a prediction.
+  std::chrono::nanoseconds render_lead{0};
+};
+
+}  // namespace sonard::gemini

@@ -1,0 +1,31 @@
+// What the gain fields of a ping configuration do to the level of the image (docs/protocols/gemini.md 5).
+#pragma once
+
+#include <cstdint>
+
+namespace sonard::gemini {
+
+/// The device's own law of `spreading` is not published; this one is inferred and can be moved.
+struct GainLaw {
+  /// Value of `spreading` that means "50 percent", 0 dB: 213 for the later client libraries, 67 for the early
+  /// one.
+  double reference_spreading = 213.0;
+  /// dB for one percent of gain as the early library counts percent; 0.4 gives it 40 dB from 0 to 100
+  /// percent.
+  double db_per_percent = 0.4;
+  /// Main gain at which the level is 0 dB: 16.5 dB base gain and 8 dB variable gain, what both libraries send
+  /// beyond very short ranges.
+  double nominal_main_gain_db = 24.5;
+};
+
+/// Base gain (bits 15..14: 0, 5.5, 11, 16.5 dB) plus variable gain (bits 13..0: 8 dB up to 1000, linear to 50
+/// dB at 3700, flat above).
+double main_gain_db(std::uint16_t main_gain);
+
+/// Level relative to GainLaw::reference_spreading; rises with `spreading` and is flat at both ends.
+double spreading_gain_db(std::uint16_t spreading, const GainLaw& law);
+
+/// Both together, relative to 50 percent and the nominal main gain.
+double receive_gain_db(std::uint16_t main_gain, std::uint16_t spreading, const GainLaw& law);
+
+}  // namespace sonard::gemini

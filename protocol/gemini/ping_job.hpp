@@ -1,0 +1,38 @@
+// What goes between the head, which decides when and with what settings to ping, and whoever renders.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "protocol/gemini/device_config.hpp"
+#include "protocol/gemini/messages.hpp"
+
+namespace sonard::gemini {
+
+/// One ping to be rendered, in SI units. The server maps it to renderer settings.
+struct PingJob {
+  /// Counts the jobs of a head: 0, 1, 2, ... Jobs that came to nothing leave gaps. The wire carries it modulo
+  /// 256.
+  std::uint64_t ping_number = 0;
+  TimePoint transmit_time{};  ///< when the pulse leaves; later than now by DeviceConfig::render_lead at most
+  int native_lines = 0;       ///< range lines before compression, 32..20000
+  int compression_log2 = 0;   ///< 2^n native lines are averaged into one line of the image; 0..4
+  double line_step_m = 0.0;   ///< range of one native line: sound_speed_mps / (2 * 90422 Hz)
+  double sound_speed_mps = 0.0;  ///< true speed in the water
+  bool sixteen_bit = false;
+  bool transmit = true;  ///< false: the head only listens, there are no echoes but there is noise
+  double gain_db = 0.0;  ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
+
+  /// Lines of the image; a remainder of native lines that fills no whole line is not sent.
+  int lines() const { return native_lines >> compression_log2; }
+};
+
+/// The rendered samples of a job: PingJob::lines() lines of beam_count samples, line after line from short
+/// range to long, each from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others.
+struct PingImage {
+  std::uint64_t ping_number = 0;
+  std::vector<std::uint8_t> u8;
+  std::vector<std::uint16_t> u16;
+};
+
+}  // namespace sonard::gemini
