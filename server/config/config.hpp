@@ -1,4 +1,5 @@
-// The whole configuration of the daemon as plain values: SI units, radians, absolute paths, parsed addresses.
+// The whole configuration of the daemon as plain values: SI units, radians, parsed addresses, paths that
+// are resolved against the folder of the configuration file.
 // server/config/loader.hpp makes it from YAML; everything else of the server only reads it.
 // docs/configuration.md lists the keys with their units and defaults.
 #pragma once
@@ -44,15 +45,14 @@ bool allows(const AllowList& list, Ipv4 address);
 
 enum class LogLevel { trace, debug, info, warn, error };
 
-/// What the sonars swim in. Everything derived from it (absorption, true speed of sound) is already in the
-/// heads' settings; kept for the log and `sonard check`.
+/// What the sonars swim in. What follows from it (absorption, true speed of sound) is already in the heads'
+/// settings; kept for the log and `sonard check`.
 struct WaterConfig {
   double temperature_c = 10.0;
   double salinity_ppt = 35.0;
   double depth_m = 10.0;
   double ph = 8.0;
-  double absorption_db_per_m = 0.0;  ///< one way, at the frequency of the device; by the loader
-  double sound_speed_mps = 0.0;      ///< of this water (Mackenzie or Medwin); by the loader
+  double sound_speed_mps = 0.0;  ///< of this water (Mackenzie or Medwin), whether or not the heads use it
 };
 
 /// A UDP socket that takes one pose message per datagram (docs/poses.md).

@@ -1,0 +1,45 @@
+#include "server/config/config_error.hpp"
+
+#include <algorithm>
+
+namespace sonard::server {
+namespace {
+
+std::vector<ConfigProblem> in_file_order(std::vector<ConfigProblem> problems) {
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const ConfigProblem& a, const ConfigProblem& b) { return a.at < b.at; });
+  return problems;
+}
+
+}  // namespace
+
+SourcePosition nearest_position(const KeyPositions& positions, std::string_view key) {
+  while (!key.empty()) {
+    if (const auto found = positions.find(key); found != positions.end()) {
+      return found->second;
+    }
+    const std::size_t cut = key.find_last_of(".[");
+    key = key.substr(0, cut == std::string_view::npos ? 0 : cut);
+  }
+  return {};
+}
+
+std::string problem_text(const std::filesystem::path& file, const ConfigProblem& problem) {
+  std::string text = file.string();
+  if (problem.at.line > 0) {
+    text += ':' + std::to_string(problem.at.line) + ':' + std::to_string(problem.at.column);
+  }
+  if (!problem.key.empty()) {
+    text += ": " + problem.key;
+  }
+  return text + ": " + problem.message;
+}
+
+ConfigError::ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems)
+    : std::runtime_error(problem_text(file, in_file_order(problems).front())) {
+  for (const ConfigProblem& problem : in_file_order(std::move(problems))) {
+    lines_.push_back(problem_text(file, problem));
+  }
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,50 @@
+// What is wrong with a configuration file, and where.
+#pragma once
+
+#include <compare>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sonard::server {
+
+/// Place in a text file; both count from 1. Line 0 stands for the file as a whole.
+struct SourcePosition {
+  int line = 0;
+  int column = 0;
+
+  auto operator<=>(const SourcePosition&) const = default;
+};
+
+struct ConfigProblem {
+  SourcePosition at;
+  std::string key;      ///< "heads[0].link.to_surface.loss"; empty for what concerns no key
+  std::string message;  ///< "... (expected ...)"
+};
+
+using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
+
+/// Place of a key, or of the nearest mapping around it that the file gives.
+SourcePosition nearest_position(const KeyPositions& positions, std::string_view key);
+
+/// "file:line:column: key: message", without the parts that are unknown.
+std::string problem_text(const std::filesystem::path& file, const ConfigProblem& problem);
+
+/// Everything that was wrong with one file. what() is the first problem in one line.
+class ConfigError : public std::runtime_error {
+ public:
+  /// @param problems at least one
+  ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems);
+
+  /// One line per problem, in the order of the file.
+  const std::vector<std::string>& lines() const { return lines_; }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+}  // namespace sonard::server

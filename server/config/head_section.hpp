@@ -1,0 +1,40 @@
+// The part of the loader that reads one item of `heads`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "server/config/config.hpp"
+#include "server/config/yaml_section.hpp"
+
+namespace sonard::server {
+
+/// What a head takes from the rest of the configuration.
+struct HeadContext {
+  std::filesystem::path folder;  ///< of the configuration file
+  WaterConfig water;             ///< without what depends on the frequency of the device
+  /// Negative: computed for the frequency of the device.
+  double absorption_db_per_m = -1.0;
+  /// Speed the water really has; 0: that of the ping configuration.
+  double water_sound_speed_mps = 0.0;
+  render::Sampling sampling;
+};
+
+/// A problem that is worth saying but no reason to stop.
+struct ConfigWarning {
+  std::string key;
+  std::string message;
+};
+
+GeminiHeadConfig read_gemini_head(YamlSection& section, const HeadContext& context,
+                                  std::vector<ConfigWarning>& warnings);
+
+/// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down).
+void read_pose(YamlSection& section, render::Pose& pose);
+
+/// "allow" beside a bind address: a list of address blocks. Left out, loopback peers are served if the socket
+/// is bound to loopback; for any other address it has to be given.
+void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow);
+
+}  // namespace sonard::server

@@ -1,0 +1,181 @@
+#include "server/config/loader.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "renderer/acoustics/water.hpp"
+#include "server/config/addresses.hpp"
+#include "server/config/head_section.hpp"
+#include "server/config/overlaps.hpp"
+#include "server/config/yaml_section.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr std::string_view expected_endpoint = "an address and port such as 127.0.0.1:14600";
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) {
+    const std::error_code cause = std::filesystem::is_directory(file)
+                                      ? std::make_error_code(std::errc::is_a_directory)
+                                      : std::error_code(errno, std::generic_category());
+    throw ConfigError(file,
+                      {{{}, "", fmt::format("cannot be read: {} (expected a YAML file)", cause.message())}});
+  }
+  return text;
+}
+
+YAML::Node parse_yaml(const std::filesystem::path& file) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(read_file(file));
+    if (documents.size() != 1) {
+      throw ConfigError(file,
+                        {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents.size())}});
+    }
+    return documents.front();
+  } catch (const YAML::Exception& error) {
+    throw ConfigError(file,
+                      {{position_of(error.mark), "", fmt::format("{} (expected valid YAML)", error.msg)}});
+  }
+}
+
+void read_log(YamlSection& section, LogLevel& level) {
+  section.choice("level", level,
+                 {{"trace", LogLevel::trace},
+                  {"debug", LogLevel::debug},
+                  {"info", LogLevel::info},
+                  {"warn", LogLevel::warn},
+                  {"error", LogLevel::error}});
+}
+
+render::Water properties(const WaterConfig& water) {
+  return {water.temperature_c, water.salinity_ppt, water.depth_m, water.ph};
+}
+
+/// Fills the water and what the heads take from it.
+void read_water(YamlSection& section, HeadContext& context) {
+  WaterConfig& water = context.water;
+  section.number("temperature_c", water.temperature_c, Range::from(-4.0, 45.0));
+  section.number("salinity_ppt", water.salinity_ppt, Range::from(0.0, 50.0));
+  section.number("depth_m", water.depth_m, Range::from(0.0, 11'000.0));
+  section.number("ph", water.ph, Range::from(5.0, 10.0));
+  double absorption_db_per_km = -1.0;
+  section.number_or_word("absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0),
+                         {{"computed", -1.0}});
+  context.absorption_db_per_m = absorption_db_per_km < 0.0 ? -1.0 : absorption_db_per_km / 1000.0;
+  section.number_or_word(
+      "sound_speed_mps", context.water_sound_speed_mps, Range::from(1000.0, 2000.0),
+      {{"ping_configuration", 0.0}, {"computed", render::sound_speed_mps(properties(water))}});
+}
+
+void read_trajectory(YamlSection& section, const std::filesystem::path& folder, TrajectoryInput& trajectory) {
+  std::string path;
+  section.require("file", "a trajectory file, CSV or TUM");
+  section.text("file", path);
+  trajectory.file = folder / path;
+  section.boolean("loop", trajectory.loop);
+  section.number("speed", trajectory.speed, Range::above(0.0, 1000.0));
+}
+
+void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
+  section.section("initial", [&](YamlSection& inner) {
+    inner.require("position_m", "a list of three numbers");
+    read_pose(inner, poses.T_world_vehicle_initial.emplace());
+  });
+  section.section("udp", [&](YamlSection& inner) {
+    UdpPoseInput& udp = poses.udp.emplace();
+    inner.require("bind", expected_endpoint);
+    inner.parsed("bind", udp.bind, &parse_endpoint, expected_endpoint);
+    read_allow_list(inner, udp.bind.address, udp.allow);
+  });
+  section.section("tcp", [&](YamlSection& inner) {
+    TcpPoseInput& tcp = poses.tcp.emplace();
+    inner.require("bind", expected_endpoint);
+    inner.parsed("bind", tcp.bind, &parse_endpoint, expected_endpoint);
+    read_allow_list(inner, tcp.bind.address, tcp.allow);
+    inner.integer("max_clients", tcp.max_clients, 1, 1000);
+  });
+  section.section("trajectory",
+                  [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
+  section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0));
+  section.choice("stale", poses.stale_policy,
+                 {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}});
+
+  const bool live = poses.udp || poses.tcp;
+  if (live && poses.trajectory) {
+    section.report("trajectory",
+                   "the trajectory and a live input would fight over the vehicle (expected one of them)");
+  }
+  if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
+    section.report("initial", "nothing gives a pose (expected initial, udp, tcp or trajectory)");
+  }
+}
+
+void read_sampling(YamlSection& section, render::Sampling& sampling) {
+  section.integer("views", sampling.views, 1, 32);
+  section.integer("columns_per_view", sampling.columns_per_view, 8, 4096);
+  section.integer("rows", sampling.rows, 8, 4096);
+}
+
+void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWarning>& warnings) {
+  HeadContext context;
+  context.folder = config.file.parent_path();
+  root.section("log", [&](YamlSection& section) { read_log(section, config.log_level); });
+  root.require("world", "a mapping with the world's file");
+  root.section("world", [&](YamlSection& section) {
+    std::string path;
+    section.require("file", "an SDF world");
+    section.text("file", path);
+    config.world_file = context.folder / path;
+  });
+  root.section("water", [&](YamlSection& section) { read_water(section, context); });
+  context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
+  config.water = context.water;
+  root.require("poses", "a mapping that says where poses come from");
+  root.section("poses", [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
+  root.section("sampling", [&](YamlSection& section) { read_sampling(section, context.sampling); });
+  root.require("heads", "a list of sonar heads");
+  root.sections("heads", [&](YamlSection& section) {
+    config.heads.push_back(read_gemini_head(section, context, warnings));
+  });
+  if (root.is_list("heads") && config.heads.empty()) {
+    root.report("heads", "no head is listed (expected at least one)");
+  }
+}
+
+}  // namespace
+
+LoadedConfig load_config(const std::filesystem::path& file) {
+  const YAML::Node document = parse_yaml(file);
+  YamlFindings findings;
+  LoadedConfig loaded;
+  loaded.config.file = file;
+  std::vector<ConfigWarning> warnings;
+  {
+    YamlSection root(findings, document, "");
+    read_document(root, loaded.config, warnings);
+  }
+  if (findings.problems.empty()) {
+    findings.problems = find_overlaps(loaded.config, findings.positions);
+  }
+  if (!findings.problems.empty()) {
+    throw ConfigError(file, std::move(findings.problems));
+  }
+  loaded.positions = std::move(findings.positions);
+  for (const ConfigWarning& warning : warnings) {
+    loaded.warnings.push_back(loaded.problem_with(warning.key, warning.message));
+  }
+  return loaded;
+}
+
+std::string LoadedConfig::problem_with(std::string_view key, const std::string& message) const {
+  return problem_text(config.file, {nearest_position(positions, key), std::string(key), message});
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,31 @@
+// From a YAML file to a DaemonConfig. docs/configuration.md lists the keys.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/config/config.hpp"
+#include "server/config/config_error.hpp"
+
+namespace sonard::server {
+
+/// A configuration, and where in the file its values stand.
+struct LoadedConfig {
+  DaemonConfig config;
+  /// Place of the value of every key that the file gives; "heads[0].network.bind" is the form of a key.
+  KeyPositions positions;
+  std::vector<std::string> warnings;  ///< one line each, with place and key
+
+  /// A problem that showed only when the value of a key was used (a mesh that is missing, an address in use),
+  /// in one line with the place of the key or of the nearest mapping around it that the file gives.
+  std::string problem_with(std::string_view key, const std::string& message) const;
+};
+
+/// Reads and checks a configuration without touching what it names: no world is loaded, no socket opened.
+/// Relative paths in it are resolved against its folder.
+/// @throws ConfigError with every problem of the file.
+LoadedConfig load_config(const std::filesystem::path& file);
+
+}  // namespace sonard::server

@@ -1,0 +1,427 @@
+#include "server/config/yaml_section.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr std::string_view plain_tag = "?";  // what yaml-cpp gives to scalars without quotes
+
+/// The unit that the ending of a key fixes; empty when it has none.
+std::string_view unit_of(std::string_view key) {
+  // Longer endings stand before those they end in.
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units{{{"_db_per_km", "dB/km"},
+                                                                                 {"_position_m", "m"},
+                                                                                 {"_mps", "m/s"},
+                                                                                 {"_ppt", "ppt"},
+                                                                                 {"_deg", "degrees"},
+                                                                                 {"_ms", "ms"},
+                                                                                 {"_us", "microseconds"},
+                                                                                 {"_db", "dB"},
+                                                                                 {"_hz", "Hz"},
+                                                                                 {"_c", "degrees Celsius"},
+                                                                                 {"_m", "m"},
+                                                                                 {"_s", "s"}}};
+  for (const auto& [ending, unit] : units) {
+    if (key.ends_with(ending)) {
+      return unit;
+    }
+  }
+  return {};
+}
+
+/// The key itself, without the path before it and an index behind it.
+std::string_view last_key(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  path = dot == std::string_view::npos ? path : path.substr(dot + 1);
+  return path.substr(0, path.find('['));
+}
+
+std::string describe(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Scalar:
+      return fmt::format("'{}'", node.Scalar());
+    case YAML::NodeType::Sequence:
+      return "a list";
+    case YAML::NodeType::Map:
+      return "a mapping";
+    default:
+      return "empty";
+  }
+}
+
+/// True for "10C", "5 ms", "-3.5deg": a number that something follows.
+bool is_number_with_unit(std::string_view text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && stop != end;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The known key that was probably meant, or an empty text.
+std::string_view closest(std::string_view name, const std::vector<std::string>& known) {
+  std::string_view best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  for (const std::string& candidate : known) {
+    // "delay" for "delay_ms": the unit was forgotten.
+    const bool unit_missing = candidate.starts_with(name) && candidate.substr(name.size()).starts_with('_');
+    const std::size_t distance = unit_missing ? 1 : edit_distance(name, candidate);
+    const std::size_t limit = std::max<std::size_t>(1, std::min(name.size(), candidate.size()) / 3);
+    if (distance <= limit && distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+SourcePosition position_of(const YAML::Mark& mark) {
+  return mark.is_null() ? SourcePosition{} : SourcePosition{mark.line + 1, mark.column + 1};
+}
+
+std::string Range::text() const {
+  constexpr double unbounded = std::numeric_limits<double>::max();
+  const std::string lower = above_min ? fmt::format("above {:g}", min) : fmt::format("from {:g}", min);
+  return max >= unbounded ? lower : fmt::format("{} to {:g}", lower, max);
+}
+
+YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path)
+    : findings_(findings), path_(std::move(path)), at_(position_of(node.Mark())) {
+  if (!node.IsMap()) {
+    problem(at_, path_, fmt::format("is {} (expected a mapping, key: value)", describe(node)));
+    return;
+  }
+  for (const auto& pair : node) {
+    const SourcePosition key_at = position_of(pair.first.Mark());
+    if (!pair.first.IsScalar()) {
+      problem(key_at, path_, fmt::format("{} stands as a key (expected a word)", describe(pair.first)));
+      continue;
+    }
+    const std::string& name = pair.first.Scalar();
+    // yaml-cpp keeps every occurrence and looks up the first one.
+    if (const Entry* first = peek(name)) {
+      problem(key_at, path_of(name),
+              fmt::format("duplicate key (expected once; first given on line {})", first->key_at.line));
+      continue;
+    }
+    entries_.push_back({name, key_at, pair.second});
+  }
+}
+
+YamlSection::~YamlSection() {
+  for (const Entry& entry : entries_) {
+    if (!entry.read) {
+      report_unknown(entry);
+    }
+  }
+}
+
+bool YamlSection::has(std::string_view key) const {
+  return peek(key) != nullptr;
+}
+
+bool YamlSection::is_list(std::string_view key) const {
+  const Entry* entry = peek(key);
+  return entry != nullptr && entry->value.IsSequence();
+}
+
+void YamlSection::require(std::string_view key, std::string_view expected) {
+  if (find(key) == nullptr) {
+    problem(at_, path_of(key), fmt::format("missing (expected {})", expected));
+  }
+}
+
+void YamlSection::report(std::string_view key, const std::string& message) {
+  const Entry* entry = peek(key);
+  problem(entry != nullptr ? position_of(entry->value.Mark()) : at_, path_of(key), message);
+}
+
+std::string YamlSection::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+void YamlSection::number(std::string_view key, double& out, const Range& range) {
+  if (const Entry* entry = find(key)) {
+    if (const std::optional<double> value = number_of(entry->value, path_of(key), range)) {
+      out = *value;
+    }
+  }
+}
+
+void YamlSection::number_or_word(std::string_view key, double& out, const Range& range,
+                                 std::initializer_list<std::pair<std::string_view, double>> words) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return;
+  }
+  if (entry->value.IsScalar()) {
+    for (const auto& [word, value] : words) {
+      if (entry->value.Scalar() == word) {
+        out = value;
+        return;
+      }
+    }
+  }
+  const std::size_t problems_before = findings_.problems.size();
+  if (const std::optional<double> value = number_of(entry->value, path_of(key), range)) {
+    out = *value;
+  } else if (findings_.problems.size() > problems_before) {
+    std::string& message = findings_.problems.back().message;
+    message.pop_back();  // the closing parenthesis
+    for (const auto& [word, unused] : words) {
+      message += fmt::format(", or '{}'", word);
+    }
+    message += ')';
+  }
+}
+
+void YamlSection::duration(std::string_view key, std::chrono::nanoseconds& out, const Range& range) {
+  const double ns_per_unit = key.ends_with("_us") ? 1e3 : 1e6;
+  double value = static_cast<double>(out.count()) / ns_per_unit;
+  number(key, value, range);
+  out = std::chrono::nanoseconds{std::llround(value * ns_per_unit)};
+}
+
+void YamlSection::angle(std::string_view key, double& out_rad, const Range& range_deg) {
+  if (const Entry* entry = find(key)) {
+    if (const std::optional<double> degrees = number_of(entry->value, path_of(key), range_deg)) {
+      out_rad = *degrees * std::numbers::pi / 180.0;
+    }
+  }
+}
+
+void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& range) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return;
+  }
+  if (!entry->value.IsSequence() || entry->value.size() != 3) {
+    problem(position_of(entry->value.Mark()), path_of(key),
+            fmt::format("is {} (expected a list of three numbers)",
+                        entry->value.IsSequence() ? fmt::format("a list of {}", entry->value.size())
+                                                  : describe(entry->value)));
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string path = fmt::format("{}[{}]", path_of(key), axis);
+    if (const std::optional<double> value = number_of(entry->value[axis], path, range)) {
+      out[axis] = *value;
+    }
+  }
+}
+
+void YamlSection::boolean(std::string_view key, bool& out) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return;
+  }
+  const YAML::Node& node = entry->value;
+  const bool plain = node.IsScalar() && node.Tag() == plain_tag;
+  if (plain && (node.Scalar() == "true" || node.Scalar() == "false")) {
+    out = node.Scalar() == "true";
+  } else {
+    problem(position_of(node.Mark()), path_of(key),
+            fmt::format("is {} (expected true or false)", describe(node)));
+  }
+}
+
+void YamlSection::text(std::string_view key, std::string& out) {
+  if (const std::optional<std::string> value = plain_text(key, "a text")) {
+    out = *value;
+  }
+}
+
+void YamlSection::section(std::string_view key, const std::function<void(YamlSection&)>& read) {
+  if (const Entry* entry = find(key)) {
+    YamlSection inner(findings_, entry->value, path_of(key));
+    read(inner);
+  }
+}
+
+void YamlSection::sections(std::string_view key, const std::function<void(YamlSection&)>& read) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return;
+  }
+  if (!entry->value.IsSequence()) {
+    problem(position_of(entry->value.Mark()), path_of(key),
+            fmt::format("is {} (expected a list, each item starting with '-')", describe(entry->value)));
+    return;
+  }
+  for (std::size_t i = 0; i < entry->value.size(); ++i) {
+    const YAML::Node item = entry->value[i];
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    findings_.positions.emplace(path, position_of(item.Mark()));
+    YamlSection inner(findings_, item, path);
+    read(inner);
+  }
+}
+
+const YamlSection::Entry* YamlSection::find(std::string_view key) {
+  known_.emplace_back(key);
+  for (Entry& entry : entries_) {
+    if (entry.name == key) {
+      entry.read = true;
+      findings_.positions.emplace(path_of(key), position_of(entry.value.Mark()));
+      return &entry;
+    }
+  }
+  return nullptr;
+}
+
+const YamlSection::Entry* YamlSection::peek(std::string_view key) const {
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [key](const Entry& entry) { return entry.name == key; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+void YamlSection::problem(const SourcePosition& at, std::string path, std::string message) {
+  findings_.problems.push_back({at, std::move(path), std::move(message)});
+}
+
+void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {
+  report(key, fmt::format("'{}' is not understood (expected {})", value, expected));
+}
+
+void YamlSection::report_unknown(const Entry& entry) {
+  const std::string_view meant = closest(entry.name, known_);
+  std::string message = "unknown key";
+  if (!meant.empty()) {
+    message += fmt::format(", did you mean '{}'?", meant);
+  }
+  message +=
+      known_.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(known_, ", "));
+  problem(entry.key_at, path_of(entry.name), std::move(message));
+}
+
+std::optional<double> YamlSection::number_of(const YAML::Node& node, const std::string& path,
+                                             const Range& range) {
+  const std::string_view unit = unit_of(last_key(path));
+  const std::string expected = unit.empty() ? fmt::format("a number {}", range.text())
+                                            : fmt::format("a number {}, in {}", range.text(), unit);
+  const SourcePosition at = position_of(node.Mark());
+  if (!node.IsScalar() || node.Tag() != plain_tag) {
+    const std::string what =
+        node.IsScalar() ? fmt::format("a quoted text, {}", describe(node)) : describe(node);
+    problem(at, path, fmt::format("is {} (expected {})", what, expected));
+    return std::nullopt;
+  }
+  const std::string& text = node.Scalar();
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (is_number_with_unit(text)) {
+    problem(at, path,
+            fmt::format("'{}' carries a unit; units belong to the key (expected {})", text, expected));
+    return std::nullopt;
+  }
+  if (error != std::errc{} || stop != end || !std::isfinite(value)) {
+    problem(at, path, fmt::format("'{}' is not a finite number (expected {})", text, expected));
+    return std::nullopt;
+  }
+  if (!range.holds(value)) {
+    problem(at, path, fmt::format("{} is out of range (expected {})", text, expected));
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<std::uint64_t> YamlSection::whole_number(std::string_view key, std::uint64_t min,
+                                                       std::uint64_t max) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return std::nullopt;
+  }
+  const YAML::Node& node = entry->value;
+  const std::string expected = fmt::format("a whole number from {} to {}", min, max);
+  if (node.IsScalar() && node.Tag() == plain_tag) {
+    const std::string& text = node.Scalar();
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc{} && stop == end && value >= min && value <= max) {
+      return value;
+    }
+  }
+  problem(position_of(node.Mark()), path_of(key),
+          fmt::format("is {} (expected {})", describe(node), expected));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> YamlSection::word_index(std::string_view key,
+                                                   const std::vector<std::string_view>& words) {
+  const std::string expected = fmt::format("one of {}", fmt::join(words, ", "));
+  const std::optional<std::string> word = plain_text(key, expected);
+  if (!word) {
+    return std::nullopt;
+  }
+  const auto found = std::find(words.begin(), words.end(), *word);
+  if (found == words.end()) {
+    report_bad_value(key, *word, expected);
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+std::optional<std::string> YamlSection::plain_text(std::string_view key, std::string_view expected) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return std::nullopt;
+  }
+  if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
+    problem(position_of(entry->value.Mark()), path_of(key),
+            fmt::format("is {} (expected {})", describe(entry->value), expected));
+    return std::nullopt;
+  }
+  return entry->value.Scalar();
+}
+
+bool YamlSection::each_text(std::string_view key, std::string_view expected,
+                            const std::function<bool(const std::string&)>& take) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) {
+    return false;
+  }
+  if (!entry->value.IsSequence()) {
+    problem(position_of(entry->value.Mark()), path_of(key),
+            fmt::format("is {} (expected a list, each item {})", describe(entry->value), expected));
+    return false;
+  }
+  bool complete = true;
+  for (std::size_t i = 0; i < entry->value.size(); ++i) {
+    const YAML::Node item = entry->value[i];
+    if (!item.IsScalar() || !take(item.Scalar())) {
+      problem(position_of(item.Mark()), fmt::format("{}[{}]", path_of(key), i),
+              fmt::format("is {} (expected {})", describe(item), expected));
+      complete = false;
+    }
+  }
+  return complete;
+}
+
+}  // namespace sonard::server
