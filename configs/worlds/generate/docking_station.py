@@ -55,7 +55,7 @@ def frame(mesh):
     for sx in (-1, 0, 1):
         for sy in (-1, 1):
             x, y = sx * HALF_LENGTH, sy * HALF_WIDTH
-            mesh.tube((x, y, 0.05), (x, y, TOP), 0.084 if sx else 0.06, 14)
+            mesh.tube((x, y, 0.05 if sx else 0.32), (x, y, TOP), 0.084 if sx else 0.06, 14)
     for sy in (-1, 1):
         y = sy * HALF_WIDTH
         mesh.tube((-HALF_LENGTH - 0.05, y, TOP), (HALF_LENGTH + 0.05, y, TOP), 0.08, 14)
@@ -163,10 +163,10 @@ def umbilical_mesh(seabed, place, points):
     path = [start, place((-0.9, 1.45, 0.85)), place((-0.95, 1.62, 0.45)), place((-1.0, 1.75, 0.10))]
     previous = path[-1][:2]
     for point in points:
-        steps = max(2, int(math.dist(previous, point) / 0.4))
+        steps = max(2, int(math.dist(previous, point) / 0.25))
         for k in range(1, steps + 1):
             x, y, _ = lerp((*previous, 0.0), (*point, 0.0), k / steps)
-            path.append((x, y, seabed.height(x, y) + 0.035))
+            path.append((x, y, seabed.height(x, y) + 0.04))
         previous = point
     cable = Mesh()
     cable.sweep(path, 0.05, 8)

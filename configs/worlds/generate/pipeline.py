@@ -79,12 +79,22 @@ class Pipeline:
         mesh = Mesh()
         axis = self.direction(x)
         for i in range(along):
+            s = (i - 0.5 * (along - 1)) * pitch_m + uniform(-0.015, 0.015, seed, i, 1)
             for j in range(across):
-                s = (i - 0.5 * (along - 1)) * pitch_m + uniform(-0.015, 0.015, seed, i, j, 1)
-                t = (j - 0.5 * (across - 1)) * pitch_m + uniform(-0.015, 0.015, seed, i, j, 2)
+                row = j - 0.5 * (across - 1)
+                t = math.copysign(self._reach(x + axis[0] * s, abs(row) * pitch_m), row)
                 px, py = x + axis[0] * s - axis[1] * t, self.sway(x) + axis[1] * s + axis[0] * t
                 self._block(mesh, px, py, axis, block_m, thickness_m)
         return mesh
+
+    def _reach(self, x, along_section):
+        """How far from the pipe a rope of this length, laid over it from its crown, ends."""
+        step, t, gone = 0.02, 0.0, 0.0
+        while gone < along_section:
+            rise = self._drape(x, self.sway(x) + t + step) - self._drape(x, self.sway(x) + t)
+            gone += math.hypot(step, rise)
+            t += step
+        return t
 
     def _drape(self, x, y):
         """Height of a mattress's underside: over the pipe, down a slope, onto the bed."""

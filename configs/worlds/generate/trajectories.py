@@ -50,9 +50,9 @@ def tum_text(rows):
 
 def trajectories():
     """{path below configs/trajectories: bytes}."""
-    dock = arc_survey(target=(0.0, 0.2, -30.0), start_deg=-100.0, sweep_deg=115.0, radius_m=13.2, closer_m=1.2, height_m=4.4,
-                      lower_m=0.5, period_s=80.0)
-    valve = arc_survey(target=(0.0, 0.0, -42.0), start_deg=-70.0, sweep_deg=-100.0, radius_m=13.5, closer_m=1.0, height_m=4.5,
+    dock = arc_survey(target=(0.0, 0.2, -30.0), start_deg=-100.0, sweep_deg=115.0, radius_m=12.3, closer_m=0.8, height_m=4.4,
+                      lower_m=0.4, period_s=80.0)
+    valve = arc_survey(target=(0.0, 0.0, -42.2), start_deg=-70.0, sweep_deg=-100.0, radius_m=13.5, closer_m=1.0, height_m=4.5,
                        lower_m=0.3, period_s=80.0)
     return {"docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
             "ssiv_demo.tum": tum_text(valve).encode("ascii")}

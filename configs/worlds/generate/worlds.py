@@ -49,11 +49,11 @@ def _cobbles(seabed, seed, count, keep_out):
 
 def docking_station():
     folder = "meshes/docking_station"
-    seabed = Seabed(seed=3, depth_m=30.0, undulation_m=0.38, ripple_height_m=0.085, ripple_length_m=1.35,
+    seabed = Seabed(seed=3, depth_m=30.0, undulation_m=0.38, ripple_height_m=0.12, ripple_length_m=1.35,
                     ripple_heading_rad=math.radians(68.0))
 
     def sway(x):
-        return -4.6 + 0.9 * math.sin((x + 3.0) / 15.0) ** 2 - 0.35 * math.sin(x / 6.5)
+        return -3.7 + 0.7 * math.sin((x + 3.0) / 15.0) ** 2 - 0.30 * math.sin(x / 6.5)
 
     def burial(x):
         return 0.20 + 0.14 * math.sin(x / 4.3 + 0.8)
@@ -64,7 +64,7 @@ def docking_station():
     station = placed((0.0, 0.6, level))
     for sx in (-1, 1):
         for sy in (-1, 1):
-            seabed.scour((sx * 2.25, 0.6 + sy * 1.75), 0.55, 0.13)
+            seabed.scour((sx * 2.25, 0.6 + sy * 1.75), 0.60, 0.07)
     boulders = [  # name, shape, x, y, scale, yaw
         ("boulder_1", "d", 7.4, 3.2, 1.0, 0.4), ("boulder_2", "b", 6.1, 4.5, 1.0, 2.0), ("boulder_3", "a", -7.2, 5.6, 1.0, 1.1),
         ("boulder_4", "c", -5.9, 4.6, 1.0, 0.2), ("boulder_5", "b", -8.8, -7.6, 1.1, 3.0), ("boulder_6", "c", 5.2, -7.4, 1.0, 0.9),
@@ -140,7 +140,7 @@ def ssiv():
     east = Pipeline(seabed, sway, reach, 29.0, 2.0 * PIPE_RADIUS, burial)
     for sx in (-1, 1):
         for sy in (-1, 1):
-            seabed.scour((sx * 3.9, sy * 3.1), 0.7, 0.12)
+            seabed.scour((sx * 3.9, sy * 3.1), 0.7, 0.07)
     boulders = [("boulder_1", "b", -8.5, 5.2, 1.0, 0.3), ("boulder_2", "a", 9.5, 6.5, 0.9, 1.9), ("boulder_3", "c", 6.0, -6.2, 1.0, 4.4),
                 ("boulder_4", "c", -6.6, -7.1, 1.2, 2.7), ("boulder_5", "d", 2.5, 10.5, 0.8, 0.8)]
     for _, shape, x, y, scale, _ in boulders:
