@@ -37,11 +37,11 @@ class Pipeline:
         path, radii = [], []
         x = self.start_x
         while x < self.end_x:
-            joint = (x - self.start_x) % 12.2
-            for offset, radius in ((0.0, 1.0),) if joint > 0.5 else ((0.0, 1.0), (0.04, 0.88), (0.70, 0.88), (0.74, 1.0)):
+            joint = (x - self.start_x) % 12.2 < 0.5 and x + 1.0 < self.end_x
+            for offset, radius in ((0.0, 1.0), (0.04, 0.88), (0.70, 0.88), (0.74, 1.0)) if joint else ((0.0, 1.0),):
                 path.append(self.centre(x + offset))
                 radii.append(self.radius * radius)
-            x += 0.6 if joint > 0.5 else 1.0
+            x += 1.0 if joint else 0.6
         path.append(self.centre(self.end_x))
         radii.append(self.radius)
         mesh.sweep(path, radii, sides)
