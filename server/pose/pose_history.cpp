@@ -1,0 +1,103 @@
+#include "server/pose/pose_history.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace sonard::server {
+namespace {
+
+render::Pose to_render(const pose::Transform& transform) {
+  const pose::Vec3& p = transform.position_m;
+  const pose::Quat& q = transform.orientation;
+  return {glm::dvec3(p.x, p.y, p.z), glm::dquat(q.w, q.x, q.y, q.z)};
+}
+
+/// Messages on a local network take less; and a slow clock must not use up the extrapolation limit.
+std::chrono::nanoseconds longest_delay(std::chrono::nanoseconds extrapolation_limit) {
+  return std::min<std::chrono::nanoseconds>(std::chrono::milliseconds{50}, extrapolation_limit / 2);
+}
+
+}  // namespace
+
+PoseHistory::PoseHistory(const PoseConfig& config)
+    : initial_(config.T_world_vehicle_initial),
+      limit_(config.extrapolation_limit),
+      stale_policy_(config.stale_policy),
+      clock_(longest_delay(config.extrapolation_limit)) {}
+
+void PoseHistory::insert(const pose::PoseSample& sample, TimePoint arrival) {
+  restart_if_clock_went_back(sample.time_ns);
+  clock_.observe(sample.time_ns, arrival);
+  ++counters_.samples;
+  count(vehicle_.insert({sample.time_ns, sample.T_world_vehicle, sample.twist}));
+  for (const pose::NamedTransform& body : sample.bodies) {
+    insert_body(body, sample.time_ns);
+  }
+}
+
+void PoseHistory::restart_if_clock_went_back(std::int64_t time_ns) {
+  if (vehicle_.empty() || time_ns >= vehicle_.newest().time_ns - reset_threshold.count()) {
+    return;
+  }
+  ++counters_.clock_restarts;
+  if (std::has_single_bit(counters_.clock_restarts)) {
+    const double back_s = 1e-9 * static_cast<double>(vehicle_.newest().time_ns - time_ns);
+    spdlog::warn("the clock of the pose stream went back by {:.3f} s; older poses are forgotten ({} so far)",
+                 back_s, counters_.clock_restarts);
+  }
+  clock_.restart();
+  vehicle_.clear();
+  bodies_.clear();
+}
+
+void PoseHistory::count(PoseTrack::Placed placed) {
+  counters_.late += placed == PoseTrack::Placed::between ? 1 : 0;
+  counters_.repeated += placed == PoseTrack::Placed::replaced ? 1 : 0;
+  counters_.too_old += placed == PoseTrack::Placed::too_old ? 1 : 0;
+}
+
+void PoseHistory::insert_body(const pose::NamedTransform& body, std::int64_t time_ns) {
+  auto track = bodies_.find(body.name);
+  if (track == bodies_.end()) {
+    if (bodies_.size() == max_bodies) {
+      ++counters_.bodies_ignored;
+      return;
+    }
+    track = bodies_.emplace(body.name, PoseTrack{body_points}).first;
+  }
+  track->second.insert({time_ns, body.T_world_body, std::nullopt});
+}
+
+std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
+  if (vehicle_.empty()) {
+    return initial_ ? std::optional{PoseEstimate{*initial_, PoseQuality::initial, {}}} : std::nullopt;
+  }
+  const std::int64_t time_ns = clock_.stamp_at(time);
+  const std::chrono::nanoseconds age{time_ns - vehicle_.newest().time_ns};
+  if (age > limit_ && stale_policy_ == StalePolicy::silence) {
+    return std::nullopt;
+  }
+  PoseEstimate estimate{to_render(vehicle_.at(time_ns, limit_.count())), PoseQuality::interpolated,
+                        std::max(age, std::chrono::nanoseconds{0})};
+  if (age > limit_) {
+    estimate.quality = PoseQuality::stale;
+  } else if (age > std::chrono::nanoseconds{0}) {
+    estimate.quality = vehicle_.newest().twist ? PoseQuality::extrapolated : PoseQuality::held;
+  } else if (time_ns < vehicle_.oldest().time_ns) {
+    estimate.quality = PoseQuality::held;
+  }
+  return estimate;
+}
+
+std::vector<PosedBody> PoseHistory::bodies_at(TimePoint time) const {
+  std::vector<PosedBody> posed;
+  posed.reserve(bodies_.size());
+  for (const auto& [name, track] : bodies_) {
+    posed.push_back({name, to_render(track.at(clock_.stamp_at(time), 0))});
+  }
+  return posed;
+}
+
+}  // namespace sonard::server

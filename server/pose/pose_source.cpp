@@ -1,0 +1,25 @@
+#include "server/pose/pose_source.hpp"
+
+#include "server/pose/tcp_pose_source.hpp"
+#include "server/pose/trajectory_pose_source.hpp"
+#include "server/pose/udp_pose_source.hpp"
+
+namespace sonard::server {
+
+std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
+                                                           const PoseConfig& config, const Clock& clock,
+                                                           const PoseSink& sink) {
+  std::vector<std::unique_ptr<PoseSource>> sources;
+  if (config.udp) {
+    sources.push_back(std::make_unique<UdpPoseSource>(io, *config.udp, clock, sink));
+  }
+  if (config.tcp) {
+    sources.push_back(std::make_unique<TcpPoseSource>(io, *config.tcp, clock, sink));
+  }
+  if (config.trajectory) {
+    sources.push_back(std::make_unique<TrajectoryPoseSource>(io, *config.trajectory, clock, sink));
+  }
+  return sources;
+}
+
+}  // namespace sonard::server

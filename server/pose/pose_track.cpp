@@ -1,0 +1,60 @@
+#include "server/pose/pose_track.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace sonard::server {
+namespace {
+
+constexpr double seconds_per_ns = 1e-9;
+
+pose::Transform between(const TrackPoint& from, const TrackPoint& to, std::int64_t time_ns) {
+  const double span_s = seconds_per_ns * static_cast<double>(to.time_ns - from.time_ns);
+  const double step_m = pose::norm(to.T_world_body.position_m - from.T_world_body.position_m);
+  if (step_m > PoseTrack::teleport_mps * span_s) {
+    return from.T_world_body;
+  }
+  const double passed_s = seconds_per_ns * static_cast<double>(time_ns - from.time_ns);
+  return pose::interpolate(from.T_world_body, to.T_world_body, passed_s / span_s);
+}
+
+}  // namespace
+
+PoseTrack::Placed PoseTrack::insert(const TrackPoint& point) {
+  const auto place =
+      std::lower_bound(points_.begin(), points_.end(), point.time_ns,
+                       [](const TrackPoint& p, std::int64_t time_ns) { return p.time_ns < time_ns; });
+  if (place != points_.end() && place->time_ns == point.time_ns) {
+    *place = point;
+    return Placed::replaced;
+  }
+  const bool full = points_.size() == capacity_;
+  if (full && place == points_.begin()) {
+    return Placed::too_old;
+  }
+  const Placed placed = place == points_.end() ? Placed::newest : Placed::between;
+  points_.insert(place, point);
+  if (full) {
+    points_.pop_front();
+  }
+  return placed;
+}
+
+pose::Transform PoseTrack::at(std::int64_t time_ns, std::int64_t limit_ns) const {
+  const auto later = std::upper_bound(points_.begin(), points_.end(), time_ns,
+                                      [](std::int64_t t, const TrackPoint& p) { return t < p.time_ns; });
+  if (later == points_.begin()) {
+    return points_.front().T_world_body;
+  }
+  const TrackPoint& before = *std::prev(later);
+  if (later != points_.end()) {
+    return between(before, *later, time_ns);
+  }
+  if (!before.twist) {
+    return before.T_world_body;
+  }
+  const std::int64_t past_ns = std::min(time_ns - before.time_ns, limit_ns);
+  return pose::advance(before.T_world_body, *before.twist, seconds_per_ns * static_cast<double>(past_ns));
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,15 @@
+// A body of the world and where it is.
+#pragma once
+
+#include <string>
+
+#include "renderer/pose.hpp"
+
+namespace sonard::server {
+
+struct PosedBody {
+  std::string name;
+  render::Pose T_world_body;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,27 @@
+// Poses by UDP: one message of pose.proto per datagram (docs/poses.md).
+#pragma once
+
+#include "server/pose/pose_source.hpp"
+
+namespace sonard::server {
+
+/// Datagrams that are no pose, or come from a peer that is not allowed, are counted and dropped; the 1st,
+/// 2nd, 4th, 8th ... of them is logged with its peer, so that a flood cannot fill the log.
+class UdpPoseSource final : public PoseSource {
+ public:
+  UdpPoseSource(boost::asio::io_context& io, UdpPoseInput input, const Clock& clock, PoseSink sink);
+  ~UdpPoseSource() override;
+
+  void start() override;
+  void stop() override;
+  std::string description() const override;
+  const PoseSourceCounters& counters() const override;
+  /// Where it listens, once started.
+  Endpoint local_endpoint() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::server
