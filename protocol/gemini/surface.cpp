@@ -1,0 +1,689 @@
+#include "protocol/gemini/surface.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "protocol/gemini/codec.hpp"
+
+namespace sonard::gemini {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+constexpr std::uint16_t resent_head = 0x0100;  // of PingHead::ping_id (6.3)
+
+constexpr nanoseconds stay_alive_period = seconds{1};
+
+/// From a configuration to the first datagram of its ping. The head may be rendering or waiting for its own
+/// rate limit, so patience costs less than a second ping.
+constexpr ResponseTime::Limits config_limits{seconds{1}, milliseconds{200}, seconds{2}};
+constexpr nanoseconds config_patience_most = seconds{2};
+
+/// From a retry request to the first re-sent datagram. In continuous mode a head holds its next ping back
+/// only while requests came within the last 10 ms (7.3): asked every 2 ms with two datagrams, that chain
+/// breaks once in 1e13 times on a link that loses 5 %.
+constexpr ResponseTime::Limits answer_limits{milliseconds{3}, milliseconds{2}, milliseconds{25}};
+constexpr nanoseconds answer_patience_most = milliseconds{100};
+constexpr int fruitless_rounds_at_full_speed = 4;
+
+/// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
+/// waits for before it sends one. A false alarm costs a re-sent tail.
+constexpr nanoseconds stream_patience = milliseconds{4};
+constexpr int burst_lines = 32;
+/// The tail follows the last line, and the head comes before the first, at once.
+constexpr nanoseconds neighbour_patience = milliseconds{2};
+/// So close to its end, a ping that has already lost something gets a request ahead of need: in continuous
+/// mode a head goes on to its next ping at once unless it has been asked for something lately, and the last
+/// lines may be lost along with the tail.
+constexpr int precaution_lines = 8;
+/// The image does not need the tail.
+constexpr int rounds_for_the_tail_alone = 8;
+/// Nothing new for so long: the rest of the ping will not come.
+constexpr nanoseconds give_up_after = seconds{1};
+/// What was under way when the next ping began is here by then.
+constexpr nanoseconds linger_time = milliseconds{10};
+/// A ping that nobody asked for has ended when nothing more comes of it.
+constexpr nanoseconds unrequested_patience = milliseconds{100};
+
+constexpr int copies_of_a_repeated_request = 2;
+constexpr int few_lines = 64;  ///< up to here a second copy costs the link nothing that counts
+constexpr std::size_t most_ranges_a_round = 256;
+constexpr int probes_before_config = 3;
+constexpr std::size_t ended_kept = 8;
+/// More skipped IDs than this are a jump, not loss.
+constexpr int most_missed_at_once = 32;
+/// Back by more than any delay of a status can explain.
+constexpr std::uint64_t reboot_jump_us = 500'000;
+
+std::uint8_t low_byte(std::uint16_t ping_id) {
+  return static_cast<std::uint8_t>(ping_id & 0xFF);
+}
+
+bool due_by(const std::optional<TimePoint>& due, TimePoint now) {
+  return due && *due <= now;
+}
+
+void take_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePoint>& candidate) {
+  if (candidate && (!earliest || *candidate < *earliest)) {
+    earliest = candidate;
+  }
+}
+
+/// A compression of 4 is the most there is; without a head, expect it.
+nanoseconds stream_quiet(const std::optional<PingHead>& head) {
+  const int native_lines = burst_lines << (head ? head->compression_log2() : 4);
+  return stream_patience + nanoseconds{static_cast<std::int64_t>(native_lines * (1e9 / line_rate_hz))};
+}
+
+nanoseconds doubled(nanoseconds patience, int times, nanoseconds most) {
+  return std::min(patience * (1 << std::clamp(times, 0, 10)), most);
+}
+
+}  // namespace
+
+Surface::Surface(const SurfaceConfig& config)
+    : config_(config), config_to_ping_(config_limits), request_to_answer_(answer_limits) {}
+
+void Surface::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
+  ++statistics_.datagrams;
+  const auto report = decode_report(bytes);
+  if (!report) {
+    ++statistics_.bad_datagrams;
+    return;
+  }
+  const std::uint16_t wanted_id = head_ ? head_->status.sonar_id : config_.sonar_id;
+  if (wanted_id != 0 && header_of(*report).sonar_id != wanted_id) {
+    ++statistics_.other_heads;
+    return;
+  }
+  std::visit([&](const auto& message) { on_report(now, message); }, *report);
+}
+
+void Surface::start(TimePoint now, const PingConfig& config, std::uint64_t pings) {
+  programme_ = Programme{.config = config, .wanted = pings};
+  stopped_ = false;
+  request_.reset();
+  next_request_due_.reset();
+  silence_due_.reset();
+  lingering_.reset();
+  last_id_.reset();
+  if (incoming_) {
+    incoming_->requested = false;
+  }
+  request_ping(now);
+}
+
+void Surface::stop() {
+  if (stopped_) {
+    return;
+  }
+  if (head_ && programme_) {
+    send(GoingOffline{});
+    send(GoingOffline{});
+  }
+  stopped_ = true;
+  stay_alive_due_.reset();
+  request_.reset();
+  next_request_due_.reset();
+  silence_due_.reset();
+  incoming_.reset();
+  lingering_.reset();
+}
+
+void Surface::advance(TimePoint now) {
+  if (due_by(stay_alive_due_, now)) {
+    send(StatusRequest{});
+    stay_alive_due_ = now + stay_alive_period;
+  }
+  if (lingering_ && lingering_due_ <= now) {
+    close_lingering(now);
+  }
+  if (incoming_ && due_by(due(*incoming_), now)) {
+    on_incoming_due(now);
+  }
+  if (due_by(next_request_due_, now) && !incoming_) {
+    next_request_due_.reset();
+    request_ping(now);
+  }
+  if (due_by(silence_due_, now)) {
+    silence_due_.reset();
+    watch_for_silence(now);
+  }
+  if (request_ && due_by(request_->due, now)) {
+    on_request_due(now);
+  }
+  stop_when_finished();
+}
+
+std::optional<TimePoint> Surface::next_deadline() const {
+  std::optional<TimePoint> earliest = stay_alive_due_;
+  if (lingering_) {
+    take_earlier(earliest, lingering_due_);
+  }
+  if (incoming_) {
+    take_earlier(earliest, due(*incoming_));
+  } else {
+    take_earlier(earliest, next_request_due_);
+  }
+  take_earlier(earliest, silence_due_);
+  if (request_) {
+    take_earlier(earliest, request_->due);
+  }
+  return earliest;
+}
+
+std::vector<SurfaceDatagram> Surface::take_outgoing() {
+  return std::exchange(outgoing_, {});
+}
+
+std::vector<ReceivedPing> Surface::take_pings() {
+  return std::exchange(pings_, {});
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// The head
+// ---------------------------------------------------------------------------------------------------------------
+
+void Surface::on_report(TimePoint now, const Status& status) {
+  const Ipv4 address = config_.head_address != 0 ? config_.head_address : status.alternate_ip;
+  if (status.sonar_id < min_sonar_id || status.sonar_id != status.header.sonar_id || address == 0) {
+    ++statistics_.bad_datagrams;  // nobody could talk to it (1.2, 1.4)
+    return;
+  }
+  ++statistics_.statuses;
+  const bool met_before = head_.has_value();
+  const bool rebooted = met_before && status.clock_us + reboot_jump_us < head_->status.clock_us;
+  head_ = HeadInfo{status, address};
+  if (rebooted) {
+    on_reboot();
+  }
+  head_clock_.observe(now, status.clock_us);
+  if (stopped_) {
+    return;
+  }
+  if (!met_before || rebooted) {
+    meet_head(now);
+  }
+  if (!diagnostic_known_) {
+    send(DiagnosticRequest{});
+  }
+}
+
+void Surface::meet_head(TimePoint now) {
+  NetworkConfig network;  // as later surfaces send it at first contact
+  network.serial_routing = 0x0100;
+  network.extension = 10'000;
+  send(network);
+  stay_alive_due_ = now;
+  if (programme_ && !programme_->finished()) {
+    request_ping(now);
+  }
+}
+
+void Surface::on_reboot() {
+  ++statistics_.reboots;
+  for (auto* ping : {&incoming_, &lingering_}) {
+    statistics_.pings_abandoned += *ping && (*ping)->requested ? 1 : 0;
+    ping->reset();
+  }
+  head_clock_.forget();
+  diagnostic_known_ = false;
+  ended_.clear();
+  last_id_.reset();
+  next_request_due_.reset();
+  silence_due_.reset();
+}
+
+void Surface::on_report(TimePoint now, const Acknowledge& acknowledge) {
+  ++statistics_.acknowledges;
+  head_clock_.observe(now, acknowledge.reply_us);
+}
+
+void Surface::on_report(TimePoint, const Diagnostic&) {
+  diagnostic_known_ = true;
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// Configurations
+// ---------------------------------------------------------------------------------------------------------------
+
+void Surface::request_ping(TimePoint now) {
+  request_.emplace(Request{});
+  if (head_) {
+    send_config(now);
+  }
+}
+
+void Surface::send_config(TimePoint now) {
+  if (++request_->sends == 1) {
+    programme_->least_head_us = head_clock_.at_least_us(now);
+  } else {
+    ++statistics_.configs_repeated;
+  }
+  ++statistics_.configs_sent;
+  send(programme_->config);
+  request_->sent = now;
+  request_->probes = 0;
+  request_->due = now + doubled(config_to_ping_.patience(), request_->sends - 1, config_patience_most);
+}
+
+/// No ping came. Either the configuration was lost, or all of the ping was; only in the first case a second
+/// configuration is harmless. So first ask for the head of the last ping: a new one can be repaired; an old
+/// one, or no answer at all, means that the head has nothing for us.
+void Surface::on_request_due(TimePoint now) {
+  if (request_->probes == probes_before_config) {
+    send_config(now);
+    return;
+  }
+  ++request_->probes;
+  ask(nullptr, RetryKind::head, {0, 1}, copies_of_a_repeated_request);
+  request_->due = now + request_to_answer_.patience();
+}
+
+void Surface::watch_for_silence(TimePoint now) {
+  if (request_ || incoming_) {
+    return;
+  }
+  request_.emplace(Request{});
+  request_->sends = 1;  // the programme that fell silent counts: the next one is a repetition
+  request_->due = now;
+}
+
+void Surface::await_next(TimePoint now) {
+  const bool repeated = request_ && request_->sends > 1;
+  request_.reset();
+  if (programme_->finished()) {
+    return;
+  }
+  if (programme_->continuous()) {
+    silence_due_ = now + 2 * std::chrono::microseconds{programme_->config.interping_us} + seconds{1};
+  } else if (repeated) {
+    // The first configuration may have arrived after all, and a second ping be under way. A third
+    // configuration would now cut the repair of that one short, and so on for ever.
+    next_request_due_ = now + config_to_ping_.patience();
+  } else {
+    request_ping(now);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// The ping that is coming in
+// ---------------------------------------------------------------------------------------------------------------
+
+void Surface::on_report(TimePoint now, const PingHead& head) {
+  if (!programme_ || stopped_) {
+    return;
+  }
+  if (!is_receivable(head)) {
+    ++statistics_.bad_datagrams;
+    return;
+  }
+  const std::uint8_t id = low_byte(head.ping_id);
+  const Ended* ended = find_ended(id);
+  if (ended != nullptr && ended->transmit_time_us.value_or(head.transmit_time_us) == head.transmit_time_us) {
+    if (request_ && request_->due && request_->probes > 0) {
+      send_config(now);  // the head still holds the ping before: ours has not begun
+    }
+    return;
+  }
+  Incoming* ping = find_incoming(id);
+  if (ping == nullptr || !ping->may_have(head)) {
+    ping = &begin(now, id);
+  }
+  ping->heard = now;
+  if ((head.ping_id & resent_head) != 0) {
+    heard_answer(now, *ping);
+  }
+  if (!ping->assembly.head()) {
+    adopt_head(now, *ping, head);
+  }
+  settle(now);
+}
+
+void Surface::on_report(TimePoint now, const PingLine& line) {
+  if (!programme_ || stopped_) {
+    return;
+  }
+  Incoming* ping = incoming_for(now, line.ping_id);
+  if (ping == nullptr) {
+    ++statistics_.lines_duplicate;
+    return;
+  }
+  ping->heard = now;
+  const auto added = ping->assembly.add_line(line);
+  if (added == PingAssembly::Added::unusable) {
+    ++statistics_.bad_datagrams;
+    return;
+  }
+  if (added == PingAssembly::Added::duplicate) {
+    ++statistics_.lines_duplicate;
+  } else {
+    ping->progress = now;
+    ++statistics_.lines_received;
+    statistics_.lines_repaired += line.resent() ? 1 : 0;
+    ping->lines_repaired += line.resent() ? 1 : 0;
+  }
+  if (line.resent()) {
+    heard_answer(now, *ping);
+  } else if (!ping->pass_over) {
+    ask_gap(*ping, line.line_number());
+    ask_ahead(*ping, line.line_number());
+  }
+  settle(now);
+}
+
+void Surface::on_report(TimePoint now, const PingTail& tail) {
+  if (!programme_ || stopped_) {
+    return;
+  }
+  Incoming* ping = incoming_for(now, tail.ping_id);
+  if (ping == nullptr) {
+    return;
+  }
+  ping->heard = now;
+  if (!ping->has_tail) {
+    ping->has_tail = true;
+    ping->progress = now;
+  }
+  if (tail.resent()) {
+    heard_answer(now, *ping);
+  } else {
+    end_pass(*ping);
+  }
+  settle(now);
+}
+
+Surface::Incoming* Surface::find_incoming(std::uint8_t id) {
+  for (auto* ping : {&incoming_, &lingering_}) {
+    if (*ping && (*ping)->assembly.id() == id) {
+      return &**ping;
+    }
+  }
+  return nullptr;
+}
+
+Surface::Incoming* Surface::incoming_for(TimePoint now, std::uint8_t id) {
+  Incoming* ping = find_incoming(id);
+  if (ping != nullptr) {
+    return ping;
+  }
+  return find_ended(id) != nullptr ? nullptr : &begin(now, id);
+}
+
+const Surface::Ended* Surface::find_ended(std::uint8_t id) const {
+  const auto found =
+      std::find_if(ended_.rbegin(), ended_.rend(), [id](const Ended& ping) { return ping.id == id; });
+  return found == ended_.rend() ? nullptr : &*found;
+}
+
+Surface::Incoming& Surface::begin(TimePoint now, std::uint8_t id) {
+  if (incoming_) {
+    supersede(now);
+  }
+  if (programme_->continuous() && last_id_ && *last_id_ != id) {
+    const int skipped = static_cast<std::uint8_t>(id - *last_id_ - 1);
+    statistics_.pings_missed += static_cast<std::uint64_t>(skipped <= most_missed_at_once ? skipped : 0);
+  }
+  last_id_ = id;
+  incoming_.emplace(id, now);
+  incoming_->requested = !programme_->finished() && (programme_->continuous() || request_);
+  if (request_ && incoming_->requested) {
+    request_->due.reset();
+  }
+  return *incoming_;
+}
+
+void Surface::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
+  ping.assembly.set_head(head);
+  ping.progress = now;
+  if (head.transmit_time_us < programme_->least_head_us) {
+    ping.requested = false;  // transmitted before our configuration left, which now waits for it to end
+    return;
+  }
+  if (request_ && request_->sends == 1 && request_->probes == 0 && !request_->timed) {
+    config_to_ping_.sample(ping.first_datagram - request_->sent);
+    request_->timed = true;
+  }
+  if (ping.pass_over) {
+    ask_gap(ping, ping.assembly.line_count());
+  }
+}
+
+/// A head serves requests only after the tail: whatever is marked as re-sent ends the first pass.
+void Surface::heard_answer(TimePoint now, Incoming& ping) {
+  if (ping.asked) {
+    request_to_answer_.sample(now - *ping.asked);
+    ping.asked.reset();
+  }
+  ping.fruitless = 0;
+  end_pass(ping);
+}
+
+void Surface::end_pass(Incoming& ping) {
+  if (ping.pass_over) {
+    return;
+  }
+  ping.pass_over = true;
+  if (!ping.requested) {
+    return;
+  }
+  if (ping.assembly.head()) {
+    ask_gap(ping, ping.assembly.line_count());
+  } else if (!ping.head_asked) {
+    ask(&ping, RetryKind::head, {0, 1}, 1);
+  }
+}
+
+/// Asks at once for what lies between the line that was highest so far and `end`, which has come (or ends the
+/// ping).
+void Surface::ask_gap(Incoming& ping, int end) {
+  const LineRange gap{ping.last_in_order + 1, end - ping.last_in_order - 1};
+  ping.last_in_order = std::max(ping.last_in_order, end);
+  if (gap.count > 0 && ping.requested) {
+    ask(&ping, RetryKind::lines, gap, 1);
+  }
+}
+
+/// See precaution_lines.
+void Surface::ask_ahead(Incoming& ping, int line) {
+  const bool lossy = ping.retries.total() > 0;
+  if (programme_->continuous() && ping.requested && lossy && !ping.asked_ahead && ping.assembly.head() &&
+      line >= ping.assembly.line_count() - precaution_lines) {
+    ping.asked_ahead = true;
+    ask(&ping, RetryKind::tail, {0, 1}, copies_of_a_repeated_request);
+  }
+}
+
+/// A round: everything that is missing, in the order in which it helps.
+void Surface::ask_again(TimePoint now, Incoming& ping) {
+  ++ping.fruitless;
+  ping.heard = now;
+  if (!ping.assembly.head()) {
+    ask(&ping, RetryKind::head, {0, 1}, copies_of_a_repeated_request);
+  }
+  if (ping.pass_over) {
+    if (!ping.asked) {
+      ping.asked = now;
+    }
+    const int missing = ping.assembly.line_count() - ping.assembly.lines_received();
+    auto ranges = ping.assembly.missing(0, ping.assembly.line_count());
+    ranges.resize(std::min(ranges.size(), most_ranges_a_round));
+    for (const LineRange& range : ranges) {
+      ask(&ping, RetryKind::lines, range, missing <= few_lines ? copies_of_a_repeated_request : 1);
+    }
+  }
+  if (!ping.has_tail) {
+    ask(&ping, RetryKind::tail, {0, 1}, copies_of_a_repeated_request);
+  }
+}
+
+std::optional<TimePoint> Surface::due(const Incoming& ping) const {
+  if (!ping.requested) {
+    return ping.heard + unrequested_patience;
+  }
+  const int slower = ping.fruitless - fruitless_rounds_at_full_speed;
+  if (ping.pass_over) {
+    return ping.heard + doubled(request_to_answer_.patience(), slower, answer_patience_most);
+  }
+  if (ping.assembly.is_complete()) {
+    return ping.heard + doubled(neighbour_patience, slower, answer_patience_most);
+  }
+  const TimePoint quiet =
+      ping.heard + doubled(stream_quiet(ping.assembly.head()), slower, answer_patience_most);
+  const bool headless = !ping.assembly.head() && !ping.head_asked;
+  return headless ? std::min(quiet, ping.first_datagram + neighbour_patience) : quiet;
+}
+
+void Surface::on_incoming_due(TimePoint now) {
+  Incoming& ping = *incoming_;
+  const bool only_tail_lacks = ping.assembly.is_complete() && ping.fruitless >= rounds_for_the_tail_alone;
+  if (!ping.requested || only_tail_lacks || now - ping.progress >= give_up_after) {
+    finish(now);
+  } else if (!ping.assembly.head() && !ping.head_asked) {
+    ask(&ping, RetryKind::head, {0, 1}, 1);
+  } else {
+    ask_again(now, ping);
+  }
+}
+
+void Surface::settle(TimePoint now) {
+  if (lingering_ && lingering_->assembly.is_complete()) {
+    close_lingering(now);
+  }
+  const bool ends = incoming_ && incoming_->has_tail;
+  if (ends && (!incoming_->requested || incoming_->assembly.is_complete())) {
+    finish(now);
+  }
+  stop_when_finished();
+}
+
+/// A head in continuous mode has to be told; in single mode it has nothing more to do.
+void Surface::stop_when_finished() {
+  if (!stopped_ && programme_ && programme_->continuous() && programme_->finished()) {
+    stop();
+  }
+}
+
+/// Another ping begins while one is incomplete: the head has dropped the old one (7.3).
+void Surface::supersede(TimePoint now) {
+  Incoming& ping = *incoming_;
+  if (!ping.requested) {
+    ++statistics_.pings_unrequested;
+  } else if (!programme_->continuous()) {
+    ++statistics_.pings_abandoned;  // the new one answers the configuration
+  } else if (!ping.assembly.head()) {
+    ++statistics_.pings_missed;
+  } else {
+    close_lingering(now);
+    lingering_ = std::move(incoming_);
+    lingering_->pass_over = true;  // nothing of it can be asked for any more
+    lingering_due_ = now + linger_time;
+    incoming_.reset();
+    return;
+  }
+  note_end(ping);
+  incoming_.reset();
+}
+
+void Surface::finish(TimePoint now) {
+  close_lingering(now);
+  Incoming ping = std::move(*incoming_);
+  incoming_.reset();
+  note_end(ping);
+  if (!ping.requested) {
+    ++statistics_.pings_unrequested;
+    if (next_request_due_) {
+      next_request_due_ = now;  // this was the second ping that had to pass
+    }
+    if (request_ && request_->sends > 0) {
+      request_->due = now + config_to_ping_.patience();
+    }
+    return;
+  }
+  if (!ping.assembly.head()) {
+    ++statistics_.pings_abandoned;
+    if (!request_) {
+      request_.emplace(Request{});
+    }
+    request_->due = now;  // the configuration is still to be answered
+    return;
+  }
+  deliver(now, std::move(ping));
+  await_next(now);
+}
+
+void Surface::close_lingering(TimePoint now) {
+  if (!lingering_) {
+    return;
+  }
+  Incoming ping = std::move(*lingering_);
+  lingering_.reset();
+  note_end(ping);
+  deliver(now, std::move(ping));
+}
+
+void Surface::deliver(TimePoint now, Incoming ping) {
+  if (programme_->finished()) {
+    ++statistics_.pings_unrequested;
+    return;
+  }
+  ReceivedPing received;
+  received.number = next_number_++;
+  received.head = *ping.assembly.head();
+  received.lines = ping.assembly.line_count();
+  received.lines_lost = received.lines - ping.assembly.lines_received();
+  received.lines_repaired = ping.lines_repaired;
+  received.retries = ping.retries;
+  received.first_datagram = ping.first_datagram;
+  received.finished = now;
+  received.samples = ping.assembly.take_samples();
+  ++(received.complete() ? statistics_.pings_complete : statistics_.pings_incomplete);
+  statistics_.lines_missing += static_cast<std::uint64_t>(received.lines_lost);
+  ++programme_->delivered;
+  pings_.push_back(std::move(received));
+}
+
+void Surface::note_end(const Incoming& ping) {
+  const auto& head = ping.assembly.head();
+  ended_.push_back({ping.assembly.id(), head ? std::optional{head->transmit_time_us} : std::nullopt});
+  if (ended_.size() > ended_kept) {
+    ended_.pop_front();
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// Sending
+// ---------------------------------------------------------------------------------------------------------------
+
+void Surface::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
+  RetryRequest request;
+  request.kind = kind;
+  request.first_line = static_cast<std::uint16_t>(range.first);
+  request.line_count = static_cast<std::uint16_t>(range.count);
+  for (int copy = 0; copy < copies; ++copy) {
+    send(request);
+  }
+  const auto count = [&](RetryCounters& counters) {
+    auto& counter = kind == RetryKind::head    ? counters.head
+                    : kind == RetryKind::lines ? counters.lines
+                                               : counters.tail;
+    counter += static_cast<std::uint64_t>(copies);
+  };
+  count(statistics_.retries);
+  if (ping != nullptr) {
+    count(ping->retries);
+    ping->head_asked = ping->head_asked || kind == RetryKind::head;
+  }
+}
+
+template <class Message>
+void Surface::send(Message message) {
+  message.header.sonar_id = head_->status.sonar_id;
+  message.header.version = head_->status.header.version;
+  outgoing_.push_back({head_->address, encode(Command{std::move(message)})});
+}
+
+}  // namespace sonard::gemini
