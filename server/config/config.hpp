@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "protocol/gemini/device.hpp"
+#include "protocol/gemini/device_config.hpp"
+#include "protocol/pose/pose_codec.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
 
@@ -72,7 +73,8 @@ struct TcpPoseInput {
 struct TrajectoryInput {
   std::filesystem::path file;  ///< CSV or TUM, told apart by its content (docs/poses.md)
   bool loop = false;           ///< false: the last pose stays the newest one
-  double speed = 1.0;          ///< factor on the time stamps, > 0
+  double speed = 1.0;          ///< 2: twice as fast as recorded; > 0
+  pose::Axes axes = pose::Axes::enu_flu;
 };
 
 /// What a head does when the newest pose is older than the extrapolation limit.
@@ -143,10 +145,6 @@ struct GeminiHeadConfig {
   /// are filled in per ping from the device's bearing table and the ping job.
   render::SonarSettings acoustics;
   std::uint64_t seed = 1;  ///< of speckle and noise
-  /// How long before its transmit time a ping may be rendered, so that the image is ready in time; the pose
-  /// is then extrapolated by so much. >= 0.
-  std::chrono::nanoseconds render_lead{0};
-
   LinkConfig link;
   /// A UDP socket whose every datagram counts as one edge of the external trigger (run mode 2).
   std::optional<Endpoint> trigger;

@@ -126,20 +126,25 @@ void read_network(YamlSection& section, GeminiHeadConfig& head, std::vector<Conf
   }
 }
 
-void read_timing(YamlSection& section, GeminiHeadConfig& head) {
-  gemini::DeviceConfig& device = head.device;
+void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
   section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms));
   section.duration("min_ping_period_ms", device.min_ping_period, Range::from(1.0, minute_ms));
   section.duration("surface_timeout_ms", device.surface_timeout, Range::from(10.0, 3600.0 * 1000.0));
   section.duration("reboot_time_ms", device.reboot_time, Range::from(0.0, minute_ms));
-  section.duration("line_period_us", device.line_period, Range::from(0.0, 10'000.0));
+  section.duration("line_period_us", device.line_period, Range::from(1.0, 10'000.0));
   section.integer("burst_lines", device.burst_lines, 1, 1024);
   section.duration("retry_hold_ms", device.retry_hold, Range::from(0.0, 10'000.0));
   section.duration("retry_hold_max_ms", device.retry_hold_max, Range::from(0.0, 10'000.0));
   if (device.retry_hold_max < device.retry_hold) {
     section.report("retry_hold_max_ms", "is shorter than retry_hold_ms (expected at least as long)");
   }
-  section.duration("render_lead_ms", head.render_lead, Range::from(0.0, 1000.0));
+  section.duration("render_lead_ms", device.render_lead, Range::from(0.0, 1000.0));
+}
+
+void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
+  section.number("reference_spreading", law.reference_spreading, Range::above(0.0, 1023.0));
+  section.number("db_per_percent", law.db_per_percent, Range::from(0.0, 10.0));
+  section.number("nominal_main_gain_db", law.nominal_main_gain_db, Range::from(0.0, 100.0));
 }
 
 void read_physical_model(YamlSection& section, render::PhysicalModel& model) {
@@ -193,6 +198,8 @@ void read_acoustics(YamlSection& section, GeminiHeadConfig& head) {
   using Elevation = render::Aperture::Elevation;
   section.choice("elevation_pattern", settings.aperture.elevation,
                  {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}});
+  section.boolean("snap_sound_speed", head.device.snap_sound_speed);
+  section.section("gain_law", [&](YamlSection& inner) { read_gain_law(inner, head.device.gain); });
   section.section("physical", [&](YamlSection& inner) { read_physical_model(inner, settings.physical); });
   section.section("paper", [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });
 }
@@ -257,7 +264,7 @@ GeminiHeadConfig read_gemini_head(YamlSection& section, const HeadContext& conte
   read_identity(section, head);
   section.require("network", "a mapping with alternate_address and netmask");
   section.section("network", [&](YamlSection& inner) { read_network(inner, head, warnings); });
-  section.section("timing", [&](YamlSection& inner) { read_timing(inner, head); });
+  section.section("timing", [&](YamlSection& inner) { read_timing(inner, head.device); });
   section.section("mount", [&](YamlSection& inner) { read_pose(inner, head.T_vehicle_sonar); });
   section.section("acoustics", [&](YamlSection& inner) { read_acoustics(inner, head); });
   section.section("link", [&](YamlSection& inner) { read_link(inner, head.link); });

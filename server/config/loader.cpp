@@ -81,6 +81,8 @@ void read_trajectory(YamlSection& section, const std::filesystem::path& folder, 
   trajectory.file = folder / path;
   section.boolean("loop", trajectory.loop);
   section.number("speed", trajectory.speed, Range::above(0.0, 1000.0));
+  section.choice("axes", trajectory.axes,
+                 {{"enu_flu", pose::Axes::enu_flu}, {"ned_frd", pose::Axes::ned_frd}});
 }
 
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
