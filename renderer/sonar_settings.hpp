@@ -100,7 +100,8 @@ struct SonarSettings {
   PaperModel paper;
   PhysicalModel physical;
   Sampling sampling;
-  bool sixteen_bit = false;
+  bool transmit = true;      ///< false: the sonar only listens, there is no echo
+  bool sixteen_bit = false;  ///< output samples of 16 instead of 8 bits
 };
 
 }  // namespace sonard::render

@@ -1,0 +1,23 @@
+// Random numbers as a pure function of what they belong to: no state, no order, the same on every thread count.
+#pragma once
+
+#include <cstdint>
+
+namespace sonard::render {
+
+/// Names one field of random numbers.
+struct RandomKey {
+  std::uint32_t low = 0;
+  std::uint32_t high = 0;
+};
+
+/// What a field is used for; keeps the fields of one ping apart.
+enum class RandomField : std::uint64_t { speckle_base = 1, speckle_innovation = 2, noise = 3, paper_speckle = 4 };
+
+/// Mixes all inputs so that any difference gives an unrelated field.
+RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std::uint64_t ping_number);
+
+/// Circular complex Gaussians CN(0, 1), that is E|z|^2 = 1, for columns 0 ... count - 1 of row `row`.
+void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* real, float* imaginary);
+
+}  // namespace sonard::render

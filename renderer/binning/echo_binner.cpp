@@ -1,0 +1,165 @@
+#include "renderer/binning/echo_binner.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "renderer/binning/footprint.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+/// One beam's accumulators. Values are weights scaled by `scale`, so that a sum over every sample of the beam with
+/// the largest response still fits 62 bits.
+struct BeamSums {
+  std::vector<std::int64_t> echo;
+  std::vector<std::int64_t> weight;  // only for means
+  std::uint64_t samples = 0;
+  std::uint64_t invalid = 0;
+
+  BeamSums(std::size_t lines, bool mean) : echo(lines, 0), weight(mean ? lines : 0, 0) {}
+};
+
+/// A sample cut to one part of a pixel: what falls into the beam, in range lines.
+struct Splat {
+  float position;  ///< of the centre
+  float a, b;      ///< spreads
+  float echo, weight;
+};
+
+void add_point(const Splat& splat, double line_scale, BeamSums& sums) {
+  const double line = std::floor(static_cast<double>(splat.position) * line_scale);
+  if (line < 0 || line >= static_cast<double>(sums.echo.size())) {
+    return;
+  }
+  const auto k = static_cast<std::size_t>(line);
+  sums.echo[k] += static_cast<std::int64_t>(splat.echo);
+  if (!sums.weight.empty()) {
+    sums.weight[k] += static_cast<std::int64_t>(splat.weight);
+  }
+}
+
+void add_footprint(const Splat& splat, BeamSums& sums) {
+  const Footprint footprint = Footprint::make(splat.position, splat.a, splat.b);
+  const auto lines = static_cast<float>(sums.echo.size());
+  const float end = footprint.rise_from + footprint.base();
+  if (!(end > 0) || !(footprint.rise_from < lines)) {
+    return;
+  }
+  const auto first = static_cast<int>(std::max(0.0F, footprint.rise_from));
+  const auto last = static_cast<int>(std::min(lines - 1, end));
+  float below = footprint.below(static_cast<float>(first));
+  for (int k = first; k <= last; ++k) {
+    const float next = footprint.below(static_cast<float>(k + 1));
+    const float share = next - below;
+    below = next;
+    sums.echo[static_cast<std::size_t>(k)] += static_cast<std::int64_t>(splat.echo * share);
+    if (!sums.weight.empty()) {
+      sums.weight[static_cast<std::size_t>(k)] += static_cast<std::int64_t>(splat.weight * share);
+    }
+  }
+}
+
+class BeamBinner {
+ public:
+  BeamBinner(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+             const BinningOptions& options, float scale)
+      : grid_(grid), views_(views), options_(options), lines_per_m_(static_cast<float>(1.0 / range.step_m)),
+        legacy_scale_(options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0), scale_(scale) {}
+
+  void add_part(const ColumnPart& part, BeamSums& sums) const {
+    const SubView& view = grid_.views[static_cast<std::size_t>(part.view)];
+    const SurfaceSample* column = views_[static_cast<std::size_t>(part.view)] + part.column;
+    const float* weights = &grid_.weights[part.weights];
+    const auto full_height = static_cast<float>(view.pixel_height());
+    for (int row = part.row_begin; row < part.row_end; ++row) {
+      const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
+      if (!(sample.range_m > 0)) {
+        sums.invalid += sample.range_m < 0 ? 1 : 0;
+        continue;
+      }
+      ++sums.samples;
+      const bool first = row == part.row_begin;
+      const bool last = row + 1 == part.row_end;
+      const float y_offset = first ? part.first_y_offset : last ? part.last_y_offset : 0.0F;
+      const float height = first ? part.first_height : last ? part.last_height : full_height;
+      const float weight = weights[row - part.row_begin] * scale_;
+      Splat splat{};
+      splat.echo = weight * sample.response;
+      splat.weight = weight;
+      if (options_.footprint) {
+        splat.position = (sample.range_m + sample.range_dx * part.x_offset + sample.range_dy * y_offset) * lines_per_m_;
+        splat.a = std::abs(sample.range_dx) * part.width * lines_per_m_;
+        splat.b = std::abs(sample.range_dy) * height * lines_per_m_;
+        add_footprint(splat, sums);
+      } else {
+        splat.position = sample.range_m * lines_per_m_;
+        add_point(splat, legacy_scale_, sums);
+      }
+    }
+  }
+
+ private:
+  const SampleGrid& grid_;
+  const std::vector<const SurfaceSample*>& views_;
+  const BinningOptions& options_;
+  float lines_per_m_;
+  double legacy_scale_;
+  float scale_;
+};
+
+/// Power of two that maps the largest possible sum of one line to below 2^62. Responses are at most 1: mu <= 1/pi and
+/// sigmoid <= 1; a beam's weights add up to at most its solid angle.
+float fixed_point_scale(const SampleGrid& grid) {
+  double largest = 0;
+  for (int beam = 0; beam < grid.beam_count(); ++beam) {
+    double sum = 0;
+    for (int p = grid.beam_parts[static_cast<std::size_t>(beam)]; p < grid.beam_parts[static_cast<std::size_t>(beam) + 1]; ++p) {
+      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+      for (int row = 0; row < part.row_end - part.row_begin; ++row) {
+        sum += static_cast<double>(grid.weights[part.weights + static_cast<std::size_t>(row)]);
+      }
+    }
+    largest = std::max(largest, sum);
+  }
+  return static_cast<float>(std::exp2(std::floor(61 - std::log2(largest))));
+}
+
+}  // namespace
+
+BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers) {
+  BinningResult result;
+  result.beams = grid.beam_count();
+  result.lines = range.count;
+  const auto lines = static_cast<std::size_t>(range.count);
+  result.echo.resize(static_cast<std::size_t>(result.beams) * lines);
+  const float scale = fixed_point_scale(grid);
+  const BeamBinner binner(grid, views, range, options, scale);
+  std::atomic<std::uint64_t> samples{0};
+  std::atomic<std::uint64_t> invalid{0};
+  workers.run(result.beams, [&](int beam) {
+    BeamSums sums(lines, options.mean);
+    const auto b = static_cast<std::size_t>(beam);
+    for (int p = grid.beam_parts[b]; p < grid.beam_parts[b + 1]; ++p) {
+      binner.add_part(grid.parts[static_cast<std::size_t>(p)], sums);
+    }
+    float* out = &result.echo[b * lines];
+    for (std::size_t k = 0; k < lines; ++k) {
+      const auto echo = static_cast<double>(sums.echo[k]);
+      if (options.mean) {
+        out[k] = sums.weight[k] > 0 ? static_cast<float>(echo / static_cast<double>(sums.weight[k])) : 0.0F;
+      } else {
+        out[k] = static_cast<float>(echo / static_cast<double>(scale));
+      }
+    }
+    samples += sums.samples;
+    invalid += sums.invalid;
+  });
+  result.samples = samples;
+  result.invalid_samples = invalid;
+  return result;
+}
+
+}  // namespace sonard::render

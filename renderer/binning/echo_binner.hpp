@@ -1,0 +1,36 @@
+// Surface samples -> echo per beam and range line.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/sonar_settings.hpp"
+#include "renderer/visibility/sample_grid.hpp"
+#include "renderer/visibility/sampler.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+struct BinningOptions {
+  bool mean = false;              ///< divide by the solid angle that fell into the line (mode `paper`)
+  bool footprint = true;          ///< false: a sample is a point in range
+  bool legacy_bin_index = false;  ///< docs/physics.md 1.2, A4; only with footprint = false
+};
+
+struct BinningResult {
+  int beams = 0;
+  int lines = 0;
+  /// [beam * lines + line]. Sum of response * solid angle * elevation pattern, steradians; with `mean` the
+  /// weighted mean of response. Spreading and absorption are left to the caller: they depend on the line alone, and
+  /// taken per line they stay exact where one sample spreads over many lines.
+  std::vector<float> echo;
+  std::uint64_t samples = 0;
+  std::uint64_t invalid_samples = 0;
+};
+
+/// Sums in 64-bit fixed point: integer addition has no order, so the result is the same for any number of
+/// threads and any order of samples (docs/physics.md 4.2). `views` is what Sampler::sample() returned for `grid`.
+BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers);
+
+}  // namespace sonard::render

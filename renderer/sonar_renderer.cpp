@@ -1,0 +1,185 @@
+#include "renderer/sonar_renderer.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "renderer/acoustics/receiver.hpp"
+#include "renderer/binning/echo_binner.hpp"
+#include "renderer/visibility/raster_sampler.hpp"
+#include "renderer/visibility/sample_grid.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr int most_native_lines = 65535;        // a Gemini's line count is 16 bits wide
+constexpr int most_beams = 4096;
+constexpr double shortest_line_m = 1e-6;
+constexpr double longest_range_m = 1e5;
+// Surfaces a little beyond the last line are still sampled, so that footprints which cross it are complete.
+constexpr double range_margin = 1.05;
+
+void check(const SonarSettings& settings) {
+  const RangeLines& range = settings.range;
+  if (range.count < 1 || range.count > most_native_lines) {
+    throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " + std::to_string(most_native_lines));
+  }
+  if (!(range.step_m >= shortest_line_m) || !(range.max_range_m() <= longest_range_m)) {
+    throw RequestError("range: a line of " + std::to_string(range.step_m) + " m gives no usable range");
+  }
+  if (range.compression_log2 < 0 || range.compression_log2 > 4) {
+    throw RequestError("range: compression 2^" + std::to_string(range.compression_log2) + ", expected 2^0 to 2^4");
+  }
+  if (settings.aperture.beam_count() > most_beams) {
+    throw RequestError("aperture: more than " + std::to_string(most_beams) + " beams");
+  }
+}
+
+/// The pose with a unit quaternion.
+Pose checked(const Pose& pose) {
+  const double norm = glm::length(pose.orientation);
+  const glm::dvec3& p = pose.position_m;
+  if (!std::isfinite(norm) || !(std::abs(norm - 1) < 1e-3) || !std::isfinite(p.x + p.y + p.z)) {
+    throw RequestError("pose: not finite, or its quaternion is not of unit length");
+  }
+  return {p, pose.orientation / norm};
+}
+
+SurfaceModel surface_model(const SonarSettings& settings) {
+  SurfaceModel surface;
+  surface.model = settings.model;
+  if (settings.model == Model::paper) {
+    surface.sigmoid_slope = settings.paper.sigmoid_slope;
+    surface.sigmoid_centre = settings.paper.sigmoid_centre;
+    surface.attenuation_per_m = settings.paper.attenuation_per_m;
+    surface.two_sided = settings.paper.two_sided;
+  }
+  return surface;
+}
+
+BinningOptions binning_options(const SonarSettings& settings) {
+  BinningOptions options;
+  if (settings.model == Model::paper) {
+    options.mean = true;
+    options.footprint = settings.paper.footprint;
+    options.legacy_bin_index = settings.paper.legacy_bin_index && !settings.paper.footprint;
+  }
+  return options;
+}
+
+/// Spherical spreading and absorption, two ways, of every native line (docs/physics.md 2.1, equation 1).
+void apply_propagation(const SonarSettings& settings, EchoImage& image) {
+  std::vector<float> loss(static_cast<std::size_t>(image.lines));
+  for (std::size_t k = 0; k < loss.size(); ++k) {
+    const double range_m = (static_cast<double>(k) + 0.5) * settings.range.step_m;
+    loss[k] = static_cast<float>(std::pow(10.0, -settings.physical.absorption_db_per_m * range_m / 5) / (range_m * range_m));
+  }
+  for (std::size_t beam = 0; beam < static_cast<std::size_t>(image.beams); ++beam) {
+    float* line = &image.intensity[beam * loss.size()];
+    for (std::size_t k = 0; k < loss.size(); ++k) {
+      line[k] *= loss[k];
+    }
+  }
+}
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+struct SonarRenderer::Impl {
+  std::unique_ptr<Sampler> sampler;
+  WorkerPool workers;
+  Receiver receiver;
+  PingStatistics statistics;
+
+  explicit Impl(const World& world) : sampler(std::make_unique<RasterSampler>(world)) {}
+
+  /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
+  const SampleGrid& grid_for(const SonarSettings& settings) {
+    GridOptions options;
+    if (settings.model == Model::paper) {
+      options.whole_columns = settings.paper.legacy_columns;
+      options.elevation_mask = settings.paper.elevation_mask;
+    }
+    if (!grid_key || !same_grid(*grid_key, settings) || grid_options.whole_columns != options.whole_columns ||
+        grid_options.elevation_mask != options.elevation_mask) {
+      grid_key.reset();
+      grid = make_sample_grid(settings.aperture, settings.sampling, options);
+      grid_key = settings;
+      grid_options = options;
+    }
+    return grid;
+  }
+
+ private:
+  static bool same_grid(const SonarSettings& a, const SonarSettings& b) {
+    return a.aperture.beam_edges_rad == b.aperture.beam_edges_rad &&
+           a.aperture.vertical_beamwidth_rad == b.aperture.vertical_beamwidth_rad &&
+           a.aperture.elevation == b.aperture.elevation && a.sampling.views == b.sampling.views &&
+           a.sampling.columns_per_view == b.sampling.columns_per_view && a.sampling.rows == b.sampling.rows;
+  }
+
+  SampleGrid grid;
+  std::optional<SonarSettings> grid_key;
+  GridOptions grid_options;
+};
+
+SonarRenderer::SonarRenderer(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+SonarRenderer::~SonarRenderer() = default;
+
+const std::string& SonarRenderer::gl_description() const { return impl_->sampler->description(); }
+
+bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  return impl_->sampler->set_body_pose(body_name, checked(T_world_body));
+}
+
+EchoImage SonarRenderer::render_echo(const PingRequest& request) {
+  const SonarSettings& settings = request.settings;
+  check(settings);
+  const Pose T_world_sonar = checked(request.T_world_sonar);
+  const SampleGrid& grid = impl_->grid_for(settings);
+  EchoImage image{settings.aperture.beam_count(), settings.range.count, {}};
+  impl_->statistics = {};
+  if (!settings.transmit) {
+    image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
+    return image;
+  }
+  Stopwatch watch;
+  const auto views =
+      impl_->sampler->sample(T_world_sonar, grid, surface_model(settings), settings.range.max_range_m() * range_margin);
+  impl_->statistics.visibility_s = watch.lap();
+  BinningResult bins = bin_echoes(grid, views, settings.range, binning_options(settings), impl_->workers);
+  image.intensity = std::move(bins.echo);
+  if (settings.model == Model::physical) {
+    apply_propagation(settings, image);
+  }
+  impl_->statistics.binning_s = watch.lap();
+  impl_->statistics.samples = bins.samples;
+  impl_->statistics.invalid_samples = bins.invalid_samples;
+  return image;
+}
+
+PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
+  const EchoImage echo = render_echo(request);
+  Stopwatch watch;
+  PingSamples samples = impl_->receiver.receive(echo, request, stream, impl_->workers);
+  impl_->statistics.receiver_s = watch.lap();
+  return samples;
+}
+
+const PingStatistics& SonarRenderer::last_statistics() const { return impl_->statistics; }
+
+}  // namespace sonard::render

@@ -1,0 +1,397 @@
+#include "renderer/visibility/raster_sampler.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <span>
+#include <unordered_map>
+
+#include <osg/Camera>
+#include <osg/ClipControl>
+#include <osg/Depth>
+#include <osg/Geode>
+#include <osg/Geometry>
+#include <osg/Image>
+#include <osg/MatrixTransform>
+#include <osg/Program>
+#include <osg/Texture2D>
+#include <osgUtil/CullVisitor>
+#include <osgUtil/SceneView>
+
+#include "renderer/errors.hpp"
+#include "renderer/visibility/egl_context.hpp"
+#include "renderer/visibility/surface_shader.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr double near_plane_m = 0.02;           // reversed infinite depth loses nothing by a small value
+constexpr std::size_t chunk_triangles = 2048;   // what culling by view and range works on
+constexpr unsigned tangent_attribute = 6;
+constexpr int normal_map_unit = 0;
+
+osg::Matrixd to_osg(const Pose& T_a_b) {
+  const glm::dquat& q = T_a_b.orientation;
+  return osg::Matrixd::rotate(osg::Quat(q.x, q.y, q.z, q.w)) *
+         osg::Matrixd::translate(T_a_b.position_m.x, T_a_b.position_m.y, T_a_b.position_m.z);
+}
+
+/// Sonar frame (x forward, y port, z up) to the eye frame of a view (x starboard, y up, -z forward).
+osg::Matrixd view_matrix(const SubView& view) {
+  const osg::Matrixd turn = osg::Matrixd::rotate(-view.azimuth_rad, osg::Vec3d(0, 0, 1));
+  // OSG multiplies row vectors: row i is the image of axis i.
+  const osg::Matrixd axes(0, 0, -1, 0,  //
+                          -1, 0, 0, 0,  //
+                          0, 1, 0, 0,   //
+                          0, 0, 0, 1);
+  return turn * axes;
+}
+
+/// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative terms
+/// (docs/physics.md 4.2). Visibility only; ranges never come from the depth buffer.
+osg::Matrixd projection_matrix(const SubView& view) {
+  return osg::Matrixd(1 / view.tan_half_width, 0, 0, 0,   //
+                      0, 1 / view.tan_half_height, 0, 0,  //
+                      0, 0, 0, -1,                        //
+                      0, 0, near_plane_m, 0);
+}
+
+/// Culls a chunk that lies wholly beyond the range of the sonar.
+class RangeCull : public osg::DrawableCullCallback {
+ public:
+  explicit RangeCull(const float* max_range_m) : max_range_m_(max_range_m) {}
+
+  bool cull(osg::NodeVisitor* visitor, osg::Drawable* drawable, osg::RenderInfo* /*info*/) const override {
+    const osg::Vec3 eye = static_cast<osgUtil::CullVisitor*>(visitor)->getEyeLocal();
+    const osg::BoundingBox& box = drawable->getBoundingBox();
+    const osg::Vec3 nearest(std::clamp(eye.x(), box.xMin(), box.xMax()), std::clamp(eye.y(), box.yMin(), box.yMax()),
+                            std::clamp(eye.z(), box.zMin(), box.zMax()));
+    return (nearest - eye).length() > *max_range_m_;
+  }
+
+ private:
+  const float* max_range_m_;
+};
+
+/// Splits the triangles of a mesh into compact chunks by halving along the longest side.
+class ChunkBuilder {
+ public:
+  explicit ChunkBuilder(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangle_count()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+  }
+
+  template <class AddChunk>
+  void split(AddChunk add_chunk) {
+    split(0, order_.size(), add_chunk);
+  }
+
+ private:
+  glm::vec3 centre(std::uint32_t triangle) const {
+    const std::uint32_t* corner = &mesh_.indices[std::size_t{triangle} * 3];
+    return (mesh_.positions[corner[0]] + mesh_.positions[corner[1]] + mesh_.positions[corner[2]]) / 3.0F;
+  }
+
+  template <class AddChunk>
+  void split(std::size_t begin, std::size_t end, AddChunk& add_chunk) {
+    if (end - begin <= chunk_triangles) {
+      add_chunk(std::span<const std::uint32_t>(order_).subspan(begin, end - begin));
+      return;
+    }
+    glm::vec3 low(INFINITY);
+    glm::vec3 high(-INFINITY);
+    for (std::size_t i = begin; i < end; ++i) {
+      low = glm::min(low, centre(order_[i]));
+      high = glm::max(high, centre(order_[i]));
+    }
+    const glm::vec3 size = high - low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+      const float ca = centre(a)[axis];
+      const float cb = centre(b)[axis];
+      return ca < cb || (ca == cb && a < b);
+    });
+    split(begin, middle, add_chunk);
+    split(middle, end, add_chunk);
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<std::uint32_t> order_;
+};
+
+osg::ref_ptr<osg::Geometry> make_geometry(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
+  osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
+  osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
+  osg::ref_ptr<osg::Vec2Array> texcoords = new osg::Vec2Array;
+  osg::ref_ptr<osg::Vec4Array> tangents = new osg::Vec4Array;
+  osg::ref_ptr<osg::DrawElementsUInt> elements = new osg::DrawElementsUInt(GL_TRIANGLES);
+  std::unordered_map<std::uint32_t, unsigned> local_index;
+  for (const std::uint32_t triangle : triangles) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t v = mesh.indices[std::size_t{triangle} * 3 + corner];
+      const auto [entry, is_new] = local_index.try_emplace(v, static_cast<unsigned>(positions->size()));
+      elements->push_back(entry->second);
+      if (!is_new) {
+        continue;
+      }
+      const glm::vec3& p = mesh.positions[v];
+      positions->push_back(osg::Vec3(p.x, p.y, p.z));
+      if (!mesh.normals.empty()) {
+        normals->push_back(osg::Vec3(mesh.normals[v].x, mesh.normals[v].y, mesh.normals[v].z));
+      }
+      if (!mesh.texcoords.empty()) {
+        texcoords->push_back(osg::Vec2(mesh.texcoords[v].x, mesh.texcoords[v].y));
+      }
+      if (!mesh.tangents.empty()) {
+        const glm::vec4& t = mesh.tangents[v];
+        tangents->push_back(osg::Vec4(t.x, t.y, t.z, t.w));
+      }
+    }
+  }
+  osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+  geometry->setUseDisplayList(false);
+  geometry->setUseVertexBufferObjects(true);
+  geometry->setVertexArray(positions);
+  if (!normals->empty()) {
+    geometry->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
+  }
+  if (!texcoords->empty()) {
+    geometry->setTexCoordArray(0, texcoords, osg::Array::BIND_PER_VERTEX);
+  }
+  if (!tangents->empty()) {
+    geometry->setVertexAttribArray(tangent_attribute, tangents, osg::Array::BIND_PER_VERTEX);
+  }
+  geometry->addPrimitiveSet(elements);
+  return geometry;
+}
+
+osg::ref_ptr<osg::Texture2D> make_texture(const NormalMap& map) {
+  osg::ref_ptr<osg::Image> image = new osg::Image;
+  image->allocateImage(map.width_px, map.height_px, 1, GL_RGB, GL_UNSIGNED_BYTE);
+  std::memcpy(image->data(), map.rgb.data(), map.rgb.size());
+  osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
+  texture->setInternalFormat(GL_RGB8);
+  texture->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+  texture->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+  texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
+  texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
+  texture->setResizeNonPowerOfTwoHint(false);
+  return texture;
+}
+
+enum Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
+
+osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* max_range_m) {
+  osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(to_osg(part.T_body_part));
+  ChunkBuilder(*part.mesh).split([&](std::span<const std::uint32_t> triangles) {
+    osg::ref_ptr<osg::Geometry> chunk = make_geometry(*part.mesh, triangles);
+    chunk->setCullCallback(new RangeCull(max_range_m));
+    node->addChild(chunk);
+  });
+  osg::StateSet* state = node->getOrCreateStateSet();
+  const bool mapped = part.normal_map && !part.mesh->tangents.empty() && !part.mesh->normals.empty();
+  const Shading shading = mapped ? normal_mapped : part.mesh->normals.empty() ? geometric_normal : vertex_normals;
+  if (mapped) {
+    state->setTextureAttributeAndModes(normal_map_unit, make_texture(*part.normal_map));
+  }
+  state->addUniform(new osg::Uniform("shading", static_cast<int>(shading)));
+  state->addUniform(new osg::Uniform("reflectance", static_cast<float>(part.material.reflectance)));
+  state->addUniform(new osg::Uniform("lambert_mu", static_cast<float>(part.material.lambert_mu)));
+  return node;
+}
+
+/// One camera drawing one SubView into a float image that is read back.
+struct ViewTarget {
+  osg::ref_ptr<osgUtil::SceneView> scene_view;
+  osg::ref_ptr<osg::Image> image;
+};
+
+ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state) {
+  ViewTarget target;
+  target.image = new osg::Image;
+  target.image->setInternalTextureFormat(GL_RGBA32F_ARB);
+  target.image->allocateImage(view.columns, view.rows, 1, GL_RGBA, GL_FLOAT);
+
+  target.scene_view = new osgUtil::SceneView;
+  target.scene_view->setDefaults(osgUtil::SceneView::COMPILE_GLOBJECTS_AT_INIT);
+  target.scene_view->setState(state);
+  target.scene_view->setSceneData(scene);
+  target.scene_view->setFrameStamp(new osg::FrameStamp);
+  osg::Camera* camera = target.scene_view->getCamera();
+  camera->setViewport(0, 0, view.columns, view.rows);
+  camera->setClearColor(osg::Vec4(0, 0, 0, 0));
+  camera->setClearDepth(0.0);
+  camera->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+  camera->setDrawBuffer(GL_COLOR_ATTACHMENT0_EXT);
+  camera->setReadBuffer(GL_COLOR_ATTACHMENT0_EXT);
+  camera->attach(osg::Camera::COLOR_BUFFER0, target.image);
+  camera->attach(osg::Camera::DEPTH_BUFFER, GL_DEPTH_COMPONENT32F);
+  camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+  camera->setViewMatrix(view_matrix(view));
+  camera->setProjectionMatrix(projection_matrix(view));
+  osg::StateSet* state_set = target.scene_view->getGlobalStateSet();
+  state_set->addUniform(new osg::Uniform("tan_half", osg::Vec2(static_cast<float>(view.tan_half_width),
+                                                               static_cast<float>(view.tan_half_height))));
+  state_set->addUniform(
+      new osg::Uniform("pixels", osg::Vec2(static_cast<float>(view.columns), static_cast<float>(view.rows))));
+  // Only the sides cull: there is no far plane, and small features are echoes too.
+  target.scene_view->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING);
+  target.scene_view->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+  camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING);
+  camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+  return target;
+}
+
+bool same_views(const std::vector<SubView>& a, const std::vector<SubView>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SubView& x, const SubView& y) {
+    return x.azimuth_rad == y.azimuth_rad && x.tan_half_width == y.tan_half_width &&
+           x.tan_half_height == y.tan_half_height && x.columns == y.columns && x.rows == y.rows;
+  });
+}
+
+}  // namespace
+
+struct RasterSampler::Impl {
+  struct BodyNode {
+    Pose T_world_body;
+    osg::ref_ptr<osg::MatrixTransform> transform;  // T_sonar_body of the current ping
+  };
+
+  osg::ref_ptr<EglContext> context;
+  std::string description;
+  osg::ref_ptr<osg::Group> scene;
+  std::map<std::string, BodyNode> bodies;
+  std::vector<SubView> views;
+  std::vector<ViewTarget> targets;
+  float max_range_m = 0.0F;
+  int max_texture_px = 0;
+
+  explicit Impl(const World& world) : context(new EglContext) {
+    context->realize();
+    make_current();
+    description = "raster, " + context->describe();
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
+    scene = new osg::Group;
+    set_up_state(*scene->getOrCreateStateSet());
+    for (const Body& body : world.bodies) {
+      BodyNode node{body.T_world_body, new osg::MatrixTransform};
+      for (const BodyPart& part : body.parts) {
+        node.transform->addChild(make_part(part, &max_range_m));
+      }
+      scene->addChild(node.transform);
+      bodies.emplace(body.name, node);
+    }
+  }
+
+  ~Impl() {
+    if (context->makeCurrent()) {
+      for (ViewTarget& target : targets) {
+        target.scene_view->releaseAllGLObjects();
+      }
+      scene->releaseGLObjects(context->getState());
+    }
+    targets.clear();
+    context->close();
+  }
+
+  void make_current() {
+    if (!context->makeCurrent()) {
+      throw RendererError("the OpenGL context is lost");
+    }
+  }
+
+  static void set_up_state(osg::StateSet& state) {
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, surface_vertex_shader));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surface_fragment_shader));
+    state.setAttributeAndModes(program);
+    state.setAttributeAndModes(new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
+    state.setAttributeAndModes(new osg::Depth(osg::Depth::GREATER, 0.0, 1.0));
+    state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF);
+    state.setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state.setMode(GL_BLEND, osg::StateAttribute::OFF);
+    state.addUniform(new osg::Uniform("normal_map", normal_map_unit));
+  }
+
+  void set_surface(const SurfaceModel& surface) const {
+    osg::StateSet& state = *scene->getStateSet();
+    state.getOrCreateUniform("model", osg::Uniform::INT)->set(surface.model == Model::physical ? 1 : 0);
+    state.getOrCreateUniform("sigmoid", osg::Uniform::FLOAT_VEC2)
+        ->set(osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));
+    state.getOrCreateUniform("attenuation_per_m", osg::Uniform::FLOAT)
+        ->set(static_cast<float>(surface.attenuation_per_m));
+    state.getOrCreateUniform("two_sided", osg::Uniform::BOOL)->set(surface.two_sided);
+  }
+
+  void set_views(const std::vector<SubView>& wanted) {
+    if (same_views(views, wanted)) {
+      return;
+    }
+    for (const SubView& view : wanted) {
+      if (view.columns > max_texture_px || view.rows > max_texture_px) {
+        throw RequestError("sampling: a view exceeds the GL limit of " + std::to_string(max_texture_px) + " pixels");
+      }
+    }
+    for (ViewTarget& target : targets) {
+      target.scene_view->getCamera()->releaseGLObjects(context->getState());
+      target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
+    }
+    targets.clear();
+    for (const SubView& view : wanted) {
+      targets.push_back(make_target(view, scene, context->getState()));
+    }
+    views = wanted;
+  }
+
+  void draw() {
+    for (ViewTarget& target : targets) {
+      target.scene_view->cull();
+      target.scene_view->draw();
+    }
+    glFinish();
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+      throw RendererError("OpenGL error " + std::to_string(error) + " while drawing the scene");
+    }
+  }
+};
+
+RasterSampler::RasterSampler(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+RasterSampler::~RasterSampler() = default;
+
+std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
+                                                        const SurfaceModel& surface, double max_range_m) {
+  impl_->make_current();
+  impl_->set_views(grid.views);
+  impl_->set_surface(surface);
+  impl_->max_range_m = static_cast<float>(max_range_m);
+  const Pose T_sonar_world = inverse(T_world_sonar);
+  for (auto& [name, body] : impl_->bodies) {
+    body.transform->setMatrix(to_osg(T_sonar_world * body.T_world_body));
+  }
+  impl_->draw();
+  static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
+  std::vector<const SurfaceSample*> samples;
+  for (const ViewTarget& target : impl_->targets) {
+    samples.push_back(reinterpret_cast<const SurfaceSample*>(target.image->data()));
+  }
+  return samples;
+}
+
+bool RasterSampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  const auto body = impl_->bodies.find(body_name);
+  if (body == impl_->bodies.end()) {
+    return false;
+  }
+  body->second.T_world_body = T_world_body;
+  return true;
+}
+
+const std::string& RasterSampler::description() const { return impl_->description; }
+
+}  // namespace sonard::render
