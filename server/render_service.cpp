@@ -1,7 +1,5 @@
 #include "server/render_service.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -13,10 +11,12 @@
 #include <thread>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 namespace sonard::server {
 namespace {
 
-constexpr std::size_t kMostUnknownBodies = 16;
+constexpr std::size_t most_unknown_bodies = 16;
 
 }  // namespace
 
@@ -162,8 +162,8 @@ RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob
 void RenderService::Impl::move_bodies(PingRenderer& renderer, const RenderJob& job) {
   for (const PosedBody& body : job.bodies) {
     // Names come from the network: a publisher that invents new ones for ever fills neither memory nor log.
-    if (!renderer.set_body_pose(body.name, body.T_world_body) && unknown_bodies.size() < kMostUnknownBodies &&
-        unknown_bodies.insert(body.name).second) {
+    if (!renderer.set_body_pose(body.name, body.T_world_body) &&
+        unknown_bodies.size() < most_unknown_bodies && unknown_bodies.insert(body.name).second) {
       spdlog::warn("the pose stream moves body '{}', which the world does not have", body.name);
     }
   }

@@ -11,6 +11,7 @@
 
 #include "renderer/pose.hpp"
 #include "renderer/sonar_renderer.hpp"
+#include "server/pose/posed_body.hpp"
 
 namespace sonard::server {
 
@@ -32,16 +33,11 @@ class PingRenderer {
 /// Makes the renderer; called once, on the render thread, where a GL context must be born.
 using RendererFactory = std::function<std::unique_ptr<PingRenderer>()>;
 
-struct PosedBody {
-  std::string name;
-  render::Pose T_world_body;
-};
-
 /// One ping to render.
 struct RenderJob {
-  int stream = 0;                ///< one per head, 0, 1, 2, ...
-  std::string head;              ///< name of the head, for logs and dumps
-  std::int64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
+  int stream = 0;                 ///< one per head, 0, 1, 2, ...
+  std::string head;               ///< name of the head, for logs and dumps
+  std::uint64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
   render::PingRequest request;
   std::vector<PosedBody> bodies;  ///< moved before the ping is rendered
 };

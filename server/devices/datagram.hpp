@@ -1,9 +1,7 @@
 // A datagram between a head and the other end, with both ends named.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
+#include "protocol/gemini/shared_bytes.hpp"
 #include "server/config/config.hpp"
 
 namespace sonard::server {
@@ -12,7 +10,7 @@ struct Datagram {
   Endpoint remote;  ///< where it goes to or came from
   /// Our address: the one it was sent to, or the one it shall come from. 0: the kernel chooses by its routes.
   Ipv4 local = 0;
-  std::vector<std::uint8_t> bytes;
+  gemini::SharedBytes bytes;
 };
 
 }  // namespace sonard::server

@@ -7,7 +7,7 @@ namespace sonard::server {
 namespace {
 
 // A datagram held back for reordering leaves after this long if no other comes to overtake it.
-constexpr TimePoint kHoldLimit = std::chrono::milliseconds{10};
+constexpr TimePoint hold_limit = std::chrono::milliseconds{10};
 
 // SplitMix64 (Steele, Lea, Flood 2014): every state is good, so any seed is.
 std::uint64_t next_random(std::uint64_t& state) {
@@ -41,7 +41,7 @@ void FaultyLink::push(TimePoint now, Datagram datagram) {
   }
   if (reorder && !held_) {
     ++counters_.reordered;
-    held_ = Held{std::move(datagram), due + kHoldLimit};
+    held_ = Held{std::move(datagram), due + hold_limit};
     return;
   }
   if (duplicate) {

@@ -1,13 +1,13 @@
 #include "server/devices/ping_dump.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
-
 #include <array>
-#include <boost/crc.hpp>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <boost/crc.hpp>
 
 namespace sonard::server {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 std::string npy_header(const char* dtype, int lines, int beams) {
   std::string dictionary =
       fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}, {}), }}", dtype, lines, beams);
-  constexpr std::size_t kPreamble = 10;
-  const std::size_t unpadded = kPreamble + dictionary.size() + 1;
+  constexpr std::size_t preamble = 10;
+  const std::size_t unpadded = preamble + dictionary.size() + 1;
   dictionary.append((64 - unpadded % 64) % 64, ' ');
   dictionary.push_back('\n');
   std::string header("\x93NUMPY\x01\x00", 8);

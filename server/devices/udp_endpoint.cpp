@@ -1,20 +1,21 @@
 #include "server/devices/udp_endpoint.hpp"
 
-#include <fmt/format.h>
 #include <netinet/in.h>
-#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
 #include <cerrno>
 #include <cstring>
 #include <deque>
 #include <set>
 #include <system_error>
 #include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
 
 #include "server/config/addresses.hpp"
 
@@ -24,15 +25,15 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::udp;
 
-constexpr std::size_t kBatch = 64;            // datagrams per system call
-constexpr std::size_t kMostBytes = 2048;      // longer than any message a device accepts
-constexpr int kReceiveRoundsPerWake = 4;      // then others get their turn on the I/O thread
-constexpr int kReceiveBufferBytes = 4 << 20;  // the kernel gives at most net.core.rmem_max
-constexpr int kSendBufferBytes = 4 << 20;
+constexpr std::size_t batch_size = 64;         // datagrams per system call
+constexpr std::size_t most_bytes = 2048;       // longer than any message a device accepts
+constexpr int receive_rounds_per_wake = 4;     // then others get their turn on the I/O thread
+constexpr int receive_buffer_bytes = 4 << 20;  // the kernel gives at most net.core.rmem_max
+constexpr int send_buffer_bytes = 4 << 20;
 
-constexpr std::size_t kReceiveControlBytes =
+constexpr std::size_t receive_control_bytes =
     CMSG_SPACE(sizeof(in_pktinfo)) + CMSG_SPACE(sizeof(std::uint32_t));
-constexpr std::size_t kSendControlBytes = CMSG_SPACE(sizeof(in_pktinfo));
+constexpr std::size_t send_control_bytes = CMSG_SPACE(sizeof(in_pktinfo));
 
 sockaddr_in to_sockaddr(const Endpoint& endpoint) {
   sockaddr_in address{};
@@ -55,16 +56,16 @@ void set_option(int fd, int level, int name, int value, const char* what) {
 // Buffers for one recvmmsg() call; the kernel fills them, parse() reads them.
 struct ReceiveBatch {
   struct alignas(cmsghdr) Control {
-    std::array<char, kReceiveControlBytes> bytes;
+    std::array<char, receive_control_bytes> bytes;
   };
-  std::array<std::array<std::uint8_t, kMostBytes>, kBatch> data;
-  std::array<Control, kBatch> control;
-  std::array<sockaddr_in, kBatch> from;
-  std::array<iovec, kBatch> vectors;
-  std::array<mmsghdr, kBatch> headers;
+  std::array<std::array<std::uint8_t, most_bytes>, batch_size> data;
+  std::array<Control, batch_size> control;
+  std::array<sockaddr_in, batch_size> from;
+  std::array<iovec, batch_size> vectors;
+  std::array<mmsghdr, batch_size> headers;
 
   void prepare() {
-    for (std::size_t i = 0; i < kBatch; ++i) {
+    for (std::size_t i = 0; i < batch_size; ++i) {
       vectors[i] = {data[i].data(), data[i].size()};
       headers[i] = {};
       headers[i].msg_hdr.msg_name = &from[i];
@@ -80,16 +81,17 @@ struct ReceiveBatch {
 // Headers for one sendmmsg() call over the front of the queue.
 struct SendBatch {
   struct alignas(cmsghdr) Control {
-    std::array<char, kSendControlBytes> bytes;
+    std::array<char, send_control_bytes> bytes;
   };
-  std::array<Control, kBatch> control;
-  std::array<sockaddr_in, kBatch> to;
-  std::array<iovec, kBatch> vectors;
-  std::array<mmsghdr, kBatch> headers;
+  std::array<Control, batch_size> control;
+  std::array<sockaddr_in, batch_size> to;
+  std::array<iovec, batch_size> vectors;
+  std::array<mmsghdr, batch_size> headers;
 
-  void prepare(std::size_t i, Datagram& datagram) {
+  void prepare(std::size_t i, const Datagram& datagram) {
     to[i] = to_sockaddr(datagram.remote);
-    vectors[i] = {datagram.bytes.data(), datagram.bytes.size()};
+    // The system call does not write through the pointer, but iovec serves reading and writing alike.
+    vectors[i] = {const_cast<std::uint8_t*>(datagram.bytes.data()), datagram.bytes.size()};
     headers[i] = {};
     msghdr& header = headers[i].msg_hdr;
     header.msg_name = &to[i];
@@ -100,7 +102,7 @@ struct SendBatch {
       return;
     }
     header.msg_control = control[i].bytes.data();
-    header.msg_controllen = kSendControlBytes;
+    header.msg_controllen = send_control_bytes;
     control[i].bytes.fill(0);
     cmsghdr* source = CMSG_FIRSTHDR(&header);
     source->cmsg_level = IPPROTO_IP;
@@ -157,8 +159,8 @@ void UdpEndpoint::Impl::open(const Endpoint& bind) {
   set_option(fd, SOL_SOCKET, SO_BROADCAST, 1, "SO_BROADCAST");
   set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1, "SO_RXQ_OVFL");
   set_option(fd, IPPROTO_IP, IP_PKTINFO, 1, "IP_PKTINFO");
-  set_option(fd, SOL_SOCKET, SO_RCVBUF, kReceiveBufferBytes, "SO_RCVBUF");
-  set_option(fd, SOL_SOCKET, SO_SNDBUF, kSendBufferBytes, "SO_SNDBUF");
+  set_option(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer_bytes, "SO_RCVBUF");
+  set_option(fd, SOL_SOCKET, SO_SNDBUF, send_buffer_bytes, "SO_SNDBUF");
   // No SO_REUSEADDR: two heads on one address must be an error, not a lottery.
   socket.bind({asio::ip::address_v4(bind.address), bind.port}, error);
   if (error) {
@@ -204,7 +206,7 @@ void UdpEndpoint::Impl::wait_readable() {
 }
 
 void UdpEndpoint::Impl::on_readable() {
-  for (int round = 0; round < kReceiveRoundsPerWake && socket.is_open(); ++round) {
+  for (int round = 0; round < receive_rounds_per_wake && socket.is_open(); ++round) {
     if (!receive_batch()) {
       break;
     }
@@ -217,13 +219,13 @@ void UdpEndpoint::Impl::on_readable() {
 // One system call. Returns false when nothing was left to read.
 bool UdpEndpoint::Impl::receive_batch() {
   incoming.prepare();
-  const int count =
-      recvmmsg(socket.native_handle(), incoming.headers.data(), kBatch, MSG_DONTWAIT, /*timeout=*/nullptr);
+  const int count = recvmmsg(socket.native_handle(), incoming.headers.data(), batch_size, MSG_DONTWAIT,
+                             /*timeout=*/nullptr);
   // Errors other than "empty" are left-overs of earlier sends (ICMP); the next call reads on.
   for (int i = 0; i < count && socket.is_open(); ++i) {
     deliver(static_cast<std::size_t>(i));
   }
-  return count == static_cast<int>(kBatch);
+  return count == static_cast<int>(batch_size);
 }
 
 void UdpEndpoint::Impl::deliver(std::size_t i) {
@@ -248,7 +250,7 @@ void UdpEndpoint::Impl::deliver(std::size_t i) {
     }
   }
   const std::uint8_t* bytes = incoming.data[i].data();
-  datagram.bytes.assign(bytes, bytes + incoming.headers[i].msg_len);
+  datagram.bytes = gemini::SharedBytes(std::vector<std::uint8_t>(bytes, bytes + incoming.headers[i].msg_len));
   receive(datagram);
 }
 
@@ -257,7 +259,7 @@ void UdpEndpoint::send(std::vector<Datagram> datagrams) {
     return;
   }
   for (Datagram& datagram : datagrams) {
-    if (impl_->queue.size() >= kMostQueued) {
+    if (impl_->queue.size() >= most_queued) {
       ++impl_->counters.overflowed;
       continue;
     }
@@ -296,7 +298,7 @@ void UdpEndpoint::Impl::wait_writable() {
 
 // One system call. Returns false when the socket is full.
 bool UdpEndpoint::Impl::send_batch() {
-  const std::size_t count = std::min(queue.size(), kBatch);
+  const std::size_t count = std::min(queue.size(), batch_size);
   for (std::size_t i = 0; i < count; ++i) {
     outgoing.prepare(i, queue[i]);
   }

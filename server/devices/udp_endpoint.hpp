@@ -29,7 +29,7 @@ struct UdpEndpointCounters {
   std::uint64_t sent = 0;
   std::uint64_t send_failed = 0;  ///< refused by the OS (no route, ...): dropped
   std::uint64_t blocked = 0;      ///< times the socket was full and sending had to wait
-  std::uint64_t overflowed = 0;   ///< dropped because kMostQueued datagrams were waiting
+  std::uint64_t overflowed = 0;   ///< dropped because most_queued datagrams were waiting
 };
 
 /// Belongs to the I/O thread, as every handler of its does. Receives and sends in batches (recvmmsg,
@@ -43,7 +43,7 @@ struct UdpEndpointCounters {
 class UdpEndpoint {
  public:
   /// More than three of the largest pings. Reached only when the network takes nothing for seconds.
-  static constexpr std::size_t kMostQueued = 65536;
+  static constexpr std::size_t most_queued = 65536;
 
   using Receive = std::function<void(const Datagram&)>;
 

@@ -1,0 +1,245 @@
+#include "server/daemon.hpp"
+
+#include <csignal>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+
+#include "protocol/pose/trajectory.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "server/clock.hpp"
+#include "server/devices/gemini_head.hpp"
+#include "server/devices/ping_dump.hpp"
+#include "server/devices/udp_endpoint.hpp"
+#include "server/exit_codes.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/pose/pose_source.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+class OpenGlRenderer final : public PingRenderer {
+ public:
+  explicit OpenGlRenderer(const render::World& world) : renderer_(world) {}
+
+  std::string description() const override { return renderer_.gl_description(); }
+  bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
+    return renderer_.set_body_pose(body, T_world_body);
+  }
+  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
+    return renderer_.render_ping(request, stream);
+  }
+  render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
+
+ private:
+  render::SonarRenderer renderer_;
+};
+
+// Runs on the render thread. The self-test comes first: a GL that draws nothing must not get as far as a
+// socket.
+std::unique_ptr<PingRenderer> make_open_gl_renderer(const render::World& world) {
+  const double error = render::run_self_test();
+  auto renderer = std::make_unique<OpenGlRenderer>(world);
+  spdlog::info("renderer self-test passed: error={:.2f}% gl=\"{}\"", 100.0 * error, renderer->description());
+  return renderer;
+}
+
+std::string head_key(std::size_t index, const char* rest) {
+  return fmt::format("heads[{}].{}", index, rest);
+}
+
+std::vector<std::unique_ptr<PoseSource>> make_sources(asio::io_context& io, const DaemonConfig& config,
+                                                      const Clock& clock, PoseHistory& poses) {
+  try {
+    return make_pose_sources(
+        io, config.poses, clock,
+        [&poses](const pose::PoseSample& sample, TimePoint arrival) { poses.insert(sample, arrival); });
+  } catch (const pose::TrajectoryError& error) {
+    throw StartError("poses.trajectory.file", exit_config, error.what());
+  }
+}
+
+// By stream; null for a head that keeps nothing.
+std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<GeminiHeadConfig>& heads) {
+  std::vector<std::unique_ptr<PingDump>> dumps(heads.size());
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    if (heads[i].dump_directory) {
+      try {
+        dumps[i] = std::make_unique<PingDump>(*heads[i].dump_directory, heads[i].name);
+      } catch (const std::exception& error) {
+        throw StartError(head_key(i, "dump.directory"), exit_config, error.what());
+      }
+    }
+  }
+  return dumps;
+}
+
+// Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
+// `io_`, and with it sources, history and heads; the render thread is in RenderService.
+//
+// Shutdown, in the order of run(): main is told to end by a signal or by end(). It posts stop_io(), which
+// closes every socket and cancels every timer; joins the render thread, which finishes the ping it is working
+// on; then gives up the work guard, so that `io_` runs out of work, and joins the I/O thread. Only then is
+// anything destroyed, on main, in the reverse order of the members.
+class Daemon {
+ public:
+  Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer);
+
+  /// Serves until it shall end. Returns the exit code.
+  int run();
+
+ private:
+  RenderServiceHooks hooks();
+  void start_sources();
+  void run_io();
+  void stop_io();
+  void end(int exit_code);
+
+  SteadyClock clock_;
+  asio::io_context lifetime_;   // of main: signals, and the wish to end
+  int exit_code_ = exit_clean;  // of main
+  asio::io_context io_;
+  PoseHistory poses_;
+  std::vector<std::unique_ptr<PoseSource>> sources_;
+  std::vector<std::unique_ptr<PingDump>> dumps_;
+  RenderService renderer_;
+  std::vector<std::unique_ptr<GeminiHead>> heads_;
+  std::string ready_line_;
+};
+
+Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer)
+    : poses_(config.poses),
+      sources_(make_sources(io_, config, clock_, poses_)),
+      dumps_(make_dumps(config.heads)),
+      renderer_(make_renderer, static_cast<int>(config.heads.size()), hooks()) {
+  const GeminiHeadServices services{io_, clock_, renderer_, poses_, world.water_surface_z_m};
+  for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    try {
+      heads_.push_back(std::make_unique<GeminiHead>(config.heads[i], static_cast<int>(i), services));
+    } catch (const SocketError& error) {
+      throw StartError(head_key(i, "network.bind"), exit_network, error.what());
+    }
+  }
+  start_sources();
+  ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} gl=\"{}\"", heads_.size(),
+                            world.name, world.triangle_count(), renderer_.renderer_description());
+}
+
+RenderServiceHooks Daemon::hooks() {
+  RenderServiceHooks hooks;
+  hooks.post = [this](std::function<void()> task) { asio::post(io_, std::move(task)); };
+  hooks.on_failure = [this](const std::string& what) {
+    spdlog::critical("the renderer failed: {}", what);
+    end(exit_renderer);
+  };
+  hooks.observe = [this](const RenderJob& job, const render::PingSamples& samples) {
+    if (PingDump* dump = dumps_[static_cast<std::size_t>(job.stream)].get()) {
+      dump->write(job, samples);
+    }
+  };
+  return hooks;
+}
+
+void Daemon::start_sources() {
+  for (const std::unique_ptr<PoseSource>& source : sources_) {
+    try {
+      source->start();
+    } catch (const PoseSourceError& error) {
+      throw StartError("poses", exit_network, error.what());
+    }
+    spdlog::info("poses from {}", source->description());
+  }
+}
+
+int Daemon::run() {
+  asio::signal_set signals(lifetime_, SIGINT, SIGTERM);
+  signals.async_wait([this](const boost::system::error_code& error, int signal) {
+    if (!error) {
+      spdlog::info("signal {}: ending", signal);
+      lifetime_.stop();
+    }
+  });
+  auto io_work = asio::make_work_guard(io_);
+  std::thread io_thread(&Daemon::run_io, this);
+  asio::post(io_, [this] {
+    for (const std::unique_ptr<GeminiHead>& head : heads_) {
+      head->start();
+    }
+    spdlog::info(ready_line_);
+  });
+
+  lifetime_.run();
+
+  signals.clear();  // from here on a second signal kills, whatever hangs
+  asio::post(io_, [this] { stop_io(); });
+  renderer_.stop();
+  io_work.reset();
+  io_thread.join();
+  return exit_code_;
+}
+
+void Daemon::run_io() {
+  try {
+    io_.run();
+  } catch (const std::exception& error) {
+    // No handler throws: bytes from outside cannot make one, so this is a defect.
+    spdlog::critical("the I/O thread failed: {}", error.what());
+    end(exit_internal);
+  }
+}
+
+void Daemon::stop_io() {
+  for (const std::unique_ptr<PoseSource>& source : sources_) {
+    source->stop();
+  }
+  for (const std::unique_ptr<GeminiHead>& head : heads_) {
+    head->stop();
+  }
+}
+
+// Callable from any thread.
+void Daemon::end(int exit_code) {
+  asio::post(lifetime_, [this, exit_code] {
+    exit_code_ = exit_code;
+    lifetime_.stop();
+  });
+}
+
+render::World load(const DaemonConfig& config) {
+  try {
+    render::World world = render::load_world(config.world_file);
+    for (const std::string& warning : world.warnings) {
+      spdlog::warn("{}", warning);
+    }
+    return world;
+  } catch (const render::WorldError& error) {
+    throw StartError("world.file", exit_config, error.what());
+  }
+}
+
+}  // namespace
+
+int run_daemon(const DaemonConfig& config) {
+  const render::World world = load(config);
+  return serve(config, world, [&world] { return make_open_gl_renderer(world); });
+}
+
+int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer) {
+  Daemon daemon(config, world, make_renderer);
+  return daemon.run();
+}
+
+}  // namespace sonard::server

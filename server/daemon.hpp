@@ -1,0 +1,34 @@
+// The daemon: pose sources, heads and the render thread joined, from start to signal.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "renderer/scene/world.hpp"
+#include "server/config/config.hpp"
+#include "server/render_service.hpp"
+
+namespace sonard::server {
+
+/// The value of a configuration key turned out to be unusable when it was used: world missing, address taken.
+/// what() is one line.
+struct StartError : std::runtime_error {
+  StartError(std::string config_key, int code, const std::string& what)
+      : std::runtime_error(what), key(std::move(config_key)), exit_code(code) {}
+
+  std::string key;  ///< "heads[0].network.bind"
+  int exit_code;    ///< of server/exit_codes.hpp
+};
+
+/// Loads the world, starts the renderer (self-test first), binds the sockets and serves until SIGINT or
+/// SIGTERM, which end it within the time of one ping. When all is up it logs one line that begins with
+/// "sonard ready". A second signal kills at once.
+/// @return exit_clean; exit_renderer when the renderer fails while serving; exit_internal
+/// @throws StartError, render::RendererError before it is ready
+int run_daemon(const DaemonConfig& config);
+
+/// The same with a world already loaded and any renderer; run_daemon() without GL, for tests.
+int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer);
+
+}  // namespace sonard::server

@@ -1,0 +1,401 @@
+#include "server/devices/gemini_head.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "protocol/gemini/device.hpp"
+#include "server/config/addresses.hpp"
+#include "server/devices/faulty_link.hpp"
+#include "server/devices/gemini_head_log.hpp"
+#include "server/devices/gemini_settings.hpp"
+#include "server/devices/interfaces.hpp"
+#include "server/devices/udp_endpoint.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/render_service.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr Ipv4 limited_broadcast = 0xFFFFFFFF;
+constexpr std::chrono::seconds report_period{10};
+
+void keep_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePoint>& other) {
+  if (other && (!earliest || *other < *earliest)) {
+    earliest = other;
+  }
+}
+
+}  // namespace
+
+struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
+  Impl(const GeminiHeadConfig& head_config, int stream_number, const GeminiHeadServices& head_services);
+
+  const GeminiHeadConfig config;
+  const int stream;
+  const GeminiHeadServices services;
+
+  gemini::Device device;
+  gemini::DeviceAddresses addresses;
+  std::unique_ptr<UdpEndpoint> socket;
+  std::unique_ptr<UdpEndpoint> trigger;
+  FaultyLink to_surface;
+  FaultyLink from_surface;
+  asio::steady_timer timer;
+  std::optional<TimePoint> timer_deadline;
+  asio::steady_timer report_timer;
+  GeminiHeadCounters counters;  // its `device` is filled in by total()
+  GeminiHeadLog log;
+  bool running = false;
+
+  void start();
+  void stop();
+  void listen();
+  void listen_for_triggers();
+  GeminiHeadCounters total() const;
+
+  void on_datagram(const Datagram& datagram);
+  void on_rendered(std::uint64_t ping_number, RenderResult result);
+  void pump();
+  void take_from_surface(TimePoint now);
+  void advance_device(TimePoint now);
+  void schedule();
+
+  void send(TimePoint now, const std::vector<gemini::Outgoing>& outgoing);
+  void address_status(const gemini::SharedBytes& bytes, std::vector<Datagram>& datagrams) const;
+  Ipv4 source_address() const;
+  void follow_addresses();
+  void check_interface() const;
+
+  bool render(const gemini::PingJob& job);
+  std::optional<render::Pose> sonar_pose(TimePoint time) const;
+  bool out_of_water(TimePoint now) const;
+
+  void report_every_period();
+};
+
+GeminiHead::GeminiHead(const GeminiHeadConfig& config, int stream, const GeminiHeadServices& services)
+    : impl_(std::make_shared<Impl>(config, stream, services)) {}
+
+GeminiHead::~GeminiHead() {
+  impl_->stop();
+}
+
+void GeminiHead::start() {
+  impl_->start();
+}
+void GeminiHead::stop() {
+  impl_->stop();
+}
+GeminiHeadCounters GeminiHead::counters() const {
+  return impl_->total();
+}
+
+GeminiHead::Impl::Impl(const GeminiHeadConfig& head_config, int stream_number,
+                       const GeminiHeadServices& head_services)
+    : config(head_config),
+      stream(stream_number),
+      services(head_services),
+      device(config.device, services.clock.now()),
+      addresses(device.addresses()),
+      socket(std::make_unique<UdpEndpoint>(services.io, Endpoint{config.bind_address, config.command_port})),
+      to_surface(config.link.to_surface, config.link.seed),
+      from_surface(config.link.from_surface, ~config.link.seed),  // the two directions draw apart
+      timer(services.io),
+      report_timer(services.io),
+      log(config.name) {
+  if (config.trigger) {
+    trigger = std::make_unique<UdpEndpoint>(services.io, *config.trigger);
+  }
+  check_interface();
+}
+
+// ---- Life
+// ----------------------------------------------------------------------------------------------------
+
+void GeminiHead::Impl::start() {
+  running = true;
+  listen();
+  if (trigger) {
+    listen_for_triggers();
+  }
+  report_every_period();
+  pump();
+}
+
+void GeminiHead::Impl::stop() {
+  if (!std::exchange(running, false)) {
+    return;
+  }
+  timer.cancel();
+  report_timer.cancel();
+  socket->close();
+  if (trigger) {
+    trigger->close();
+  }
+  log.totals(total());
+}
+
+// Handlers hold the head weakly: one that is still queued when the head is gone does nothing.
+void GeminiHead::Impl::listen() {
+  socket->start(
+      [weak = weak_from_this()](const Datagram& datagram) {
+        if (const auto self = weak.lock()) {
+          self->on_datagram(datagram);
+        }
+      },
+      [weak = weak_from_this()] {
+        if (const auto self = weak.lock()) {
+          self->pump();
+        }
+      });
+}
+
+void GeminiHead::Impl::listen_for_triggers() {
+  trigger->start([weak = weak_from_this()](const Datagram& edge) {
+    const auto self = weak.lock();
+    if (self && allows(self->config.allow, edge.remote.address)) {
+      self->device.on_trigger(self->services.clock.now());
+      self->pump();
+    }
+  });
+}
+
+GeminiHeadCounters GeminiHead::Impl::total() const {
+  GeminiHeadCounters all = counters;
+  all.device = device.counters();
+  return all;
+}
+
+// ---- Events
+// --------------------------------------------------------------------------------------------------
+
+void GeminiHead::Impl::on_datagram(const Datagram& datagram) {
+  if (!allows(config.allow, datagram.remote.address)) {
+    ++counters.not_allowed;
+    log.stranger(datagram.remote.address);
+    return;
+  }
+  from_surface.push(services.clock.now(), datagram);
+  pump();
+}
+
+void GeminiHead::Impl::on_rendered(std::uint64_t ping_number, RenderResult result) {
+  const TimePoint now = services.clock.now();
+  if (result.error.empty()) {
+    ++counters.pings_rendered;
+    const render::PingStatistics& spent = result.statistics;
+    counters.render_seconds += spent.visibility_s + spent.binning_s + spent.receiver_s;
+    device.on_image(now, {ping_number, std::move(result.samples.u8), std::move(result.samples.u16)});
+  } else {
+    log.render_error(result.error);
+    device.on_image_failed(now, ping_number);
+  }
+  pump();
+}
+
+// Does all that is due now and sleeps until the next thing is. Called after every event.
+void GeminiHead::Impl::pump() {
+  if (!running) {
+    return;
+  }
+  const TimePoint now = services.clock.now();
+  take_from_surface(now);
+  // A full socket holds the device back instead of letting datagrams pile up; `drained` calls again.
+  if (!socket->blocked()) {
+    advance_device(now);
+  }
+  socket->send(to_surface.take_due(now));
+  log.surface(device.surface());
+  follow_addresses();
+  schedule();
+}
+
+void GeminiHead::Impl::take_from_surface(TimePoint now) {
+  for (const Datagram& datagram : from_surface.take_due(now)) {
+    const std::span<const std::uint8_t> bytes(datagram.bytes.data(), datagram.bytes.size());
+    device.on_datagram(now, datagram.remote.address, datagram.local, bytes);
+  }
+}
+
+void GeminiHead::Impl::advance_device(TimePoint now) {
+  device.set_out_of_water(out_of_water(now));
+  device.advance(now);
+  send(now, device.take_outgoing());
+  const std::optional<gemini::PingJob> job = device.take_job();
+  if (job && !render(*job)) {
+    // The device must hear of it, and has a next deadline only after it has advanced over it.
+    device.on_image_failed(now, job->ping_number);
+    device.advance(now);
+    send(now, device.take_outgoing());
+  }
+}
+
+void GeminiHead::Impl::schedule() {
+  std::optional<TimePoint> deadline = from_surface.next_due();
+  keep_earlier(deadline, to_surface.next_due());
+  if (!socket->blocked()) {
+    keep_earlier(deadline, device.next_deadline());
+  }
+  if (deadline == timer_deadline) {
+    return;
+  }
+  timer_deadline = deadline;
+  timer.cancel();
+  if (!deadline) {
+    return;
+  }
+  timer.expires_at(to_steady(*deadline));
+  timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error) {
+      self->timer_deadline.reset();
+      self->pump();
+    }
+  });
+}
+
+// ---- Sending
+// -------------------------------------------------------------------------------------------------
+
+void GeminiHead::Impl::send(TimePoint now, const std::vector<gemini::Outgoing>& outgoing) {
+  std::vector<Datagram> datagrams;
+  datagrams.reserve(outgoing.size());
+  for (const gemini::Outgoing& item : outgoing) {
+    if (item.to == gemini::Outgoing::To::status) {
+      address_status(item.bytes, datagrams);
+    } else {
+      datagrams.push_back({{item.surface, config.surface_port}, item.reply_from, item.bytes});
+    }
+  }
+  if (config.link.to_surface.transparent()) {
+    socket->send(std::move(datagrams));
+    return;
+  }
+  for (Datagram& datagram : datagrams) {
+    to_surface.push(now, std::move(datagram));
+  }
+}
+
+void GeminiHead::Impl::address_status(const gemini::SharedBytes& bytes,
+                                      std::vector<Datagram>& datagrams) const {
+  const Ipv4 source = source_address();
+  const auto add = [&](Ipv4 host) { datagrams.push_back({{host, config.surface_port}, source, bytes}); };
+  switch (config.status.mode) {
+    case StatusDestination::Mode::limited_broadcast:
+      add(limited_broadcast);
+      break;
+    case StatusDestination::Mode::directed_broadcast:
+      add(addresses.alternate | ~addresses.netmask);
+      break;
+    case StatusDestination::Mode::unicast:
+      std::for_each(config.status.hosts.begin(), config.status.hosts.end(), add);
+      break;
+  }
+}
+
+// Where status packets come from. On a socket bound to one address the kernel knows; on one bound to all it
+// must be told, or a limited broadcast would leave by the interface of the default route.
+Ipv4 GeminiHead::Impl::source_address() const {
+  if (socket->local_endpoint().address != 0 || !owner_of(addresses.alternate, interface_addresses())) {
+    return 0;
+  }
+  return addresses.alternate;
+}
+
+// A reboot may have applied an address that the client has programmed (docs/protocols/gemini.md 3.9).
+void GeminiHead::Impl::follow_addresses() {
+  const gemini::DeviceAddresses current = device.addresses();
+  if (current == addresses) {
+    return;
+  }
+  const gemini::DeviceAddresses before = std::exchange(addresses, current);
+  spdlog::info("head={} answers on {} mask {} from now on", config.name, address_text(current.alternate),
+               address_text(current.netmask));
+  check_interface();
+  if (socket->local_endpoint().address != before.alternate) {
+    return;
+  }
+  try {
+    socket = std::make_unique<UdpEndpoint>(services.io, Endpoint{current.alternate, config.command_port});
+    listen();
+  } catch (const SocketError& error) {
+    spdlog::error("head={} stays on {}: {}", config.name, address_text(before.alternate), error.what());
+  }
+}
+
+void GeminiHead::Impl::check_interface() const {
+  const std::optional<InterfaceAddress> owner = owner_of(addresses.alternate, interface_addresses());
+  if (!owner) {
+    spdlog::warn("head={} reports the address {}, which this machine does not have: clients will send there",
+                 config.name, address_text(addresses.alternate));
+  } else if (owner->netmask != addresses.netmask) {
+    spdlog::warn("head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",
+                 config.name, address_text(addresses.netmask), owner->interface,
+                 address_text(owner->netmask));
+  }
+}
+
+// ---- Rendering
+// -----------------------------------------------------------------------------------------------
+
+// False when this ping cannot be made.
+bool GeminiHead::Impl::render(const gemini::PingJob& job) {
+  log.settings(job);
+  const std::optional<render::Pose> T_world_sonar = sonar_pose(job.transmit_time);
+  if (!T_world_sonar) {
+    ++counters.pings_without_pose;
+    return false;
+  }
+  RenderJob request;
+  request.stream = stream;
+  request.head = config.name;
+  request.transmit_us = device.clock_us(job.transmit_time);
+  request.request = {*T_world_sonar, to_sonar_settings(job, config.acoustics), job.ping_number, config.seed};
+  request.bodies = services.poses.bodies_at(job.transmit_time);
+  services.renderer.submit(std::move(request),
+                           [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
+                             if (const auto self = weak.lock()) {
+                               self->on_rendered(number, std::move(result));
+                             }
+                           });
+  return true;
+}
+
+std::optional<render::Pose> GeminiHead::Impl::sonar_pose(TimePoint time) const {
+  const std::optional<PoseEstimate> vehicle = services.poses.at(time);
+  if (!vehicle) {
+    return std::nullopt;
+  }
+  return vehicle->T_world_vehicle * config.T_vehicle_sonar;
+}
+
+bool GeminiHead::Impl::out_of_water(TimePoint now) const {
+  if (!services.water_surface_z_m) {
+    return false;
+  }
+  const std::optional<render::Pose> T_world_sonar = sonar_pose(now);
+  return T_world_sonar && T_world_sonar->position_m.z > *services.water_surface_z_m;
+}
+
+// ---- Log
+// -----------------------------------------------------------------------------------------------------
+
+void GeminiHead::Impl::report_every_period() {
+  report_timer.expires_after(report_period);
+  report_timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error && self->running) {
+      self->log.rates(self->total(), report_period);
+      self->report_every_period();
+    }
+  });
+}
+
+}  // namespace sonard::server

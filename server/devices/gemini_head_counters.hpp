@@ -1,0 +1,19 @@
+// What a head has done, device and transport together.
+#pragma once
+
+#include <cstdint>
+
+#include "protocol/gemini/device_counters.hpp"
+
+namespace sonard::server {
+
+/// They only grow.
+struct GeminiHeadCounters {
+  gemini::DeviceCounters device;
+  std::uint64_t not_allowed = 0;         ///< datagrams from addresses outside `allow`
+  std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
+  std::uint64_t pings_rendered = 0;
+  double render_seconds = 0.0;  ///< all of them together
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,97 @@
+#include "server/devices/gemini_head_log.hpp"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "server/config/addresses.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr std::size_t most_strangers = 8;
+
+// The part of a job that the client chose.
+bool same_settings(const gemini::PingJob& a, const gemini::PingJob& b) {
+  return a.native_lines == b.native_lines && a.compression_log2 == b.compression_log2 &&
+         a.sixteen_bit == b.sixteen_bit && a.transmit == b.transmit && a.gain_db == b.gain_db &&
+         a.sound_speed_mps == b.sound_speed_mps;
+}
+
+}  // namespace
+
+void GeminiHeadLog::surface(Ipv4 address) {
+  if (address == surface_) {
+    return;
+  }
+  if (address == 0) {
+    spdlog::info("head={} surface {} lost: no command for the time-out", head_, address_text(surface_));
+  } else {
+    spdlog::info("head={} surface {} connected", head_, address_text(address));
+  }
+  surface_ = address;
+}
+
+void GeminiHeadLog::settings(const gemini::PingJob& job) {
+  if (settings_ && same_settings(*settings_, job)) {
+    return;
+  }
+  settings_ = job;
+  spdlog::info(
+      "head={} pings: range={:.2f}m lines={} compression=x{} gain={:+.1f}dB sound_speed={:.1f}m/s bits={}{}",
+      head_, job.native_lines * job.line_step_m, job.lines(), 1 << job.compression_log2, job.gain_db,
+      job.sound_speed_mps, job.sixteen_bit ? 16 : 8, job.transmit ? "" : " listening only");
+}
+
+void GeminiHeadLog::stranger(Ipv4 address) {
+  if (strangers_.size() < most_strangers && strangers_.insert(address).second) {
+    spdlog::warn("head={} drops what {} sends: the address is not in `allow`", head_, address_text(address));
+  }
+}
+
+void GeminiHeadLog::render_error(const std::string& what) {
+  if (what != render_error_) {
+    render_error_ = what;
+    spdlog::error("head={} cannot render: {}", head_, what);
+  }
+}
+
+void GeminiHeadLog::rates(const GeminiHeadCounters& total, std::chrono::duration<double> period) {
+  const GeminiHeadCounters before = std::exchange(reported_, total);
+  const std::uint64_t sent = total.device.pings_sent - before.device.pings_sent;
+  const std::uint64_t rendered = total.pings_rendered - before.pings_rendered;
+  if (sent > 0) {
+    spdlog::info("head={} pings_per_s={:.1f} render_ms={:.1f} lines_resent={} tails_resent={}", head_,
+                 static_cast<double>(sent) / period.count(),
+                 rendered > 0
+                     ? 1e3 * (total.render_seconds - before.render_seconds) / static_cast<double>(rendered)
+                     : 0.0,
+                 total.device.lines_resent - before.device.lines_resent,
+                 total.device.tails_resent - before.device.tails_resent);
+  }
+  if (const std::uint64_t missed = total.pings_without_pose - before.pings_without_pose; missed > 0) {
+    spdlog::warn("head={} {} pings not made: no pose, or only a stale one", head_, missed);
+  }
+  if (const std::uint64_t suppressed = total.device.pings_suppressed - before.device.pings_suppressed;
+      suppressed > 0) {
+    spdlog::warn("head={} {} pings not made: out of the water", head_, suppressed);
+  }
+  if (const std::uint64_t wrong = total.device.wrong_id - before.device.wrong_id; wrong > 0) {
+    spdlog::warn("head={} {} commands were for another sonar ID", head_, wrong);
+  }
+  if (const std::uint64_t bad = total.device.bad_datagrams - before.device.bad_datagrams; bad > 0) {
+    spdlog::warn("head={} {} datagrams were no commands of a Gemini 720i", head_, bad);
+  }
+}
+
+void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
+  const gemini::DeviceCounters& device = total.device;
+  spdlog::info(
+      "head={} ends: pings_sent={} pings_failed={} pings_without_pose={} pings_suppressed={} lines_sent={} "
+      "lines_resent={} tails_resent={} commands={} wrong_id={} bad_datagrams={} not_allowed={}",
+      head_, device.pings_sent, device.pings_failed, total.pings_without_pose, device.pings_suppressed,
+      device.lines_sent, device.lines_resent, device.tails_resent, device.commands, device.wrong_id,
+      device.bad_datagrams, total.not_allowed);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,83 @@
+// A renderer without GL: the samples of a ping are a simple function of its number, so a test knows them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/render_service.hpp"
+
+namespace sonard::test {
+
+/// What a FakeRenderer was asked, and how it shall behave. Shared with the test; may be read while it runs.
+struct FakeRendererControl {
+  /// Called before each ping on the render thread; may throw or block.
+  std::function<void(const render::PingRequest&, int stream)> before_ping;
+  std::atomic<int> pings{0};
+  std::atomic<bool> destroyed{false};
+
+  void record(const render::PingRequest& request) {
+    const std::lock_guard lock(mutex);
+    requests.push_back(request);
+  }
+  std::vector<render::PingRequest> recorded() const {
+    const std::lock_guard lock(mutex);
+    return requests;
+  }
+
+ private:
+  mutable std::mutex mutex;
+  std::vector<render::PingRequest> requests;
+};
+
+/// Sample at (line, beam) of a ping.
+inline std::uint8_t fake_sample(std::uint64_t ping_number, int line, int beam) {
+  return static_cast<std::uint8_t>(7 * ping_number + 3 * static_cast<std::uint64_t>(line) +
+                                   static_cast<std::uint64_t>(beam));
+}
+
+class FakeRenderer final : public server::PingRenderer {
+ public:
+  explicit FakeRenderer(std::shared_ptr<FakeRendererControl> control) : control_(std::move(control)) {}
+  ~FakeRenderer() override { control_->destroyed = true; }
+
+  std::string description() const override { return "fake"; }
+  bool set_body_pose(const std::string& body, const render::Pose&) override { return body != "nobody"; }
+
+  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
+    if (control_->before_ping) {
+      control_->before_ping(request, stream);
+    }
+    control_->record(request);
+    render::PingSamples samples;
+    samples.beams = request.settings.aperture.beam_count();
+    samples.lines = request.settings.range.output_count();
+    for (int line = 0; line < samples.lines; ++line) {
+      for (int beam = 0; beam < samples.beams; ++beam) {
+        const std::uint8_t value = fake_sample(request.ping_number, line, beam);
+        if (request.settings.sixteen_bit) {
+          samples.u16.push_back(static_cast<std::uint16_t>(value << 8 | value));
+        } else {
+          samples.u8.push_back(value);
+        }
+      }
+    }
+    ++control_->pings;
+    return samples;
+  }
+
+  render::PingStatistics last_statistics() const override { return {}; }
+
+ private:
+  std::shared_ptr<FakeRendererControl> control_;
+};
+
+inline server::RendererFactory fake_renderer_factory(std::shared_ptr<FakeRendererControl> control) {
+  return [control] { return std::make_unique<FakeRenderer>(control); };
+}
+
+}  // namespace sonard::test

@@ -1,0 +1,23 @@
+// Waiting with a deadline: a test that would hang fails instead.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+namespace sonard::test {
+
+/// True as soon as the condition holds, false when it does not within the time.
+inline bool wait_for(const std::function<bool()>& condition,
+                     std::chrono::milliseconds limit = std::chrono::seconds{10}) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+  }
+  return true;
+}
+
+}  // namespace sonard::test

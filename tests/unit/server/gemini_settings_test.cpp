@@ -1,0 +1,79 @@
+#include "server/devices/gemini_settings.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+gemini::PingJob job_at_20_m() {
+  gemini::PingJob job;
+  job.ping_number = 300;
+  job.native_lines = 2411;  // round(20 / (1500 / 2 / 90422)) (docs/protocols/gemini.md 5)
+  job.line_step_m = 1500.0 / (2 * 90422.0);
+  job.compression_log2 = 1;
+  job.gain_db = -4.5;
+  job.sound_speed_mps = 1500.0;
+  return job;
+}
+
+TEST(GeminiSettings, BeamsFallFromPortToStarboardOverTheSector) {
+  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
+  const std::vector<double>& edges = settings.aperture.beam_edges_rad;
+  ASSERT_EQ(edges.size(), 257u);
+  EXPECT_NEAR(edges.front(), 60 * kDegree, 1e-12);
+  EXPECT_NEAR(edges[128], 0.0, 1e-12);
+  EXPECT_NEAR(edges.back(), -60 * kDegree, 1e-12);
+  EXPECT_TRUE(std::is_sorted(edges.rbegin(), edges.rend()));
+}
+
+// Bearings printed in docs/protocols/gemini.md 6.5, positive to starboard: each lies inside its beam, in the
+// middle of it in the sine.
+TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
+  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
+  const std::vector<double>& edges = settings.aperture.beam_edges_rad;
+  const struct {
+    std::size_t beam;
+    double bearing_deg;
+  } rows[] = {{0, -59.615}, {1, -58.857}, {2, -58.115}, {127, -0.194}, {128, 0.194}, {255, 59.615}};
+  for (const auto& row : rows) {
+    const double middle_sin = (std::sin(edges[row.beam]) + std::sin(edges[row.beam + 1])) / 2;
+    EXPECT_NEAR(std::asin(middle_sin) / kDegree, -row.bearing_deg, 6e-4) << "beam " << row.beam;
+  }
+}
+
+TEST(GeminiSettings, RangeLinesAreThoseOfTheJob) {
+  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
+  EXPECT_EQ(settings.range.count, 2411);
+  EXPECT_EQ(settings.range.output_count(), 1205);
+  EXPECT_NEAR(settings.range.step_m, 0.008294, 1e-6);
+  EXPECT_NEAR(settings.range.max_range_m(), 20.0, 0.01);
+  EXPECT_FALSE(settings.range.compression_peak);
+  EXPECT_FALSE(settings.sixteen_bit);
+}
+
+TEST(GeminiSettings, SampleSizeFollowsTheJob) {
+  gemini::PingJob job = job_at_20_m();
+  job.sixteen_bit = true;
+  EXPECT_TRUE(to_sonar_settings(job, {}).sixteen_bit);
+}
+
+TEST(GeminiSettings, GainIsAddedAndTheRestComesFromTheHead) {
+  render::SonarSettings acoustics;
+  acoustics.model = render::Model::physical;
+  acoustics.physical.gain_db = 50.0;
+  acoustics.physical.absorption_db_per_m = 0.123;
+  acoustics.aperture.vertical_beamwidth_rad = 0.2;
+  acoustics.sampling.rows = 77;
+  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), acoustics);
+  EXPECT_DOUBLE_EQ(settings.physical.gain_db, 45.5);
+  EXPECT_DOUBLE_EQ(settings.physical.absorption_db_per_m, 0.123);
+  EXPECT_DOUBLE_EQ(settings.aperture.vertical_beamwidth_rad, 0.2);
+  EXPECT_EQ(settings.sampling.rows, 77);
+}
+
+}  // namespace
+}  // namespace sonard::server

@@ -1,0 +1,34 @@
+#include "server/devices/interfaces.hpp"
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+const std::vector<InterfaceAddress> kInterfaces{
+    {"lo", 0x7F000001, 0xFF000000},    // 127.0.0.1/8
+    {"eth0", 0x0A3D13C8, 0xFFFFFF00},  // 10.61.19.200/24
+    {"eth0", 0xC0A802C8, 0xFFFFFF00},  // 192.168.2.200/24
+};
+
+TEST(Interfaces, OwnerIsTheInterfaceWithThatAddress) {
+  ASSERT_TRUE(owner_of(0xC0A802C8, kInterfaces));
+  EXPECT_EQ(owner_of(0xC0A802C8, kInterfaces)->interface, "eth0");
+  EXPECT_EQ(owner_of(0xC0A802C8, kInterfaces)->address, 0xC0A802C8u);
+}
+
+TEST(Interfaces, NeighbourOnTheSameNetworkIsNotOurs) {
+  EXPECT_FALSE(owner_of(0x0A3D130A, kInterfaces));
+}
+
+TEST(Interfaces, AllOfLoopbackIsOurs) {
+  ASSERT_TRUE(owner_of(0x7F000002, kInterfaces));
+  EXPECT_EQ(owner_of(0x7F000002, kInterfaces)->netmask, 0xFF000000u);
+}
+
+TEST(Interfaces, ThisMachineHasLoopback) {
+  EXPECT_TRUE(owner_of(0x7F000001, interface_addresses()));
+}
+
+}  // namespace
+}  // namespace sonard::server

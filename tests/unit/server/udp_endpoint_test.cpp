@@ -1,0 +1,137 @@
+#include "server/devices/udp_endpoint.hpp"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+#include <boost/asio/io_context.hpp>
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr Ipv4 kLoopback1 = 0x7F000001;
+constexpr Ipv4 kLoopback5 = 0x7F000005;
+
+// Two endpoints on one io_context that the test runs.
+struct UdpEndpointTest : testing::Test {
+  asio::io_context io;
+  std::vector<Datagram> received;
+
+  UdpEndpoint::Receive collect() {
+    return [this](const Datagram& datagram) { received.push_back(datagram); };
+  }
+
+  // False when the condition does not come true within the limit.
+  bool run_until(const std::function<bool()>& done) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{10};
+    while (!done() && std::chrono::steady_clock::now() < deadline) {
+      io.run_one_for(std::chrono::milliseconds{20});
+      io.restart();
+    }
+    return done();
+  }
+};
+
+TEST_F(UdpEndpointTest, TellsOnWhichAddressItWasAddressed) {
+  UdpEndpoint everywhere(io, {0, 0});
+  everywhere.start(collect());
+  UdpEndpoint sender(io, {kLoopback1, 0});
+  const std::uint16_t port = everywhere.local_endpoint().port;
+  sender.send({{{kLoopback5, port}, 0, {1, 2, 3}}, {{kLoopback1, port}, 0, {4}}});
+  ASSERT_TRUE(run_until([&] { return received.size() == 2; }));
+  EXPECT_EQ(received[0].local, kLoopback5);
+  EXPECT_EQ(received[0].remote, sender.local_endpoint());
+  EXPECT_EQ(received[0].bytes, (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(received[1].local, kLoopback1);
+}
+
+TEST_F(UdpEndpointTest, SendsFromTheAddressAskedFor) {
+  UdpEndpoint everywhere(io, {0, 0});
+  UdpEndpoint peer(io, {kLoopback1, 0});
+  peer.start(collect());
+  everywhere.send({{peer.local_endpoint(), kLoopback5, {9}}});
+  ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
+  EXPECT_EQ(received[0].remote, (Endpoint{kLoopback5, everywhere.local_endpoint().port}));
+}
+
+TEST_F(UdpEndpointTest, BurstLargerThanTheSocketBufferArrivesInOrder) {
+  UdpEndpoint receiver(io, {kLoopback1, 0});
+  receiver.start(collect());
+  UdpEndpoint sender(io, {kLoopback1, 0});
+  bool drained = false;
+  sender.start([](const Datagram&) {}, [&] { drained = true; });
+  // The receiver reads on the same thread, so it cannot keep up by itself: send in portions its buffer can
+  // hold.
+  constexpr int kPortions = 40;
+  constexpr int kPortion = 64;
+  for (int portion = 0; portion < kPortions; ++portion) {
+    std::vector<Datagram> burst;
+    for (int i = 0; i < kPortion; ++i) {
+      const int number = portion * kPortion + i;
+      burst.push_back({receiver.local_endpoint(), 0, std::vector<std::uint8_t>(272)});
+      burst.back().bytes[0] = static_cast<std::uint8_t>(number & 0xFF);
+      burst.back().bytes[1] = static_cast<std::uint8_t>(number >> 8);
+    }
+    sender.send(std::move(burst));
+    const std::size_t expected = static_cast<std::size_t>((portion + 1) * kPortion);
+    ASSERT_TRUE(run_until([&] { return received.size() == expected; })) << "portion " << portion;
+  }
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    ASSERT_EQ(received[i].bytes[0] | received[i].bytes[1] << 8, static_cast<int>(i));
+  }
+  EXPECT_EQ(sender.counters().sent, received.size());
+  EXPECT_FALSE(sender.blocked());
+}
+
+TEST_F(UdpEndpointTest, AddressInUseIsAnErrorThatNamesIt) {
+  UdpEndpoint first(io, {kLoopback1, 0});
+  try {
+    UdpEndpoint second(io, first.local_endpoint());
+    FAIL() << "no exception";
+  } catch (const SocketError& error) {
+    EXPECT_NE(std::string(error.what()).find("127.0.0.1:" + std::to_string(first.local_endpoint().port)),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(UdpEndpointTest, UnreachableDestinationCostsOneDatagramOnly) {
+  UdpEndpoint peer(io, {kLoopback1, 0});
+  peer.start(collect());
+  UdpEndpoint sender(io, {kLoopback1, 0});
+  // From a loopback source the kernel refuses a host outside (EINVAL).
+  sender.send({{{0x08080808, 9}, 0, {1}}, {peer.local_endpoint(), 0, {2}}});
+  ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
+  EXPECT_EQ(received[0].bytes, std::vector<std::uint8_t>{2});
+  EXPECT_EQ(sender.counters().send_failed, 1u);
+}
+
+TEST_F(UdpEndpointTest, TooLongDatagramIsCountedAndDropped) {
+  UdpEndpoint receiver(io, {kLoopback1, 0});
+  receiver.start(collect());
+  UdpEndpoint sender(io, {kLoopback1, 0});
+  sender.send(
+      {{receiver.local_endpoint(), 0, std::vector<std::uint8_t>(5000)}, {receiver.local_endpoint(), 0, {7}}});
+  ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
+  EXPECT_EQ(received[0].bytes, std::vector<std::uint8_t>{7});
+  EXPECT_EQ(receiver.counters().truncated, 1u);
+}
+
+TEST_F(UdpEndpointTest, MayBeClosedFromItsOwnCallback) {
+  auto receiver = std::make_unique<UdpEndpoint>(io, Endpoint{kLoopback1, 0});
+  int calls = 0;
+  receiver->start([&](const Datagram&) {
+    ++calls;
+    receiver->close();
+  });
+  UdpEndpoint sender(io, {kLoopback1, 0});
+  sender.send({{receiver->local_endpoint(), 0, {1}}, {receiver->local_endpoint(), 0, {2}}});
+  ASSERT_TRUE(run_until([&] { return calls == 1; }));
+  receiver.reset();
+  io.run_for(std::chrono::milliseconds{20});
+  EXPECT_EQ(calls, 1);
+}
+
+}  // namespace
+}  // namespace sonard::server
