@@ -7,11 +7,11 @@ namespace sonard::gemini {
 
 /// The device's own law of `spreading` is not published; this one is inferred and can be moved.
 struct GainLaw {
-  /// Value of `spreading` that means "50 percent", 0 dB: 213 for the later client libraries, 67 for the early
-  /// one.
-  double reference_spreading = 213.0;
-  /// dB for one percent of gain as the early library counts percent; 0.4 gives it 40 dB from 0 to 100
-  /// percent.
+  /// Value of `spreading` that gives 0 dB: what the early client library sends for 50 percent. Later
+  /// libraries send 213 for their 50 percent and are 11.6 dB louder for it; set 213 where those are the only
+  /// clients.
+  double reference_spreading = 67.0;
+  /// dB for one percent of gain as the early library counts percent: 40 dB from 0 to 100.
   double db_per_percent = 0.4;
   /// Main gain at which the level is 0 dB: 16.5 dB base gain and 8 dB variable gain, what both libraries send
   /// beyond very short ranges.

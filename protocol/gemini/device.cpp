@@ -1,0 +1,423 @@
+#include "protocol/gemini/device.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "protocol/common/byte_reader.hpp"
+#include "protocol/common/byte_writer.hpp"
+#include "protocol/gemini/codec.hpp"
+#include "protocol/gemini/flash_store.hpp"
+#include "protocol/gemini/messages.hpp"
+#include "protocol/gemini/pinger.hpp"
+
+namespace sonard::gemini {
+
+namespace {
+
+constexpr std::size_t identity_bank = 0;
+constexpr std::size_t address_bank = 2;
+constexpr std::uint16_t flash_failed = 0x8004;  // ready; abort code 4, program timeout
+
+void require(bool condition, const char* what) {
+  if (!condition) {
+    throw std::invalid_argument(std::string("gemini device: ") + what);
+  }
+}
+
+const DeviceConfig& validated(const DeviceConfig& config) {
+  using std::chrono::nanoseconds;
+  require(config.sonar_id >= min_sonar_id, "sonar_id must be at least 2");
+  require(config.alternate_address != 0, "alternate_address must not be 0.0.0.0");
+  require(config.water_sound_speed_mps >= 0.0, "water_sound_speed_mps must not be negative");
+  require(config.gain.reference_spreading > 0.0, "gain.reference_spreading must be positive");
+  require(config.status_period > nanoseconds{0}, "status_period must be positive");
+  require(config.min_ping_period > nanoseconds{0}, "min_ping_period must be positive");
+  require(config.surface_timeout > nanoseconds{0}, "surface_timeout must be positive");
+  require(config.reboot_time >= nanoseconds{0}, "reboot_time must not be negative");
+  require(config.line_period > nanoseconds{0}, "line_period must be positive");
+  require(config.burst_lines >= 1 && config.burst_lines <= 1024, "burst_lines must be 1..1024");
+  require(config.retry_hold >= nanoseconds{0}, "retry_hold must not be negative");
+  require(config.retry_hold_max >= nanoseconds{0}, "retry_hold_max must not be negative");
+  require(config.render_lead >= nanoseconds{0}, "render_lead must not be negative");
+  return config;
+}
+
+/// Ones, then zeros.
+bool is_netmask(std::uint32_t mask) {
+  return mask != 0 && std::has_single_bit(~mask + 1ULL);
+}
+
+/// The two u32 with which every info block begins (3.7).
+std::array<std::uint32_t, 2> words_of(const IdentityBlock& block) {
+  return {block.sonar_id, block.transducer};
+}
+std::array<std::uint32_t, 2> words_of(const VelocimeterBlock& block) {
+  return {block.m_coefficient, static_cast<std::uint32_t>(block.c_coefficient)};
+}
+std::array<std::uint32_t, 2> words_of(const AddressBlock& block) {
+  return {block.alternate_ip, block.subnet_mask};
+}
+
+template <class Block>
+std::vector<std::uint8_t> block_bytes(const Block& block) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter writer(bytes);
+  for (const std::uint32_t word : words_of(block)) {
+    writer.u32le(word);
+  }
+  return bytes;
+}
+
+/// A healthy head in cool water; only the values that clients show (3.3).
+Status healthy_status() {
+  Status status;
+  status.die_temperature = die_temperature_code(45.0);
+  status.vga1a_temperature = temperature_code(21.25);
+  status.vga1b_temperature = temperature_code(21.5);
+  status.vga2a_temperature = temperature_code(22.0);
+  status.vga2b_temperature = temperature_code(21.75);
+  status.psu2_temperature = temperature_code(30.0);  // PSU 1 has no sensor
+  status.tx1_temperature = temperature_code(24.0);
+  status.tx2_temperature = temperature_code(24.25);
+  status.tx3_temperature = temperature_code(24.5);
+  status.die_shutdown_temperature = die_temperature_code(85.0);
+  status.psu2_shutdown_temperature = temperature_code(70.0);
+  for (std::uint16_t* limit : {&status.vga1a_shutdown_temperature, &status.vga1b_shutdown_temperature,
+                               &status.vga2a_shutdown_temperature, &status.vga2b_shutdown_temperature,
+                               &status.tx1_shutdown_temperature, &status.tx2_shutdown_temperature,
+                               &status.tx3_shutdown_temperature}) {
+    *limit = temperature_code(60.0);
+  }
+  return status;
+}
+
+}  // namespace
+
+class Device::Impl {
+ public:
+  Impl(const DeviceConfig& config, TimePoint boot_time)
+      : config_(validated(config)),
+        boot_time_(boot_time),
+        next_status_(boot_time),
+        addresses_{config.fixed_address, config.alternate_address, config.netmask},
+        pinger_(config_, counters_, boot_time) {
+    write_block(IdentityBlock{config.sonar_id, 1}, identity_bank);
+    write_block(AddressBlock{config.alternate_address, config.netmask}, address_bank);
+  }
+
+  void on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<const std::uint8_t> bytes);
+  void advance(TimePoint now);
+  std::optional<TimePoint> next_deadline() const;
+  std::vector<Outgoing> take_outgoing() { return std::exchange(outgoing_, {}); }
+  std::uint64_t clock_us(TimePoint now) const;
+
+  void set_out_of_water(bool out_of_water) {
+    out_of_water_ = out_of_water;
+    pinger_.set_out_of_water(out_of_water);
+  }
+  /// Everything that arrives while the head reboots falls on deaf ears.
+  bool rebooting(TimePoint now) const { return now < boot_time_; }
+
+  Pinger& pinger() { return pinger_; }
+  const DeviceCounters& counters() const { return counters_; }
+  Ipv4 surface() const { return surface_; }
+  DeviceAddresses addresses() const { return addresses_; }
+
+ private:
+  void connect(TimePoint now, Ipv4 from, Ipv4 to);
+  void check_surface(TimePoint now);
+  void send_status(TimePoint now);
+  Status make_status(TimePoint now) const;
+
+  // One for each command; those that need no answer and change nothing share the last.
+  void handle(TimePoint now, const StatusRequest& command);
+  void handle(TimePoint now, const PingConfig& command) { pinger_.configure(now, command); }
+  void handle(TimePoint now, const FlashWrite& command);
+  void handle(TimePoint now, const FlashRead& command);
+  void handle(TimePoint now, const InfoBlockWrite& command);
+  void handle(TimePoint now, const InfoBlockRead& command);
+  void handle(TimePoint now, const Reboot& command);
+  void handle(TimePoint, const TestResultRequest&) { reply(TestResult{}); }
+  void handle(TimePoint now, const RetryRequest& command) { pinger_.on_retry(now, command); }
+  void handle(TimePoint now, const NetworkConfig& command);
+  void handle(TimePoint, const MdioCommands&) { reply(MdioAcknowledge{}); }
+  void handle(TimePoint, const TxDriveTest&) { reply(GpiData{}); }
+  void handle(TimePoint, const GpoWrite&) { reply(GpiData{}); }
+  void handle(TimePoint, const GpioRead&) { reply(GpiData{}); }
+  void handle(TimePoint, const DiagnosticRequest&) { reply(Diagnostic{}); }
+  void handle(TimePoint, const GoingOffline&) { pinger_.stop(); }
+  void handle(TimePoint, const SerialTransmit&) {}  // nothing is fitted to the serial port
+  void handle(TimePoint, const ProductionTest&) {}
+  void handle(TimePoint, const PowerOnSelfTest&) {}
+  void handle(TimePoint, const AbortProductionTest&) {}
+  void handle(TimePoint, const Unknown&) {}  // on_datagram has dropped it
+
+  template <class Block>
+  void write_block(const Block& block, std::size_t bank) {
+    flash_.write_page(info_block_addresses.at(bank), block_bytes(block));
+  }
+  void apply_programmed_addresses();
+
+  template <class Message>
+  void reply(Message message) {
+    message.header.sonar_id = config_.sonar_id;
+    outgoing_.push_back({Outgoing::To::surface, surface_, reply_from_, SharedBytes(encode(Report{message}))});
+  }
+  void reply_with_flash(std::uint32_t address) {
+    FlashReadback readback;
+    readback.address = address;
+    readback.data = flash_.read(address);
+    reply(readback);
+  }
+
+  const DeviceConfig config_;
+  DeviceCounters counters_;
+  TimePoint boot_time_;  ///< in the future while the head reboots
+  TimePoint next_status_;
+  DeviceAddresses addresses_;
+  bool out_of_water_ = false;
+
+  Ipv4 surface_ = 0;
+  Ipv4 reply_from_ = 0;
+  TimePoint last_command_{};
+
+  FlashStore flash_;
+  Pinger pinger_;
+  std::vector<SharedBytes> ping_datagrams_;  ///< scratch of advance()
+  std::vector<Outgoing> outgoing_;
+};
+
+// ---- Commands
+// ---------------------------------------------------------------------------------------------------
+
+void Device::Impl::on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<const std::uint8_t> bytes) {
+  if (rebooting(now)) {
+    return;
+  }
+  check_surface(now);
+  const auto header = decode_header(bytes);
+  if (!header || from == 0) {
+    ++counters_.bad_datagrams;
+    return;
+  }
+  if (header->sonar_id != config_.sonar_id && !(header->sonar_id == 0 && config_.accept_id_zero)) {
+    ++counters_.wrong_id;
+    return;
+  }
+  const auto command = decode_command(bytes);
+  if (!command) {
+    ++counters_.bad_datagrams;
+    return;
+  }
+  if (std::holds_alternative<Unknown>(*command)) {
+    ++counters_.unknown_type;  // taken in silence: it says nothing, not even that a surface is there
+    return;
+  }
+  ++counters_.commands;
+  connect(now, from, to);
+  std::visit([&](const auto& message) { handle(now, message); }, *command);
+}
+
+void Device::Impl::connect(TimePoint now, Ipv4 from, Ipv4 to) {
+  if (surface_ != 0 && surface_ != from) {
+    ++counters_.surface_changes;  // the newest wins; what is on the wire goes on to it
+  }
+  surface_ = from;
+  reply_from_ = to;
+  last_command_ = now;
+  pinger_.resume(now);
+}
+
+void Device::Impl::handle(TimePoint now, const StatusRequest&) {
+  Acknowledge acknowledge;
+  acknowledge.receipt_us = clock_us(now);
+  acknowledge.reply_us = acknowledge.receipt_us;  // at once
+  reply(acknowledge);
+}
+
+void Device::Impl::handle(TimePoint, const NetworkConfig& command) {
+  pinger_.set_inter_packet_gap(std::chrono::nanoseconds{8} * command.inter_packet_gap);
+}
+
+void Device::Impl::handle(TimePoint, const FlashWrite& command) {
+  FlashResult result;
+  result.address = command.address;
+  if (!flash_.write_page(command.address, command.data)) {
+    result.result = flash_failed;
+  }
+  reply(result);
+  if (command.read_back()) {
+    reply_with_flash(command.address);
+  }
+}
+
+void Device::Impl::handle(TimePoint, const FlashRead& command) {
+  constexpr std::uint32_t word_mask = ~3U;
+  reply_with_flash(command.address & word_mask);
+}
+
+void Device::Impl::handle(TimePoint, const InfoBlockWrite& command) {
+  // Identity and velocimeter blocks are for production: stored and shown on reading, without further effect.
+  const std::size_t bank = command.block.index();
+  std::visit([&](const auto& block) { write_block(block, bank); }, command.block);
+  FlashResult result;
+  result.address = info_block_addresses.at(bank);
+  reply(result);
+}
+
+void Device::Impl::handle(TimePoint, const InfoBlockRead& command) {
+  if (command.bank < info_block_addresses.size()) {
+    reply_with_flash(info_block_addresses.at(command.bank));
+  }
+}
+
+void Device::Impl::handle(TimePoint now, const Reboot& command) {
+  // Any other value speaks to the boot loader, which this head has left long ago.
+  constexpr std::uint8_t into_main_image = 1;
+  if (command.control != into_main_image) {
+    return;
+  }
+  ++counters_.reboots;
+  boot_time_ = now + config_.reboot_time;
+  next_status_ = boot_time_;
+  surface_ = 0;
+  reply_from_ = 0;
+  pinger_.reset(boot_time_);
+  apply_programmed_addresses();
+}
+
+// A page that holds no usable address (erased, cleared, a mask with holes) leaves the head where it is:
+// nobody could reach it elsewhere.
+void Device::Impl::apply_programmed_addresses() {
+  const FlashStore::Page page = flash_.read(info_block_addresses.at(address_bank));
+  ByteReader reader(page);
+  const Ipv4 alternate = reader.u32le("alternate_ip");
+  const Ipv4 netmask = reader.u32le("subnet_mask");
+  if (alternate != 0 && alternate != 0xFFFFFFFF && is_netmask(netmask)) {
+    addresses_.alternate = alternate;
+    addresses_.netmask = netmask;
+  }
+}
+
+// ---- Time
+// -------------------------------------------------------------------------------------------------------
+
+std::uint64_t Device::Impl::clock_us(TimePoint now) const {
+  return now < boot_time_ ? 0 : static_cast<std::uint64_t>((now - boot_time_) / std::chrono::microseconds{1});
+}
+
+void Device::Impl::check_surface(TimePoint now) {
+  if (surface_ != 0 && now - last_command_ >= config_.surface_timeout) {
+    ++counters_.surface_timeouts;
+    surface_ = 0;
+    reply_from_ = 0;
+    pinger_.suspend();
+  }
+}
+
+void Device::Impl::send_status(TimePoint now) {
+  if (now < next_status_) {
+    return;
+  }
+  outgoing_.push_back({Outgoing::To::status, 0, 0, SharedBytes(encode(Report{make_status(now)}))});
+  // Keeps the phase; what a late caller has missed is not made up for.
+  next_status_ += config_.status_period * ((now - next_status_) / config_.status_period + 1);
+}
+
+Status Device::Impl::make_status(TimePoint now) const {
+  Status status = healthy_status();
+  status.header.sonar_id = config_.sonar_id;
+  status.sonar_id = config_.sonar_id;
+  status.fixed_ip = addresses_.fixed;
+  status.alternate_ip = addresses_.alternate;
+  status.subnet_mask = addresses_.netmask;
+  status.surface_ip = surface_;
+  status.mac.octets = config_.mac;
+  status.clock_us = clock_us(now);
+  if (out_of_water_) {
+    status.shutdown_status |= shutdown_bits::out_of_water;
+  }
+  if (pinger_.stopped_by_air()) {
+    status.shutdown_status |= shutdown_bits::out_of_water_stop;
+  }
+  return status;
+}
+
+void Device::Impl::advance(TimePoint now) {
+  if (rebooting(now)) {
+    return;
+  }
+  check_surface(now);
+  send_status(now);
+  ping_datagrams_.clear();
+  pinger_.advance(now, ping_datagrams_);
+  for (SharedBytes& bytes : ping_datagrams_) {
+    outgoing_.push_back({Outgoing::To::surface, surface_, reply_from_, std::move(bytes)});
+  }
+}
+
+std::optional<TimePoint> Device::Impl::next_deadline() const {
+  TimePoint next = next_status_;
+  if (surface_ != 0) {
+    next = std::min(next, last_command_ + config_.surface_timeout);
+  }
+  return std::min(next, pinger_.next_deadline().value_or(next));
+}
+
+// ---- The door
+// ---------------------------------------------------------------------------------------------------
+
+Device::Device(const DeviceConfig& config, TimePoint boot_time)
+    : impl_(std::make_unique<Impl>(config, boot_time)) {}
+Device::~Device() = default;
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+
+void Device::on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<const std::uint8_t> bytes) {
+  impl_->on_datagram(now, from, to, bytes);
+}
+void Device::on_image(TimePoint now, const PingImage& image) {
+  impl_->pinger().on_image(now, image);
+}
+void Device::on_image_failed(TimePoint, std::uint64_t ping_number) {
+  impl_->pinger().on_image_failed(ping_number);
+}
+void Device::set_out_of_water(bool out_of_water) {
+  impl_->set_out_of_water(out_of_water);
+}
+void Device::on_trigger(TimePoint now) {
+  if (!impl_->rebooting(now)) {
+    impl_->pinger().on_trigger(now);
+  }
+}
+void Device::advance(TimePoint now) {
+  impl_->advance(now);
+}
+std::optional<TimePoint> Device::next_deadline() const {
+  return impl_->next_deadline();
+}
+std::vector<Outgoing> Device::take_outgoing() {
+  return impl_->take_outgoing();
+}
+std::optional<PingJob> Device::take_job() {
+  return impl_->pinger().take_job();
+}
+const DeviceCounters& Device::counters() const {
+  return impl_->counters();
+}
+Ipv4 Device::surface() const {
+  return impl_->surface();
+}
+DeviceAddresses Device::addresses() const {
+  return impl_->addresses();
+}
+std::uint64_t Device::clock_us(TimePoint now) const {
+  return impl_->clock_us(now);
+}
+
+}  // namespace sonard::gemini

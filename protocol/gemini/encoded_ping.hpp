@@ -1,0 +1,48 @@
+// A whole ping as the datagrams that carry it (docs/protocols/gemini.md 6, 7.3).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "protocol/gemini/messages.hpp"
+#include "protocol/gemini/ping_job.hpp"
+#include "protocol/gemini/shared_bytes.hpp"
+
+namespace sonard::gemini {
+
+/// True when the image holds exactly the samples that the job asks for.
+bool fits(const PingImage& image, const PingJob& job);
+
+/// Head, lines and tail, encoded once into one buffer that every datagram of the ping shares.
+class EncodedPing {
+ public:
+  /// `head` is complete; `line_scale` is PingLine::scale. Requires an image of head.line_count() lines of
+  /// beam_count samples, of the width that head.ext_mode states.
+  EncodedPing(const PingHead& head, std::uint16_t line_scale, const PingImage& image);
+
+  int line_count() const { return head_.line_count(); }
+  /// Head, lines and tail: line_count() + 2.
+  int datagram_count() const { return line_count() + 2; }
+  /// In the order of sending: 0 is the head, 1.. the lines, the last one the tail.
+  SharedBytes datagram(int index) const;
+
+  /// The same with the mark of a repetition: bit 8 of the ping ID, bit 15 of the line number, bit 7 of the
+  /// tail flags.
+  SharedBytes resent_head() const;
+  SharedBytes resent_line(int number) const;
+  SharedBytes resent_tail() const;
+
+ private:
+  PingLine make_line(int number, std::span<const std::uint8_t> data) const;
+  PingTail make_tail() const;
+
+  PingHead head_;
+  std::uint16_t line_scale_;
+  std::shared_ptr<const std::vector<std::uint8_t>> bytes_;
+  std::vector<std::uint32_t> offsets_;  ///< of each datagram, and the end of the last
+};
+
+}  // namespace sonard::gemini

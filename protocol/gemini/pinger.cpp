@@ -1,0 +1,337 @@
+#include "protocol/gemini/pinger.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sonard::gemini {
+
+namespace {
+
+// A start that comes this late is still dated at the time at which it was due, so that the timers of the host
+// do not slow the ping rate down. One that comes later is dated at the time at which it came.
+constexpr std::chrono::nanoseconds start_slack = std::chrono::milliseconds{5};
+
+std::optional<TimePoint> earlier(std::optional<TimePoint> a, std::optional<TimePoint> b) {
+  return a && b ? std::min(a, b) : (a ? a : b);
+}
+
+bool due(const std::optional<TimePoint>& time, TimePoint now) {
+  return time && *time <= now;
+}
+
+}  // namespace
+
+Pinger::Pinger(const DeviceConfig& config, DeviceCounters& counters, TimePoint boot_time)
+    : config_(config),
+      counters_(counters),
+      boot_time_(boot_time),
+      pacer_(config.line_period, config.burst_lines),
+      earliest_start_(boot_time) {}
+
+// ---- Wanted
+// -----------------------------------------------------------------------------------------------------
+
+void Pinger::configure(TimePoint now, const PingConfig& config) {
+  if (single_) {
+    ++counters_.configs_replaced;
+  }
+  single_.reset();
+  programme_.reset();
+  pings_out_of_water_ = config.pings_out_of_water();
+  if (acquisition_ && acquisition_->transmit_time > now) {
+    // Rendered ahead of its time. For the surface it has not begun, so the new settings come first.
+    earliest_start_ = acquisition_->earliest_start_before;
+    cancel_acquisition();
+  }
+  const std::optional<PingPlan> plan = plan_ping(config, config_);
+  if (!plan) {
+    ++counters_.unsupported_data;
+  } else if (plan->mode == RunMode::single) {
+    single_ = Wanted{*plan, now};
+  } else {
+    programme_ = plan;
+    programme_due_ = now;
+  }
+}
+
+void Pinger::on_trigger(TimePoint now) {
+  if (!programme_ || programme_->mode != RunMode::external_trigger) {
+    return;
+  }
+  // An edge is a moment; a head that is busy cannot make up for it later.
+  if (suspended_ || single_ || acquisition_ || unanswered_ || sending() || now < earliest_start_) {
+    ++counters_.pings_suppressed;
+    return;
+  }
+  single_ = Wanted{*programme_, now};
+}
+
+void Pinger::stop() {
+  single_.reset();
+  programme_.reset();
+  cancel_acquisition();
+}
+
+void Pinger::suspend() {
+  suspended_ = true;
+  single_.reset();
+  cancel_acquisition();
+  drop_retries(transmission_ ? transmission_->ping().line_count() : 0);
+  if (sending()) {
+    ++counters_.pings_cancelled;
+    transmission_.reset();
+  }
+}
+
+void Pinger::resume(TimePoint now) {
+  if (suspended_) {
+    suspended_ = false;
+    programme_due_ = now;
+  }
+}
+
+void Pinger::reset(TimePoint boot_time) {
+  stop();
+  suspended_ = false;
+  pings_out_of_water_ = false;
+  counters_.pings_cancelled += sending() ? 1 : 0;
+  transmission_.reset();
+  drop_retries(0);
+  boot_time_ = boot_time;
+  earliest_start_ = boot_time;
+  pacer_ = Pacer(config_.line_period, config_.burst_lines);
+}
+
+// ---- Acquired
+// ---------------------------------------------------------------------------------------------------
+
+const PingPlan* Pinger::wanted_plan() const {
+  if (single_) {
+    return &single_->plan;
+  }
+  return programme_ && programme_->mode == RunMode::continuous ? &*programme_ : nullptr;
+}
+
+// The rate rules (8.4): not before the previous tail was sent, nor before its last echo is back, nor more
+// often than the head can. nullopt while no ping can be started or none is wanted.
+std::optional<TimePoint> Pinger::next_transmit_time() const {
+  if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr) {
+    return std::nullopt;
+  }
+  const TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
+  const TimePoint time = std::max(wanted_at, earliest_start_);
+  if (!sending()) {
+    return transmission_ ? std::max(time, transmission_->tail_sent_at().value_or(time)) : time;
+  }
+  // Pacing is deterministic, so the end of the ping on the wire is known ahead.
+  return config_.render_lead.count() > 0 ? std::optional(std::max(time, transmission_->predicted_end(pacer_)))
+                                         : std::nullopt;
+}
+
+std::optional<TimePoint> Pinger::acquisition_due() const {
+  const auto transmit_time = next_transmit_time();
+  return transmit_time ? std::optional(*transmit_time - config_.render_lead) : std::nullopt;
+}
+
+void Pinger::acquire(TimePoint now) {
+  const PingPlan plan = *wanted_plan();
+  TimePoint transmit_time = *next_transmit_time();
+  if (now - transmit_time > start_slack) {
+    transmit_time = now;
+  }
+  const TimePoint asked_at = single_ ? single_->asked_at : transmit_time;
+  if (single_) {
+    single_.reset();
+  } else {
+    programme_due_ = transmit_time + std::max(plan.interval, config_.min_ping_period);
+  }
+  if (out_of_water_ && !plan.pings_out_of_water) {
+    ++counters_.pings_suppressed;
+    return;
+  }
+  acquisition_ =
+      Acquisition{plan, next_ping_number_++, transmit_time, asked_at, earliest_start_, std::nullopt, {}};
+  earliest_start_ = transmit_time + std::max(config_.min_ping_period, plan.listening_time());
+  job_ = plan.job;
+  job_->ping_number = acquisition_->ping_number;
+  job_->transmit_time = transmit_time;
+  ++counters_.pings_started;
+}
+
+std::optional<PingJob> Pinger::take_job() {
+  if (job_) {
+    unanswered_ = job_->ping_number;
+  }
+  return std::exchange(job_, std::nullopt);
+}
+
+void Pinger::on_image(TimePoint now, const PingImage& image) {
+  if (unanswered_ != image.ping_number) {
+    ++counters_.stale_images;
+    return;
+  }
+  unanswered_.reset();
+  if (!acquisition_) {
+    ++counters_.stale_images;  // called off meanwhile
+    return;
+  }
+  if (!fits(image, acquisition_->plan.job)) {
+    ++counters_.pings_failed;
+    acquisition_.reset();
+    return;
+  }
+  PingHead head = acquisition_->plan.head;
+  head.ping_id =
+      static_cast<std::uint16_t>(acquisition_->ping_number & 0xFF);  // later surfaces want 0..255 (6.3)
+  head.transmit_time_us =
+      static_cast<std::uint64_t>((acquisition_->transmit_time - boot_time_) / std::chrono::microseconds{1});
+  acquisition_->encoded.emplace(head, acquisition_->plan.line_scale, image);
+  acquisition_->ready_at = now;
+}
+
+void Pinger::on_image_failed(std::uint64_t ping_number) {
+  if (unanswered_ != ping_number) {
+    return;
+  }
+  unanswered_.reset();
+  if (acquisition_) {
+    ++counters_.pings_failed;
+    acquisition_.reset();
+  }
+}
+
+void Pinger::cancel_acquisition() {
+  if (acquisition_) {
+    ++counters_.pings_cancelled;
+    acquisition_.reset();
+    job_.reset();
+  }
+}
+
+// ---- On the wire
+// ------------------------------------------------------------------------------------------------
+
+// The new head is held back for a surface that is still repairing the last ping (7.3): while requests wait,
+// and for a while after the last one. A surface that asked for its next single ping after its last request is
+// done with the old one; only what it has already asked for is served first.
+std::optional<TimePoint> Pinger::head_due() const {
+  if (!acquisition_ || !acquisition_->encoded || sending()) {
+    return std::nullopt;
+  }
+  TimePoint free = std::max(acquisition_->transmit_time, acquisition_->ready_at);
+  if (!transmission_) {
+    return free;
+  }
+  free = std::max(free, transmission_->tail_sent_at().value_or(free));
+  const TimePoint longest = free + config_.retry_hold_max;
+  if (!retries_.empty()) {
+    return longest;
+  }
+  const bool repairing = last_retry_activity_ &&
+                         !(acquisition_->plan.mode == RunMode::single &&
+                           acquisition_->asked_at >= last_retry_arrival_.value_or(acquisition_->asked_at));
+  return repairing ? std::clamp(*last_retry_activity_ + config_.retry_hold, free, longest) : free;
+}
+
+void Pinger::put_on_wire() {
+  // Requests carry no ping ID: one for the old ping, served now, would make the surface ask for all of the
+  // new one.
+  drop_retries(acquisition_->encoded->line_count());
+  last_retry_arrival_.reset();
+  last_retry_activity_.reset();
+  transmission_.emplace(std::move(*acquisition_->encoded), acquisition_->transmit_time,
+                        acquisition_->plan.job.compression_log2);
+  acquisition_.reset();
+}
+
+void Pinger::send_lines(TimePoint now, std::vector<SharedBytes>& out) {
+  if (!sending()) {
+    return;
+  }
+  const int before = transmission_->lines_sent();
+  transmission_->send(now, pacer_, out);
+  counters_.lines_sent += static_cast<std::uint64_t>(transmission_->lines_sent() - before);
+  counters_.pings_sent += transmission_->finished() ? 1 : 0;
+}
+
+void Pinger::on_retry(TimePoint now, const RetryRequest& request) {
+  ++counters_.retries_received;
+  if (!transmission_ || !retries_.push(request)) {
+    ++counters_.retries_dropped;
+    return;
+  }
+  last_retry_arrival_ = now;
+  last_retry_activity_ = now;
+}
+
+void Pinger::serve_retries(TimePoint now, std::vector<SharedBytes>& out) {
+  // A tail sent again in the middle of a ping would make the surface ask for all lines still to come.
+  if (!transmission_ || sending()) {
+    return;
+  }
+  while (pacer_.ready(now)) {
+    const auto what = retries_.pop();
+    if (!what) {
+      return;
+    }
+    out.push_back(resend(*what));
+    pacer_.sent(now);
+    last_retry_activity_ = now;
+  }
+}
+
+SharedBytes Pinger::resend(const RetryQueue::Resend& what) {
+  const EncodedPing& ping = transmission_->ping();
+  switch (what.kind) {
+    case RetryKind::head:
+      ++counters_.heads_resent;
+      return ping.resent_head();
+    case RetryKind::lines:
+      ++counters_.lines_resent;
+      return ping.resent_line(what.line);
+    case RetryKind::tail:
+      break;
+  }
+  ++counters_.tails_resent;
+  return ping.resent_tail();
+}
+
+void Pinger::drop_retries(int line_count) {
+  counters_.retries_dropped += retries_.size();
+  retries_.reset(line_count);
+}
+
+// ---- Time
+// -------------------------------------------------------------------------------------------------------
+
+void Pinger::advance(TimePoint now, std::vector<SharedBytes>& out) {
+  for (bool progress = true; progress;) {
+    progress = false;
+    send_lines(now, out);
+    serve_retries(now, out);
+    if (due(acquisition_due(), now)) {
+      acquire(now);
+      progress = true;
+    }
+    if (due(head_due(), now)) {
+      put_on_wire();
+      progress = true;
+    }
+  }
+}
+
+std::optional<TimePoint> Pinger::datagram_due() const {
+  if (sending()) {
+    return transmission_->next_send(pacer_);
+  }
+  if (!transmission_ || retries_.empty()) {
+    return std::nullopt;
+  }
+  return pacer_.earliest(retries_.pending(pacer_.wake_batch()));
+}
+
+std::optional<TimePoint> Pinger::next_deadline() const {
+  return earlier(datagram_due(), earlier(acquisition_due(), head_due()));
+}
+
+}  // namespace sonard::gemini

@@ -1,0 +1,114 @@
+// When a head pings, and what it sends for it: run modes, rate limits, transmission, retries.
+// Source: docs/protocols/gemini.md 7.3, 8.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "protocol/gemini/device_config.hpp"
+#include "protocol/gemini/device_counters.hpp"
+#include "protocol/gemini/pacer.hpp"
+#include "protocol/gemini/ping_job.hpp"
+#include "protocol/gemini/ping_plan.hpp"
+#include "protocol/gemini/ping_transmission.hpp"
+#include "protocol/gemini/retry_queue.hpp"
+#include "protocol/gemini/shared_bytes.hpp"
+
+namespace sonard::gemini {
+
+/// The part of a Device that pings. It knows no addresses: what it sends goes to the surface that is
+/// connected.
+///
+/// A ping goes through three stages. *Wanted*: a configuration, the interval or a trigger edge asks for it.
+/// *Acquired*: its transmit time is fixed, its job is out, its image is awaited. *On the wire*: from its head
+/// on; it stays as the copy for retries until the next head. A ping may be acquired while the last one is on
+/// the wire (only if DeviceConfig::render_lead allows) or is still being repaired.
+class Pinger {
+ public:
+  /// `config` and `counters` outlive the pinger. The clock of the head is 0 at `boot_time`.
+  Pinger(const DeviceConfig& config, DeviceCounters& counters, TimePoint boot_time);
+
+  void configure(TimePoint now, const PingConfig& config);
+  void on_retry(TimePoint now, const RetryRequest& request);
+  void on_trigger(TimePoint now);
+  void on_image(TimePoint now, const PingImage& image);
+  void on_image_failed(std::uint64_t ping_number);
+  void set_inter_packet_gap(std::chrono::nanoseconds gap) { pacer_.set_gap(gap); }
+  void set_out_of_water(bool out_of_water) { out_of_water_ = out_of_water; }
+
+  /// The surface goes offline: no further pings. One that is on the wire is finished.
+  void stop();
+  /// The surface has gone silent: sends nothing more; a continuous or triggered programme waits for resume().
+  void suspend();
+  void resume(TimePoint now);
+  /// The head reboots: forgets everything but the job that is still to be answered, and the count of pings.
+  void reset(TimePoint boot_time);
+
+  /// Appends the datagrams due at `now` to `out`.
+  void advance(TimePoint now, std::vector<SharedBytes>& out);
+  std::optional<TimePoint> next_deadline() const;
+  std::optional<PingJob> take_job();
+
+  /// Pinging is held back because the head is out of the water and was not told to ping all the same.
+  bool stopped_by_air() const { return out_of_water_ && !pings_out_of_water_; }
+
+ private:
+  /// A ping that is to start as soon as the rules allow.
+  struct Wanted {
+    PingPlan plan;
+    TimePoint asked_at{};
+  };
+  struct Acquisition {
+    PingPlan plan;
+    std::uint64_t ping_number = 0;
+    TimePoint transmit_time{};
+    TimePoint asked_at{};
+    TimePoint earliest_start_before{};   ///< earliest_start_ as it was, should this ping never begin
+    std::optional<EncodedPing> encoded;  ///< once the image is there
+    TimePoint ready_at{};                ///< when it came
+  };
+
+  const PingPlan* wanted_plan() const;
+  bool sending() const { return transmission_ && !transmission_->finished(); }
+  std::optional<TimePoint> next_transmit_time() const;
+  std::optional<TimePoint> acquisition_due() const;
+  std::optional<TimePoint> head_due() const;
+  std::optional<TimePoint> datagram_due() const;
+  void acquire(TimePoint now);
+  void cancel_acquisition();
+  void put_on_wire();
+  void send_lines(TimePoint now, std::vector<SharedBytes>& out);
+  void serve_retries(TimePoint now, std::vector<SharedBytes>& out);
+  SharedBytes resend(const RetryQueue::Resend& what);
+  void drop_retries(int line_count);
+
+  const DeviceConfig& config_;
+  DeviceCounters& counters_;
+  TimePoint boot_time_;
+  Pacer pacer_;
+
+  // Wanted.
+  std::optional<Wanted> single_;       ///< a single ping or a trigger edge
+  std::optional<PingPlan> programme_;  ///< continuous or triggered
+  TimePoint programme_due_{};          ///< when the next continuous ping is due
+  bool suspended_ = false;
+  bool out_of_water_ = false;
+  bool pings_out_of_water_ = false;  ///< by the newest configuration
+
+  // Acquired.
+  std::uint64_t next_ping_number_ = 0;
+  TimePoint earliest_start_;  ///< of the next ping by the rate rules
+  std::optional<Acquisition> acquisition_;
+  std::optional<PingJob> job_;               ///< not yet taken
+  std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
+
+  // On the wire.
+  std::optional<PingTransmission> transmission_;
+  RetryQueue retries_;
+  std::optional<TimePoint> last_retry_arrival_;   ///< about the ping in transmission_
+  std::optional<TimePoint> last_retry_activity_;  ///< arrival or service
+};
+
+}  // namespace sonard::gemini
