@@ -247,7 +247,7 @@ void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow) 
   constexpr std::string_view expected = "an address block such as 10.61.19.0/24";
   if (is_loopback(bind_address)) {
     allow = {{0x7F000000, 8}};
-  } else {
+  } else if (bind_address != 0 || section.has("bind")) {  // otherwise the address itself was refused
     section.require("allow", "the address blocks to serve, as the socket is not bound to loopback");
   }
   section.parsed_list("allow", allow, &parse_cidr, expected);

@@ -1,8 +1,8 @@
 #include "server/config/loader.hpp"
 
-#include <algorithm>
+#include <cerrno>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -19,16 +19,21 @@ namespace {
 constexpr std::string_view expected_endpoint = "an address and port such as 127.0.0.1:14600";
 
 std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) {
-    const std::error_code cause = std::filesystem::is_directory(file)
-                                      ? std::make_error_code(std::errc::is_a_directory)
-                                      : std::error_code(errno, std::generic_category());
+  const auto fail = [&](const std::error_code& cause) {
     throw ConfigError(file,
                       {{{}, "", fmt::format("cannot be read: {} (expected a YAML file)", cause.message())}});
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    fail(std::make_error_code(std::errc::is_a_directory));
   }
-  return text;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    fail({errno, std::generic_category()});
+  }
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
 }
 
 YAML::Node parse_yaml(const std::filesystem::path& file) {

@@ -89,7 +89,7 @@ std::string_view closest(std::string_view name, const std::vector<std::string>& 
     // "delay" for "delay_ms": the unit was forgotten.
     const bool unit_missing = candidate.starts_with(name) && candidate.substr(name.size()).starts_with('_');
     const std::size_t distance = unit_missing ? 1 : edit_distance(name, candidate);
-    const std::size_t limit = std::max<std::size_t>(1, std::min(name.size(), candidate.size()) / 3);
+    const std::size_t limit = std::max<std::size_t>(1, (std::min(name.size(), candidate.size()) + 1) / 3);
     if (distance <= limit && distance < best_distance) {
       best = candidate;
       best_distance = distance;
@@ -114,6 +114,7 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
     : findings_(findings), path_(std::move(path)), at_(position_of(node.Mark())) {
   if (!node.IsMap()) {
     problem(at_, path_, fmt::format("is {} (expected a mapping, key: value)", describe(node)));
+    is_map_ = false;
     return;
   }
   for (const auto& pair : node) {
@@ -151,7 +152,7 @@ bool YamlSection::is_list(std::string_view key) const {
 }
 
 void YamlSection::require(std::string_view key, std::string_view expected) {
-  if (find(key) == nullptr) {
+  if (find(key) == nullptr && is_map_) {
     problem(at_, path_of(key), fmt::format("missing (expected {})", expected));
   }
 }
@@ -283,7 +284,9 @@ void YamlSection::sections(std::string_view key, const std::function<void(YamlSe
 }
 
 const YamlSection::Entry* YamlSection::find(std::string_view key) {
-  known_.emplace_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+    known_.emplace_back(key);
+  }
   for (Entry& entry : entries_) {
     if (entry.name == key) {
       entry.read = true;
@@ -301,7 +304,12 @@ const YamlSection::Entry* YamlSection::peek(std::string_view key) const {
 }
 
 void YamlSection::problem(const SourcePosition& at, std::string path, std::string message) {
-  findings_.problems.push_back({at, std::move(path), std::move(message)});
+  // What follows from a value that was refused is not worth a second line.
+  const bool reported = std::any_of(findings_.problems.begin(), findings_.problems.end(),
+                                    [&](const ConfigProblem& earlier) { return earlier.key == path; });
+  if (!reported) {
+    findings_.problems.push_back({at, std::move(path), std::move(message)});
+  }
 }
 
 void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {

@@ -39,8 +39,9 @@ struct Range {
   std::string text() const;
 };
 
-/// One mapping. Each reader writes its result only when the key is there and its value is good, so what stood
-/// there before is the default. Readers name the unit of a number in the key ("delay_ms").
+/// One mapping. At most one problem is reported for each key. Each reader writes its result only when the key
+/// is there and its value is good, so what stood there before is the default. Readers name the unit of a
+/// number in the key ("delay_ms").
 class YamlSection {
  public:
   /// @param path of the mapping, "" for the document. A node that is not a mapping is reported and read as
@@ -148,6 +149,7 @@ class YamlSection {
   YamlFindings& findings_;
   std::string path_;
   SourcePosition at_;
+  bool is_map_ = true;
   std::vector<Entry> entries_;
   std::vector<std::string> known_;  ///< keys that readers asked for
 };

@@ -1,0 +1,42 @@
+// Loading a configuration that a test writes down as text.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "server/config/loader.hpp"
+
+namespace sonard::server {
+
+/// The least that loads. Text appended with an indent of 6 goes on in the head's network, with 4 in the head,
+/// with 2 in the list of heads, and without in the document. The network starts on line 8.
+inline const std::string minimal_config =
+    "world: {file: world.sdf}\n"
+    "poses:\n"
+    "  initial: {position_m: [1, 2, 3]}\n"
+    "heads:\n"
+    "  - name: front\n"
+    "    type: gemini_720i\n"
+    "    sonar_id: 513\n"
+    "    network:\n"
+    "      alternate_address: 127.0.0.2\n"
+    "      netmask: 255.0.0.0\n";
+
+/// A folder of its own for each test, gone when the test ends.
+class ConfigFolder : public testing::Test {
+ protected:
+  ConfigFolder();
+  ~ConfigFolder() override;
+
+  /// Writes `text` to "config.yaml" and loads it.
+  LoadedConfig load(const std::string& text) const;
+  /// What load() complains about, one line each, without the folder; empty when it succeeds.
+  std::vector<std::string> complaints(const std::string& text) const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace sonard::server

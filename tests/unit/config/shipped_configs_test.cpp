@@ -1,0 +1,70 @@
+// What ships in configs/ loads without a warning, and the two that scripts rely on say what they promise.
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/config/loader.hpp"
+
+namespace sonard::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+const std::filesystem::path configs = std::filesystem::path(SONARD_SOURCE_DIR) / "configs";
+
+TEST(ShippedConfigs, load_without_warnings) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(configs)) {
+    if (entry.path().extension() == ".yaml") {
+      ++files;
+      EXPECT_THAT(load_config(entry.path()).warnings, IsEmpty()) << entry.path();
+    }
+  }
+  EXPECT_GE(files, 4);
+}
+
+void expect_demo_head(const DaemonConfig& config) {
+  ASSERT_EQ(config.heads.size(), 1U);
+  const GeminiHeadConfig& head = config.heads[0];
+  EXPECT_EQ(head.device.sonar_id, 513);
+  EXPECT_EQ(head.command_port, 52901);
+  EXPECT_EQ(head.surface_port, 52900);
+  EXPECT_EQ(head.acoustics.model, render::Model::physical);
+  EXPECT_EQ(config.poses.udp->bind, (Endpoint{0x7F000001, 14600}));
+  EXPECT_TRUE(config.poses.T_world_vehicle_initial.has_value());
+  const double pi = std::numbers::pi;
+  EXPECT_NEAR((head.T_vehicle_sonar.orientation * glm::dvec3(1, 0, 0)).z, -std::sin(20 * pi / 180), 1e-12);
+}
+
+TEST(ShippedConfigs, demo_serves_loopback) {
+  const DaemonConfig config = load_config(configs / "demo.yaml").config;
+  expect_demo_head(config);
+  const GeminiHeadConfig& head = config.heads[0];
+  EXPECT_EQ(head.bind_address, 0x7F000002U);
+  EXPECT_EQ(head.device.alternate_address, 0x7F000002U);
+  EXPECT_EQ(head.device.netmask, 0xFF000000U);
+  EXPECT_EQ(head.status.mode, StatusDestination::Mode::unicast);
+  EXPECT_THAT(head.status.hosts, ElementsAre(0x7F000001U));
+}
+
+TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
+  const DaemonConfig config = load_config(configs / "gemini-netns.yaml").config;
+  expect_demo_head(config);
+  const GeminiHeadConfig& head = config.heads[0];
+  EXPECT_EQ(head.bind_address, 0x0A3D13C8U);
+  EXPECT_EQ(head.device.alternate_address, 0x0A3D13C8U);
+  EXPECT_EQ(head.device.netmask, 0xFFFFFF00U);
+  EXPECT_EQ(head.status.mode, StatusDestination::Mode::limited_broadcast);
+  EXPECT_THAT(head.allow, ElementsAre(Cidr{0x0A3D1300, 24}));
+}
+
+TEST(ShippedConfigs, paper_uses_the_model_of_the_paper) {
+  EXPECT_EQ(load_config(configs / "paper.yaml").config.heads[0].acoustics.model, render::Model::paper);
+}
+
+}  // namespace
+}  // namespace sonard::server
