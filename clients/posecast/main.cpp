@@ -1,0 +1,145 @@
+// posecast: plays a trajectory file as a pose stream for sonard, as a simulator would send it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include "clients/posecast/caster.hpp"
+#include "clients/posecast/pose_link.hpp"
+#include "protocol/pose/trajectory.hpp"
+
+namespace {
+
+using namespace sonard;
+
+constexpr int exit_done = 0;
+constexpr int exit_network = 1;  // the receiver is not there, or went away
+constexpr int exit_usage = 2;    // command line or trajectory file
+
+struct Arguments {
+  std::string file;
+  std::string to = "127.0.0.1:14600";
+  bool tcp = false;
+  std::string axes = "enu";
+  double rate_hz = 50.0;
+  double speed = 1.0;
+  bool loop = false;
+  double from_s = 0.0;
+  double seconds = 0.0;
+  bool no_twist = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  const auto positive = CLI::Range(1e-6, 1e6);
+  const auto duration = CLI::Range(0.0, 1e9);
+  app.footer(
+      "Exit status: 0 all sent, or ended by Ctrl-C or --seconds; 1 network; 2 command line or trajectory.");
+  app.add_option("trajectory", arguments.file,
+                 "File of lines `t,x,y,z,qx,qy,qz,qw` behind such a header, or in TUM format")
+      ->required();
+  app.add_option("--to", arguments.to, "Where sonard listens, HOST:PORT")->capture_default_str();
+  app.add_flag("--tcp", arguments.tcp, "Connect by TCP instead of sending UDP datagrams");
+  app.add_option("--axes", arguments.axes, "Axes of the file: enu (world ENU, vehicle FLU) or ned (NED, FRD)")
+      ->check(CLI::IsMember({"enu", "ned"}))
+      ->capture_default_str();
+  app.add_option("--rate", arguments.rate_hz, "Poses per second, interpolated from the file")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->capture_default_str();
+  app.add_option("--speed", arguments.speed, "Times real time")->check(positive)->capture_default_str();
+  app.add_flag("--loop", arguments.loop, "Start again at the end");
+  app.add_option("--from-time", arguments.from_s, "Start this many seconds into the trajectory")
+      ->check(duration);
+  app.add_option("--seconds", arguments.seconds, "End after this many seconds")->check(positive);
+  app.add_flag("--no-twist", arguments.no_twist, "Send poses without velocity");
+}
+
+/// @throws CLI::ValidationError
+client::Destination destination(const Arguments& arguments) {
+  const std::size_t colon = arguments.to.rfind(':');
+  if (colon == std::string::npos || colon == 0 || colon + 1 == arguments.to.size()) {
+    throw CLI::ValidationError("--to", "expected HOST:PORT, found '" + arguments.to + "'");
+  }
+  return {arguments.to.substr(0, colon), arguments.to.substr(colon + 1), arguments.tcp};
+}
+
+std::chrono::nanoseconds to_ns(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+client::CastSettings settings(const Arguments& arguments, const pose::Trajectory& trajectory) {
+  client::CastSettings settings;
+  settings.playback = {arguments.speed, arguments.loop, to_ns(arguments.from_s).count()};
+  settings.rate_hz = arguments.rate_hz;
+  settings.twist = !arguments.no_twist;
+  if (arguments.seconds > 0.0) {
+    settings.duration = to_ns(arguments.seconds);
+  }
+  if (settings.playback.from_ns > trajectory.end_ns() - trajectory.start_ns()) {
+    throw CLI::ValidationError("--from-time", "is past the end of the trajectory");
+  }
+  return settings;
+}
+
+/// Casts until the end, a signal or a failure. @return the exit status.
+int cast(const Arguments& arguments) {
+  const pose::Trajectory trajectory = pose::load_trajectory(
+      arguments.file, arguments.axes == "ned" ? pose::Axes::ned_frd : pose::Axes::enu_flu);
+  const client::CastSettings cast_settings = settings(arguments, trajectory);
+
+  boost::asio::io_context io;
+  boost::asio::signal_set signals{io, SIGINT, SIGTERM};
+  std::string failure;
+  const auto link = client::connect(io, destination(arguments), [&](const std::string& what) {
+    failure = what;
+    io.stop();
+  });
+  client::Caster caster{io, trajectory, cast_settings, *link};
+  signals.async_wait([&](const boost::system::error_code& cancelled, int) {
+    if (!cancelled) {
+      io.stop();
+    }
+  });
+  const auto began = std::chrono::steady_clock::now();
+  caster.start([&] { link->finish([&] { io.stop(); }); });
+  io.run();
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+
+  const client::LinkCounters& counters = link->counters();
+  fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
+             link->description(), counters.refused, counters.skipped);
+  // Nothing comes back for the last datagram: there was no time.
+  if (failure.empty() && counters.refused > 0 && counters.refused + 1 >= counters.sent) {
+    failure = link->description() + ": nobody listens there";
+  }
+  if (!failure.empty()) {
+    fmt::print(stderr, "posecast: {}\n", failure);
+    return exit_network;
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Plays a trajectory file as a pose stream for sonard"};
+  Arguments arguments;
+  declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+    return cast(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_usage;
+  } catch (const pose::TrajectoryError& error) {
+    fmt::print(stderr, "posecast: {}\n", error.what());
+    return exit_usage;
+  } catch (const client::LinkError& error) {
+    fmt::print(stderr, "posecast: {}\n", error.what());
+    return exit_network;
+  }
+}
