@@ -90,7 +90,7 @@ struct MacAddress {
 
 /// A message of a type that this library does not know. Take it in silence (3.1).
 struct Unknown {
-  Header header;
+  Header header{};
   std::uint8_t type = 0;
 
   bool operator==(const Unknown&) const = default;
@@ -103,7 +103,7 @@ struct Unknown {
 /// 0x20, 8 bytes: stay-alive. Answered by Acknowledge (3.2).
 struct StatusRequest {
   static constexpr MessageType type = MessageType::status_request;
-  Header header;
+  Header header{};
 
   bool operator==(const StatusRequest&) const = default;
 };
@@ -141,7 +141,7 @@ int compression_log2(std::uint16_t range_compression);
 /// Defaults are those of the early client library.
 struct PingConfig {
   static constexpr MessageType type = MessageType::ping_config;
-  Header header;
+  Header header{};
   std::array<std::uint16_t, 4> idents{};  ///< unused by the head
   std::uint16_t run_mode = 0;             ///< bits 1..0 RunMode; bit 15 trigger edge: 0 rising, 1 falling
   std::uint16_t ext_mode = ext_bits::eight_bit;
@@ -193,7 +193,7 @@ struct PingConfig {
 /// 0x22, 1040 bytes (3.7). Answered by FlashResult, then FlashReadback if `read_back()`.
 struct FlashWrite {
   static constexpr MessageType type = MessageType::flash_write;
-  Header header;
+  Header header{};
   std::uint32_t address = 0;  ///< multiple of flash_page_size
   std::uint16_t flags = 0;    ///< bit 0: read back
   std::array<std::uint8_t, flash_page_size> data{};
@@ -206,7 +206,7 @@ struct FlashWrite {
 /// 0x23, 12 bytes (3.7). Answered by FlashReadback.
 struct FlashRead {
   static constexpr MessageType type = MessageType::flash_read;
-  Header header;
+  Header header{};
   std::uint32_t address = 0;
 
   bool operator==(const FlashRead&) const = default;
@@ -240,9 +240,9 @@ struct AddressBlock {
 /// the long form are uninitialised memory of the sender and are dropped.
 struct InfoBlockWrite {
   static constexpr MessageType type = MessageType::info_block_write;
-  Header header;
+  Header header{};
   std::uint16_t flags = 0;
-  std::variant<IdentityBlock, VelocimeterBlock, AddressBlock> block;  ///< its index is the bank number
+  std::variant<IdentityBlock, VelocimeterBlock, AddressBlock> block{};  ///< its index is the bank number
 
   bool operator==(const InfoBlockWrite&) const = default;
 };
@@ -250,7 +250,7 @@ struct InfoBlockWrite {
 /// 0x25, 12 bytes (3.7). Answered by FlashReadback.
 struct InfoBlockRead {
   static constexpr MessageType type = MessageType::info_block_read;
-  Header header;
+  Header header{};
   std::uint32_t bank = 0;  ///< 0..2
 
   bool operator==(const InfoBlockRead&) const = default;
@@ -259,8 +259,8 @@ struct InfoBlockRead {
 /// 0x2A, 9 + n bytes: bytes for the serial port of the head (3.8). No answer.
 struct SerialTransmit {
   static constexpr MessageType type = MessageType::serial_transmit;
-  Header header;
-  std::vector<std::uint8_t> data;  ///< at most 255; encode() leaves out what is beyond
+  Header header{};
+  std::vector<std::uint8_t> data{};  ///< at most 255; encode() leaves out what is beyond
 
   bool operator==(const SerialTransmit&) const = default;
 };
@@ -268,7 +268,7 @@ struct SerialTransmit {
 /// 0x2B, 12 bytes (3.9). No answer: the head goes away.
 struct Reboot {
   static constexpr MessageType type = MessageType::reboot;
-  Header header;
+  Header header{};
   std::uint8_t control = 1;  ///< 1 = reboot into the main image, 2 = stay in the boot loader
 
   bool operator==(const Reboot&) const = default;
@@ -277,7 +277,7 @@ struct Reboot {
 /// 0x2C, 12 bytes (3.10). Answered by TestResult.
 struct TestResultRequest {
   static constexpr MessageType type = MessageType::test_result_request;
-  Header header;
+  Header header{};
 
   bool operator==(const TestResultRequest&) const = default;
 };
@@ -285,7 +285,7 @@ struct TestResultRequest {
 /// 0x2D, 24 bytes, 20 from 32-bit surfaces (3.10). No answer until TestResultRequest.
 struct ProductionTest {
   static constexpr MessageType type = MessageType::production_test;
-  Header header;
+  Header header{};
   std::uint64_t seed = 0;  ///< bit 63: use this seed
   std::uint8_t flags = 0;  ///< bit 0: run
 
@@ -295,7 +295,7 @@ struct ProductionTest {
 /// 0x2E, 12 bytes (3.10). No answer until TestResultRequest.
 struct PowerOnSelfTest {
   static constexpr MessageType type = MessageType::power_on_self_test;
-  Header header;
+  Header header{};
 
   bool operator==(const PowerOnSelfTest&) const = default;
 };
@@ -303,7 +303,7 @@ struct PowerOnSelfTest {
 /// 0x2F, 12 bytes (3.10). No answer.
 struct AbortProductionTest {
   static constexpr MessageType type = MessageType::abort_production_test;
-  Header header;
+  Header header{};
 
   bool operator==(const AbortProductionTest&) const = default;
 };
@@ -313,7 +313,7 @@ enum class RetryKind : std::uint16_t { head = 0, lines = 1, tail = 2 };
 /// 0x30, 16 bytes: send parts of the last ping again (3.5, 7).
 struct RetryRequest {
   static constexpr MessageType type = MessageType::retry_request;
-  Header header;
+  Header header{};
   RetryKind kind = RetryKind::head;  ///< the wire may carry any other value: ignore the request then
   std::uint16_t first_line = 0;      ///< 0-based, for RetryKind::lines
   std::uint16_t line_count = 1;      ///< 0 counts as 1
@@ -324,7 +324,7 @@ struct RetryRequest {
 /// 0x31, 22 bytes, 20 from early surfaces (3.6). No answer.
 struct NetworkConfig {
   static constexpr MessageType type = MessageType::network_config;
-  Header header;
+  Header header{};
   std::uint8_t ethernet_ifg = 15;      ///< inter-frame gap, clock cycles
   std::uint8_t vdsl_ifg = 15;          ///< inter-frame gap, clock cycles
   std::uint8_t advertise_gigabit = 0;  ///< 0 or 1
@@ -342,7 +342,7 @@ struct NetworkConfig {
 /// 0x32, 10 + 2 n bytes: a script of register writes for the modem (3.11). Answered by MdioAcknowledge.
 struct MdioCommands {
   static constexpr MessageType type = MessageType::mdio_commands;
-  Header header;
+  Header header{};
   std::vector<std::uint16_t>
       words;  ///< at most 731, so that the datagram stays whole; encode() drops the rest
 
@@ -352,7 +352,7 @@ struct MdioCommands {
 /// 0x33, 12 bytes (3.11).
 struct TxDriveTest {
   static constexpr MessageType type = MessageType::tx_drive_test;
-  Header header;
+  Header header{};
   std::uint16_t drive = 0;
 
   bool operator==(const TxDriveTest&) const = default;
@@ -361,7 +361,7 @@ struct TxDriveTest {
 /// 0x34, 12 bytes (3.11).
 struct GpoWrite {
   static constexpr MessageType type = MessageType::gpo_write;
-  Header header;
+  Header header{};
   std::uint16_t outputs = 0;  ///< bit 0: the output
 
   bool operator==(const GpoWrite&) const = default;
@@ -370,7 +370,7 @@ struct GpoWrite {
 /// 0x35, 12 bytes (3.11). Answered by GpiData.
 struct GpioRead {
   static constexpr MessageType type = MessageType::gpio_read;
-  Header header;
+  Header header{};
 
   bool operator==(const GpioRead&) const = default;
 };
@@ -378,7 +378,7 @@ struct GpioRead {
 /// 0x36, 12 bytes (3.11). Answered by Diagnostic; later surfaces ask until they get it.
 struct DiagnosticRequest {
   static constexpr MessageType type = MessageType::diagnostic_request;
-  Header header;
+  Header header{};
 
   bool operator==(const DiagnosticRequest&) const = default;
 };
@@ -386,7 +386,7 @@ struct DiagnosticRequest {
 /// 0xC8, 10 bytes: the surface stops listening (8.2). A head stops pinging. No answer.
 struct GoingOffline {
   static constexpr MessageType type = MessageType::going_offline;
-  Header header;
+  Header header{};
 
   bool operator==(const GoingOffline&) const = default;
 };
@@ -422,7 +422,7 @@ inline constexpr std::uint16_t ethernet_100 = 0x0004;
 /// Defaults describe a healthy 720i on 100 Mbit/s Ethernet; sonar_id and the addresses are left to the head.
 struct Status {
   static constexpr MessageType type = MessageType::status;
-  Header header;
+  Header header{};
   std::uint16_t firmware_version = 0x0119;
   std::uint16_t sonar_id = 0;           ///< equals header.sonar_id
   std::uint32_t fixed_ip = 0x0A3D13C8;  ///< first octet most significant
@@ -461,7 +461,7 @@ struct Status {
   std::uint16_t link_type = link_bits::ethernet_100;
   std::uint16_t vdsl_downstream1 = 0;  ///< low byte constellation, high byte symbol rate; 0 on Ethernet
   std::uint16_t vdsl_downstream2 = 0;
-  MacAddress mac;
+  MacAddress mac{};
   std::uint16_t vdsl_upstream1 = 0;
   std::uint16_t vdsl_upstream2 = 0;
 
@@ -477,7 +477,7 @@ inline constexpr std::uint16_t sound_speed_from_config = 0x8000;
 /// 0x41, 48 bytes; 46 and 47 are accepted (6.2).
 struct PingHead {
   static constexpr MessageType type = MessageType::ping_head;
-  Header header;
+  Header header{};
   std::uint16_t ping_id = 0;           ///< 0..255; later surfaces discard other values (6.3)
   std::uint16_t ext_mode = 0;          ///< echo of the configuration
   std::uint64_t transmit_time_us = 0;  ///< head clock
@@ -518,7 +518,7 @@ constexpr std::uint16_t make_line_info(std::size_t data_bytes, bool last, std::u
 /// 0x42, 16 + data bytes: all beams at one range, port to starboard (6.4).
 struct PingLine {
   static constexpr MessageType type = MessageType::ping_line;
-  Header header;
+  Header header{};
   std::uint8_t gain = 0;        ///< not implemented; 0
   std::uint8_t ping_id = 0;     ///< low byte of PingHead::ping_id
   std::uint16_t line_id = 0;    ///< bits 14..0 line number, counted after compression; bit 15 resent_line
@@ -526,7 +526,7 @@ struct PingLine {
   std::uint16_t line_info = 0;  ///< see make_line_info()
   /// Samples or their run-length coded form. A view: into the datagram after decode_report, into the caller's
   /// bytes for encode. On the wire its length is 4 * word_count(); encode() expects the two to agree.
-  std::span<const std::uint8_t> data;
+  std::span<const std::uint8_t> data{};
 
   int line_number() const { return line_id & 0x7FFF; }
   bool resent() const { return (line_id & resent_line) != 0; }
@@ -541,7 +541,7 @@ inline constexpr std::uint8_t resent_tail = 0x80;  ///< bit of PingTail::flags
 /// 0x43, 12 bytes (6.9).
 struct PingTail {
   static constexpr MessageType type = MessageType::ping_tail;
-  Header header;
+  Header header{};
   std::uint8_t ping_id = 0;  ///< low byte of PingHead::ping_id
   std::uint8_t flags = 0;    ///< bit 7: resent_tail
 
@@ -553,7 +553,7 @@ struct PingTail {
 /// 0x44, 16 bytes (3.7).
 struct FlashResult {
   static constexpr MessageType type = MessageType::flash_result;
-  Header header;
+  Header header{};
   std::uint32_t address = 0;
   std::uint16_t result = 0x8000;  ///< bit 15 ready; success when all other bits are clear
 
@@ -568,7 +568,7 @@ inline constexpr std::array<std::uint32_t, 3> info_block_addresses{0x3E0000, 0x7
 /// 0x45, 1040 bytes (3.7).
 struct FlashReadback {
   static constexpr MessageType type = MessageType::flash_readback;
-  Header header;
+  Header header{};
   std::uint32_t address = 0;
   std::array<std::uint8_t, flash_page_size> data{};
 
@@ -578,7 +578,7 @@ struct FlashReadback {
 /// 0x47, 1036 bytes, contents undocumented (3.12). A simulated head never sends it.
 struct VelocimeterData {
   static constexpr MessageType type = MessageType::velocimeter_data;
-  Header header;
+  Header header{};
   std::uint16_t block_count = 0;
   std::array<std::uint8_t, 1024> data{};
 
@@ -596,8 +596,8 @@ struct SerialByte {
 /// 0x48, 8 + 8 n bytes (3.8).
 struct SerialData {
   static constexpr MessageType type = MessageType::serial_data;
-  Header header;
-  std::vector<SerialByte> bytes;
+  Header header{};
+  std::vector<SerialByte> bytes{};
 
   bool operator==(const SerialData&) const = default;
 };
@@ -605,7 +605,7 @@ struct SerialData {
 /// 0x49, 24 bytes: answer to StatusRequest (3.13).
 struct Acknowledge {
   static constexpr MessageType type = MessageType::acknowledge;
-  Header header;
+  Header header{};
   std::uint64_t receipt_us = 0;  ///< head clock when the request arrived
   std::uint64_t reply_us = 0;    ///< head clock when this left
 
@@ -615,7 +615,7 @@ struct Acknowledge {
 /// 0x4A, 54 bytes (3.10). Defaults are the answer of a healthy head.
 struct TestResult {
   static constexpr MessageType type = MessageType::test_result;
-  Header header;
+  Header header{};
   std::array<std::uint16_t, 4> marks{0xA000, 0xA001, 0xA002, 0xA003};
   std::uint32_t sram0_result = 0x10000000;
   std::uint32_t sram1_result = 0x10000000;
@@ -631,7 +631,7 @@ struct TestResult {
 /// 0x4B, 10 bytes (3.11).
 struct MdioAcknowledge {
   static constexpr MessageType type = MessageType::mdio_acknowledge;
-  Header header;
+  Header header{};
   std::uint16_t result = 0;
 
   bool operator==(const MdioAcknowledge&) const = default;
@@ -640,7 +640,7 @@ struct MdioAcknowledge {
 /// 0x4C, 10 bytes (3.11).
 struct GpiData {
   static constexpr MessageType type = MessageType::gpi_data;
-  Header header;
+  Header header{};
   std::uint16_t inputs = 0;
 
   bool operator==(const GpiData&) const = default;
@@ -649,7 +649,7 @@ struct GpiData {
 /// 0x4D, 18 bytes: identities of the boards, any value (3.11).
 struct Diagnostic {
   static constexpr MessageType type = MessageType::diagnostic;
-  Header header;
+  Header header{};
   std::uint16_t rx1_board = 1;
   std::uint16_t rx2_board = 2;
   std::uint16_t fpga_board = 3;

@@ -1,0 +1,122 @@
+#include "protocol/gemini/rle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace sonard::gemini {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes encoded(const Bytes& beams, std::uint8_t threshold = 3) {
+  Bytes out;
+  rle_encode(beams, threshold, out);
+  return out;
+}
+
+Bytes decoded(const Bytes& data, std::size_t beams) {
+  Bytes out(beams, 0xEE);
+  rle_decode(data, out);
+  return out;
+}
+
+TEST(RleEncode, run_of_one_is_01) {
+  EXPECT_EQ(encoded({5, 0, 7}), (Bytes{5, 1, 7, 0}));
+}
+
+TEST(RleEncode, longer_runs_are_00_and_their_length) {
+  EXPECT_EQ(encoded({0, 0}), (Bytes{0, 2, 0, 0}));
+  EXPECT_EQ(encoded({9, 0, 0, 0, 9}), (Bytes{9, 0, 3, 9}));
+  EXPECT_EQ(encoded(Bytes(255, 0)), (Bytes{0, 255, 0, 0}));
+}
+
+TEST(RleEncode, runs_beyond_255_are_split) {
+  EXPECT_EQ(encoded(Bytes(256, 0)), (Bytes{0, 255, 1, 0}));
+  EXPECT_EQ(encoded(Bytes(257, 0)), (Bytes{0, 255, 0, 2}));
+  EXPECT_EQ(encoded(Bytes(512, 0)), (Bytes{0, 255, 0, 255, 0, 2, 0, 0}));
+}
+
+TEST(RleEncode, values_below_the_threshold_become_zero_and_the_threshold_stays) {
+  EXPECT_EQ(encoded({49, 50, 51, 0}, 50), (Bytes{1, 50, 51, 1}));
+  EXPECT_EQ(encoded({2, 3, 1, 1}, 3), (Bytes{1, 3, 0, 2}));
+  EXPECT_EQ(encoded({2, 3, 1, 1}, 1), (Bytes{1, 3, 0, 2})) << "1 and 2 have a meaning of their own";
+}
+
+TEST(RleEncode, nothing_to_code) {
+  EXPECT_TRUE(encoded({}).empty());
+}
+
+TEST(RleEncode, padding_counts_from_where_the_line_began) {
+  Bytes out{0xAA, 0xBB, 0xCC};
+  rle_encode(Bytes{200}, 3, out);
+  EXPECT_EQ(out, (Bytes{0xAA, 0xBB, 0xCC, 200, 0, 0, 0}));
+}
+
+TEST(RleDecode, literals_singles_and_runs) {
+  EXPECT_EQ(decoded({5, 1, 7, 0, 3, 255}, 7), (Bytes{5, 0, 7, 0, 0, 0, 255}));
+}
+
+TEST(RleDecode, two_is_a_literal) {
+  EXPECT_EQ(decoded({2, 2}, 2), (Bytes{2, 2}));
+}
+
+TEST(RleDecode, run_of_no_beams_is_nothing) {
+  EXPECT_EQ(decoded({0, 0, 9}, 1), (Bytes{9}));
+}
+
+TEST(RleDecode, stops_when_all_beams_are_there) {
+  Bytes beams(2);
+  EXPECT_EQ(rle_decode(Bytes{7, 8, 9, 10}, beams), 2U);
+  EXPECT_EQ(beams, (Bytes{7, 8}));
+}
+
+TEST(RleDecode, stops_at_the_end_of_the_data_and_clears_the_rest) {
+  Bytes beams(4, 0xEE);
+  EXPECT_EQ(rle_decode(Bytes{7}, beams), 1U);
+  EXPECT_EQ(beams, (Bytes{7, 0, 0, 0}));
+}
+
+TEST(RleDecode, run_beyond_the_beams_is_cut) {
+  Bytes beams(3, 0xEE);
+  EXPECT_EQ(rle_decode(Bytes{7, 0, 255, 9}, beams), 3U);
+  EXPECT_EQ(beams, (Bytes{7, 0, 0}));
+}
+
+TEST(RleDecode, marker_without_its_count_is_nothing) {
+  Bytes beams(3, 0xEE);
+  EXPECT_EQ(rle_decode(Bytes{7, 0}, beams), 1U);
+  EXPECT_EQ(beams, (Bytes{7, 0, 0}));
+}
+
+TEST(RleDecode, nothing_in_nothing_out) {
+  EXPECT_EQ(rle_decode(Bytes{}, {}), 0U);
+  EXPECT_EQ(rle_decode(Bytes{1, 0, 5, 9}, {}), 0U);
+}
+
+/// Lines of every density of echoes, from empty to full, at every threshold.
+TEST(RleProperty, decoding_gives_back_the_line_with_small_values_zeroed) {
+  std::mt19937 generator{20240501};
+  for (int trial = 0; trial < 4000; ++trial) {
+    const auto threshold = static_cast<std::uint8_t>(3 + generator() % 253);
+    const unsigned echoes_in_16 = generator() % 17;
+    Bytes beams(generator() % 600);
+    for (auto& beam : beams) {
+      beam = generator() % 16 < echoes_in_16 ? static_cast<std::uint8_t>(generator()) : std::uint8_t{0};
+    }
+    const Bytes data = encoded(beams, threshold);
+    EXPECT_EQ(data.size() % 4, 0U);
+    EXPECT_LE(data.size(), (beams.size() + 3) / 4 * 4) << "never longer than plain";
+
+    Bytes expected = beams;
+    for (auto& beam : expected) {
+      beam = beam < threshold ? std::uint8_t{0} : beam;
+    }
+    Bytes back(beams.size(), 0xEE);
+    EXPECT_EQ(rle_decode(data, back), beams.size());
+    ASSERT_EQ(back, expected) << "trial " << trial;
+  }
+}
+
+}  // namespace
+}  // namespace sonard::gemini
