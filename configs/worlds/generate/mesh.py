@@ -200,17 +200,20 @@ class Mesh:
         self.normals += [_rounded(unit(turn(n))) for n in other.normals]
         self.triangles += [tuple(base + k for k in t) for t in other.triangles]
 
-    def ply(self):
-        """The mesh as a binary little-endian PLY file."""
+    def ply(self, texture_tile_m=None):
+        """The mesh as a binary little-endian PLY file; with texture coordinates that repeat every tile in x and y."""
+        uv = ("texture_u", "texture_v") if texture_tile_m else ()
         header = "\n".join([
             "ply", "format binary_little_endian 1.0",
             "comment metres, z up; made by configs/worlds/generate",
             f"element vertex {len(self.positions)}",
-            *(f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")),
+            *(f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz", *uv)),
             f"element face {len(self.triangles)}", "property list uchar int vertex_indices", "end_header", ""])
         body = bytearray(header.encode("ascii"))
         for position, normal in zip(self.positions, self.normals):
             body += struct.pack("<6f", *position, *normal)
+            if texture_tile_m:
+                body += struct.pack("<2f", position[0] / texture_tile_m, position[1] / texture_tile_m)
         for triangle in self.triangles:
             body += struct.pack("<B3i", 3, *triangle)
         return bytes(body)

@@ -3,7 +3,7 @@
 _HEAD = """<?xml version="1.0"?>
 <!-- Made by configs/worlds/generate. {about}
      Frame: x east, y north, z up, metres; the water surface is at z = 0. -->
-<sdf version="1.9" xmlns:sonard="https://sonard.dev/sdf">
+<sdf version="1.9" xmlns:sonard="urn:sonard">
   <world name="{name}">
     <sonard:water_surface_z>0</sonard:water_surface_z>
 """
@@ -14,7 +14,7 @@ class World:
         self._lines = [_HEAD.format(name=name, about=about).rstrip("\n")]
 
     def model(self, name, visuals, pose="0 0 0 0 0 0", static=True, scale=None, comment=None):
-        """One body: `visuals` are (name, mesh file, acoustic material)."""
+        """One body: `visuals` are (name, mesh file, acoustic material) and, where there is one, a normal map file."""
         out = self._lines.append
         if comment:
             out(f"    <!-- {comment} -->")
@@ -22,11 +22,13 @@ class World:
         out(f"      <static>{'true' if static else 'false'}</static>")
         out(f"      <pose>{pose}</pose>")
         out('      <link name="link">')
-        for visual, mesh, material in visuals:
+        for visual, mesh, material, *normal_map in visuals:
             out(f'        <visual name="{visual}">')
             size = f"<scale>{scale}</scale>" if scale else ""
             out(f"          <geometry><mesh><uri>{mesh}</uri>{size}</mesh></geometry>")
             out(f"          <sonard:material>{material}</sonard:material>")
+            for file in normal_map:
+                out(f"          <material><pbr><metal><normal_map>{file}</normal_map></metal></pbr></material>")
             out("        </visual>")
         out("      </link>")
         out("    </model>")

@@ -6,6 +6,7 @@ from boulders import boulder
 from docking_station import rov_mesh, station_meshes, umbilical_mesh
 from mesh import Mesh, placed, yawed
 from noise import smoothstep, uniform
+from normal_map import TILE_M, sand_normal_map
 from pipeline import Pipeline
 from sdf import World
 from seabed import Seabed
@@ -93,12 +94,12 @@ def docking_station():
     }
     world = World("docking_station", "A docking station beside a pipeline on a rippled seabed.")
     world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
-    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel"),
-                             ("clamps", f"{folder}/clamps.ply", "steel")])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled"),
+                             ("clamps", f"{folder}/clamps.ply", "steel_fouled")])
     world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])
     world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", "concrete")])
-    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", "steel"),
-                                    ("equipment", f"{folder}/station_equipment.ply", "steel")],
+    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", "steel_fouled"),
+                                    ("equipment", f"{folder}/station_equipment.ply", "steel_fouled")],
                 pose=_pose(0.0, 0.6, level, 0.0), comment="4 x 3 x 2.5 m, entered from the west")
     world.model("umbilical", [("cable", f"{folder}/umbilical.ply", "rubber")])
     for name, shape, x, y, scale, yaw in boulders:
@@ -158,7 +159,8 @@ def ssiv():
     files = _boulder_files("meshes/boulders")
     files |= {f"{folder}/ssiv_{name}.ply": mesh.ply() for name, mesh in parts.items()}
     files |= {
-        f"{folder}/seabed.ply": seabed.mesh(30.0, 13.0, 0.28, 1.1).ply(),
+        "textures/sand_normal.png": sand_normal_map(3),
+        f"{folder}/seabed.ply": seabed.mesh(30.0, 13.0, 0.28, 1.1).ply(TILE_M),
         f"{folder}/cobbles.ply": _cobbles(seabed, 9, 70, keep_out).ply(),
         f"{folder}/pipe.ply": pipes.ply(),
         f"{folder}/anodes.ply": anodes.ply(),
@@ -166,12 +168,12 @@ def ssiv():
         f"{folder}/mattress_east.ply": east.mattress_mesh(12.5, 18, along=11, across=7).ply(),
     }
     world = World("ssiv", "A subsea isolation valve in its protective frame, tied in to a pipeline.")
-    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
-    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel")])
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand", "textures/sand_normal.png"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled")])
     world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])
     world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", "concrete")])
-    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", "steel"), ("piping", f"{folder}/ssiv_piping.ply", "steel"),
-                         ("equipment", f"{folder}/ssiv_equipment.ply", "steel"), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
+    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", "steel_fouled"), ("piping", f"{folder}/ssiv_piping.ply", "steel_fouled"),
+                         ("equipment", f"{folder}/ssiv_equipment.ply", "steel_fouled"), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
                 pose=_pose(0.0, 0.0, level, 0.0), comment="7.2 x 5 m at the base, 3.2 m high; covers are glass-fibre plastic")
     for name, shape, x, y, scale, yaw in boulders:
         z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale

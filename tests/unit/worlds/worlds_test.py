@@ -30,10 +30,12 @@ def read_ply(path):
     header = data[:end].decode("ascii")
     vertex_count = int(re.search(r"element vertex (\d+)", header).group(1))
     face_count = int(re.search(r"element face (\d+)", header).group(1))
-    vertices = list(struct.iter_unpack("<6f", data[end:end + 24 * vertex_count]))
-    faces = list(struct.iter_unpack("<B3i", data[end + 24 * vertex_count:]))
+    floats = header.count("property float")
+    faces_at = end + 4 * floats * vertex_count
+    vertices = list(struct.iter_unpack(f"<{floats}f", data[end:faces_at]))
+    faces = list(struct.iter_unpack("<B3i", data[faces_at:]))
     assert len(faces) == face_count and all(face[0] == 3 for face in faces)
-    return [v[:3] for v in vertices], [v[3:] for v in vertices], [face[1:] for face in faces]
+    return [v[:3] for v in vertices], [v[3:6] for v in vertices], [face[1:] for face in faces]
 
 
 def cross(a, b):
@@ -96,7 +98,7 @@ class Geometry(unittest.TestCase):
     def test_every_file_an_sdf_names_is_there(self):
         for world in WORLDS:
             tree = ElementTree.parse(CONFIGS / "worlds" / f"{world}.sdf")
-            uris = [element.text for element in tree.iter("uri")]
+            uris = [element.text for tag in ("uri", "normal_map") for element in tree.iter(tag)]
             self.assertGreater(len(uris), 5)
             for uri in uris:
                 self.assertTrue((CONFIGS / "worlds" / uri).is_file(), uri)
