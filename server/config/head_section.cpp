@@ -97,6 +97,7 @@ void read_network(YamlSection& section, GeminiHeadConfig& head, std::vector<Conf
   check_host_address(section, "fixed_address", device.fixed_address);
 
   head.bind_address = device.alternate_address;
+  section.place_default("bind", "alternate_address");
   section.parsed("bind", head.bind_address, &parse_ipv4,
                  "an address of this machine, or 0.0.0.0 for all of them");
   if (head.bind_address != 0 && head.bind_address != device.alternate_address) {

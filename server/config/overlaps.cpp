@@ -10,17 +10,12 @@
 namespace sonard::server {
 namespace {
 
-/// A UDP socket that the configuration asks for.
-struct PlannedSocket {
-  Endpoint endpoint;
-  std::string key;
+bool clash(const Endpoint& one, const Endpoint& other) {
+  const bool share_address = one.address == other.address || one.address == 0 || other.address == 0;
+  return share_address && one.port != 0 && one.port == other.port;
+}
 
-  bool clashes_with(const PlannedSocket& other) const {
-    const Ipv4 a = endpoint.address;
-    const Ipv4 b = other.endpoint.address;
-    return endpoint.port != 0 && endpoint.port == other.endpoint.port && (a == b || a == 0 || b == 0);
-  }
-};
+}  // namespace
 
 std::vector<PlannedSocket> planned_udp_sockets(const DaemonConfig& config) {
   std::vector<PlannedSocket> sockets;
@@ -37,8 +32,6 @@ std::vector<PlannedSocket> planned_udp_sockets(const DaemonConfig& config) {
   return sockets;
 }
 
-}  // namespace
-
 std::vector<ConfigProblem> find_overlaps(const DaemonConfig& config, const KeyPositions& positions) {
   std::vector<ConfigProblem> problems;
   const auto report = [&](const std::string& key, std::string message) {
@@ -48,7 +41,7 @@ std::vector<ConfigProblem> find_overlaps(const DaemonConfig& config, const KeyPo
   const std::vector<PlannedSocket> sockets = planned_udp_sockets(config);
   for (std::size_t i = 0; i < sockets.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (sockets[i].clashes_with(sockets[j])) {
+      if (clash(sockets[i].endpoint, sockets[j].endpoint)) {
         report(sockets[i].key, fmt::format("UDP {} overlaps {} of {} (expected a socket of its own)",
                                            endpoint_text(sockets[i].endpoint),
                                            endpoint_text(sockets[j].endpoint), sockets[j].key));

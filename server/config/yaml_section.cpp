@@ -166,6 +166,12 @@ std::string YamlSection::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+void YamlSection::place_default(std::string_view key, std::string_view source) {
+  if (const Entry* entry = peek(source); entry != nullptr && !has(key)) {
+    findings_.positions.emplace(path_of(key), position_of(entry->value.Mark()));
+  }
+}
+
 void YamlSection::number(std::string_view key, double& out, const Range& range) {
   if (const Entry* entry = find(key)) {
     if (const std::optional<double> value = number_of(entry->value, path_of(key), range)) {

@@ -59,6 +59,8 @@ class YamlSection {
   /// Reports a problem with the value of a key that a reader accepted, or with the key's absence.
   void report(std::string_view key, const std::string& message);
   std::string path_of(std::string_view key) const;
+  /// Lets a key that is not given stand where the key that its default comes from does.
+  void place_default(std::string_view key, std::string_view source);
 
   void number(std::string_view key, double& out, const Range& range);
   /// A number, or one of the words, which stands for a number.

@@ -135,9 +135,11 @@ TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
   const LoadedConfig loaded = load(minimal_config);
   EXPECT_THAT(loaded.problem_with("world.file", "no such file"),
               HasSubstr("config.yaml:1:15: world.file: no such"));
-  // A default has no place of its own: that of the mapping around it is given.
+  // A default has no place of its own: it stands where it comes from, or else in the mapping around it.
   EXPECT_THAT(loaded.problem_with("heads[0].network.bind", "in use"),
-              HasSubstr("config.yaml:9:7: heads[0].network.bind: in use"));
+              HasSubstr("config.yaml:9:26: heads[0].network.bind: in use"));
+  EXPECT_THAT(loaded.problem_with("heads[0].network.command_port", "?"),
+              HasSubstr("config.yaml:9:7: heads[0].net"));
 }
 
 // --- what goes wrong
@@ -313,7 +315,7 @@ TEST_F(Loader, refuses_heads_that_overlap) {
       complaints(minimal_config + same),
       ElementsAre(HasSubstr(":11:11: heads[1].name: 'front' already belongs to heads[0]"),
                   HasSubstr(":13:15: heads[1].sonar_id: 513 already belongs to heads[0]"),
-                  HasSubstr(":14:14: heads[1].network.bind: UDP 127.0.0.2:52901 overlaps 127.0.0.2:52901 of "
+                  HasSubstr(":14:34: heads[1].network.bind: UDP 127.0.0.2:52901 overlaps 127.0.0.2:52901 of "
                             "heads[0].network.bind"),
                   HasSubstr(":14:34: heads[1].network.alternate_address: 127.0.0.2 already belongs")));
 }

@@ -1,0 +1,250 @@
+#include "server/check.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
+
+#include "protocol/pose/trajectory.hpp"
+#include "renderer/errors.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/sample_grid.hpp"
+#include "server/config/addresses.hpp"
+#include "server/config/overlaps.hpp"
+#include "server/devices/gemini_settings.hpp"
+#include "server/devices/interfaces.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+class Check {
+ public:
+  explicit Check(const LoadedConfig& loaded) : loaded_(loaded), config_(loaded.config) {
+    report_.warnings = loaded.warnings;
+  }
+
+  CheckReport run(bool try_addresses) {
+    check_world();
+    check_poses();
+    for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+      check_head(i);
+    }
+    if (try_addresses) {
+      check_addresses();
+    }
+    return std::move(report_);
+  }
+
+ private:
+  void problem(const std::string& key, const std::string& message) {
+    report_.problems.push_back(loaded_.problem_with(key, message));
+  }
+  void warning(const std::string& key, const std::string& message) {
+    report_.warnings.push_back(loaded_.problem_with(key, message));
+  }
+
+  void check_world();
+  void check_poses();
+  void check_head(std::size_t index);
+  void check_sampling(const GeminiHeadConfig& head);
+  void check_addresses();
+  void check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces);
+  template <typename Protocol>
+  void try_socket(const Endpoint& endpoint, const std::string& key);
+
+  const LoadedConfig& loaded_;
+  const DaemonConfig& config_;
+  CheckReport report_;
+};
+
+std::string material_names(const render::World& world) {
+  std::set<std::string> names;
+  for (const render::Body& body : world.bodies) {
+    for (const render::BodyPart& part : body.parts) {
+      names.insert(part.material.name);
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void Check::check_world() {
+  try {
+    const render::World world = render::load_world(config_.world_file);
+    for (const std::string& line : world.warnings) {
+      warning("world.file", line);
+    }
+    if (world.triangle_count() == 0) {
+      problem("world.file", fmt::format("{}: the world has no triangles (expected a surface that echoes)",
+                                        config_.world_file.string()));
+    }
+    report_.summary.push_back(fmt::format("world    {}: {} bodies, {} triangles, materials: {}", world.name,
+                                          world.bodies.size(), world.triangle_count(),
+                                          material_names(world)));
+    const render::MeshDiagnostics& d = world.diagnostics;
+    if (d.degenerate_triangles + d.non_finite_triangles + d.bad_normals + d.bad_texcoords > 0) {
+      report_.summary.push_back(
+          fmt::format("         repaired: {} degenerate and {} non-finite triangles dropped, {} normals and "
+                      "{} texture coordinates",
+                      d.degenerate_triangles, d.non_finite_triangles, d.bad_normals, d.bad_texcoords));
+    }
+  } catch (const render::WorldError& error) {
+    problem("world.file", error.what());
+  }
+}
+
+void Check::check_poses() {
+  const PoseConfig& poses = config_.poses;
+  std::vector<std::string> sources;
+  if (poses.T_world_vehicle_initial) {
+    sources.emplace_back("initial pose");
+  }
+  if (poses.udp) {
+    sources.push_back("UDP " + endpoint_text(poses.udp->bind));
+  }
+  if (poses.tcp) {
+    sources.push_back("TCP " + endpoint_text(poses.tcp->bind));
+  }
+  if (poses.trajectory) {
+    try {
+      const pose::Trajectory trajectory =
+          pose::load_trajectory(poses.trajectory->file, poses.trajectory->axes);
+      sources.push_back(fmt::format("trajectory {} ({} poses, {:.1f} s)", poses.trajectory->file.string(),
+                                    trajectory.points().size(),
+                                    1e-9 * static_cast<double>(trajectory.end_ns() - trajectory.start_ns())));
+    } catch (const pose::TrajectoryError& error) {
+      problem("poses.trajectory.file", error.what());
+    }
+  }
+  report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));
+}
+
+std::string status_text(const GeminiHeadConfig& head) {
+  switch (head.status.mode) {
+    case StatusDestination::Mode::limited_broadcast:
+      return "by limited broadcast";
+    case StatusDestination::Mode::directed_broadcast:
+      return "by broadcast to " + address_text(head.device.alternate_address | ~head.device.netmask);
+    case StatusDestination::Mode::unicast:
+      break;
+  }
+  std::vector<std::string> hosts;
+  for (const Ipv4 host : head.status.hosts) {
+    hosts.push_back(address_text(host));
+  }
+  return fmt::format("to {}", fmt::join(hosts, ", "));
+}
+
+void Check::check_head(std::size_t index) {
+  const GeminiHeadConfig& head = config_.heads[index];
+  const render::SonarSettings& acoustics = head.acoustics;
+  report_.summary.push_back(fmt::format(
+      "head     {}: Gemini 720i, ID {}, commands to {}, status {}, mode {}, absorption {:.1f} dB/km",
+      head.name, head.device.sonar_id, endpoint_text({head.bind_address, head.command_port}),
+      status_text(head), acoustics.model == render::Model::paper ? "paper" : "physical",
+      1000.0 * acoustics.physical.absorption_db_per_m));
+  check_sampling(head);
+  if (head.dump_directory) {
+    std::error_code ignored;
+    const std::filesystem::path& folder = *head.dump_directory;
+    if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored)) {
+      problem(fmt::format("heads[{}].dump.directory", index),
+              fmt::format("{} is not a folder (expected one, or nothing yet)", folder.string()));
+    }
+  }
+}
+
+/// The fan is cut into pixels as it will be for any ping; the range of a ping changes nothing of it.
+void Check::check_sampling(const GeminiHeadConfig& head) {
+  const render::SonarSettings settings = to_sonar_settings(gemini::PingJob{}, head.acoustics);
+  render::GridOptions options;
+  if (settings.model == render::Model::paper) {
+    options.whole_columns = settings.paper.legacy_columns;
+    options.elevation_mask = settings.paper.elevation_mask;
+  }
+  try {
+    render::make_sample_grid(settings.aperture, settings.sampling, options);
+  } catch (const render::RequestError& error) {
+    problem("sampling", error.what());
+  }
+}
+
+void Check::check_addresses() {
+  for (const PlannedSocket& socket : planned_udp_sockets(config_)) {
+    try_socket<asio::ip::udp>(socket.endpoint, socket.key);
+  }
+  if (config_.poses.tcp) {
+    try_socket<asio::ip::tcp>(config_.poses.tcp->bind, "poses.tcp.bind");
+  }
+  const std::vector<InterfaceAddress> interfaces = interface_addresses();
+  for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+    check_netmask(i, interfaces);
+  }
+}
+
+template <typename Protocol>
+void Check::try_socket(const Endpoint& endpoint, const std::string& key) {
+  asio::io_context io;
+  typename Protocol::socket socket(io);
+  boost::system::error_code error;
+  socket.open(Protocol::v4(), error);
+  if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
+    // As the listener does: connections of an earlier run that still linger are no obstacle.
+    if (!error) {
+      socket.set_option(asio::socket_base::reuse_address(true), error);
+    }
+  }
+  if (!error) {
+    socket.bind({asio::ip::address_v4(endpoint.address), endpoint.port}, error);
+  }
+  if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
+    if (!error) {
+      asio::ip::tcp::acceptor(io, Protocol::v4(), socket.release()).listen(1, error);
+    }
+  }
+  if (!error) {
+    return;
+  }
+  const char* const transport = std::is_same_v<Protocol, asio::ip::udp> ? "UDP" : "TCP";
+  if (error == asio::error::address_in_use) {
+    problem(key, fmt::format("{} {} is in use by another program (expected a free port)", transport,
+                             endpoint_text(endpoint)));
+  } else if (error.value() == EADDRNOTAVAIL) {
+    problem(key,
+            fmt::format("{} is not an address of this machine (expected one of an interface here; a network "
+                        "namespace can have it, or skip this with --no-network)",
+                        address_text(endpoint.address)));
+  } else {
+    problem(key, fmt::format("{} {} cannot be bound: {} (expected an address and port to listen on)",
+                             transport, endpoint_text(endpoint), error.message()));
+  }
+}
+
+/// Later clients stay silent towards a head whose mask is not that of their own interface.
+void Check::check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces) {
+  const gemini::DeviceConfig& device = config_.heads[index].device;
+  const std::optional<InterfaceAddress> owner = owner_of(device.alternate_address, interfaces);
+  if (!owner) {
+    warning(fmt::format("heads[{}].network.alternate_address", index),
+            fmt::format("{} is not an address of this machine, but clients will send there",
+                        address_text(device.alternate_address)));
+  } else if (owner->netmask != device.netmask) {
+    warning(fmt::format("heads[{}].network.netmask", index),
+            fmt::format("{} is reported, but interface {} has {}: clients that compare them send nothing",
+                        address_text(device.netmask), owner->interface, address_text(owner->netmask)));
+  }
+}
+
+}  // namespace
+
+CheckReport check_config(const LoadedConfig& loaded, bool try_addresses) {
+  return Check(loaded).run(try_addresses);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,21 @@
+// `sonard check`: everything that can be known before serving, assets and addresses included.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/config/loader.hpp"
+
+namespace sonard::server {
+
+struct CheckReport {
+  std::vector<std::string> problems;  ///< one line each: file, line, key, what is wrong
+  std::vector<std::string> warnings;  ///< the same form
+  std::vector<std::string> summary;   ///< what was found, for people
+};
+
+/// Loads the world and the trajectory, grids every head's fan and, with `try_addresses`, binds each socket
+/// for a moment. Draws nothing, so it needs no GL.
+CheckReport check_config(const LoadedConfig& loaded, bool try_addresses);
+
+}  // namespace sonard::server
