@@ -10,7 +10,8 @@ struct RequestError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// No usable GL, a lost context, a failed self test. The process must not go on serving: it would serve zeros.
+/// No usable GL, a lost context, a failed self test. The process must not go on serving: it would serve
+/// zeros.
 struct RendererError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,7 +1,7 @@
 // The scene every start of the daemon renders before it serves: a wall with a closed-form echo.
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "renderer/sonar_renderer.hpp"
 
@@ -27,17 +27,20 @@ World make_wall() {
 }
 
 /// Integral of cos^4 from 0 to u.
-double cos4_integral(double u) { return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32; }
+double cos4_integral(double u) {
+  return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32;
+}
 
-/// docs/physics.md 3.2, T2: echo of a perpendicular wall between two ranges, per unit azimuth. Along one azimuth the wall is
-/// at wall / (cos psi cos theta), so each range bounds an elevation.
+/// docs/physics.md 3.2, T2: echo of a perpendicular wall between two ranges, per unit azimuth. Along one
+/// azimuth the wall is at wall / (cos psi cos theta), so each range bounds an elevation.
 double wall_echo(double psi, double from_m, double to_m, double elevation_limit) {
   const auto elevation_at = [&](double range_m) {
     const double cosine = wall_m / (range_m * std::cos(psi));
     return cosine >= 1 ? 0.0 : std::min(elevation_limit, std::acos(cosine));
   };
   const double c = std::cos(psi);
-  return 2 * c * c * c / (wall_m * wall_m) * (cos4_integral(elevation_at(to_m)) - cos4_integral(elevation_at(from_m)));
+  return 2 * c * c * c / (wall_m * wall_m) *
+         (cos4_integral(elevation_at(to_m)) - cos4_integral(elevation_at(from_m)));
 }
 
 /// The same over the width of a beam, by the midpoint rule.
@@ -85,7 +88,8 @@ double run_self_test() {
   }
   const double error = std::sqrt(squared / compared);
   if (!(error < worst_error)) {
-    throw RendererError(fmt::format("self test: the echo of a wall is off by {:.1f} % RMS on {}", error * 100, renderer.gl_description()));
+    throw RendererError(fmt::format("self test: the echo of a wall is off by {:.1f} % RMS on {}", error * 100,
+                                    renderer.gl_description()));
   }
   return error;
 }

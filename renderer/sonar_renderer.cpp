@@ -14,7 +14,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int most_native_lines = 65535;        // a Gemini's line count is 16 bits wide
+constexpr int most_native_lines = 65535;  // a Gemini's line count is 16 bits wide
 constexpr int most_beams = 4096;
 constexpr double shortest_line_m = 1e-6;
 constexpr double longest_range_m = 1e5;
@@ -24,13 +24,15 @@ constexpr double range_margin = 1.05;
 void check(const SonarSettings& settings) {
   const RangeLines& range = settings.range;
   if (range.count < 1 || range.count > most_native_lines) {
-    throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " + std::to_string(most_native_lines));
+    throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " +
+                       std::to_string(most_native_lines));
   }
   if (!(range.step_m >= shortest_line_m) || !(range.max_range_m() <= longest_range_m)) {
     throw RequestError("range: a line of " + std::to_string(range.step_m) + " m gives no usable range");
   }
   if (range.compression_log2 < 0 || range.compression_log2 > 4) {
-    throw RequestError("range: compression 2^" + std::to_string(range.compression_log2) + ", expected 2^0 to 2^4");
+    throw RequestError("range: compression 2^" + std::to_string(range.compression_log2) +
+                       ", expected 2^0 to 2^4");
   }
   if (settings.aperture.beam_count() > most_beams) {
     throw RequestError("aperture: more than " + std::to_string(most_beams) + " beams");
@@ -74,7 +76,8 @@ void apply_propagation(const SonarSettings& settings, EchoImage& image) {
   std::vector<float> loss(static_cast<std::size_t>(image.lines));
   for (std::size_t k = 0; k < loss.size(); ++k) {
     const double range_m = (static_cast<double>(k) + 0.5) * settings.range.step_m;
-    loss[k] = static_cast<float>(std::pow(10.0, -settings.physical.absorption_db_per_m * range_m / 5) / (range_m * range_m));
+    loss[k] = static_cast<float>(std::pow(10.0, -settings.physical.absorption_db_per_m * range_m / 5) /
+                                 (range_m * range_m));
   }
   for (std::size_t beam = 0; beam < static_cast<std::size_t>(image.beams); ++beam) {
     float* line = &image.intensity[beam * loss.size()];
@@ -140,7 +143,9 @@ struct SonarRenderer::Impl {
 SonarRenderer::SonarRenderer(const World& world) : impl_(std::make_unique<Impl>(world)) {}
 SonarRenderer::~SonarRenderer() = default;
 
-const std::string& SonarRenderer::gl_description() const { return impl_->sampler->description(); }
+const std::string& SonarRenderer::gl_description() const {
+  return impl_->sampler->description();
+}
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
   return impl_->sampler->set_body_pose(body_name, checked(T_world_body));
@@ -158,8 +163,8 @@ EchoImage SonarRenderer::render_echo(const PingRequest& request) {
     return image;
   }
   Stopwatch watch;
-  const auto views =
-      impl_->sampler->sample(T_world_sonar, grid, surface_model(settings), settings.range.max_range_m() * range_margin);
+  const auto views = impl_->sampler->sample(T_world_sonar, grid, surface_model(settings),
+                                            settings.range.max_range_m() * range_margin);
   impl_->statistics.visibility_s = watch.lap();
   BinningResult bins = bin_echoes(grid, views, settings.range, binning_options(settings), impl_->workers);
   image.intensity = std::move(bins.echo);
@@ -180,6 +185,8 @@ PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
   return samples;
 }
 
-const PingStatistics& SonarRenderer::last_statistics() const { return impl_->statistics; }
+const PingStatistics& SonarRenderer::last_statistics() const {
+  return impl_->statistics;
+}
 
 }  // namespace sonard::render

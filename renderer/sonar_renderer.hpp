@@ -1,4 +1,5 @@
-// The door of the renderer: a world and a ping request go in, an echo image and the device's samples come out.
+// The door of the renderer: a world and a ping request go in, an echo image and the device's samples come
+// out.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +22,17 @@ struct EchoImage {
   std::vector<float> intensity;  ///< [beam * lines + line]
 
   float at(int beam, int line) const {
-    return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) + static_cast<std::size_t>(line)];
+    return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) +
+                     static_cast<std::size_t>(line)];
   }
 };
 
 /// What the receiver hands to the device, ready to be sent: line after line, each from port to starboard.
 struct PingSamples {
   int beams = 0;
-  int lines = 0;                     ///< after range compression
-  std::vector<std::uint8_t> u8;      ///< [line * beams + beam], when 8 bit were asked for
-  std::vector<std::uint16_t> u16;    ///< the same, when 16 bit were asked for
+  int lines = 0;                   ///< after range compression
+  std::vector<std::uint8_t> u8;    ///< [line * beams + beam], when 8 bit were asked for
+  std::vector<std::uint16_t> u16;  ///< the same, when 16 bit were asked for
 };
 
 struct PingRequest {
@@ -49,9 +51,9 @@ struct PingStatistics {
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
 };
 
-/// Renders pings of one world. Every call, construction and destruction included, comes from one thread, which
-/// owns the GL context. Several sonars may share one renderer; each gives its own `stream` number, which keeps
-/// their speckle apart.
+/// Renders pings of one world. Every call, construction and destruction included, comes from one thread,
+/// which owns the GL context. Several sonars may share one renderer; each gives its own `stream` number,
+/// which keeps their speckle apart.
 class SonarRenderer {
  public:
   /// @throws RendererError when no OpenGL 4.5 context can be made.

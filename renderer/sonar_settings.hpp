@@ -30,8 +30,8 @@ std::vector<double> equal_angle_edges(int beam_count, double width_rad);
 /// beam_count beams of equal sine over +-half_width_rad, as a Gemini forms them.
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
-/// Native range lines: line i holds echoes from [i, i+1) * step_m. The output lines are averages (or peaks) of
-/// 2^compression_log2 native lines; a remainder is dropped, as the device does.
+/// Native range lines: line i holds echoes from [i, i+1) * step_m. The output lines are averages (or peaks)
+/// of 2^compression_log2 native lines; a remainder is dropped, as the device does.
 struct RangeLines {
   int count = 1;             ///< native lines, >= 1
   double step_m = 0.01;      ///< > 0
@@ -49,15 +49,15 @@ enum class Model {
 
 /// Mode `paper`, with a reading for each place where the paper is silent (docs/physics.md 1.2).
 struct PaperModel {
-  double sigmoid_slope = 18.0;           ///< A1
-  double sigmoid_centre = 2.0 / 3.0;     ///< A1
-  bool two_sided = true;                 ///< A3; false: back faces are invisible
-  bool legacy_bin_index = false;         ///< A4; floor(r / R_max (N - 1)) instead of floor(r / R_max N)
-  bool legacy_columns = false;           ///< A7; a column belongs whole to the beam of its centre
-  bool elevation_mask = true;            ///< false: the whole planar view counts, as in the paper
-  bool footprint = true;                 ///< false: a sample is a point in range
-  double attenuation_per_m = 0.0;        ///< A10; a of exp(-2 a r), applied before the sigmoid
-  double gain = 0.5;                     ///< A9; 0.5 is neutral, applied after speckle with a clamp at 1
+  double sigmoid_slope = 18.0;        ///< A1
+  double sigmoid_centre = 2.0 / 3.0;  ///< A1
+  bool two_sided = true;              ///< A3; false: back faces are invisible
+  bool legacy_bin_index = false;      ///< A4; floor(r / R_max (N - 1)) instead of floor(r / R_max N)
+  bool legacy_columns = false;        ///< A7; a column belongs whole to the beam of its centre
+  bool elevation_mask = true;         ///< false: the whole planar view counts, as in the paper
+  bool footprint = true;              ///< false: a sample is a point in range
+  double attenuation_per_m = 0.0;     ///< A10; a of exp(-2 a r), applied before the sigmoid
+  double gain = 0.5;                  ///< A9; 0.5 is neutral, applied after speckle with a clamp at 1
   enum class Speckle { off, gaussian, folded_gaussian } speckle = Speckle::gaussian;  ///< A8
   double speckle_mean = 0.40;
   double speckle_sd = 0.15;

@@ -41,7 +41,8 @@ void WorkerPool::run(int count, const std::function<void(int)>& job) {
   }
   start_.notify_all();
   take_jobs(job, count);
-  // Every worker reports back before `job` and `next_` may change, so none can see a later run's jobs as its own.
+  // Every worker reports back before `job` and `next_` may change, so none can see a later run's jobs as its
+  // own.
   std::unique_lock lock(mutex_);
   done_.wait(lock, [this] { return busy_ == 0; });
 }

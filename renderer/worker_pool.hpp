@@ -11,8 +11,8 @@
 
 namespace sonard::render {
 
-/// Runs independent jobs on all cores. Which thread runs which job is left open, so a job must write only what is
-/// its own; results are then the same for any number of threads. One caller at a time.
+/// Runs independent jobs on all cores. Which thread runs which job is left open, so a job must write only
+/// what is its own; results are then the same for any number of threads. One caller at a time.
 class WorkerPool {
  public:
   /// @param threads total number of threads including the caller; 0: one per core.

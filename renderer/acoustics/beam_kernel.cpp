@@ -7,7 +7,8 @@
 namespace sonard::render {
 
 namespace {
-// Half-wavelength elements of a Hamming-tapered line array with a 1 degree beam at broadside (docs/physics.md 2.8).
+// Half-wavelength elements of a Hamming-tapered line array with a 1 degree beam at broadside
+// (docs/physics.md 2.8).
 constexpr double elements_for_one_degree = 155;
 constexpr int most_taps_each_side = 16;
 
@@ -30,9 +31,11 @@ std::vector<float> receive_kernel(const Aperture& aperture) {
     return {1.0F};
   }
   const double one_degree = std::numbers::pi / 180;
-  const int elements = std::max(2, static_cast<int>(std::lround(elements_for_one_degree * one_degree / aperture.receive_beamwidth_rad)));
+  const int elements = std::max(2, static_cast<int>(std::lround(elements_for_one_degree * one_degree /
+                                                                aperture.receive_beamwidth_rad)));
   const auto middle = static_cast<std::size_t>(beams / 2);
-  const double spacing = std::sin(aperture.beam_edges_rad[middle]) - std::sin(aperture.beam_edges_rad[middle + 1]);
+  const double spacing =
+      std::sin(aperture.beam_edges_rad[middle]) - std::sin(aperture.beam_edges_rad[middle + 1]);
   // The main lobe of a Hamming taper ends at 4 / elements in sine.
   const int half = std::clamp(static_cast<int>(4.0 / elements / spacing), 0, most_taps_each_side);
   std::vector<double> taps;

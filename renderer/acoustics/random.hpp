@@ -1,4 +1,5 @@
-// Random numbers as a pure function of what they belong to: no state, no order, the same on every thread count.
+// Random numbers as a pure function of what they belong to: no state, no order, the same on every thread
+// count.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,12 @@ struct RandomKey {
 };
 
 /// What a field is used for; keeps the fields of one ping apart.
-enum class RandomField : std::uint64_t { speckle_base = 1, speckle_innovation = 2, noise = 3, paper_speckle = 4 };
+enum class RandomField : std::uint64_t {
+  speckle_base = 1,
+  speckle_innovation = 2,
+  noise = 3,
+  paper_speckle = 4
+};
 
 /// Mixes all inputs so that any difference gives an unrelated field.
 RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std::uint64_t ping_number);

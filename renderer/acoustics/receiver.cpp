@@ -11,14 +11,18 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int lines_per_job = 32;  // output lines; small enough to share evenly, large enough for whole cache lines
+constexpr int lines_per_job =
+    32;  // output lines; small enough to share evenly, large enough for whole cache lines
 
-double decibels_to_power(double decibels) { return std::pow(10.0, decibels / 10); }
+double decibels_to_power(double decibels) {
+  return std::pow(10.0, decibels / 10);
+}
 
 /// Real and imaginary part side by side.
 struct ComplexRow {
   std::vector<float> real, imaginary;
-  explicit ComplexRow(int width) : real(static_cast<std::size_t>(width)), imaginary(static_cast<std::size_t>(width)) {}
+  explicit ComplexRow(int width)
+      : real(static_cast<std::size_t>(width)), imaginary(static_cast<std::size_t>(width)) {}
 };
 
 /// out[b] = sum_j kernel[j] in[b + j].
@@ -36,8 +40,9 @@ void filter_row(const float* in, const float* kernel, int taps, int beams, float
 
 /// Envelope of echo plus noise; both fields come filtered.
 SONARD_SIMD_CLONES
-void envelope_row(const float* echo, const float* speckle_re, const float* speckle_im, const float* noise_scale,
-                  const float* noise_re, const float* noise_im, float noise, float gain, int beams, float* out) {
+void envelope_row(const float* echo, const float* speckle_re, const float* speckle_im,
+                  const float* noise_scale, const float* noise_re, const float* noise_im, float noise,
+                  float gain, int beams, float* out) {
   for (int b = 0; b < beams; ++b) {
     const float amplitude = std::sqrt(echo[b]);
     const float n = noise * noise_scale[b];
@@ -76,7 +81,8 @@ class OutputLines {
 
   /// Quantises last, rounding to nearest and clamping: nothing wraps.
   void end(int line) {
-    const float looks = settings_.range.compression_peak ? 1.0F : static_cast<float>(1 << settings_.range.compression_log2);
+    const float looks =
+        settings_.range.compression_peak ? 1.0F : static_cast<float>(1 << settings_.range.compression_log2);
     const std::size_t at = static_cast<std::size_t>(line) * static_cast<std::size_t>(beams_);
     for (std::size_t b = 0; b < sum_.size(); ++b) {
       const float amplitude = sum_[b] / looks;
@@ -125,7 +131,8 @@ float leak_factor(const SonarSettings& settings) {
   }
   const auto& edges = settings.aperture.beam_edges_rad;
   const double beams_per_width =
-      std::max(1.0, settings.aperture.receive_beamwidth_rad * settings.aperture.beam_count() / (edges.front() - edges.back()));
+      std::max(1.0, settings.aperture.receive_beamwidth_rad * settings.aperture.beam_count() /
+                        (edges.front() - edges.back()));
   return static_cast<float>(decibels_to_power(settings.physical.side_lobe_floor_db) / beams_per_width);
 }
 
@@ -147,8 +154,10 @@ std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& 
   std::vector<float> amplitudes(static_cast<std::size_t>(range.count));
   for (std::size_t k = 0; k < amplitudes.size(); ++k) {
     const double range_m = (static_cast<double>(k) + 0.5) * range.step_m;
-    const double tvg_db = model.tvg_log_coefficient * std::log10(range_m) + 2 * model.tvg_absorption_db_per_m * range_m;
-    amplitudes[k] = static_cast<float>(std::sqrt(decibels_to_power(std::min(tvg_db, model.tvg_max_db) + model.gain_db)));
+    const double tvg_db =
+        model.tvg_log_coefficient * std::log10(range_m) + 2 * model.tvg_absorption_db_per_m * range_m;
+    amplitudes[k] =
+        static_cast<float>(std::sqrt(decibels_to_power(std::min(tvg_db, model.tvg_max_db) + model.gain_db)));
   }
   return amplitudes;
 }
@@ -188,7 +197,8 @@ Receiver::SpeckleStep Receiver::advance_speckle(const PingRequest& request, int 
   const PhysicalModel& model = request.settings.physical;
   SpeckleStep step;
   const bool per_ping = model.speckle == Speckle::per_ping;
-  step.base = make_random_key(request.seed, stream, RandomField::speckle_base, per_ping ? request.ping_number + 1 : 0);
+  step.base = make_random_key(request.seed, stream, RandomField::speckle_base,
+                              per_ping ? request.ping_number + 1 : 0);
   if (model.speckle != Speckle::ou) {
     speckle_.erase(stream);
     return step;
@@ -200,13 +210,16 @@ Receiver::SpeckleStep Receiver::advance_speckle(const PingRequest& request, int 
     field.seed = request.seed;
     field.T_world_sonar = request.T_world_sonar;
   }
-  // docs/physics.md 2.8: correlation falls with the motion since the last ping, over half the aperture and half a beam.
-  const double moved = glm::length(request.T_world_sonar.position_m - field.T_world_sonar.position_m) / (model.aperture_m / 2);
+  // docs/physics.md 2.8: correlation falls with the motion since the last ping, over half the aperture and
+  // half a beam.
+  const double moved =
+      glm::length(request.T_world_sonar.position_m - field.T_world_sonar.position_m) / (model.aperture_m / 2);
   const glm::dquat turn = glm::conjugate(field.T_world_sonar.orientation) * request.T_world_sonar.orientation;
   const double turned = 2 * std::asin(std::min(1.0, glm::length(glm::dvec3(turn.x, turn.y, turn.z)))) /
                         (request.settings.aperture.receive_beamwidth_rad / 2);
   step.keep = static_cast<float>(std::exp(-moved * moved - turned * turned));
-  step.innovation = make_random_key(request.seed, stream, RandomField::speckle_innovation, request.ping_number);
+  step.innovation =
+      make_random_key(request.seed, stream, RandomField::speckle_innovation, request.ping_number);
   step.known_lines = std::min(field.lines, request.settings.range.count);
   field.lines = request.settings.range.count;
   field.T_world_sonar = request.T_world_sonar;
@@ -220,14 +233,17 @@ Receiver::SpeckleStep Receiver::advance_speckle(const PingRequest& request, int 
 namespace {
 
 /// Mode `paper`: I * n, then gain with a clamp (docs/physics.md 1.1, 1.2 A8, A9).
-PingSamples receive_paper(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers) {
+PingSamples receive_paper(const EchoImage& echo, const PingRequest& request, int stream,
+                          WorkerPool& workers) {
   using Speckle = PaperModel::Speckle;
   const SonarSettings& settings = request.settings;
   const PaperModel& model = settings.paper;
   PingSamples samples = make_samples(settings);
-  const RandomKey key = make_random_key(request.seed, stream, RandomField::paper_speckle, request.ping_number);
+  const RandomKey key =
+      make_random_key(request.seed, stream, RandomField::paper_speckle, request.ping_number);
   const int looks = 1 << settings.range.compression_log2;
-  const auto scale = static_cast<float>(std::sqrt(2.0) * model.speckle_sd);  // CN(0, 1) has variance 1/2 per part
+  const auto scale =
+      static_cast<float>(std::sqrt(2.0) * model.speckle_sd);  // CN(0, 1) has variance 1/2 per part
   workers.run((samples.lines + lines_per_job - 1) / lines_per_job, [&](int job) {
     OutputLines output(settings, samples.beams, samples);
     ComplexRow random(samples.beams);
@@ -258,7 +274,8 @@ PingSamples receive_paper(const EchoImage& echo, const PingRequest& request, int
 
 }  // namespace
 
-PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers) {
+PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
+                              WorkerPool& workers) {
   const SonarSettings& settings = request.settings;
   if (settings.model == Model::paper) {
     return receive_paper(echo, request, stream, workers);
@@ -274,7 +291,8 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
   const RandomKey noise_key = make_random_key(request.seed, stream, RandomField::noise, request.ping_number);
   const std::vector<float> gain = tvg_amplitudes(model, settings.range);
   const std::vector<float> profile = noise_profile(settings);
-  const auto noise = model.noise ? static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db))) : 0.0F;
+  const auto noise =
+      model.noise ? static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db))) : 0.0F;
   const float leak = leak_factor(settings);
   const int looks = 1 << settings.range.compression_log2;
 
@@ -291,7 +309,8 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
       output.begin();
       for (int native = line * looks; native < (line + 1) * looks; ++native) {
         if (speckled) {
-          speckle.draw(native, white);  // also where the output is blanked: every line of the field must stay current
+          speckle.draw(native,
+                       white);  // also where the output is blanked: every line of the field must stay current
           filter_row(white.real.data(), kernel.data(), taps, beams, speckle_row.real.data());
           filter_row(white.imaginary.data(), kernel.data(), taps, beams, speckle_row.imaginary.data());
         }
@@ -300,13 +319,14 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
         }
         gather_line(echo, native, leak, line_echo.data());
         if (model.noise) {
-          fill_complex_gaussian(noise_key, static_cast<std::uint32_t>(native), width, white.real.data(), white.imaginary.data());
+          fill_complex_gaussian(noise_key, static_cast<std::uint32_t>(native), width, white.real.data(),
+                                white.imaginary.data());
           filter_row(white.real.data(), kernel.data(), taps, beams, noise_row.real.data());
           filter_row(white.imaginary.data(), kernel.data(), taps, beams, noise_row.imaginary.data());
         }
         envelope_row(line_echo.data(), speckle_row.real.data(), speckle_row.imaginary.data(), profile.data(),
-                     noise_row.real.data(), noise_row.imaginary.data(), noise, gain[static_cast<std::size_t>(native)], beams,
-                     envelope.data());
+                     noise_row.real.data(), noise_row.imaginary.data(), noise,
+                     gain[static_cast<std::size_t>(native)], beams, envelope.data());
         output.add(envelope.data());
       }
       output.end(line);

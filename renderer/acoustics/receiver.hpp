@@ -11,16 +11,17 @@
 
 namespace sonard::render {
 
-/// The receiver of all sonars that share a renderer. One thread calls it. Mode `physical` with speckle `ou` keeps a field
-/// per stream, so that speckle survives small motions as it does in the water; everything else is a pure function
-/// of the request.
+/// The receiver of all sonars that share a renderer. One thread calls it. Mode `physical` with speckle `ou`
+/// keeps a field per stream, so that speckle survives small motions as it does in the water; everything else
+/// is a pure function of the request.
 class Receiver {
  public:
   /// @param echo mean echo intensity as EchoImage states it.
   PingSamples receive(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers);
 
  private:
-  /// White complex Gaussians under the speckle of one stream, per native line, wider than the fan by the kernel.
+  /// White complex Gaussians under the speckle of one stream, per native line, wider than the fan by the
+  /// kernel.
   struct SpeckleField {
     int width = 0;
     int lines = 0;

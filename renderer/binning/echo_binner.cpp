@@ -10,8 +10,8 @@ namespace sonard::render {
 
 namespace {
 
-/// One beam's accumulators. Values are weights scaled by `scale`, so that a sum over every sample of the beam with
-/// the largest response still fits 62 bits.
+/// One beam's accumulators. Values are weights scaled by `scale`, so that a sum over every sample of the beam
+/// with the largest response still fits 62 bits.
 struct BeamSums {
   std::vector<std::int64_t> echo;
   std::vector<std::int64_t> weight;  // only for means
@@ -65,14 +65,20 @@ class BeamBinner {
  public:
   BeamBinner(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views, const RangeLines& range,
              const BinningOptions& options, float scale)
-      : grid_(grid), views_(views), options_(options), lines_per_m_(static_cast<float>(1.0 / range.step_m)),
-        legacy_scale_(options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0), scale_(scale) {}
+      : grid_(grid),
+        views_(views),
+        options_(options),
+        lines_per_m_(static_cast<float>(1.0 / range.step_m)),
+        legacy_scale_(options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0),
+        scale_(scale) {}
 
   void add_part(const ColumnPart& part, BeamSums& sums) const {
     const SubView& view = grid_.views[static_cast<std::size_t>(part.view)];
     const SurfaceSample* column = views_[static_cast<std::size_t>(part.view)] + part.column;
     const float* weights = &grid_.weights[part.weights];
-    const auto full_height = static_cast<float>(view.pixel_height());
+    const auto x = static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width());
+    const auto bottom = static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height());
+    const auto pixel_height = static_cast<float>(view.pixel_height());
     for (int row = part.row_begin; row < part.row_end; ++row) {
       const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
       if (!(sample.range_m > 0)) {
@@ -80,27 +86,58 @@ class BeamBinner {
         continue;
       }
       ++sums.samples;
-      const bool first = row == part.row_begin;
-      const bool last = row + 1 == part.row_end;
-      const float y_offset = first ? part.first_y_offset : last ? part.last_y_offset : 0.0F;
-      const float height = first ? part.first_height : last ? part.last_height : full_height;
       const float weight = weights[row - part.row_begin] * scale_;
       Splat splat{};
       splat.echo = weight * sample.response;
       splat.weight = weight;
-      if (options_.footprint) {
-        splat.position = (sample.range_m + sample.range_dx * part.x_offset + sample.range_dy * y_offset) * lines_per_m_;
-        splat.a = std::abs(sample.range_dx) * part.width * lines_per_m_;
-        splat.b = std::abs(sample.range_dy) * height * lines_per_m_;
-        add_footprint(splat, sums);
-      } else {
+      if (!options_.footprint) {
         splat.position = sample.range_m * lines_per_m_;
         add_point(splat, legacy_scale_, sums);
+        continue;
       }
+      Cell cell{part.x_offset, 0.0F, part.width, pixel_height, 0.0F};
+      if (row == part.row_begin) {
+        cell = {part.x_offset, part.first_y_offset, part.width, part.first_height, -part.limit_slope};
+      } else if (row + 1 == part.row_end) {
+        cell = {part.x_offset, part.last_y_offset, part.width, part.last_height, part.limit_slope};
+      }
+      place(sample, x, bottom + static_cast<float>(row) * pixel_height, cell, splat);
+      add_footprint(splat, sums);
     }
   }
 
  private:
+  /// What of a pixel counts: a parallelogram, its centre relative to the pixel's, tangent units.
+  struct Cell {
+    float x_offset, y_offset, width, height;
+    float slope;  ///< dy/dx of its upper and lower side
+  };
+
+  /// Range and spread of the echo from `cell` of the pixel at tangents (x, y). On a plane the inverse depth
+  /// is affine in x and y, so the range at the cell's centre follows exactly from the pixel's range and its
+  /// derivatives.
+  void place(const SurfaceSample& sample, float x, float y, const Cell& cell, Splat& splat) const {
+    const float qq = 1 + x * x + y * y;
+    // Relative slopes of the inverse depth, from equation (2) of docs/physics.md 2.3.
+    const float slope_x = x / qq - sample.range_dx / sample.range_m;
+    const float slope_y = y / qq - sample.range_dy / sample.range_m;
+    const float inverse_depth = 1 + slope_x * cell.x_offset + slope_y * cell.y_offset;
+    float range = sample.range_m;
+    float range_dx = sample.range_dx;
+    float range_dy = sample.range_dy;
+    if (inverse_depth > 0.5F) {  // else the plane turns away within the pixel: keep the pixel's own values
+      const float cx = x + cell.x_offset;
+      const float cy = y + cell.y_offset;
+      const float cell_qq = 1 + cx * cx + cy * cy;
+      range *= std::sqrt(cell_qq / qq) / inverse_depth;
+      range_dx = range * (cx / cell_qq - slope_x / inverse_depth);
+      range_dy = range * (cy / cell_qq - slope_y / inverse_depth);
+    }
+    splat.position = range * lines_per_m_;
+    splat.a = std::abs(range_dx + cell.slope * range_dy) * cell.width * lines_per_m_;
+    splat.b = std::abs(range_dy) * cell.height * lines_per_m_;
+  }
+
   const SampleGrid& grid_;
   const std::vector<const SurfaceSample*>& views_;
   const BinningOptions& options_;
@@ -109,13 +146,14 @@ class BeamBinner {
   float scale_;
 };
 
-/// Power of two that maps the largest possible sum of one line to below 2^62. Responses are at most 1: mu <= 1/pi and
-/// sigmoid <= 1; a beam's weights add up to at most its solid angle.
+/// Power of two that maps the largest possible sum of one line to below 2^62. Responses are at most 1: mu <=
+/// 1/pi and sigmoid <= 1; a beam's weights add up to at most its solid angle.
 float fixed_point_scale(const SampleGrid& grid) {
   double largest = 0;
   for (int beam = 0; beam < grid.beam_count(); ++beam) {
     double sum = 0;
-    for (int p = grid.beam_parts[static_cast<std::size_t>(beam)]; p < grid.beam_parts[static_cast<std::size_t>(beam) + 1]; ++p) {
+    for (int p = grid.beam_parts[static_cast<std::size_t>(beam)];
+         p < grid.beam_parts[static_cast<std::size_t>(beam) + 1]; ++p) {
       const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
       for (int row = 0; row < part.row_end - part.row_begin; ++row) {
         sum += static_cast<double>(grid.weights[part.weights + static_cast<std::size_t>(row)]);

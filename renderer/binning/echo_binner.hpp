@@ -21,15 +21,16 @@ struct BinningResult {
   int beams = 0;
   int lines = 0;
   /// [beam * lines + line]. Sum of response * solid angle * elevation pattern, steradians; with `mean` the
-  /// weighted mean of response. Spreading and absorption are left to the caller: they depend on the line alone, and
-  /// taken per line they stay exact where one sample spreads over many lines.
+  /// weighted mean of response. Spreading and absorption are left to the caller: they depend on the line
+  /// alone, and taken per line they stay exact where one sample spreads over many lines.
   std::vector<float> echo;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
 };
 
 /// Sums in 64-bit fixed point: integer addition has no order, so the result is the same for any number of
-/// threads and any order of samples (docs/physics.md 4.2). `views` is what Sampler::sample() returned for `grid`.
+/// threads and any order of samples (docs/physics.md 4.2). `views` is what Sampler::sample() returned for
+/// `grid`.
 BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
                          const RangeLines& range, const BinningOptions& options, WorkerPool& workers);
 

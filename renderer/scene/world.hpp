@@ -22,9 +22,11 @@ namespace sonard::render {
 /// How a surface answers sound. See docs/worlds.md for the named table and how an SDF file sets it.
 struct AcousticMaterial {
   std::string name = "default";
-  /// Reflectance rho of mode `paper` (Cerqueira et al. 2017, 3.2): the echo intensity is min(1, rho cos phi). >= 0.
+  /// Reflectance rho of mode `paper` (Cerqueira et al. 2017, 3.2): the echo intensity is min(1, rho cos phi).
+  /// >= 0.
   double reflectance = 0.35;
-  /// Lambert coefficient mu of mode `physical`: s_b = mu cos^2(phi). Linear, in (0, 1/pi] for a passive surface.
+  /// Lambert coefficient mu of mode `physical`: s_b = mu cos^2(phi). Linear, in (0, 1/pi] for a passive
+  /// surface.
   double lambert_mu = 0.0063;
 };
 
@@ -33,9 +35,9 @@ struct AcousticMaterial {
 /// long as `positions`; without normals the geometric normal of each triangle is used.
 struct TriangleMesh {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;    ///< unit, outward
+  std::vector<glm::vec3> normals;  ///< unit, outward
   std::vector<glm::vec2> texcoords;
-  std::vector<glm::vec4> tangents;   ///< unit xyz, w = handedness of the bitangent (+1 or -1)
+  std::vector<glm::vec4> tangents;     ///< unit xyz, w = handedness of the bitangent (+1 or -1)
   std::vector<std::uint32_t> indices;  ///< three per triangle, counter-clockwise seen from outside
 
   std::size_t triangle_count() const { return indices.size() / 3; }
@@ -64,9 +66,10 @@ struct Body {
 
 /// What a loader had to repair or drop; shown by `sonard check`.
 struct MeshDiagnostics {
-  std::size_t degenerate_triangles = 0;   ///< zero area or repeated corner: dropped
-  std::size_t non_finite_triangles = 0;   ///< NaN, infinite or above 1e12 m: dropped
-  std::size_t bad_normals = 0;            ///< zero or non-finite: the geometric normal is used
+  std::size_t degenerate_triangles = 0;  ///< zero area or repeated corner: dropped
+  std::size_t non_finite_triangles = 0;  ///< NaN, infinite or above 1e12 m: dropped
+  std::size_t bad_normals = 0;           ///< zero or non-finite: the geometric normal is used
+  std::size_t bad_texcoords = 0;         ///< non-finite: 0 is used
   MeshDiagnostics& operator+=(const MeshDiagnostics& other);
 };
 
@@ -88,9 +91,17 @@ struct WorldError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Loads an SDF 1.x world file with all it includes (renderer/scene/sdf_world.cpp; docs/worlds.md).
-/// Relative URIs are resolved against the folder of the file that names them. Nothing is fetched from a network.
-/// @throws WorldError naming file and element for a missing mesh, zero triangles, an unknown material, ...
-World load_world(const std::filesystem::path& sdf_file);
+/// Folders of the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and
+/// SDF_PATH (colon separated), in this order.
+std::vector<std::filesystem::path> model_folders_from_environment();
+
+/// Loads an SDF 1.x world file (or a file with a single model) and all it includes; see docs/worlds.md.
+/// Relative URIs are resolved against the folder of the file that names them; `model://NAME` is looked for in
+/// the folder of the world, in `models` there and beside it, then in `model_folders`. Nothing is fetched from
+/// a network. Mesh files are read in forked child processes: call this before other threads are started.
+/// @throws WorldError naming file, line and element for a missing mesh, zero triangles, an unknown material,
+/// ...
+World load_world(const std::filesystem::path& sdf_file,
+                 const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment());
 
 }  // namespace sonard::render

@@ -14,10 +14,12 @@ namespace sonard::render {
 
 namespace {
 
-/// Displays to try, best first: the devices EGL lists (hardware before software), then the surfaceless platform.
+/// Displays to try, best first: the devices EGL lists (hardware before software), then the surfaceless
+/// platform.
 std::vector<EGLDisplay> candidate_displays() {
   std::vector<EGLDisplay> displays;
-  const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+  const auto query_devices =
+      reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
   const auto platform_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (platform_display == nullptr) {
@@ -25,9 +27,11 @@ std::vector<EGLDisplay> candidate_displays() {
   }
   std::array<EGLDeviceEXT, 16> devices{};
   EGLint count = 0;
-  if (query_devices != nullptr && query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) == EGL_TRUE) {
+  if (query_devices != nullptr &&
+      query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) == EGL_TRUE) {
     for (EGLint i = 0; i < count; ++i) {
-      displays.push_back(platform_display(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
+      displays.push_back(
+          platform_display(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
     }
   }
   displays.push_back(platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
@@ -42,7 +46,8 @@ EGLContext make_context(EGLDisplay display) {
       eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) {
     return EGL_NO_CONTEXT;
   }
-  const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                     EGL_NONE};
   EGLConfig config = nullptr;
   EGLint configs = 0;
   if (eglChooseConfig(display, wanted.data(), &config, 1, &configs) != EGL_TRUE || configs < 1) {

@@ -7,8 +7,8 @@
 
 namespace sonard::render {
 
-/// OpenGL 4.5 compatibility context on an EGL device or, failing that, on a surfaceless display. It has no default
-/// framebuffer: draw to framebuffer objects only. The thread that makes it current owns it.
+/// OpenGL 4.5 compatibility context on an EGL device or, failing that, on a surfaceless display. It has no
+/// default framebuffer: draw to framebuffer objects only. The thread that makes it current owns it.
 class EglContext : public osg::GraphicsContext {
  public:
   /// @throws RendererError naming what was tried when no context can be made.

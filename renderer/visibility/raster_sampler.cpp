@@ -29,8 +29,8 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double near_plane_m = 0.02;           // reversed infinite depth loses nothing by a small value
-constexpr std::size_t chunk_triangles = 2048;   // what culling by view and range works on
+constexpr double near_plane_m = 0.02;          // reversed infinite depth loses nothing by a small value
+constexpr std::size_t chunk_triangles = 2048;  // what culling by view and range works on
 constexpr unsigned tangent_attribute = 6;
 constexpr int normal_map_unit = 0;
 
@@ -51,8 +51,8 @@ osg::Matrixd view_matrix(const SubView& view) {
   return turn * axes;
 }
 
-/// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative terms
-/// (docs/physics.md 4.2). Visibility only; ranges never come from the depth buffer.
+/// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative
+/// terms (docs/physics.md 4.2). Visibility only; ranges never come from the depth buffer.
 osg::Matrixd projection_matrix(const SubView& view) {
   return osg::Matrixd(1 / view.tan_half_width, 0, 0, 0,   //
                       0, 1 / view.tan_half_height, 0, 0,  //
@@ -68,7 +68,8 @@ class RangeCull : public osg::DrawableCullCallback {
   bool cull(osg::NodeVisitor* visitor, osg::Drawable* drawable, osg::RenderInfo* /*info*/) const override {
     const osg::Vec3 eye = static_cast<osgUtil::CullVisitor*>(visitor)->getEyeLocal();
     const osg::BoundingBox& box = drawable->getBoundingBox();
-    const osg::Vec3 nearest(std::clamp(eye.x(), box.xMin(), box.xMax()), std::clamp(eye.y(), box.yMin(), box.yMax()),
+    const osg::Vec3 nearest(std::clamp(eye.x(), box.xMin(), box.xMax()),
+                            std::clamp(eye.y(), box.yMin(), box.yMax()),
                             std::clamp(eye.z(), box.zMin(), box.zMax()));
     return (nearest - eye).length() > *max_range_m_;
   }
@@ -124,7 +125,8 @@ class ChunkBuilder {
   std::vector<std::uint32_t> order_;
 };
 
-osg::ref_ptr<osg::Geometry> make_geometry(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
+osg::ref_ptr<osg::Geometry> make_geometry(const TriangleMesh& mesh,
+                                          std::span<const std::uint32_t> triangles) {
   osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
   osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
   osg::ref_ptr<osg::Vec2Array> texcoords = new osg::Vec2Array;
@@ -195,7 +197,9 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
   });
   osg::StateSet* state = node->getOrCreateStateSet();
   const bool mapped = part.normal_map && !part.mesh->tangents.empty() && !part.mesh->normals.empty();
-  const Shading shading = mapped ? normal_mapped : part.mesh->normals.empty() ? geometric_normal : vertex_normals;
+  const Shading shading = mapped                       ? normal_mapped
+                          : part.mesh->normals.empty() ? geometric_normal
+                                                       : vertex_normals;
   if (mapped) {
     state->setTextureAttributeAndModes(normal_map_unit, make_texture(*part.normal_map));
   }
@@ -311,7 +315,8 @@ struct RasterSampler::Impl {
     program->addShader(new osg::Shader(osg::Shader::VERTEX, surface_vertex_shader));
     program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surface_fragment_shader));
     state.setAttributeAndModes(program);
-    state.setAttributeAndModes(new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
+    state.setAttributeAndModes(
+        new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
     state.setAttributeAndModes(new osg::Depth(osg::Depth::GREATER, 0.0, 1.0));
     state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF);
     state.setMode(GL_LIGHTING, osg::StateAttribute::OFF);
@@ -323,7 +328,8 @@ struct RasterSampler::Impl {
     osg::StateSet& state = *scene->getStateSet();
     state.getOrCreateUniform("model", osg::Uniform::INT)->set(surface.model == Model::physical ? 1 : 0);
     state.getOrCreateUniform("sigmoid", osg::Uniform::FLOAT_VEC2)
-        ->set(osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));
+        ->set(
+            osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));
     state.getOrCreateUniform("attenuation_per_m", osg::Uniform::FLOAT)
         ->set(static_cast<float>(surface.attenuation_per_m));
     state.getOrCreateUniform("two_sided", osg::Uniform::BOOL)->set(surface.two_sided);
@@ -335,7 +341,8 @@ struct RasterSampler::Impl {
     }
     for (const SubView& view : wanted) {
       if (view.columns > max_texture_px || view.rows > max_texture_px) {
-        throw RequestError("sampling: a view exceeds the GL limit of " + std::to_string(max_texture_px) + " pixels");
+        throw RequestError("sampling: a view exceeds the GL limit of " + std::to_string(max_texture_px) +
+                           " pixels");
       }
     }
     for (ViewTarget& target : targets) {
@@ -392,6 +399,8 @@ bool RasterSampler::set_body_pose(const std::string& body_name, const Pose& T_wo
   return true;
 }
 
-const std::string& RasterSampler::description() const { return impl_->description; }
+const std::string& RasterSampler::description() const {
+  return impl_->description;
+}
 
 }  // namespace sonard::render

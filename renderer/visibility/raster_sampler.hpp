@@ -1,4 +1,5 @@
-// Visibility by rasterising: OpenSceneGraph culls and draws, a fragment shader writes one SurfaceSample per pixel.
+// Visibility by rasterising: OpenSceneGraph culls and draws, a fragment shader writes one SurfaceSample per
+// pixel.
 #pragma once
 
 #include <memory>
@@ -10,8 +11,8 @@
 
 namespace sonard::render {
 
-/// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar: the
-/// subtraction of world positions happens in double on the CPU, once per body and ping.
+/// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar:
+/// the subtraction of world positions happens in double on the CPU, once per body and ping.
 class RasterSampler final : public Sampler {
  public:
   /// @throws RendererError without OpenGL 4.5, or when a shader does not compile.

@@ -11,8 +11,9 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double widest_view_rad = std::numbers::pi / 3;  // beyond, pixels grow too unequal (docs/physics.md 1.3)
-constexpr double widest_single_view_rad = 2.8;            // planar projection ends below pi
+constexpr double widest_view_rad =
+    std::numbers::pi / 3;                       // beyond, pixels grow too unequal (docs/physics.md 1.3)
+constexpr double widest_single_view_rad = 2.8;  // planar projection ends below pi
 
 void check(const Aperture& aperture, const Sampling& sampling) {
   const auto& edges = aperture.beam_edges_rad;
@@ -37,7 +38,8 @@ void check(const Aperture& aperture, const Sampling& sampling) {
   }
 }
 
-std::vector<SubView> make_views(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+std::vector<SubView> make_views(const Aperture& aperture, const Sampling& sampling,
+                                const GridOptions& options) {
   const double port = aperture.beam_edges_rad.front();
   const double width = port - aperture.beam_edges_rad.back();
   int count = sampling.views;
@@ -118,6 +120,9 @@ class GridBuilder {
     part.column = column;
     part.x_offset = static_cast<float>(x - centre);
     part.width = static_cast<float>(x_to - x_from);
+    if (options_.elevation_mask) {
+      part.limit_slope = static_cast<float>(std::tan(grid_.elevation_limit_rad) * x / std::hypot(1.0, x));
+    }
     add_rows(view, x, std::min(limit, view.tan_half_height), part);
     grid_.parts.push_back(part);
   }
@@ -126,7 +131,8 @@ class GridBuilder {
     const double step = view.pixel_height();
     const auto row_of = [&](double y) { return (y + view.tan_half_height) / step; };
     part.row_begin = std::clamp(static_cast<int>(std::floor(row_of(-limit) + 1e-9)), 0, view.rows - 1);
-    part.row_end = std::clamp(static_cast<int>(std::ceil(row_of(limit) - 1e-9)), part.row_begin + 1, view.rows);
+    part.row_end =
+        std::clamp(static_cast<int>(std::ceil(row_of(limit) - 1e-9)), part.row_begin + 1, view.rows);
     part.weights = grid_.weights.size();
     for (int row = part.row_begin; row < part.row_end; ++row) {
       const double bottom = -view.tan_half_height + row * step;

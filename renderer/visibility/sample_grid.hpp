@@ -22,7 +22,8 @@ struct SubView {
   double pixel_height() const { return 2 * tan_half_height / rows; }
 };
 
-/// The part of one pixel column that lies inside one beam, cut at the beam's edges and at the elevation limit.
+/// The part of one pixel column that lies inside one beam, cut at the beam's edges and at the elevation
+/// limit.
 struct ColumnPart {
   int view = 0;
   int column = 0;
@@ -33,6 +34,8 @@ struct ColumnPart {
   /// First and last row are cut: offset of the part's centre from the pixel centre, and its height.
   float first_y_offset = 0.0F, first_height = 0.0F;
   float last_y_offset = 0.0F, last_height = 0.0F;
+  /// dy/dx of the upper elevation limit in this column; the lower one has the opposite slope.
+  float limit_slope = 0.0F;
   /// Index into SampleGrid::weights of row `row_begin`.
   std::size_t weights = 0;
 };
@@ -40,9 +43,9 @@ struct ColumnPart {
 /// The sampling of one aperture: pure geometry, made once per configuration and shared by both samplers.
 struct SampleGrid {
   std::vector<SubView> views;
-  std::vector<ColumnPart> parts;      ///< sorted by beam
-  std::vector<int> beam_parts;        ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
-  std::vector<float> weights;         ///< solid angle times elevation pattern, steradians; per part and row
+  std::vector<ColumnPart> parts;  ///< sorted by beam
+  std::vector<int> beam_parts;    ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
+  std::vector<float> weights;     ///< solid angle times elevation pattern, steradians; per part and row
   double elevation_limit_rad = 0.0;
 
   int beam_count() const { return static_cast<int>(beam_parts.size()) - 1; }
@@ -50,11 +53,13 @@ struct SampleGrid {
 
 /// How the fan is cut into pixels. The defaults are what accuracy wants; the others reproduce the paper.
 struct GridOptions {
-  bool whole_columns = false;   ///< a column belongs to the beam that holds its centre
-  bool elevation_mask = true;   ///< false: every row of a column counts
+  bool whole_columns = false;  ///< a column belongs to the beam that holds its centre
+  bool elevation_mask = true;  ///< false: every row of a column counts
 };
 
-/// @throws RequestError when the aperture or the sampling cannot be gridded, or when a beam would get no column.
-SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options = {});
+/// @throws RequestError when the aperture or the sampling cannot be gridded, or when a beam would get no
+/// column.
+SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling,
+                            const GridOptions& options = {});
 
 }  // namespace sonard::render

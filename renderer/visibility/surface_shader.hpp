@@ -17,10 +17,10 @@ void main() {
 }
 )glsl";
 
-// Eye coordinates: x to starboard, y up, the view axis along -z. The ray of a pixel is q = (t.x, t.y, -1) with
-// tangents t. On the plane n.p = 1 seen along p = depth * q the inverse depth is n.q, so it is affine in t:
-// its screen derivatives give the plane, and with it the exact range derivatives (docs/physics.md 2.3, equation 2),
-// without differences of positions and without trouble where the plane is seen edge-on.
+// Eye coordinates: x to starboard, y up, the view axis along -z. The ray of a pixel is q = (t.x, t.y, -1)
+// with tangents t. On the plane n.p = 1 seen along p = depth * q the inverse depth is n.q, so it is affine in
+// t: its screen derivatives give the plane, and with it the exact range derivatives (docs/physics.md 2.3,
+// equation 2), without differences of positions and without trouble where the plane is seen edge-on.
 inline constexpr char surface_fragment_shader[] = R"glsl(#version 450 compatibility
 in vec3 normal_eye;
 in vec4 tangent_eye;

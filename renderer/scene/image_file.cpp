@@ -1,0 +1,131 @@
+#include "renderer/scene/image_file.hpp"
+
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <osg/Image>
+#include <osgDB/Options>
+#include <osgDB/Registry>
+
+#include "renderer/scene/blob.hpp"
+#include "renderer/scene/isolated.hpp"
+#include "renderer/scene/local_file.hpp"
+
+namespace sonard::render {
+namespace {
+
+constexpr std::array<std::string_view, 10> extensions{"png", "jpg", "jpeg", "tif", "tiff",
+                                                      "bmp", "tga", "pgm",  "ppm", "pnm"};
+constexpr int max_side_px = 16384;
+
+/// All channels as 16 bit, row 0 at the bottom.
+struct Pixels {
+  int width_px = 0;
+  int height_px = 0;
+  int channels = 0;
+  std::vector<std::uint16_t> value;
+};
+
+std::uint16_t sample(const osg::Image& image, const unsigned char* row, int index) {
+  if (image.getDataType() == GL_UNSIGNED_BYTE) {
+    return static_cast<std::uint16_t>(row[index] * 257);
+  }
+  std::uint16_t value = 0;
+  std::memcpy(&value, row + 2 * static_cast<std::ptrdiff_t>(index), sizeof value);
+  return value;
+}
+
+/// Runs inside run_isolated().
+std::string decode(const std::filesystem::path& file) {
+  const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+  osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readImage(file.string(), options);
+  const osg::ref_ptr<osg::Image> image = result.getImage();
+  if (!image || image->data() == nullptr) {
+    throw std::runtime_error("the image is damaged or of another format");
+  }
+  const GLenum type = image->getDataType();
+  if ((type != GL_UNSIGNED_BYTE && type != GL_UNSIGNED_SHORT) || image->isCompressed() || image->r() != 1) {
+    throw std::runtime_error("expected a picture of 8 or 16 bits per channel");
+  }
+  if (image->s() > max_side_px || image->t() > max_side_px) {
+    throw std::runtime_error(
+        fmt::format("{} x {} pixels is more than {} a side", image->s(), image->t(), max_side_px));
+  }
+  const auto channels = static_cast<int>(osg::Image::computeNumComponents(image->getPixelFormat()));
+  const bool blue_first = image->getPixelFormat() == GL_BGR || image->getPixelFormat() == GL_BGRA;
+  std::vector<std::uint16_t> value;
+  value.reserve(static_cast<std::size_t>(image->s()) * static_cast<std::size_t>(image->t() * channels));
+  for (int y = 0; y < image->t(); ++y) {
+    const bool top_first = image->getOrigin() == osg::Image::TOP_LEFT;
+    const unsigned char* row = image->data(0, static_cast<unsigned int>(top_first ? image->t() - 1 - y : y));
+    for (int x = 0; x < image->s(); ++x) {
+      for (int c = 0; c < channels; ++c) {
+        value.push_back(sample(*image, row, x * channels + (blue_first && c < 3 ? 2 - c : c)));
+      }
+    }
+  }
+  BlobWriter writer;
+  writer.put(static_cast<std::uint64_t>(image->s()));
+  writer.put(static_cast<std::uint64_t>(image->t()));
+  writer.put(static_cast<std::uint64_t>(channels));
+  writer.put(value);
+  return writer.take();
+}
+
+Pixels load_pixels(const std::filesystem::path& file) {
+  require_local_file(file, extensions, "image");
+  try {
+    const IsolatedResult result = run_isolated([&] { return decode(file); });
+    BlobReader reader(result.bytes);
+    Pixels pixels;
+    pixels.width_px = static_cast<int>(reader.get_number());
+    pixels.height_px = static_cast<int>(reader.get_number());
+    pixels.channels = static_cast<int>(reader.get_number());
+    pixels.value = reader.get_vector<std::uint16_t>();
+    if (pixels.width_px < 1 || pixels.height_px < 1 || pixels.channels < 1 ||
+        pixels.value.size() != static_cast<std::size_t>(pixels.width_px) *
+                                   static_cast<std::size_t>(pixels.height_px) *
+                                   static_cast<std::size_t>(pixels.channels)) {
+      throw std::runtime_error("the reader returned a damaged result");
+    }
+    return pixels;
+  } catch (const std::runtime_error& error) {
+    throw WorldError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+GreyImage load_grey_image(const std::filesystem::path& file) {
+  const Pixels pixels = load_pixels(file);
+  GreyImage image{pixels.width_px, pixels.height_px, {}};
+  const auto step = static_cast<std::size_t>(pixels.channels);
+  image.value.reserve(pixels.value.size() / step);
+  for (std::size_t i = 0; i < pixels.value.size(); i += step) {
+    image.value.push_back(pixels.value[i]);
+  }
+  return image;
+}
+
+NormalMap load_normal_map(const std::filesystem::path& file) {
+  const Pixels pixels = load_pixels(file);
+  if (pixels.channels < 3) {
+    throw WorldError(
+        fmt::format("{}: a normal map needs 3 channels, this image has {}", file.string(), pixels.channels));
+  }
+  NormalMap map{pixels.width_px, pixels.height_px, {}};
+  const auto step = static_cast<std::size_t>(pixels.channels);
+  map.rgb.reserve(pixels.value.size() / step * 3);
+  for (std::size_t i = 0; i < pixels.value.size(); i += step) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      map.rgb.push_back(static_cast<std::uint8_t>((pixels.value[i + c] + 128) / 257));
+    }
+  }
+  return map;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,27 @@
+// Runs foreign file readers where their faults cannot hurt: in a child process.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace sonard::render {
+
+/// The reader crashed, ran too long or gave up; what() says which.
+struct IsolatedFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct IsolatedResult {
+  std::string bytes;  ///< what the work returned
+  std::string log;    ///< what it printed meanwhile
+};
+
+/// Calls `work` in a forked child and hands back the bytes it returns. The mesh and image plugins crash or
+/// loop on some damaged files (a truncated PLY is enough), print to the terminal and keep global state; none
+/// of that reaches this process. The child may use 120 s of processor time. Called at start-up, before other
+/// threads use the libraries that `work` uses.
+/// @throws IsolatedFailure; also with the message of an exception that `work` threw.
+IsolatedResult run_isolated(const std::function<std::string()>& work);
+
+}  // namespace sonard::render

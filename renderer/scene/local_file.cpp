@@ -1,0 +1,44 @@
+#include "renderer/scene/local_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  if (!extension.empty()) {
+    extension.erase(0, 1);
+  }
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
+                        std::string_view what) {
+  if (file.string().find("://") != std::string::npos) {
+    throw WorldError(
+        fmt::format("{}: {} must be a local file; nothing is fetched from a network", file.string(), what));
+  }
+  std::error_code error;
+  if (!file.is_absolute() || !std::filesystem::exists(file, error)) {
+    throw WorldError(fmt::format("{}: {} file not found", file.string(), what));
+  }
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw WorldError(fmt::format("{}: not a file", file.string()));
+  }
+  const std::string extension = lower_extension(file);
+  if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+    throw WorldError(fmt::format("{}: '{}' is not a {} format that can be read; supported: {}", file.string(),
+                                 extension, what, fmt::join(extensions, ", ")));
+  }
+}
+
+}  // namespace sonard::render

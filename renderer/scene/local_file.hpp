@@ -1,0 +1,19 @@
+// What may be handed to a foreign file reader: an existing local file of a known kind, nothing else.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace sonard::render {
+
+/// @param what "mesh" or "image", for the message.
+/// @throws WorldError naming the file when it is no absolute path of an existing regular file or its
+/// extension (letter case ignored) is not one of `extensions`, which the message then lists.
+void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
+                        std::string_view what);
+
+/// Extension in lower case without the dot.
+std::string lower_extension(const std::filesystem::path& file);
+
+}  // namespace sonard::render

@@ -1,0 +1,184 @@
+#include "renderer/scene/materials.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace sonard::render {
+namespace {
+
+struct TableRow {
+  std::string_view name;
+  double reflectance;
+  double lambert_mu_db;
+};
+
+/// mu: docs/physics.md 2.4 (typical values; 720 kHz is an extrapolation). rho: the amplitude reflection
+/// coefficient of the same table, scaled so that clean steel is the brightest example of the paper, 2.12.
+constexpr std::array<TableRow, 14> table{{
+    {"default", 1.00, -22.0},
+    {"steel", 2.12, -25.0},
+    {"steel_fouled", 2.03, -15.0},
+    {"aluminium", 1.89, -25.0},
+    {"concrete", 1.53, -18.0},
+    {"pvc", 0.81, -28.0},
+    {"rock", 1.87, -15.0},
+    {"gravel", 1.35, -15.0},
+    {"sand", 0.86, -22.0},
+    {"mud", 0.14, -32.0},
+    {"wood", 0.15, -28.0},
+    {"rubber", 0.20, -32.0},
+    {"air", 2.26, -20.0},
+    {"aluminum", 1.89, -25.0},
+}};
+
+constexpr double max_mu = std::numbers::inv_pi;
+constexpr double huge_reflectance = 10.0;
+constexpr double retro_reference_rho = 0.35;
+constexpr double retro_reference_mu_db = -22.0;
+
+double linear(double level_db) {
+  return std::pow(10.0, level_db / 10.0);
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// "Steel.001" and "steel" name the same thing.
+std::string canonical(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot != std::string_view::npos && dot + 1 < name.size() &&
+      std::all_of(name.begin() + static_cast<std::ptrdiff_t>(dot) + 1, name.end(),
+                  [](unsigned char c) { return std::isdigit(c) != 0; })) {
+    name = name.substr(0, dot);
+  }
+  return lower(name);
+}
+
+/// Levenshtein distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) {
+    row[j] = j;
+  }
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+double checked_reflectance(double rho, std::string_view what, std::vector<std::string>& warnings) {
+  if (!std::isfinite(rho) || rho < 0.0) {
+    throw WorldError(fmt::format("{} is {}: expected a number >= 0", what, rho));
+  }
+  if (rho > huge_reflectance) {
+    warnings.push_back(fmt::format("{} {} is far above the usual 0 to 2.5", what, rho));
+  }
+  return rho;
+}
+
+double checked_mu(double mu_db, std::vector<std::string>& warnings) {
+  if (std::isnan(mu_db) || std::isinf(mu_db)) {
+    throw WorldError(fmt::format("lambert_mu_db is {}: expected a finite number", mu_db));
+  }
+  const double mu = linear(mu_db);
+  if (mu > max_mu) {
+    warnings.push_back(fmt::format(
+        "Lambert coefficient {} dB scatters more than all energy: lowered to 1/pi (-4.97 dB)", mu_db));
+    return max_mu;
+  }
+  return mu;
+}
+
+double mu_of_reflectance(double rho, std::vector<std::string>& warnings) {
+  if (rho == 0.0) {
+    return 0.0;
+  }
+  return checked_mu(retro_reference_mu_db + 20.0 * std::log10(rho / retro_reference_rho), warnings);
+}
+
+std::string unknown_name_message(std::string_view name) {
+  const std::string similar = similar_material_name(name);
+  return fmt::format("unknown material '{}'{}; known: {}; a new one needs reflectance and lambert_mu_db",
+                     name, similar.empty() ? "" : " (did you mean '" + similar + "'?)",
+                     fmt::join(acoustic_material_names(), ", "));
+}
+
+}  // namespace
+
+std::vector<std::string> acoustic_material_names() {
+  std::vector<std::string> names;
+  for (const TableRow& row : table) {
+    names.emplace_back(row.name);
+  }
+  return names;
+}
+
+std::optional<AcousticMaterial> find_acoustic_material(std::string_view name) {
+  const std::string key = canonical(name);
+  const auto row = std::find_if(table.begin(), table.end(), [&](const TableRow& r) { return r.name == key; });
+  if (row == table.end()) {
+    return std::nullopt;
+  }
+  return AcousticMaterial{std::string(row->name), row->reflectance, linear(row->lambert_mu_db)};
+}
+
+std::string similar_material_name(std::string_view name) {
+  const std::string key = canonical(name);
+  const TableRow* best = nullptr;
+  std::size_t best_distance = std::max<std::size_t>(1, key.size() / 3) + 1;
+  for (const TableRow& row : table) {
+    const std::size_t distance = edit_distance(key, row.name);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = &row;
+    }
+  }
+  return best == nullptr ? std::string() : std::string(best->name);
+}
+
+AcousticMaterial make_acoustic_material(const MaterialRequest& request, std::vector<std::string>& warnings) {
+  AcousticMaterial material;
+  if (!request.name.empty()) {
+    const auto named = find_acoustic_material(request.name);
+    if (!named && !(request.reflectance && request.lambert_mu_db)) {
+      throw WorldError(unknown_name_message(request.name));
+    }
+    material = named.value_or(material);
+    material.name = named ? named->name : request.name;
+  }
+  if (request.reflectance) {
+    material.reflectance = checked_reflectance(*request.reflectance, "reflectance", warnings);
+  }
+  if (request.lambert_mu_db) {
+    material.lambert_mu = checked_mu(*request.lambert_mu_db, warnings);
+  } else if (request.reflectance && request.name.empty()) {
+    material.lambert_mu = mu_of_reflectance(material.reflectance, warnings);
+  }
+  return material;
+}
+
+AcousticMaterial material_of_laser_retro(double laser_retro, std::vector<std::string>& warnings) {
+  const double rho = checked_reflectance(laser_retro, "laser_retro", warnings);
+  if (rho == 0.0) {
+    return {};
+  }
+  return {"laser_retro", rho, mu_of_reflectance(rho, warnings)};
+}
+
+}  // namespace sonard::render

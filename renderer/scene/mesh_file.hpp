@@ -1,0 +1,41 @@
+// Mesh files, under one strict policy: an existing local file of a known format, its axes kept, its unit
+// applied, normals only where the file has them, and never silently nothing. See docs/worlds.md.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+struct MeshFileRequest {
+  std::filesystem::path file;   ///< absolute
+  std::string submesh;          ///< only the parts of this name; empty = all
+  bool center_submesh = false;  ///< moves the centre of the bounding box to the origin, before scaling
+  glm::dvec3 scale{1.0};        ///< negative values mirror
+  bool tangents = false;        ///< for a normal map: texture coordinates are then required
+
+  bool operator==(const MeshFileRequest&) const = default;
+};
+
+struct MeshFilePart {
+  std::string material_name;  ///< as the file names it, may be empty
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
+struct MeshFile {
+  std::vector<MeshFilePart> parts;  ///< one per material, each with at least one triangle
+  MeshDiagnostics diagnostics;
+  std::vector<std::string> warnings;  ///< each names the file
+};
+
+/// @throws WorldError naming the file: not found, not local, unknown format, damaged, no triangles, no such
+/// submesh, no texture coordinates, more than 50 million triangles.
+MeshFile load_mesh_file(const MeshFileRequest& request);
+
+}  // namespace sonard::render

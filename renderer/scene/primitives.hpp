@@ -1,0 +1,27 @@
+// The shapes of SDF as triangles, centred on the origin as SDF has them. Normals point outward and are smooth
+// on curved parts; texture coordinates run over [0, 1]. Vertices lie on the true surface; curved surfaces are
+// divided so finely that no triangle is farther than 2 mm from it up to a radius of about 50 m, at least 48
+// times around. All lengths in metres.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+// Every function throws WorldError when a size is not finite and positive.
+
+TriangleMesh make_box(const glm::dvec3& size_m);
+TriangleMesh make_sphere(double radius_m);
+TriangleMesh make_ellipsoid(const glm::dvec3& radii_m);
+/// Axis z, with caps.
+TriangleMesh make_cylinder(double radius_m, double length_m);
+/// Axis z; `length_m` is that of the cylindrical part, as in SDF.
+TriangleMesh make_capsule(double radius_m, double length_m);
+/// A rectangle through the origin; seen along `normal` (any length above 0) from its tip. The sides turn with
+/// the normal by the shortest way from z.
+TriangleMesh make_plane(const glm::dvec2& size_m, const glm::dvec3& normal);
+
+}  // namespace sonard::render

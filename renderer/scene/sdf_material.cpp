@@ -1,0 +1,140 @@
+#include "renderer/scene/sdf_material.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "renderer/scene/materials.hpp"
+#include "renderer/scene/sdf_parser.hpp"
+
+namespace sonard::render {
+namespace {
+
+constexpr const char* material_element = "sonard:material";
+constexpr const char* water_surface_element = "sonard:water_surface_z";
+constexpr std::array<std::string_view, 4> material_parents{"visual", "collision", "link", "model"};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+double number(const std::string& text, const char* what) {
+  const std::string_view digits = trimmed(text);
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || rest != digits.data() + digits.size() || !std::isfinite(value)) {
+    throw WorldError(fmt::format("{} '{}': expected a number", what, text));
+  }
+  return value;
+}
+
+std::string text_of(const sdf::ElementPtr& element) {
+  return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
+}
+
+std::optional<double> attribute(const sdf::ElementPtr& element, const char* key) {
+  if (!element->HasAttribute(key)) {
+    return std::nullopt;
+  }
+  return number(element->GetAttribute(key)->GetAsString(), key);
+}
+
+void check_attributes(const sdf::ElementPtr& element, std::initializer_list<std::string_view> allowed) {
+  for (const auto& given : element->GetAttributes()) {
+    const std::string key = given->GetKey();
+    if (!key.starts_with("xmlns") && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
+      throw WorldError(fmt::format("{}: <{}> has no attribute '{}'; it has: {}", place_of(element),
+                                   element->GetName(), key, fmt::join(allowed, ", ")));
+    }
+  }
+}
+
+void check_own_element(const sdf::ElementPtr& element, const std::string& parent) {
+  const std::string& name = element->GetName();
+  if (name == material_element) {
+    if (std::find(material_parents.begin(), material_parents.end(), parent) == material_parents.end()) {
+      throw WorldError(fmt::format("{}: <{}> inside <{}>: it belongs in one of: {}", place_of(element), name,
+                                   parent, fmt::join(material_parents, ", ")));
+    }
+    check_attributes(element, {"reflectance", "lambert_mu_db"});
+  } else if (name == water_surface_element) {
+    if (parent != "world") {
+      throw WorldError(
+          fmt::format("{}: <{}> inside <{}>: it belongs in <world>", place_of(element), name, parent));
+    }
+    check_attributes(element, {});
+  } else {
+    throw WorldError(fmt::format("{}: unknown element <{}>; there are <{}> and <{}>", place_of(element), name,
+                                 material_element, water_surface_element));
+  }
+  if (element->GetNextElement(name)) {
+    throw WorldError(fmt::format("{}: <{}> is given twice in <{}>", place_of(element), name, parent));
+  }
+}
+
+}  // namespace
+
+void check_own_elements(const sdf::ElementPtr& root) {
+  for (auto child = root->GetFirstElement(); child; child = child->GetNextElement()) {
+    if (child->GetName().starts_with("sonard:")) {
+      check_own_element(child, root->GetName());
+    }
+    check_own_elements(child);
+  }
+}
+
+std::optional<AcousticMaterial> own_material(const sdf::ElementPtr& element,
+                                             std::vector<std::string>& warnings) {
+  const auto given = element->FindElement(material_element);
+  if (!given) {
+    return std::nullopt;
+  }
+  const MaterialRequest request{text_of(given), attribute(given, "reflectance"),
+                                attribute(given, "lambert_mu_db")};
+  if (request.name.empty() && !request.reflectance && !request.lambert_mu_db) {
+    throw WorldError(fmt::format(
+        "<{}> is empty: expected a name, or an attribute reflectance or lambert_mu_db", material_element));
+  }
+  std::vector<std::string> remarks;
+  AcousticMaterial material = make_acoustic_material(request, remarks);
+  for (const std::string& remark : remarks) {
+    warnings.push_back(fmt::format("{}: {}", place_of(given), remark));
+  }
+  return material;
+}
+
+std::optional<AcousticMaterial> inherited_material(const sdf::ElementPtr& element,
+                                                   std::vector<std::string>& warnings) {
+  for (auto around = element->GetParent(); around; around = around->GetParent()) {
+    try {
+      if (auto material = own_material(around, warnings)) {
+        return material;
+      }
+    } catch (const WorldError& error) {
+      throw WorldError(fmt::format("from <{}> at {}: {}", around->GetName(), place_of(around), error.what()));
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<double> water_surface_z_m(const sdf::ElementPtr& world) {
+  const auto given = world->FindElement(water_surface_element);
+  if (!given) {
+    return std::nullopt;
+  }
+  try {
+    return number(text_of(given), water_surface_element);
+  } catch (const WorldError& error) {
+    throw WorldError(fmt::format("{}: {}", place_of(given), error.what()));
+  }
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,33 @@
+// Our own elements in an SDF file: <sonard:material> and <sonard:water_surface_z>. Defined in docs/worlds.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sdf/Element.hh>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+/// Refuses elements of the sonard namespace that are unknown, misplaced or there twice, so that a slip of the
+/// pen is not taken for a default.
+/// @throws WorldError "file:line: ..."
+void check_own_elements(const sdf::ElementPtr& root);
+
+/// <sonard:material> directly inside `element`.
+/// @throws WorldError without a place: the caller knows what the element is called
+std::optional<AcousticMaterial> own_material(const sdf::ElementPtr& element,
+                                             std::vector<std::string>& warnings);
+
+/// <sonard:material> of the nearest link or model around `element`.
+/// @throws WorldError naming that link or model
+std::optional<AcousticMaterial> inherited_material(const sdf::ElementPtr& element,
+                                                   std::vector<std::string>& warnings);
+
+/// <sonard:water_surface_z> of a <world>, metres.
+/// @throws WorldError "file:line: ..."
+std::optional<double> water_surface_z_m(const sdf::ElementPtr& world);
+
+}  // namespace sonard::render

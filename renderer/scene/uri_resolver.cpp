@@ -1,0 +1,98 @@
+#include "renderer/scene/uri_resolver.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> existing(const fs::path& path) {
+  std::error_code error;
+  fs::path canonical = fs::canonical(path, error);
+  if (error) {
+    return std::nullopt;
+  }
+  return canonical;
+}
+
+std::string list(const std::vector<fs::path>& folders) {
+  std::vector<std::string> names;
+  for (const fs::path& folder : folders) {
+    names.push_back(folder.string());
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::vector<fs::path> model_folders_from_environment() {
+  std::vector<fs::path> folders;
+  for (const char* variable :
+       {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
+    const char* value = std::getenv(variable);
+    std::istringstream entries(value == nullptr ? "" : value);
+    for (std::string entry; std::getline(entries, entry, ':');) {
+      if (!entry.empty()) {
+        folders.emplace_back(entry);
+      }
+    }
+  }
+  return folders;
+}
+
+UriResolver::UriResolver(const fs::path& world_file, std::vector<fs::path> model_folders) {
+  const fs::path folder = fs::absolute(world_file).parent_path();
+  for (const fs::path& candidate : {folder, folder / "models", folder.parent_path() / "models"}) {
+    add_model_folder(candidate);
+  }
+  for (const fs::path& candidate : model_folders) {
+    add_model_folder(candidate);
+  }
+}
+
+void UriResolver::add_model_folder(const fs::path& folder) {
+  const auto found = existing(folder);
+  if (found && std::find(model_folders_.begin(), model_folders_.end(), *found) == model_folders_.end()) {
+    model_folders_.push_back(*found);
+  }
+}
+
+fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_folder) const {
+  if (uri.empty() || uri == "__default__") {
+    throw WorldError("the URI is missing");
+  }
+  const std::size_t colon = uri.find("://");
+  const std::string scheme = colon == std::string::npos ? "" : uri.substr(0, colon);
+  const std::string rest = colon == std::string::npos ? uri : uri.substr(colon + 3);
+  if (scheme == "model" || scheme == "package") {
+    for (const fs::path& folder : model_folders_) {
+      if (const auto found = existing(folder / rest)) {
+        return *found;
+      }
+    }
+    throw WorldError(fmt::format("'{}' not found; looked in {}", uri, list(model_folders_)));
+  }
+  if (!scheme.empty() && scheme != "file") {
+    throw WorldError(
+        fmt::format("'{}': nothing is fetched from a network; download it and use model:// or a path "
+                    "(GZ_SIM_RESOURCE_PATH names "
+                    "folders of models)",
+                    uri));
+  }
+  const fs::path path = naming_folder / rest;  // an absolute `rest` wins
+  if (const auto found = existing(path)) {
+    return *found;
+  }
+  throw WorldError(fmt::format("'{}' not found; looked for {}", uri, path.lexically_normal().string()));
+}
+
+}  // namespace sonard::render

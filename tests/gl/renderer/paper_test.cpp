@@ -1,0 +1,138 @@
+// Mode `paper` against its closed form and its documented readings (docs/physics.md 1, 3.2).
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/gl_test.hpp"
+
+namespace sonard::render {
+namespace {
+
+using test::GlTest;
+using test::make_body;
+using test::make_quad;
+using test::make_world;
+
+constexpr double degree = std::numbers::pi / 180;
+
+PingRequest paper_request(int lines, double step_m) {
+  PingRequest request;
+  request.settings.model = Model::paper;
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(256, 120 * degree);
+  request.settings.range = {lines, step_m, 0, false};
+  return request;
+}
+
+World wall_world(double reflectance) {
+  World world = make_world({make_body("wall", make_quad({10, -80, -40}, {0, 160, 0}, {0, 0, 80}))});
+  world.bodies[0].parts[0].material.reflectance = reflectance;
+  return world;
+}
+
+double sigmoid(double x) {
+  return 1 / (1 + std::exp(-18 * (x - 2.0 / 3)));
+}
+
+using Paper = GlTest;
+
+// I_bin is the mean of S over the bin: S(rho D / r) for a plane, whatever the distance: no spreading, no
+// absorption.
+TEST_F(Paper, PlaneFollowsTheSigmoid) {
+  for (const double rho : {0.35, 0.8, 1.0}) {
+    SonarRenderer renderer(wall_world(rho));
+    const PingRequest request = paper_request(1000, 0.025);
+    const EchoImage image = renderer.render_echo(request);
+    int compared = 0;
+    for (const int beam : {0, 40, 127, 200, 255}) {
+      for (int k = 1; k + 1 < image.lines; ++k) {
+        if (image.at(beam, k - 1) > 0 && image.at(beam, k + 1) > 0) {
+          const double range_m = (k + 0.5) * 0.025;
+          // The slope of S over one line bounds what averaging inside the line can do.
+          EXPECT_NEAR(image.at(beam, k), sigmoid(std::min(1.0, rho * 10 / range_m)), 0.006)
+              << "beam " << beam << " line " << k;
+          ++compared;
+        }
+      }
+    }
+    EXPECT_GT(compared, 20);
+  }
+}
+
+TEST_F(Paper, ReflectanceAboveOneClamps) {
+  SonarRenderer renderer(wall_world(2.12));
+  const EchoImage image = renderer.render_echo(paper_request(1000, 0.025));
+  EXPECT_NEAR(image.at(127, 402), sigmoid(1.0), 1e-4);
+}
+
+TEST_F(Paper, AttenuationOfTheLaterReleaseActsBeforeTheSigmoid) {
+  SonarRenderer renderer(wall_world(1.0));
+  PingRequest request = paper_request(1000, 0.025);
+  request.settings.paper = PaperModel::release_2018(0.01);
+  const EchoImage image = renderer.render_echo(request);
+  const double range_m = 402.5 * 0.025;
+  EXPECT_NEAR(image.at(127, 402), sigmoid(10 / range_m * std::exp(-0.02 * range_m)), 0.006);
+}
+
+TEST_F(Paper, BackFacesCanBeDropped) {
+  SonarRenderer renderer(
+      make_world({make_body("towards", make_quad({10, 80, -40}, {0, -160, 0}, {0, 0, 80}))}));
+  PingRequest request = paper_request(1000, 0.025);
+  const auto brightest = [](const EchoImage& image) {
+    return *std::max_element(image.intensity.begin(), image.intensity.end());
+  };
+  const float two_sided = brightest(renderer.render_echo(request));
+  request.settings.paper.two_sided = false;
+  const float front_only = brightest(renderer.render_echo(request));
+  ASSERT_TRUE(
+      renderer.set_body_pose("towards", {{20, 0, 0}, glm::angleAxis(std::numbers::pi, glm::dvec3(0, 0, 1))}));
+  const float turned = brightest(renderer.render_echo(request));
+  EXPECT_GT(two_sided, 0);
+  // The quad is wound so that its front faces the sonar; turned about, it shows its back.
+  EXPECT_EQ(front_only, two_sided);
+  EXPECT_EQ(turned, 0);
+}
+
+// A4: floor(r / R_max (N - 1)) puts a wall at 10 m of 20 m, 1001 lines of it, into line 500 instead of 500.5.
+TEST_F(Paper, LegacyBinIndexAndPointSamples) {
+  SonarRenderer renderer(wall_world(1.0));
+  PingRequest request = paper_request(1000, 0.025);
+  request.settings.paper.footprint = false;
+  const auto first_line = [](const EchoImage& image) {
+    int k = 0;
+    while (image.at(127, k) == 0) {
+      ++k;
+    }
+    return k;
+  };
+  EXPECT_EQ(first_line(renderer.render_echo(request)), 400);
+  request.settings.paper.legacy_bin_index = true;
+  EXPECT_EQ(first_line(renderer.render_echo(request)), 399);
+}
+
+// docs/physics.md 1.3: one planar frustum clips elevation to atan(tan 10 cos psi); the mask over split views
+// does not.
+TEST_F(Paper, SingleFrustumClipsTheSidesOnlyWhenAskedTo) {
+  SonarRenderer renderer(wall_world(1.0));
+  PingRequest request = paper_request(2000, 0.0125);
+  const auto extent = [&](int beam) {
+    const EchoImage image = renderer.render_echo(request);
+    int first = -1, last = -1;
+    for (int k = 0; k < image.lines; ++k) {
+      if (image.at(beam, k) > 0) {
+        first = first < 0 ? k : first;
+        last = k;
+      }
+    }
+    return (last + 1 - first) * 0.0125;
+  };
+  const auto& edges = request.settings.aperture.beam_edges_rad;
+  const double near_side = 10 / std::cos(edges[1]);
+  const double far_side = 10 / std::cos(edges[0]);
+  EXPECT_NEAR(extent(0), far_side / std::cos(10 * degree) - near_side, 0.03);
+  request.settings.paper.elevation_mask = false;
+  request.settings.sampling = {1, 2048, 512};
+  const double clipped = std::atan(std::tan(10 * degree) * std::cos(edges[0]));
+  EXPECT_NEAR(extent(0), far_side / std::cos(clipped) - near_side, 0.04);
+}
+
+}  // namespace
+}  // namespace sonard::render

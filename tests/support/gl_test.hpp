@@ -1,0 +1,87 @@
+// Fixture for tests that draw. They skip with a reason where there is no OpenGL; with SONARD_REQUIRE_GL set,
+// as in CI, they fail instead, so that coverage is never lost silently.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "renderer/sonar_renderer.hpp"
+
+namespace sonard::test {
+
+class GlTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static const std::string problem = [] {
+      try {
+        const render::SonarRenderer renderer(render::World{});
+        std::printf("OpenGL: %s\n", renderer.gl_description().c_str());
+        return std::string();
+      } catch (const render::RendererError& error) {
+        return std::string(error.what());
+      }
+    }();
+    if (problem.empty()) {
+      return;
+    }
+    if (std::getenv("SONARD_REQUIRE_GL") != nullptr) {
+      FAIL() << problem;
+    }
+    GTEST_SKIP() << problem;
+  }
+};
+
+/// A body of one mesh, at the world's origin.
+inline render::Body make_body(const std::string& name, render::TriangleMesh mesh, double lambert_mu = 1.0) {
+  render::BodyPart part;
+  part.mesh = std::make_shared<const render::TriangleMesh>(std::move(mesh));
+  part.material.lambert_mu = lambert_mu;
+  return {name, {}, {part}};
+}
+
+inline render::World make_world(std::vector<render::Body> bodies) {
+  render::World world;
+  world.bodies = std::move(bodies);
+  return world;
+}
+
+/// A parallelogram: corner, corner + a, corner + a + b, corner + b.
+inline render::TriangleMesh make_quad(const glm::vec3& corner, const glm::vec3& a, const glm::vec3& b) {
+  render::TriangleMesh mesh;
+  mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+/// A sphere of n by 2n facets with exact vertex normals.
+inline render::TriangleMesh make_sphere(float radius_m, int n) {
+  render::TriangleMesh mesh;
+  const auto pi = static_cast<float>(std::acos(-1.0));
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= 2 * n; ++j) {
+      const float polar = pi * static_cast<float>(i) / static_cast<float>(n);
+      const float azimuth = pi * static_cast<float>(j) / static_cast<float>(n);
+      const glm::vec3 normal(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                             std::cos(polar));
+      mesh.positions.push_back(radius_m * normal);
+      mesh.normals.push_back(normal);
+    }
+  }
+  const auto index = [&](int i, int j) { return static_cast<std::uint32_t>(i * (2 * n + 1) + j); };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < 2 * n; ++j) {
+      if (i > 0) {
+        mesh.indices.insert(mesh.indices.end(), {index(i, j), index(i + 1, j), index(i, j + 1)});
+      }
+      if (i + 1 < n) {
+        mesh.indices.insert(mesh.indices.end(), {index(i, j + 1), index(i + 1, j), index(i + 1, j + 1)});
+      }
+    }
+  }
+  return mesh;
+}
+
+}  // namespace sonard::test
