@@ -11,6 +11,11 @@ namespace {
 
 using Kind = PoseError::Kind;
 
+/// The library writes a line to stderr for each name that is not UTF-8; a peer could fill a disk with that.
+void keep_library_quiet() {
+  [[maybe_unused]] static const auto before = google::protobuf::SetLogHandler(nullptr);
+}
+
 Vec3 read(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
@@ -106,6 +111,7 @@ Result<PoseSample, PoseError> decode(std::span<const std::uint8_t> message) {
   if (message.size() > max_message_bytes) {
     return PoseError{Kind::malformed, "message", "is longer than 65507 bytes"};
   }
+  keep_library_quiet();
   if (!update.ParseFromArray(message.data(), static_cast<int>(message.size()))) {
     return PoseError{Kind::malformed, "message", "is no PoseUpdate of pose.proto"};
   }
