@@ -24,11 +24,16 @@ constexpr nanoseconds config_patience_most = seconds{2};
 
 /// From a retry request to the first re-sent datagram. In continuous mode a head holds its next ping back
 /// only while requests came within the last 10 ms (7.3): asked every 2 ms with two datagrams, that chain
-/// breaks once in 1e13 times on a link that loses 5 %.
+/// breaks once in 1e13 times on a link that loses 5 %. Over a slow link the answer takes longer than that
+/// hold, so there it has to be asked for several times.
 constexpr ResponseTime::Limits answer_limits{milliseconds{3}, milliseconds{2}, milliseconds{25}};
+constexpr nanoseconds answer_patience_continuous = milliseconds{4};
 constexpr nanoseconds answer_patience_most = milliseconds{100};
 constexpr int fruitless_rounds_at_full_speed = 4;
 
+/// Lines may overtake each other by so much before one counts as lost. The head answers after the tail, so
+/// that asking earlier would gain nothing.
+constexpr nanoseconds reorder_patience = milliseconds{1};
 /// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
 /// waits for before it sends one. A false alarm costs a re-sent tail.
 constexpr nanoseconds stream_patience = milliseconds{4};
@@ -369,8 +374,7 @@ void Surface::on_report(TimePoint now, const PingLine& line) {
   if (line.resent()) {
     heard_answer(now, *ping);
   } else if (!ping->pass_over) {
-    ask_gap(*ping, line.line_number());
-    ask_ahead(*ping, line.line_number());
+    follow_first_pass(now, *ping, line.line_number());
   }
   settle(now);
 }
@@ -448,7 +452,7 @@ void Surface::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
     request_->timed = true;
   }
   if (ping.pass_over) {
-    ask_gap(ping, ping.assembly.line_count());
+    ask_unasked(ping, ping.assembly.line_count());
   }
 }
 
@@ -471,30 +475,37 @@ void Surface::end_pass(Incoming& ping) {
     return;
   }
   if (ping.assembly.head()) {
-    ask_gap(ping, ping.assembly.line_count());
+    ask_unasked(ping, ping.assembly.line_count());
   } else if (!ping.head_asked) {
     ask(&ping, RetryKind::head, {0, 1}, 1);
   }
 }
 
-/// Asks at once for what lies between the line that was highest so far and `end`, which has come (or ends the
-/// ping).
-void Surface::ask_gap(Incoming& ping, int end) {
-  const LineRange gap{ping.last_in_order + 1, end - ping.last_in_order - 1};
-  ping.last_in_order = std::max(ping.last_in_order, end);
-  if (gap.count > 0 && ping.requested) {
-    ask(&ping, RetryKind::lines, gap, 1);
+/// Line `number` came for the first time.
+void Surface::follow_first_pass(TimePoint now, Incoming& ping, int number) {
+  ping.highest = std::max(ping.highest, number);
+  if (!ping.requested) {
+    return;
   }
-}
-
-/// See precaution_lines.
-void Surface::ask_ahead(Incoming& ping, int line) {
-  const bool lossy = ping.retries.total() > 0;
-  if (programme_->continuous() && ping.requested && lossy && !ping.asked_ahead && ping.assembly.head() &&
-      line >= ping.assembly.line_count() - precaution_lines) {
+  if (now - ping.marked_at >= reorder_patience) {
+    ask_unasked(ping, ping.marked);
+    ping.marked_at = now;
+    ping.marked = ping.highest;
+  }
+  const bool damaged = ping.assembly.lines_received() <= ping.highest;
+  if (programme_->continuous() && damaged && !ping.asked_ahead && ping.assembly.head() &&
+      ping.highest >= ping.assembly.line_count() - precaution_lines) {
     ping.asked_ahead = true;
     ask(&ping, RetryKind::tail, {0, 1}, copies_of_a_repeated_request);
   }
+}
+
+/// Asks for what is missing below `end` and has not been asked for.
+void Surface::ask_unasked(Incoming& ping, int end) {
+  for (const LineRange& range : ping.assembly.missing(ping.asked_to, end)) {
+    ask(&ping, RetryKind::lines, range, 1);
+  }
+  ping.asked_to = std::max(ping.asked_to, end);
 }
 
 /// A round: everything that is missing, in the order in which it helps.
@@ -526,7 +537,10 @@ std::optional<TimePoint> Surface::due(const Incoming& ping) const {
   }
   const int slower = ping.fruitless - fruitless_rounds_at_full_speed;
   if (ping.pass_over) {
-    return ping.heard + doubled(request_to_answer_.patience(), slower, answer_patience_most);
+    const auto patience = request_to_answer_.patience();
+    return ping.heard +
+           doubled(programme_->continuous() ? std::min(patience, answer_patience_continuous) : patience,
+                   slower, answer_patience_most);
   }
   if (ping.assembly.is_complete()) {
     return ping.heard + doubled(neighbour_patience, slower, answer_patience_most);

@@ -144,7 +144,8 @@ class Surface {
 
   /// The ping that is coming in.
   struct Incoming {
-    Incoming(std::uint8_t id, TimePoint now) : assembly(id), first_datagram(now), heard(now), progress(now) {}
+    Incoming(std::uint8_t id, TimePoint now)
+        : assembly(id), first_datagram(now), heard(now), progress(now), marked_at(now) {}
 
     /// Two pings of a head that counts its IDs otherwise than modulo 256 differ in their time.
     bool may_have(const PingHead& head) const {
@@ -160,8 +161,11 @@ class Surface {
     bool has_tail = false;
     bool head_asked = false;
     bool asked_ahead = false;
-    int last_in_order = -1;  ///< highest line of the first pass, and end of what gaps were asked for
-    int fruitless = 0;       ///< rounds of requests without an answer
+    int highest = -1;     ///< line of the first pass
+    TimePoint marked_at;  ///< when `marked` was the highest line
+    int marked = 0;       ///< what is missing below is lost, not late
+    int asked_to = 0;     ///< what is missing below has been asked for
+    int fruitless = 0;    ///< rounds of requests without an answer
     int lines_repaired = 0;
     RetryCounters retries;
     std::optional<TimePoint> asked;  ///< first request since the last answer
@@ -200,8 +204,8 @@ class Surface {
   void adopt_head(TimePoint now, Incoming& ping, const PingHead& head);
   void heard_answer(TimePoint now, Incoming& ping);
   void end_pass(Incoming& ping);
-  void ask_gap(Incoming& ping, int end);
-  void ask_ahead(Incoming& ping, int line);
+  void follow_first_pass(TimePoint now, Incoming& ping, int number);
+  void ask_unasked(Incoming& ping, int end);
   void ask_again(TimePoint now, Incoming& ping);
   std::optional<TimePoint> due(const Incoming& ping) const;
   void on_incoming_due(TimePoint now);

@@ -1,0 +1,612 @@
+// The surface against a head that says exactly what the test wants, in virtual time.
+#include "protocol/gemini/surface.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "protocol/gemini/codec.hpp"
+
+namespace sonard::gemini {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::uint16_t sonar_id = 601;
+constexpr Ipv4 alternate = 0xC0A802C9;
+constexpr std::uint64_t head_us_at_0 = 5'000'000;  // the head has been up for 5 s when a test begins
+constexpr int lines = 40;
+
+template <class Message>
+Message from_head(Message message) {
+  message.header.sonar_id = sonar_id;
+  return message;
+}
+
+/// Line `number` of ping `id`: every sample differs from its neighbours in beam, line and ping.
+std::vector<std::uint8_t> line_data(int id, int number) {
+  std::vector<std::uint8_t> data(beam_count);
+  for (int beam = 0; beam < beam_count; ++beam) {
+    data[static_cast<std::size_t>(beam)] = static_cast<std::uint8_t>(beam * 7 + number * 13 + id * 29);
+  }
+  return data;
+}
+
+std::vector<std::uint8_t> image(int id) {
+  std::vector<std::uint8_t> samples;
+  for (int number = 0; number < lines; ++number) {
+    const auto line = line_data(id, number);
+    samples.insert(samples.end(), line.begin(), line.end());
+  }
+  return samples;
+}
+
+class SurfaceTest : public testing::Test {
+ protected:
+  PingConfig config(RunMode mode = RunMode::single) const {
+    PingConfig made;
+    made.end_range = lines;
+    made.run_mode = static_cast<std::uint16_t>(mode);
+    made.interping_us = 100'000;
+    return made;
+  }
+
+  Status status() const {
+    Status made = from_head(Status{});
+    made.sonar_id = sonar_id;
+    made.alternate_ip = alternate;
+    made.clock_us = head_us_at_0 + static_cast<std::uint64_t>(now_ / 1us);
+    return made;
+  }
+
+  template <class Message>
+  void hear(const Message& message) {
+    surface_.on_datagram(now_, encode(Report{message}));
+    surface_.advance(now_);
+  }
+
+  void hear_head(int id, bool resent = false) { hear_head(id, now_, resent); }
+  void hear_head(int id, TimePoint transmitted, bool resent = false) {
+    PingHead head = from_head(PingHead{});
+    head.ping_id = static_cast<std::uint16_t>(id | (resent ? 0x100 : 0));
+    head.ext_mode = ext_bits::eight_bit;
+    head.end_range = lines;
+    head.transmit_time_us = head_us_at_0 + static_cast<std::uint64_t>(transmitted / 1us);
+    hear(head);
+  }
+  void hear_line(int id, int number, bool resent = false) {
+    PingLine line = from_head(PingLine{});
+    const auto data = line_data(id, number);
+    line.ping_id = static_cast<std::uint8_t>(id);
+    line.line_id = static_cast<std::uint16_t>(number | (resent ? 0x8000 : 0));
+    line.line_info = make_line_info(data.size(), number == lines - 1, ext_bits::eight_bit);
+    line.data = data;
+    hear(line);
+  }
+  void hear_lines(int id, int first, int count, bool resent = false) {
+    for (int number = first; number < first + count; ++number) {
+      hear_line(id, number, resent);
+    }
+  }
+  void hear_tail(int id, bool resent = false) {
+    PingTail tail = from_head(PingTail{});
+    tail.ping_id = static_cast<std::uint8_t>(id);
+    tail.flags = resent ? resent_tail : 0;
+    hear(tail);
+  }
+  void hear_ping(int id) {
+    hear_head(id);
+    hear_lines(id, 0, lines);
+    hear_tail(id);
+  }
+
+  /// Lets time pass, with a call of advance() at each deadline.
+  void pass(std::chrono::nanoseconds span) {
+    const TimePoint end = now_ + span;
+    while (true) {
+      const auto due = surface_.next_deadline();
+      if (!due || *due > end) {
+        break;
+      }
+      now_ = std::max(now_, *due);
+      surface_.advance(now_);
+    }
+    now_ = end;
+  }
+
+  /// What was said since the last call, of one type.
+  template <class Message>
+  std::vector<Message> said() {
+    std::vector<Message> messages;
+    for (const auto& datagram : surface_.take_outgoing()) {
+      EXPECT_EQ(datagram.to, alternate);
+      const auto command = decode_command(datagram.bytes);
+      EXPECT_TRUE(command.has_value());
+      EXPECT_EQ(header_of(*command).sonar_id, sonar_id);
+      if (const auto* message = std::get_if<Message>(&*command)) {
+        messages.push_back(*message);
+      }
+    }
+    return messages;
+  }
+
+  /// Retry requests since the last call, copies of one datagram as one: "head", "tail", "10" or "10+3".
+  std::vector<std::string> asked() {
+    std::vector<std::string> requests;
+    for (const auto& retry : said<RetryRequest>()) {
+      std::string text = retry.kind == RetryKind::head ? "head" : "tail";
+      if (retry.kind == RetryKind::lines) {
+        text = std::to_string(retry.first_line);
+        text += retry.line_count > 1 ? "+" + std::to_string(retry.line_count) : "";
+      }
+      if (requests.empty() || requests.back() != text) {
+        requests.push_back(text);
+      }
+    }
+    return requests;
+  }
+
+  /// Status heard, first words said and forgotten, `pings` asked for.
+  void meet_and_start(const PingConfig& wanted, std::uint64_t pings = 0) {
+    hear(status());
+    hear(from_head(Diagnostic{}));
+    surface_.start(now_, wanted, pings);
+    surface_.advance(now_);
+    ASSERT_THAT(said<PingConfig>(), SizeIs(1));
+    now_ += 1ms;
+  }
+
+  Surface surface_{SurfaceConfig{}};
+  TimePoint now_ = 0s;
+};
+
+// ---- Meeting a head
+// ---------------------------------------------------------------------------------------------
+
+TEST_F(SurfaceTest, IsSilentUntilAStatusComes) {
+  surface_.start(now_, config(), 1);
+  pass(10s);
+  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+  EXPECT_FALSE(surface_.head());
+}
+
+TEST_F(SurfaceTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
+  hear(status());
+  const auto sent = surface_.take_outgoing();
+  ASSERT_GE(sent.size(), 2U);
+  // gemini.md 10; bytes 6 and 7 as the early library sends them.
+  EXPECT_EQ(sent[0].bytes,
+            (std::vector<std::uint8_t>{0x31, 0x01, 0x59, 0x02, 0x00, 0x00, 0x00, 0x00, 0x0f, 0x0f, 0x00,
+                                       0x00, 0x16, 0x05, 0x50, 0xc3, 0x00, 0x00, 0x00, 0x01, 0x10, 0x27}));
+  EXPECT_EQ(sent[1].bytes, (std::vector<std::uint8_t>{0x36, 0x01, 0x59, 0x02, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(sent[0].to, alternate);
+}
+
+TEST_F(SurfaceTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
+  hear(status());
+  EXPECT_THAT(said<DiagnosticRequest>(), SizeIs(1));
+  pass(1s);
+  hear(status());
+  EXPECT_THAT(said<DiagnosticRequest>(), SizeIs(1));
+  hear(from_head(Diagnostic{}));
+  pass(1s);
+  hear(status());
+  EXPECT_THAT(said<DiagnosticRequest>(), IsEmpty());
+}
+
+TEST_F(SurfaceTest, KeepsTheHeadAwakeEverySecond) {
+  hear(status());
+  pass(10s);
+  EXPECT_THAT(said<StatusRequest>(), SizeIs(11));
+}
+
+TEST_F(SurfaceTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
+  Status nowhere = status();
+  nowhere.alternate_ip = 0;
+  hear(nowhere);
+  Status production = status();
+  production.sonar_id = production.header.sonar_id = 1;
+  hear(production);
+  Status contradictory = status();
+  contradictory.header.sonar_id = 77;
+  hear(contradictory);
+  EXPECT_FALSE(surface_.head());
+  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+}
+
+TEST_F(SurfaceTest, TalksToOneHeadOnly) {
+  hear(status());
+  Status other = status();
+  other.sonar_id = other.header.sonar_id = 777;
+  other.alternate_ip = 0x0A0A0A0A;
+  hear(other);
+  EXPECT_EQ(surface_.head()->status.sonar_id, sonar_id);
+  EXPECT_EQ(surface_.statistics().other_heads, 1U);
+}
+
+TEST_F(SurfaceTest, WaitsForTheHeadItWasToldToTalkTo) {
+  surface_ = Surface(SurfaceConfig{.sonar_id = 777, .head_address = 0x0A0A0A0A});
+  hear(status());
+  EXPECT_FALSE(surface_.head());
+  Status wanted = status();
+  wanted.sonar_id = wanted.header.sonar_id = 777;
+  hear(wanted);
+  ASSERT_TRUE(surface_.head());
+  EXPECT_EQ(surface_.take_outgoing().at(0).to, 0x0A0A0A0AU);
+}
+
+TEST_F(SurfaceTest, BadDatagramsAreCounted) {
+  surface_.on_datagram(now_, std::vector<std::uint8_t>{0x41, 0x01, 0x59});
+  surface_.on_datagram(now_, {});
+  EXPECT_EQ(surface_.statistics().bad_datagrams, 2U);
+}
+
+// ---- Single pings
+// -----------------------------------------------------------------------------------------------
+
+TEST_F(SurfaceTest, ACompletePingIsDeliveredAndTheNextConfigurationLeavesAtOnce) {
+  meet_and_start(config(), 2);
+  hear_ping(5);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].samples.u8, image(5));
+  EXPECT_TRUE(pings[0].complete());
+  EXPECT_EQ(pings[0].retries.total(), 0U);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));
+  EXPECT_FALSE(surface_.finished());
+  hear_ping(6);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_TRUE(surface_.finished());
+  EXPECT_THAT(said<PingConfig>(), IsEmpty());
+}
+
+TEST_F(SurfaceTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, 10);
+  hear_line(5, 13);
+  EXPECT_THAT(asked(), IsEmpty());
+  pass(1ms);
+  hear_line(5, 14);
+  pass(1ms);
+  hear_line(5, 15);
+  EXPECT_THAT(asked(), ElementsAre("10+3"));
+  hear_lines(5, 16, lines - 16);
+  hear_tail(5);
+  EXPECT_THAT(asked(), IsEmpty());
+  hear_lines(5, 10, 3, true);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].samples.u8, image(5));
+  EXPECT_EQ(pings[0].lines_repaired, 3);
+  EXPECT_EQ(pings[0].lines_lost, 0);
+}
+
+TEST_F(SurfaceTest, TheRequestForALineIsTheWorkedExample) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, 10);
+  hear_lines(5, 11, lines - 11);
+  hear_tail(5);
+  const auto sent = surface_.take_outgoing();
+  ASSERT_THAT(sent, SizeIs(1));
+  EXPECT_EQ(sent[0].bytes,
+            (std::vector<std::uint8_t>{0x30, 0x01, 0x59, 0x02, 0, 0, 0, 0, 1, 0, 0x0a, 0, 1, 0, 0, 0}));
+}
+
+TEST_F(SurfaceTest, LastLinesAreAskedForWhenTheTailComes) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, lines - 2);
+  hear_tail(5);
+  EXPECT_THAT(asked(), ElementsAre("38+2"));
+}
+
+TEST_F(SurfaceTest, LinesAreAskedForUntilTheyCome) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, 10);
+  hear_lines(5, 11, lines - 11);
+  hear_tail(5);
+  EXPECT_THAT(asked(), ElementsAre("10"));
+  for (int round = 0; round < 9; ++round) {
+    pass(101ms);
+    EXPECT_THAT(asked(), ElementsAre("10")) << "round " << round;
+  }
+  hear_line(5, 10, true);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, 10);
+  hear_lines(5, 11, lines - 11);
+  hear_tail(5);
+  static_cast<void>(asked());
+  for (int round = 0; round < 3; ++round) {  // gemini.md 7.3: a head waits 10 ms after the last request
+    pass(5ms);
+    EXPECT_THAT(said<RetryRequest>(), SizeIs(testing::Ge(2U))) << "round " << round;
+  }
+}
+
+TEST_F(SurfaceTest, ALostTailIsAskedFor) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, lines);
+  EXPECT_THAT(surface_.take_pings(), IsEmpty());
+  pass(5ms);
+  EXPECT_THAT(asked(), ElementsAre("tail"));
+  hear_tail(5, true);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, ATailThatNeverComesDoesNotSpoilTheImage) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, lines);
+  pass(1s);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_TRUE(pings[0].complete());
+}
+
+TEST_F(SurfaceTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, lines - 3);
+  pass(10ms);
+  EXPECT_THAT(asked(), testing::Each("tail"));
+  hear_tail(5, true);
+  EXPECT_THAT(asked(), ElementsAre("37+3"));
+  hear_lines(5, lines - 3, 3, true);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, ALostHeadIsAskedForAndTheLinesAreKept) {
+  meet_and_start(config());
+  hear_lines(5, 0, 10);
+  pass(3ms);
+  EXPECT_THAT(asked(), ElementsAre("head"));
+  hear_lines(5, 10, lines - 11);
+  hear_tail(5);
+  hear_head(5, 0s + 1ms, true);
+  EXPECT_THAT(asked(), ElementsAre("39"));  // only now is it known how many there are
+  hear_line(5, lines - 1, true);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].samples.u8, image(5));
+  EXPECT_EQ(surface_.statistics().configs_sent, 1U + 1U);  // that of the next ping
+}
+
+TEST_F(SurfaceTest, AHeadRightAfterItsFirstLineIsNotAskedFor) {
+  meet_and_start(config());
+  hear_line(5, 0);
+  hear_head(5);
+  hear_lines(5, 1, lines - 1);
+  hear_tail(5);
+  EXPECT_THAT(asked(), IsEmpty());
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, ALostConfigurationIsSentAgain) {
+  meet_and_start(config());
+  pass(5s);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(testing::Ge(2U)));
+  EXPECT_GE(surface_.statistics().configs_repeated, 2U);
+  hear_ping(5);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
+  meet_and_start(config());
+  const TimePoint transmitted = now_;
+  hear_ping(5);
+  ASSERT_THAT(said<PingConfig>(), SizeIs(1));
+  while (said<RetryRequest>().empty()) {
+    pass(1ms);
+    ASSERT_LT(now_, 5s);
+  }
+  hear_head(5, transmitted, true);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));
+  hear_head(5, transmitted, true);  // the answer to the second copy of the question
+  EXPECT_THAT(said<PingConfig>(), IsEmpty());
+  EXPECT_EQ(surface_.statistics().pings_complete, 1U);
+}
+
+TEST_F(SurfaceTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
+  meet_and_start(config(), 1);
+  const TimePoint transmitted = now_;
+  while (said<RetryRequest>().empty()) {
+    pass(1ms);
+    ASSERT_LT(now_, 5s);
+  }
+  hear_head(5, transmitted, true);
+  hear_lines(5, 0, lines, true);
+  hear_tail(5, true);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+}
+
+TEST_F(SurfaceTest, ASecondPingToARepeatedConfigurationIsLetPass) {
+  meet_and_start(config());
+  pass(1100ms);
+  ASSERT_EQ(surface_.statistics().configs_sent, 2U);
+  hear_ping(5);
+  static_cast<void>(surface_.take_outgoing());
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  pass(5ms);
+  hear_ping(6);  // the first configuration had arrived too
+  EXPECT_THAT(surface_.take_pings(), IsEmpty());
+  EXPECT_EQ(surface_.statistics().pings_unrequested, 1U);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));  // the next one waited for its end
+  hear_ping(7);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
+  now_ = 2s;
+  meet_and_start(config(), 1);
+  // A client before us asked for it and died; it is being sent.
+  hear_head(9, now_ - 500ms);
+  hear_lines(9, 0, 20);
+  hear_lines(9, 25, 15);
+  EXPECT_THAT(asked(), IsEmpty());
+  hear_tail(9);
+  EXPECT_THAT(surface_.take_pings(), IsEmpty());
+  hear_ping(10);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].head.ping_id, 10);
+  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+}
+
+TEST_F(SurfaceTest, DuplicatesAndDisorderDoNoHarm) {
+  meet_and_start(config());
+  hear_line(5, 1);
+  hear_head(5);
+  hear_head(5);
+  hear_line(5, 0);
+  for (int number = 2; number < lines; number += 2) {
+    hear_line(5, number + 1);
+    hear_line(5, number);
+    hear_line(5, number);
+  }
+  hear_tail(5);
+  hear_tail(5);
+  hear_tail(5, true);
+  hear_head(5, 1ms, true);
+  hear_line(5, 3, true);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].samples.u8, image(5));
+  hear_ping(6);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+}
+
+TEST_F(SurfaceTest, ALineThatNeverComesEndsThePingIncomplete) {
+  meet_and_start(config(), 1);
+  hear_head(5);
+  hear_lines(5, 0, 10);
+  hear_lines(5, 11, lines - 11);
+  hear_tail(5);
+  pass(2s);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].lines_lost, 1);
+  EXPECT_EQ(surface_.statistics().pings_incomplete, 1U);
+  EXPECT_EQ(surface_.statistics().lines_missing, 1U);
+  EXPECT_TRUE(surface_.finished());
+}
+
+TEST_F(SurfaceTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
+  meet_and_start(config());
+  now_ = 10s;
+  hear(status());
+  static_cast<void>(surface_.take_outgoing());
+  Status fresh = status();
+  fresh.clock_us = 1'000;
+  now_ += 6s;
+  hear(fresh);
+  EXPECT_EQ(surface_.statistics().reboots, 1U);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));
+}
+
+// ---- Continuous
+// -------------------------------------------------------------------------------------------------
+
+TEST_F(SurfaceTest, ContinuousPingsNeedOneConfigurationAndAreStoppedAtTheEnd) {
+  meet_and_start(config(RunMode::continuous), 3);
+  for (int id = 254; id < 257; ++id) {
+    hear_ping(id & 0xFF);
+    pass(100ms);
+  }
+  EXPECT_THAT(surface_.take_pings(), SizeIs(3));
+  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+  EXPECT_TRUE(surface_.finished());
+  EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
+  pass(10s);
+  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+}
+
+TEST_F(SurfaceTest, LinesOfAnUnknownPingAskForItsHead) {
+  meet_and_start(config(RunMode::continuous));
+  hear_ping(5);
+  pass(95ms);
+  const TimePoint transmitted = now_;
+  hear_lines(6, 0, 20);
+  pass(3ms);
+  EXPECT_THAT(asked(), ElementsAre("head"));
+  hear_lines(6, 20, 20);
+  hear_tail(6);
+  hear_head(6, transmitted, true);
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(2));
+  EXPECT_EQ(pings[1].samples.u8, image(6));
+}
+
+TEST_F(SurfaceTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
+  meet_and_start(config(RunMode::continuous));
+  hear_head(5);
+  hear_lines(5, 1, lines - 10);
+  EXPECT_THAT(asked(), IsEmpty());
+  hear_lines(5, lines - 9, 5);
+  EXPECT_THAT(asked(), ElementsAre("tail"));
+}
+
+TEST_F(SurfaceTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
+  meet_and_start(config(RunMode::continuous));
+  hear_head(5);
+  hear_lines(5, 0, lines - 2);
+  hear_head(6);
+  hear_line(5, lines - 1);
+  hear_line(6, 0);
+  hear_line(5, lines - 2, true);
+  auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_TRUE(pings[0].complete());
+  hear_lines(6, 1, 5);
+  hear_head(7);
+  pass(20ms);
+  pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].lines_lost, lines - 6);
+}
+
+TEST_F(SurfaceTest, SkippedIdsAreMissedPings) {
+  meet_and_start(config(RunMode::continuous));
+  hear_ping(255);
+  hear_ping(2);
+  EXPECT_EQ(surface_.statistics().pings_missed, 2U);  // 0 and 1
+}
+
+TEST_F(SurfaceTest, AProgrammeThatFallsSilentIsSentAgain) {
+  meet_and_start(config(RunMode::continuous));
+  hear_ping(5);
+  pass(3s);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(testing::Ge(1U)));
+}
+
+TEST_F(SurfaceTest, StopSilencesTheSurface) {
+  meet_and_start(config(RunMode::continuous));
+  hear_head(5);
+  hear_lines(5, 0, 3);
+  surface_.stop();
+  surface_.advance(now_);
+  EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
+  hear_lines(5, 10, 3);
+  hear(status());
+  pass(10s);
+  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+  EXPECT_TRUE(surface_.finished());
+}
+
+}  // namespace
+}  // namespace sonard::gemini
