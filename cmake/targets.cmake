@@ -9,6 +9,10 @@ if(SONARD_SANITIZE)
   target_compile_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE})
 endif()
+if(SONARD_FUZZ)
+  # Coverage feedback for libFuzzer, whose main() only the fuzz programs link (tests/fuzz).
+  target_compile_options(sonard_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # sonard_library(NAME SOURCES...) and sonard_program(NAME SOURCES...)
 function(sonard_library name)

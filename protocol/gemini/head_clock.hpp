@@ -15,8 +15,11 @@ namespace sonard::gemini {
 class HeadClock {
  public:
   /// A datagram stamped `head_us` arrived at `now`. Only the newest few count, so that slow drift cannot add
-  /// up.
+  /// up. Stamps that no clock of a head reaches are ignored.
   void observe(std::chrono::nanoseconds now, std::uint64_t head_us) {
+    if (head_us > most_us) {
+      return;
+    }
     behind_[next_] = now - std::chrono::microseconds{head_us};
     next_ = (next_ + 1) % behind_.size();
     count_ = std::min(count_ + 1, behind_.size());
@@ -38,6 +41,9 @@ class HeadClock {
  private:
   /// Two crystals drift apart by less than 2 ms over the seconds that the samples span.
   static constexpr std::chrono::nanoseconds slack = std::chrono::milliseconds{2};
+
+  /// A hundred years, which nanoseconds can still hold.
+  static constexpr std::uint64_t most_us = 3'153'600'000'000'000;
 
   std::array<std::chrono::nanoseconds, 8> behind_{};  ///< surface time less head time, ring
   std::size_t next_ = 0;

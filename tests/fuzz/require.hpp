@@ -1,0 +1,17 @@
+// How a fuzz program reports a broken promise.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace sonard::fuzz {
+
+/// Ends the program, which libFuzzer takes for a finding and keeps the input.
+inline void require(bool holds, const char* promise) {
+  if (!holds) {
+    std::fprintf(stderr, "broken promise: %s\n", promise);
+    std::abort();
+  }
+}
+
+}  // namespace sonard::fuzz
