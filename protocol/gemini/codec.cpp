@@ -163,7 +163,8 @@ void write_fields(ByteWriter& writer, const Message& message) {
              Layout<Message>::fields);
 }
 
-// ----- bodies: by the table; an overload for one message says what no table can -------------------------------
+// ----- bodies: by the table; an overload for one message says what no table can
+// -------------------------------
 // ------------------------------------------------------------
 
 template <HasLayout Message>
