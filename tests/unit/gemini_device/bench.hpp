@@ -1,0 +1,254 @@
+// A head on a bench: virtual time, a renderer that takes a set time, everything sent written down.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "protocol/gemini/codec.hpp"
+#include "protocol/gemini/device.hpp"
+#include "protocol/gemini/messages.hpp"
+
+namespace sonard::gemini {
+
+using namespace std::chrono_literals;
+
+inline constexpr Ipv4 head_address = 0xC0A802C9;     // 192.168.2.201
+inline constexpr Ipv4 surface_address = 0xC0A80205;  // 192.168.2.5
+inline constexpr Ipv4 other_surface = 0xC0A80206;    // 192.168.2.6
+
+/// "20 01 59" -> bytes. Everything but hexadecimal digits is skipped.
+inline std::vector<std::uint8_t> from_hex(std::string_view text) {
+  std::vector<std::uint8_t> bytes;
+  int digits = 0;
+  for (const char c : text) {
+    const bool number = c >= '0' && c <= '9';
+    const bool letter = c >= 'a' && c <= 'f';
+    if (!number && !letter) {
+      continue;
+    }
+    const int nibble = number ? c - '0' : c - 'a' + 10;
+    if (digits++ % 2 == 0) {
+      bytes.push_back(static_cast<std::uint8_t>(nibble << 4));
+    } else {
+      bytes.back() = static_cast<std::uint8_t>(bytes.back() | nibble);
+    }
+  }
+  return bytes;
+}
+
+inline std::vector<std::uint8_t> copy(std::span<const std::uint8_t> bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+/// The head of the worked examples (docs/protocols/gemini.md 10): ID 601, 192.168.2.201/24, MAC
+/// 00:12:34:00:02:59.
+inline DeviceConfig example_config() {
+  DeviceConfig config;
+  config.sonar_id = 601;
+  config.alternate_address = head_address;
+  config.netmask = 0xFFFFFF00;
+  config.mac = {0x00, 0x12, 0x34, 0x00, 0x02, 0x59};
+  return config;
+}
+
+/// Addressed to the head of the examples.
+template <class Message>
+Message to_head(Message message = {}) {
+  message.header.sonar_id = 601;
+  return message;
+}
+
+/// 8 bit, uncompressed, pings out of water too.
+inline PingConfig ping_of(int lines, RunMode mode = RunMode::single,
+                          std::chrono::microseconds interval = 200ms) {
+  PingConfig config = to_head<PingConfig>();
+  config.run_mode = static_cast<std::uint16_t>(mode);
+  config.ext_mode = 0x0204;
+  config.end_range = static_cast<std::uint16_t>(lines);
+  config.interping_us = static_cast<std::uint32_t>(interval.count());
+  return config;
+}
+
+inline RetryRequest retry_of(RetryKind kind, int first = 0, int count = 1) {
+  RetryRequest request = to_head<RetryRequest>();
+  request.kind = kind;
+  request.first_line = static_cast<std::uint16_t>(first);
+  request.line_count = static_cast<std::uint16_t>(count);
+  return request;
+}
+
+/// Any values that tell pings, lines and beams apart.
+inline std::uint8_t test_sample(std::uint64_t ping, int line, int beam) {
+  return static_cast<std::uint8_t>(ping * 31 + static_cast<std::uint64_t>(line) * 7 +
+                                   static_cast<std::uint64_t>(beam));
+}
+
+inline PingImage test_image(const PingJob& job) {
+  PingImage image;
+  image.ping_number = job.ping_number;
+  for (int line = 0; line < job.lines(); ++line) {
+    for (int beam = 0; beam < beam_count; ++beam) {
+      const std::uint8_t sample = test_sample(job.ping_number, line, beam);
+      if (job.sixteen_bit) {
+        image.u16.push_back(static_cast<std::uint16_t>(sample << 8 | (255 - sample)));
+      } else {
+        image.u8.push_back(sample);
+      }
+    }
+  }
+  return image;
+}
+
+class Bench {
+ public:
+  struct Sent {
+    TimePoint at{};
+    Outgoing::To to = Outgoing::To::surface;
+    Ipv4 surface = 0;
+    Ipv4 reply_from = 0;
+    SharedBytes bytes;
+
+    std::uint8_t type() const { return bytes[0]; }
+  };
+
+  explicit Bench(const DeviceConfig& config = example_config()) : device(config, 0ns) { step(); }
+
+  // What a test sets.
+  std::chrono::nanoseconds render_time{0};
+  std::function<PingImage(const PingJob&)> render = test_image;
+  bool renderer_answers = true;  ///< false: the test answers the jobs itself
+  bool renderer_fails = false;
+  /// How late each timer of the head runs out.
+  std::function<std::chrono::nanoseconds()> lateness = [] { return 0ns; };
+  /// Sees each datagram as it is sent; may not call the bench.
+  std::function<void(const Sent&)> on_sent;
+
+  // What a test looks at.
+  Device device;
+  TimePoint now{};
+  std::vector<Sent> sent;
+  std::vector<PingJob> jobs;
+
+  void raw(std::span<const std::uint8_t> bytes, Ipv4 from = surface_address, Ipv4 to = head_address) {
+    device.on_datagram(now, from, to, bytes);
+    step();
+  }
+  void command(const Command& command, Ipv4 from = surface_address) { raw(encode(command), from); }
+  void image(const PingImage& image) {
+    device.on_image(now, image);
+    step();
+  }
+  void trigger() {
+    device.on_trigger(now);
+    step();
+  }
+  void set_out_of_water(bool out) {
+    device.set_out_of_water(out);
+    step();
+  }
+
+  /// When something happens next of itself.
+  TimePoint next_event() const {
+    TimePoint next = timer_;
+    return image_ ? std::min(next, image_->first) : next;
+  }
+  void run_until(TimePoint end) {
+    while (next_event() <= end) {
+      now = std::max(now, next_event());
+      if (image_ && image_->first <= now) {
+        answer();
+      }
+      step();
+    }
+    now = end;
+  }
+  void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
+  /// Like run_for, with a stay-alive every second.
+  void run_connected(std::chrono::nanoseconds span) {
+    for (const TimePoint end = now + span; now < end;) {
+      command(to_head<StatusRequest>());
+      run_until(std::min(end, now + 1s));
+    }
+  }
+
+  /// The messages of one type among those sent from index `from` on.
+  template <class Message>
+  std::vector<std::pair<TimePoint, Message>> all(std::size_t from = 0) const {
+    std::vector<std::pair<TimePoint, Message>> found;
+    for (std::size_t i = from; i < sent.size(); ++i) {
+      const auto report = decode_report(sent[i].bytes);
+      if (!report) {
+        ADD_FAILURE() << "undecodable datagram sent: " << to_string(report.error());
+        continue;
+      }
+      if (const Message* message = std::get_if<Message>(&*report)) {
+        found.emplace_back(sent[i].at, *message);
+      }
+    }
+    return found;
+  }
+  /// Datagrams of pings (types 0x41, 0x42, 0x43), from index `from` on.
+  std::vector<Sent> ping_datagrams(std::size_t from = 0) const {
+    std::vector<Sent> found;
+    for (std::size_t i = from; i < sent.size(); ++i) {
+      if (sent[i].type() >= 0x41 && sent[i].type() <= 0x43) {
+        found.push_back(sent[i]);
+      }
+    }
+    return found;
+  }
+  std::size_t count(MessageType type) const {
+    std::size_t n = 0;
+    for (const Sent& datagram : sent) {
+      n += datagram.type() == static_cast<std::uint8_t>(type) ? 1U : 0U;
+    }
+    return n;
+  }
+
+ private:
+  void step() {
+    device.advance(now);
+    const auto deadline = device.next_deadline();
+    timer_ = TimePoint::max();
+    if (deadline) {
+      EXPECT_GT(*deadline, now) << "the head would keep its caller spinning";
+      timer_ = *deadline + lateness();
+    }
+    for (Outgoing& outgoing : device.take_outgoing()) {
+      sent.push_back({now, outgoing.to, outgoing.surface, outgoing.reply_from, outgoing.bytes});
+      if (on_sent) {
+        on_sent(sent.back());
+      }
+    }
+    if (const auto job = device.take_job()) {
+      jobs.push_back(*job);
+      if (renderer_answers) {
+        EXPECT_FALSE(image_) << "a second job while one is unanswered";
+        image_.emplace(now + render_time, *job);
+      }
+    }
+  }
+  void answer() {
+    const PingJob job = image_->second;
+    image_.reset();
+    if (renderer_fails) {
+      device.on_image_failed(now, job.ping_number);
+    } else {
+      device.on_image(now, render(job));
+    }
+  }
+
+  TimePoint timer_ = TimePoint::max();
+  std::optional<std::pair<TimePoint, PingJob>> image_;
+};
+
+}  // namespace sonard::gemini
