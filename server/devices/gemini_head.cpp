@@ -207,6 +207,7 @@ void GeminiHead::Impl::pump() {
   }
   const TimePoint now = services.clock.now();
   take_from_surface(now);
+  log.surface(device.surface());
   // A full socket holds the device back instead of letting datagrams pile up; `drained` calls again.
   if (!socket->blocked()) {
     advance_device(now);

@@ -27,6 +27,7 @@ render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const render
                     .compression_log2 = job.compression_log2,
                     .compression_peak = false};  // a 720i averages, whatever it is asked (5)
   settings.sixteen_bit = job.sixteen_bit;
+  settings.transmit = job.transmit;
   settings.physical.gain_db += job.gain_db;
   return settings;
 }

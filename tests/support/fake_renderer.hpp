@@ -17,21 +17,31 @@ namespace sonard::test {
 struct FakeRendererControl {
   /// Called before each ping on the render thread; may throw or block.
   std::function<void(const render::PingRequest&, int stream)> before_ping;
-  std::atomic<int> pings{0};
+  std::atomic<int> attempts{0};  ///< pings asked for
+  std::atomic<int> pings{0};     ///< pings rendered
   std::atomic<bool> destroyed{false};
 
   void record(const render::PingRequest& request) {
     const std::lock_guard lock(mutex);
     requests.push_back(request);
   }
+  void record_body(const std::string& name) {
+    const std::lock_guard lock(mutex);
+    bodies.push_back(name);
+  }
   std::vector<render::PingRequest> recorded() const {
     const std::lock_guard lock(mutex);
     return requests;
+  }
+  std::vector<std::string> moved_bodies() const {
+    const std::lock_guard lock(mutex);
+    return bodies;
   }
 
  private:
   mutable std::mutex mutex;
   std::vector<render::PingRequest> requests;
+  std::vector<std::string> bodies;
 };
 
 /// Sample at (line, beam) of a ping.
@@ -46,9 +56,13 @@ class FakeRenderer final : public server::PingRenderer {
   ~FakeRenderer() override { control_->destroyed = true; }
 
   std::string description() const override { return "fake"; }
-  bool set_body_pose(const std::string& body, const render::Pose&) override { return body != "nobody"; }
+  bool set_body_pose(const std::string& body, const render::Pose&) override {
+    control_->record_body(body);
+    return true;
+  }
 
   render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
+    ++control_->attempts;
     if (control_->before_ping) {
       control_->before_ping(request, stream);
     }

@@ -1,5 +1,6 @@
 #include "server/devices/faulty_link.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -13,7 +14,8 @@ using std::chrono::milliseconds;
 
 Datagram numbered(int number) {
   Datagram datagram;
-  datagram.bytes = {static_cast<std::uint8_t>(number & 0xFF), static_cast<std::uint8_t>(number >> 8)};
+  datagram.bytes = gemini::SharedBytes(std::vector<std::uint8_t>{static_cast<std::uint8_t>(number & 0xFF),
+                                                                 static_cast<std::uint8_t>(number >> 8)});
   return datagram;
 }
 

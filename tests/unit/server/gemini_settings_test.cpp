@@ -7,7 +7,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double degree = 3.14159265358979323846 / 180.0;
 
 gemini::PingJob job_at_20_m() {
   gemini::PingJob job;
@@ -24,9 +24,9 @@ TEST(GeminiSettings, BeamsFallFromPortToStarboardOverTheSector) {
   const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   ASSERT_EQ(edges.size(), 257u);
-  EXPECT_NEAR(edges.front(), 60 * kDegree, 1e-12);
+  EXPECT_NEAR(edges.front(), 60 * degree, 1e-12);
   EXPECT_NEAR(edges[128], 0.0, 1e-12);
-  EXPECT_NEAR(edges.back(), -60 * kDegree, 1e-12);
+  EXPECT_NEAR(edges.back(), -60 * degree, 1e-12);
   EXPECT_TRUE(std::is_sorted(edges.rbegin(), edges.rend()));
 }
 
@@ -41,7 +41,7 @@ TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
   } rows[] = {{0, -59.615}, {1, -58.857}, {2, -58.115}, {127, -0.194}, {128, 0.194}, {255, 59.615}};
   for (const auto& row : rows) {
     const double middle_sin = (std::sin(edges[row.beam]) + std::sin(edges[row.beam + 1])) / 2;
-    EXPECT_NEAR(std::asin(middle_sin) / kDegree, -row.bearing_deg, 6e-4) << "beam " << row.beam;
+    EXPECT_NEAR(std::asin(middle_sin) / degree, -row.bearing_deg, 6e-4) << "beam " << row.beam;
   }
 }
 
@@ -59,6 +59,13 @@ TEST(GeminiSettings, SampleSizeFollowsTheJob) {
   gemini::PingJob job = job_at_20_m();
   job.sixteen_bit = true;
   EXPECT_TRUE(to_sonar_settings(job, {}).sixteen_bit);
+}
+
+TEST(GeminiSettings, HeadThatOnlyListensTransmitsNothing) {
+  gemini::PingJob job = job_at_20_m();
+  EXPECT_TRUE(to_sonar_settings(job, {}).transmit);
+  job.transmit = false;
+  EXPECT_FALSE(to_sonar_settings(job, {}).transmit);
 }
 
 TEST(GeminiSettings, GainIsAddedAndTheRestComesFromTheHead) {

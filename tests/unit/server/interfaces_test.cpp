@@ -5,25 +5,25 @@
 namespace sonard::server {
 namespace {
 
-const std::vector<InterfaceAddress> kInterfaces{
+const std::vector<InterfaceAddress> interfaces{
     {"lo", 0x7F000001, 0xFF000000},    // 127.0.0.1/8
     {"eth0", 0x0A3D13C8, 0xFFFFFF00},  // 10.61.19.200/24
     {"eth0", 0xC0A802C8, 0xFFFFFF00},  // 192.168.2.200/24
 };
 
 TEST(Interfaces, OwnerIsTheInterfaceWithThatAddress) {
-  ASSERT_TRUE(owner_of(0xC0A802C8, kInterfaces));
-  EXPECT_EQ(owner_of(0xC0A802C8, kInterfaces)->interface, "eth0");
-  EXPECT_EQ(owner_of(0xC0A802C8, kInterfaces)->address, 0xC0A802C8u);
+  ASSERT_TRUE(owner_of(0xC0A802C8, interfaces));
+  EXPECT_EQ(owner_of(0xC0A802C8, interfaces)->interface, "eth0");
+  EXPECT_EQ(owner_of(0xC0A802C8, interfaces)->address, 0xC0A802C8u);
 }
 
 TEST(Interfaces, NeighbourOnTheSameNetworkIsNotOurs) {
-  EXPECT_FALSE(owner_of(0x0A3D130A, kInterfaces));
+  EXPECT_FALSE(owner_of(0x0A3D130A, interfaces));
 }
 
 TEST(Interfaces, AllOfLoopbackIsOurs) {
-  ASSERT_TRUE(owner_of(0x7F000002, kInterfaces));
-  EXPECT_EQ(owner_of(0x7F000002, kInterfaces)->netmask, 0xFF000000u);
+  ASSERT_TRUE(owner_of(0x7F000002, interfaces));
+  EXPECT_EQ(owner_of(0x7F000002, interfaces)->netmask, 0xFF000000u);
 }
 
 TEST(Interfaces, ThisMachineHasLoopback) {

@@ -1,10 +1,17 @@
 #include "server/render_service.hpp"
 
-#include <condition_variable>
+#include <atomic>
 #include <deque>
+#include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -192,11 +199,13 @@ TEST_F(RenderServiceTest, StopForgetsWaitingJobsAndFinishesTheCurrentOne) {
   };
   RenderService service(fake_renderer_factory(control), 2, hooks());
   service.submit(small_job(1), [](const RenderResult&) {});
-  service.submit(small_job(2), [](const RenderResult&) {});
+  auto token = std::make_shared<int>();
+  const std::weak_ptr<int> waiting_job = token;
+  service.submit(small_job(2), [token](const RenderResult&) {});
+  token.reset();
   ASSERT_EQ(entered.get_future().wait_for(std::chrono::seconds{10}), std::future_status::ready);
   std::thread stopper([&] { service.stop(); });
-  // The second job may only be seen if stop() had not yet closed the queue when the first was released.
-  std::this_thread::sleep_for(std::chrono::milliseconds{50});
+  EXPECT_TRUE(test::wait_for([&] { return waiting_job.expired(); }));
   release.set_value();
   stopper.join();
   EXPECT_EQ(control->pings, 1);

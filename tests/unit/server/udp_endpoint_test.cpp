@@ -10,8 +10,18 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr Ipv4 kLoopback1 = 0x7F000001;
-constexpr Ipv4 kLoopback5 = 0x7F000005;
+constexpr Ipv4 loopback_1 = 0x7F000001;
+constexpr Ipv4 loopback_5 = 0x7F000005;
+
+using Bytes = std::vector<std::uint8_t>;
+
+Datagram to(const Endpoint& remote, Bytes bytes, Ipv4 local = 0) {
+  return {remote, local, gemini::SharedBytes(std::move(bytes))};
+}
+
+Bytes bytes_of(const Datagram& datagram) {
+  return {datagram.bytes.begin(), datagram.bytes.end()};
+}
 
 // Two endpoints on one io_context that the test runs.
 struct UdpEndpointTest : testing::Test {
@@ -36,45 +46,46 @@ struct UdpEndpointTest : testing::Test {
 TEST_F(UdpEndpointTest, TellsOnWhichAddressItWasAddressed) {
   UdpEndpoint everywhere(io, {0, 0});
   everywhere.start(collect());
-  UdpEndpoint sender(io, {kLoopback1, 0});
+  UdpEndpoint sender(io, {loopback_1, 0});
   const std::uint16_t port = everywhere.local_endpoint().port;
-  sender.send({{{kLoopback5, port}, 0, {1, 2, 3}}, {{kLoopback1, port}, 0, {4}}});
+  sender.send({to({loopback_5, port}, {1, 2, 3}), to({loopback_1, port}, {4})});
   ASSERT_TRUE(run_until([&] { return received.size() == 2; }));
-  EXPECT_EQ(received[0].local, kLoopback5);
+  EXPECT_EQ(received[0].local, loopback_5);
   EXPECT_EQ(received[0].remote, sender.local_endpoint());
-  EXPECT_EQ(received[0].bytes, (std::vector<std::uint8_t>{1, 2, 3}));
-  EXPECT_EQ(received[1].local, kLoopback1);
+  EXPECT_EQ(bytes_of(received[0]), (Bytes{1, 2, 3}));
+  EXPECT_EQ(received[1].local, loopback_1);
 }
 
 TEST_F(UdpEndpointTest, SendsFromTheAddressAskedFor) {
   UdpEndpoint everywhere(io, {0, 0});
-  UdpEndpoint peer(io, {kLoopback1, 0});
+  UdpEndpoint peer(io, {loopback_1, 0});
   peer.start(collect());
-  everywhere.send({{peer.local_endpoint(), kLoopback5, {9}}});
+  everywhere.send({to(peer.local_endpoint(), {9}, loopback_5)});
   ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
-  EXPECT_EQ(received[0].remote, (Endpoint{kLoopback5, everywhere.local_endpoint().port}));
+  EXPECT_EQ(received[0].remote, (Endpoint{loopback_5, everywhere.local_endpoint().port}));
 }
 
 TEST_F(UdpEndpointTest, BurstLargerThanTheSocketBufferArrivesInOrder) {
-  UdpEndpoint receiver(io, {kLoopback1, 0});
+  UdpEndpoint receiver(io, {loopback_1, 0});
   receiver.start(collect());
-  UdpEndpoint sender(io, {kLoopback1, 0});
+  UdpEndpoint sender(io, {loopback_1, 0});
   bool drained = false;
   sender.start([](const Datagram&) {}, [&] { drained = true; });
   // The receiver reads on the same thread, so it cannot keep up by itself: send in portions its buffer can
   // hold.
-  constexpr int kPortions = 40;
-  constexpr int kPortion = 64;
-  for (int portion = 0; portion < kPortions; ++portion) {
+  constexpr int portions = 40;
+  constexpr int portion_size = 64;
+  for (int portion = 0; portion < portions; ++portion) {
     std::vector<Datagram> burst;
-    for (int i = 0; i < kPortion; ++i) {
-      const int number = portion * kPortion + i;
-      burst.push_back({receiver.local_endpoint(), 0, std::vector<std::uint8_t>(272)});
-      burst.back().bytes[0] = static_cast<std::uint8_t>(number & 0xFF);
-      burst.back().bytes[1] = static_cast<std::uint8_t>(number >> 8);
+    for (int i = 0; i < portion_size; ++i) {
+      const int number = portion * portion_size + i;
+      Bytes bytes(272);
+      bytes[0] = static_cast<std::uint8_t>(number & 0xFF);
+      bytes[1] = static_cast<std::uint8_t>(number >> 8);
+      burst.push_back(to(receiver.local_endpoint(), std::move(bytes)));
     }
     sender.send(std::move(burst));
-    const std::size_t expected = static_cast<std::size_t>((portion + 1) * kPortion);
+    const std::size_t expected = static_cast<std::size_t>((portion + 1) * portion_size);
     ASSERT_TRUE(run_until([&] { return received.size() == expected; })) << "portion " << portion;
   }
   for (std::size_t i = 0; i < received.size(); ++i) {
@@ -85,7 +96,7 @@ TEST_F(UdpEndpointTest, BurstLargerThanTheSocketBufferArrivesInOrder) {
 }
 
 TEST_F(UdpEndpointTest, AddressInUseIsAnErrorThatNamesIt) {
-  UdpEndpoint first(io, {kLoopback1, 0});
+  UdpEndpoint first(io, {loopback_1, 0});
   try {
     UdpEndpoint second(io, first.local_endpoint());
     FAIL() << "no exception";
@@ -97,36 +108,35 @@ TEST_F(UdpEndpointTest, AddressInUseIsAnErrorThatNamesIt) {
 }
 
 TEST_F(UdpEndpointTest, UnreachableDestinationCostsOneDatagramOnly) {
-  UdpEndpoint peer(io, {kLoopback1, 0});
+  UdpEndpoint peer(io, {loopback_1, 0});
   peer.start(collect());
-  UdpEndpoint sender(io, {kLoopback1, 0});
+  UdpEndpoint sender(io, {loopback_1, 0});
   // From a loopback source the kernel refuses a host outside (EINVAL).
-  sender.send({{{0x08080808, 9}, 0, {1}}, {peer.local_endpoint(), 0, {2}}});
+  sender.send({to({0x08080808, 9}, {1}), to(peer.local_endpoint(), {2})});
   ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
-  EXPECT_EQ(received[0].bytes, std::vector<std::uint8_t>{2});
+  EXPECT_EQ(bytes_of(received[0]), (Bytes{2}));
   EXPECT_EQ(sender.counters().send_failed, 1u);
 }
 
 TEST_F(UdpEndpointTest, TooLongDatagramIsCountedAndDropped) {
-  UdpEndpoint receiver(io, {kLoopback1, 0});
+  UdpEndpoint receiver(io, {loopback_1, 0});
   receiver.start(collect());
-  UdpEndpoint sender(io, {kLoopback1, 0});
-  sender.send(
-      {{receiver.local_endpoint(), 0, std::vector<std::uint8_t>(5000)}, {receiver.local_endpoint(), 0, {7}}});
+  UdpEndpoint sender(io, {loopback_1, 0});
+  sender.send({to(receiver.local_endpoint(), Bytes(5000)), to(receiver.local_endpoint(), {7})});
   ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
-  EXPECT_EQ(received[0].bytes, std::vector<std::uint8_t>{7});
+  EXPECT_EQ(bytes_of(received[0]), (Bytes{7}));
   EXPECT_EQ(receiver.counters().truncated, 1u);
 }
 
 TEST_F(UdpEndpointTest, MayBeClosedFromItsOwnCallback) {
-  auto receiver = std::make_unique<UdpEndpoint>(io, Endpoint{kLoopback1, 0});
+  auto receiver = std::make_unique<UdpEndpoint>(io, Endpoint{loopback_1, 0});
   int calls = 0;
   receiver->start([&](const Datagram&) {
     ++calls;
     receiver->close();
   });
-  UdpEndpoint sender(io, {kLoopback1, 0});
-  sender.send({{receiver->local_endpoint(), 0, {1}}, {receiver->local_endpoint(), 0, {2}}});
+  UdpEndpoint sender(io, {loopback_1, 0});
+  sender.send({to(receiver->local_endpoint(), {1}), to(receiver->local_endpoint(), {2})});
   ASSERT_TRUE(run_until([&] { return calls == 1; }));
   receiver.reset();
   io.run_for(std::chrono::milliseconds{20});

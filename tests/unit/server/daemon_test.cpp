@@ -1,0 +1,177 @@
+#include "server/daemon.hpp"
+
+#include <csignal>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+#include <boost/asio/io_context.hpp>
+
+#include "server/devices/udp_endpoint.hpp"
+#include "server/exit_codes.hpp"
+#include "tests/support/fake_renderer.hpp"
+#include "tests/support/loopback.hpp"
+
+namespace sonard::server {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// The continuous form of the configuration in docs/protocols/gemini.md 10, sonar ID 601: run mode 1, 32
+// lines, one ping per 5 ms (the head's own limit may be slower).
+Bytes continuous_config() {
+  Bytes config(68);
+  config[0] = 0x21;
+  config[1] = 0x01;
+  config[2] = 0x59;
+  config[3] = 0x02;
+  config[16] = 0x01;  // runMode
+  config[18] = 0x04;  // 8 bit
+  config[19] = 0x02;  // also out of water
+  config[22] = 32;    // endRange
+  config[24] = 0x88;  // 5000 us
+  config[25] = 0x13;
+  config[28] = 4;     // txLength
+  config[48] = 0x98;  // 1500.0 m/s
+  config[49] = 0x3A;
+  config[50] = 0x01;
+  return config;
+}
+
+// Runs serve() on this thread while `surface` plays the client on another.
+struct DaemonTest : testing::Test {
+  const Ipv4 head_address = test::own_loopback_address(2);
+  const Ipv4 surface_address = test::own_loopback_address(1);
+  std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
+  DaemonConfig config;
+
+  DaemonTest() {
+    spdlog::set_level(spdlog::level::off);
+    config.poses.T_world_vehicle_initial = render::Pose{};
+    config.heads.push_back(head("first", 601, head_address));
+  }
+  ~DaemonTest() override { spdlog::set_level(spdlog::level::info); }
+
+  GeminiHeadConfig head(const std::string& name, std::uint16_t id, Ipv4 address) const {
+    GeminiHeadConfig result;
+    result.name = name;
+    result.device.sonar_id = id;
+    result.device.alternate_address = address;
+    result.device.netmask = 0xFF000000;
+    result.device.min_ping_period = std::chrono::milliseconds{1};
+    result.bind_address = address;
+    result.status = {StatusDestination::Mode::unicast, {surface_address}};
+    result.allow = {{surface_address, 32}};
+    return result;
+  }
+
+  // A client: for each datagram that arrives it does what `react` says; ends when that returns true.
+  static void play_surface(UdpEndpoint& surface, boost::asio::io_context& io,
+                           const std::function<bool(const Datagram&)>& react) {
+    bool done = false;
+    surface.start([&](const Datagram& datagram) { done = done || react(datagram); });
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+    while (!done && std::chrono::steady_clock::now() < deadline) {
+      io.run_one_for(std::chrono::milliseconds{10});
+      io.restart();
+    }
+    EXPECT_TRUE(done) << "the daemon did not answer in time";
+    surface.close();
+  }
+
+  // Serves until the client has seen enough, then ends the daemon by a signal, as an operator does.
+  int serve_until(const std::function<bool(UdpEndpoint&, const Datagram&)>& react, bool send_signal = true) {
+    boost::asio::io_context io;
+    UdpEndpoint surface(io, {surface_address, 52900});
+    std::thread client([&] {
+      play_surface(surface, io, [&](const Datagram& datagram) { return react(surface, datagram); });
+      if (send_signal) {
+        kill(getpid(), SIGTERM);
+      }
+    });
+    const int code = serve(config, {}, test::fake_renderer_factory(renderer));
+    client.join();
+    return code;
+  }
+};
+
+bool is(const Datagram& datagram, std::uint8_t type) {
+  return datagram.bytes[0] == type;
+}
+
+TEST_F(DaemonTest, EndsCleanlyOnASignal) {
+  EXPECT_EQ(serve_until([](UdpEndpoint&, const Datagram& datagram) { return is(datagram, 0x40); }),
+            exit_clean);
+  EXPECT_TRUE(renderer->destroyed);
+}
+
+TEST_F(DaemonTest, ServesSeveralHeads) {
+  const Ipv4 second_address = test::own_loopback_address(3);
+  config.heads.push_back(head("second", 602, second_address));
+  bool first = false;
+  bool second = false;
+  const int code = serve_until([&](UdpEndpoint&, const Datagram& datagram) {
+    first = first || datagram.remote.address == head_address;
+    second = second || datagram.remote.address == second_address;
+    return first && second;
+  });
+  EXPECT_EQ(code, exit_clean);
+}
+
+TEST_F(DaemonTest, RendererThatFailsWhileServingEndsItWithItsOwnCode) {
+  renderer->before_ping = [](const render::PingRequest&, int) {
+    throw render::RendererError("context lost");
+  };
+  const int code = serve_until(
+      [this](UdpEndpoint& surface, const Datagram&) {
+        surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(continuous_config())}});
+        return true;
+      },
+      /*send_signal=*/false);
+  EXPECT_EQ(code, exit_renderer);
+  EXPECT_EQ(renderer->attempts, 1);
+}
+
+TEST_F(DaemonTest, AddressInUseNamesTheKey) {
+  boost::asio::io_context io;
+  const UdpEndpoint squatter(io, {head_address, 52901});
+  try {
+    serve(config, {}, test::fake_renderer_factory(renderer));
+    FAIL() << "no exception";
+  } catch (const StartError& error) {
+    EXPECT_EQ(error.key, "heads[0].network.bind");
+    EXPECT_EQ(error.exit_code, exit_network);
+  }
+}
+
+TEST_F(DaemonTest, RendererThatCannotBeMadeIsReportedBeforeAnythingIsServed) {
+  const RendererFactory failing = []() -> std::unique_ptr<PingRenderer> {
+    throw render::RendererError("no GL");
+  };
+  EXPECT_THROW(serve(config, {}, failing), render::RendererError);
+}
+
+// Made to be run under the thread sanitizer: the signal comes while the head pings as fast as it can.
+TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
+  for (int life = 0; life < 50; ++life) {
+    int heads = 0;
+    const auto started = std::chrono::steady_clock::now();
+    const int code = serve_until([&](UdpEndpoint& surface, const Datagram& datagram) {
+      if (is(datagram, 0x40)) {
+        surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(continuous_config())}});
+      }
+      heads += is(datagram, 0x41) ? 1 : 0;
+      return heads > life % 3;
+    });
+    ASSERT_EQ(code, exit_clean) << "life " << life;
+    ASSERT_LT(std::chrono::steady_clock::now() - started, std::chrono::seconds{10}) << "life " << life;
+  }
+}
+
+}  // namespace
+}  // namespace sonard::server

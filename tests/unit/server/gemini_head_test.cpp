@@ -1,0 +1,277 @@
+#include "server/devices/gemini_head.hpp"
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+
+#include "server/devices/udp_endpoint.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/render_service.hpp"
+#include "tests/support/fake_renderer.hpp"
+#include "tests/support/loopback.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+using Bytes = std::vector<std::uint8_t>;
+
+// docs/protocols/gemini.md 10, for sonar ID 601.
+const Bytes status_request{0x20, 0x01, 0x59, 0x02, 0, 0, 0, 0};
+// Single ping, 8 bit, pings out of water too, 483 lines, speed of sound from the configuration.
+const Bytes ping_config{0x21, 0x01, 0x59, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+                        0x00, 0x00, 0x00, 0x00, 0x04, 0x02, 0x00, 0x00, 0xe3, 0x01, 0x40, 0x0d, 0x03, 0x00,
+                        0x04, 0x00, 0x00, 0x00, 0xe8, 0x83, 0x00, 0x00, 0x00, 0x1e, 0x00, 0x00, 0x43, 0x00,
+                        0x00, 0x00, 0x07, 0x00, 0x01, 0x00, 0x90, 0x3a, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00,
+                        0x00, 0x00, 0x00, 0x00, 0x01, 0x1d, 0x00, 0x00, 0x01, 0x12, 0x1e, 0x11};
+constexpr int config_lines = 483;
+
+Bytes not_out_of_water(Bytes config) {
+  config[19] = 0x00;  // extMode bit 9
+  return config;
+}
+
+Bytes externally_triggered(Bytes config) {
+  config[16] = 0x02;
+  return config;
+}
+
+// One head and a surface on one io_context that the test runs.
+struct GeminiHeadTest : testing::Test {
+  const Ipv4 head_address = test::own_loopback_address(2);
+  const Ipv4 surface_address = test::own_loopback_address(1);
+  const Ipv4 stranger_address = test::own_loopback_address(99);
+
+  asio::io_context io;
+  SteadyClock clock;
+  std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
+  PoseConfig pose_config;
+  GeminiHeadConfig config;
+  std::optional<double> water_surface_z_m;
+
+  std::unique_ptr<PoseHistory> poses;
+  std::unique_ptr<RenderService> service;
+  std::unique_ptr<GeminiHead> head;
+  UdpEndpoint surface{io, {surface_address, 52900}};
+  std::vector<Datagram> received;
+
+  GeminiHeadTest() {
+    pose_config.T_world_vehicle_initial = render::Pose{};
+    config.name = "head";
+    config.device.sonar_id = 601;
+    config.device.alternate_address = head_address;
+    config.device.netmask = 0xFF000000;
+    config.bind_address = head_address;
+    config.status = {StatusDestination::Mode::unicast, {surface_address}};
+    config.allow = {{surface_address, 32}};
+    surface.start([this](const Datagram& datagram) { received.push_back(datagram); });
+  }
+
+  ~GeminiHeadTest() override {
+    if (head) {
+      head->stop();
+    }
+    if (service) {
+      service->stop();
+    }
+  }
+
+  void start() {
+    poses = std::make_unique<PoseHistory>(pose_config);
+    RenderServiceHooks hooks;
+    hooks.post = [this](std::function<void()> task) { asio::post(io, std::move(task)); };
+    hooks.on_failure = [](const std::string& what) { FAIL() << what; };
+    service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
+    const GeminiHeadServices services{io, clock, *service, *poses, water_surface_z_m};
+    head = std::make_unique<GeminiHead>(config, 0, services);
+    head->start();
+  }
+
+  void command(const Bytes& bytes) { surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(bytes)}}); }
+
+  std::vector<Bytes> of_type(std::uint8_t type) const {
+    std::vector<Bytes> found;
+    for (const Datagram& datagram : received) {
+      if (datagram.bytes.size() > 0 && datagram.bytes[0] == type) {
+        found.emplace_back(datagram.bytes.begin(), datagram.bytes.end());
+      }
+    }
+    return found;
+  }
+
+  bool run_until(const std::function<bool()>& done,
+                 std::chrono::milliseconds limit = std::chrono::seconds{10}) {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (!done() && std::chrono::steady_clock::now() < deadline) {
+      io.run_one_for(std::chrono::milliseconds{10});
+      io.restart();
+    }
+    return done();
+  }
+
+  bool run_until_received(std::uint8_t type, std::size_t count) {
+    return run_until([&] { return of_type(type).size() >= count; });
+  }
+};
+
+TEST_F(GeminiHeadTest, SendsStatusFromItsCommandPort) {
+  start();
+  ASSERT_TRUE(run_until_received(0x40, 1));
+  EXPECT_EQ(received[0].bytes.size(), 110u);
+  EXPECT_EQ(received[0].remote, (Endpoint{head_address, 52901}));
+}
+
+TEST_F(GeminiHeadTest, AnswersToPort52900WhateverTheSourcePort) {
+  start();
+  UdpEndpoint elsewhere(io, {surface_address, 0});
+  elsewhere.send({{{head_address, 52901}, 0, gemini::SharedBytes(status_request)}});
+  ASSERT_TRUE(run_until_received(0x49, 1));
+}
+
+TEST_F(GeminiHeadTest, BoundToAllAddressesItAnswersFromTheOneAddressed) {
+  config.bind_address = 0;
+  config.command_port =
+      static_cast<std::uint16_t>(20000 + getpid() % 20000);  // all addresses: 52901 may be taken
+  start();
+  const Ipv4 other = test::own_loopback_address(77);
+  surface.send({{{other, config.command_port}, 0, gemini::SharedBytes(status_request)}});
+  ASSERT_TRUE(run_until_received(0x49, 1));
+  for (const Datagram& datagram : received) {
+    EXPECT_EQ(datagram.remote.address, datagram.bytes[0] == 0x49 ? other : head_address);
+  }
+}
+
+TEST_F(GeminiHeadTest, SendsWhatTheRendererHandedOver) {
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until_received(0x43, 1));
+  ASSERT_EQ(of_type(0x41).size(), 1u);
+  const std::vector<Bytes> lines = of_type(0x42);
+  ASSERT_EQ(lines.size(), static_cast<std::size_t>(config_lines));
+  const std::uint64_t ping_number = renderer->recorded().at(0).ping_number;
+  for (int line = 0; line < config_lines; ++line) {
+    const Bytes& bytes = lines[static_cast<std::size_t>(line)];
+    ASSERT_EQ(bytes.size(), 272u);
+    ASSERT_EQ(bytes[10] | bytes[11] << 8, line);
+    for (int beam = 0; beam < 256; ++beam) {
+      ASSERT_EQ(bytes[16 + static_cast<std::size_t>(beam)], test::fake_sample(ping_number, line, beam));
+    }
+  }
+}
+
+TEST_F(GeminiHeadTest, RendersFromVehiclePoseTimesMount) {
+  // Vehicle at (10, 0, -5), turned 90 degrees to port; the sonar sits 1 m ahead of it.
+  pose_config.T_world_vehicle_initial =
+      render::Pose{{10, 0, -5}, glm::dquat(std::sqrt(0.5), 0, 0, std::sqrt(0.5))};
+  config.T_vehicle_sonar.position_m = {1, 0, 0};
+  config.seed = 77;
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  const render::PingRequest request = renderer->recorded().at(0);
+  EXPECT_NEAR(request.T_world_sonar.position_m.x, 10, 1e-12);
+  EXPECT_NEAR(request.T_world_sonar.position_m.y, 1, 1e-12);
+  EXPECT_NEAR(request.T_world_sonar.position_m.z, -5, 1e-12);
+  EXPECT_EQ(request.seed, 77u);
+  EXPECT_EQ(request.settings.range.count, config_lines);
+}
+
+TEST_F(GeminiHeadTest, ForwardsPosesOfBodies) {
+  std::vector<std::string> moved;
+  start();
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  sample.bodies.push_back({"door", {}});
+  poses->insert(sample, clock.now());
+  EXPECT_EQ(poses->bodies_at(clock.now()).size(), 1u);
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  EXPECT_EQ(renderer->moved_bodies(), std::vector<std::string>{"door"});
+}
+
+TEST_F(GeminiHeadTest, DropsAndCountsStrangers) {
+  start();
+  UdpEndpoint stranger(io, {stranger_address, 52900});
+  std::size_t answers = 0;
+  stranger.start([&](const Datagram&) { ++answers; });
+  stranger.send({{{head_address, 52901}, 0, gemini::SharedBytes(status_request)}});
+  ASSERT_TRUE(run_until([&] { return head->counters().not_allowed == 1; }));
+  // An answer to somebody allowed, sent afterwards, arrives; none to the stranger has.
+  command(status_request);
+  ASSERT_TRUE(run_until_received(0x49, 1));
+  EXPECT_EQ(answers, 0u);
+}
+
+TEST_F(GeminiHeadTest, WithoutAPoseItAnswersButDoesNotPing) {
+  pose_config.T_world_vehicle_initial.reset();
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return head->counters().pings_without_pose == 1; }));
+  command(status_request);
+  ASSERT_TRUE(run_until_received(0x49, 1));
+  EXPECT_TRUE(of_type(0x41).empty());
+  EXPECT_EQ(renderer->pings, 0);
+}
+
+TEST_F(GeminiHeadTest, PingsAgainWhenAPoseHasArrived) {
+  pose_config.T_world_vehicle_initial.reset();
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return head->counters().pings_without_pose == 1; }));
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  poses->insert(sample, clock.now());
+  command(ping_config);
+  ASSERT_TRUE(run_until_received(0x43, 1));
+}
+
+TEST_F(GeminiHeadTest, OutOfTheWaterItDoesNotPingUnlessToldTo) {
+  water_surface_z_m = -1.0;  // the sonar is at z = 0
+  start();
+  command(not_out_of_water(ping_config));
+  ASSERT_TRUE(run_until([&] { return head->counters().device.pings_suppressed > 0; }));
+  EXPECT_TRUE(of_type(0x41).empty());
+  command(ping_config);
+  ASSERT_TRUE(run_until_received(0x43, 1));
+}
+
+TEST_F(GeminiHeadTest, FaultsOfTheLinkApplyInBothDirections) {
+  config.link.to_surface.duplicate = 1.0;
+  config.link.from_surface.delay = std::chrono::milliseconds{80};
+  start();
+  const auto sent = std::chrono::steady_clock::now();
+  command(status_request);
+  ASSERT_TRUE(run_until_received(0x49, 2));
+  EXPECT_GE(std::chrono::steady_clock::now() - sent, std::chrono::milliseconds{80});
+  EXPECT_EQ(of_type(0x49)[0], of_type(0x49)[1]);
+}
+
+TEST_F(GeminiHeadTest, DatagramAtTheTriggerSocketIsOneEdge) {
+  config.trigger = Endpoint{head_address, 14700};
+  start();
+  command(externally_triggered(ping_config));
+  command(status_request);
+  ASSERT_TRUE(run_until_received(0x49, 1));
+  EXPECT_EQ(renderer->pings, 0);
+  surface.send({{*config.trigger, 0, gemini::SharedBytes(Bytes{1})}});
+  ASSERT_TRUE(run_until_received(0x43, 1));
+  EXPECT_EQ(renderer->pings, 1);
+}
+
+TEST_F(GeminiHeadTest, AnswerToAHeadThatIsGoneIsHarmless) {
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  head.reset();
+  io.run_for(std::chrono::milliseconds{20});
+}
+
+}  // namespace
+}  // namespace sonard::server

@@ -1,0 +1,79 @@
+#include "server/devices/ping_dump.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace sonard::server {
+namespace {
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A folder of its own that goes when the test ends.
+struct PingDumpTest : testing::Test {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("sonard-ping-dump-" + std::to_string(getpid()));
+
+  ~PingDumpTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  }
+};
+
+// "123456789" is the check string of CRC catalogues: CRC-32 of zlib gives CBF43926.
+TEST(SamplesCrc32, IsThatOfZlib) {
+  render::PingSamples samples;
+  samples.u8 = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(samples_crc32(samples), 0xCBF43926u);
+}
+
+TEST(SamplesCrc32, Takes16BitSamplesMostSignificantByteFirst) {
+  render::PingSamples eight;
+  eight.u8 = {'1', '2', '3', '4'};
+  render::PingSamples sixteen;
+  sixteen.u16 = {'1' << 8 | '2', '3' << 8 | '4'};
+  EXPECT_EQ(samples_crc32(sixteen), samples_crc32(eight));
+}
+
+TEST_F(PingDumpTest, WritesNumpyFileAndIndexRow) {
+  PingDump dump(folder, "bow");
+  RenderJob job;
+  job.request.ping_number = 257;
+  job.transmit_us = 1234567;
+  render::PingSamples samples;
+  samples.beams = 3;
+  samples.lines = 3;
+  samples.u8 = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  dump.write(job, samples);
+  EXPECT_EQ(contents(folder / "bow.csv"),
+            "number,id,transmit_us,lines,beams,crc32\n257,1,1234567,3,3,cbf43926\n");
+
+  // NumPy format 1.0: magic, version, header length; header and preamble together a multiple of 64.
+  const std::string file = contents(folder / "bow-00000257.npy");
+  ASSERT_EQ(file.size(), 128u + 9u);
+  EXPECT_EQ(file.substr(0, 10), std::string("\x93NUMPY\x01\x00\x76\x00", 10));
+  const std::string dictionary = "{'descr': '|u1', 'fortran_order': False, 'shape': (3, 3), }";
+  EXPECT_EQ(file.substr(10, dictionary.size()), dictionary);
+  EXPECT_EQ(file[127], '\n');
+  EXPECT_EQ(file.substr(128), "123456789");
+}
+
+TEST_F(PingDumpTest, FolderThatCannotBeMadeIsAnErrorThatNamesIt) {
+  std::ofstream(folder) << "in the way";
+  try {
+    PingDump dump(folder, "bow");
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(folder.string()), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace sonard::server
