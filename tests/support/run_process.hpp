@@ -8,7 +8,7 @@
 namespace sonard::test {
 
 struct ProcessResult {
-  int exit_code = -1;  ///< 128 + the signal when one ended it
+  int exit_code = -1;      ///< 128 + the signal when one ended it
   bool timed_out = false;  ///< it was killed at the deadline
   std::string out;
   std::string err;

@@ -1,0 +1,253 @@
+// The real program on configurations that are broken in one way each, and on those that ship.
+// Each broken file in tests/data/configs/broken/ says in its first line what is wrong with it.
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/run_process.hpp"
+
+namespace sonard::test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string source_folder = SONARD_SOURCE_DIR;
+const std::string broken_folder = source_folder + "/tests/data/configs/broken/";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+struct Broken {
+  std::string file;   ///< below broken_folder
+  std::string place;  ///< line, column and key in that file
+  std::string
+      asset;  ///< file and line in the asset the key names, below broken_folder; empty when none is named
+  std::string message;  ///< part of what follows
+};
+
+std::ostream& operator<<(std::ostream& out, const Broken& broken) {
+  return out << broken.file;
+}
+
+class BrokenConfig : public testing::TestWithParam<Broken> {};
+
+/// Exactly one complaint, in one line, that names file, line and key (and those of the asset), and exit
+/// code 2.
+void expect_complaint(const Broken& broken) {
+  const std::string file = broken_folder + broken.file;
+  const ProcessResult result = run_process({SONARD_PROGRAM, "check", file});
+  ASSERT_FALSE(result.timed_out);
+  EXPECT_EQ(result.exit_code, 2);
+  const std::vector<std::string> lines = lines_of(result.err);
+  ASSERT_EQ(lines.size(), 1U) << result.err;
+  const std::string asset = broken.asset.empty() ? "" : broken_folder + broken.asset;
+  EXPECT_THAT(lines[0], StartsWith(file + ":" + broken.place + ": " + asset));
+  EXPECT_THAT(lines[0], HasSubstr(broken.message));
+}
+
+TEST_P(BrokenConfig, is_refused_with_file_line_and_key) {
+  expect_complaint(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, BrokenConfig,
+    testing::Values(Broken{"unknown_key.yaml", "14:5: heads[0].mounts", "",
+                           "unknown key, did you mean 'mount'?"},
+                    Broken{"duplicate_key.yaml", "15:5: heads[0].mount", "",
+                           "duplicate key (expected once; first given on line 14)"},
+                    Broken{"bad_unit.yaml", "15:18: water.temperature_c", "",
+                           "'10C' carries a unit; units belong to the key (expected a number from -4 to 45, "
+                           "in degrees Celsius)"},
+                    Broken{"wrong_type.yaml", "15:20: heads[0].timing.burst_lines", "",
+                           "is 'many' (expected a whole number"},
+                    Broken{"negative_range.yaml", "16:29: heads[0].acoustics.physical.near_field_blank_m", "",
+                           "-1 is out of range (expected a number from 0 to 120, in m)"},
+                    Broken{"sonar_id_1.yaml", "9:15: heads[0].sonar_id", "",
+                           "is '1' (expected a whole number from 2 to 65535)"},
+                    Broken{"alternate_address_zero.yaml", "11:26: heads[0].network.alternate_address", "",
+                           "0.0.0.0 is not the address of one host"},
+                    Broken{"malformed.yaml", "14:30", "", "(expected valid YAML)"},
+                    Broken{"too_few_columns.yaml", "15:11: sampling", "", "column"}),
+    [](const auto& test) { return test.param.file.substr(0, test.param.file.find('.')); });
+
+INSTANTIATE_TEST_SUITE_P(
+    Assets, BrokenConfig,
+    testing::Values(
+        Broken{"missing_world.yaml", "3:9: world.file", "assets/absent.sdf", "cannot"},
+        Broken{"malformed_world.yaml", "3:9: world.file", "assets/malformed.sdf:6", ""},
+        Broken{"missing_mesh.yaml", "3:9: world.file", "assets/missing_mesh.sdf:9", "absent.obj"},
+        Broken{"zero_triangles.yaml", "3:9: world.file", "assets/zero_triangles.sdf:9", "triangle"},
+        Broken{"unknown_material.yaml", "3:9: world.file", "assets/unknown_material.sdf:10", "mithril"},
+        Broken{"missing_trajectory.yaml", "5:22: poses.trajectory.file", "assets/absent.csv", "No such file"},
+        Broken{"nan_pose.yaml", "5:22: poses.trajectory.file", "assets/nan_pose.csv:4", "finite"},
+        Broken{"time_goes_back.yaml", "5:22: poses.trajectory.file", "assets/time_goes_back.csv:4", "time"}),
+    [](const auto& test) { return test.param.file.substr(0, test.param.file.find('.')); });
+
+INSTANTIATE_TEST_SUITE_P(Addresses, BrokenConfig,
+                         testing::Values(Broken{"foreign_address.yaml", "11:26: heads[0].network.bind", "",
+                                                "192.0.2.7 is not an address of this machine"}),
+                         [](const auto& test) {
+                           return test.param.file.substr(0, test.param.file.find('.'));
+                         });
+
+/// A socket that holds an address as long as it lives.
+class HeldAddress {
+ public:
+  HeldAddress(int type, const char* address, std::uint16_t port) : socket_(socket(AF_INET, type, 0)) {
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    name.sin_port = htons(port);
+    inet_pton(AF_INET, address, &name.sin_addr);
+    held_ = bind(socket_, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0 &&
+            (type != SOCK_STREAM || listen(socket_, 1) == 0);
+  }
+  ~HeldAddress() { close(socket_); }
+  HeldAddress(const HeldAddress&) = delete;
+  HeldAddress& operator=(const HeldAddress&) = delete;
+  bool held() const { return held_; }
+
+ private:
+  int socket_;
+  bool held_ = false;
+};
+
+TEST(AddressInUse, is_refused_for_a_head) {
+  const HeldAddress other(SOCK_DGRAM, "127.91.0.18", 52901);
+  ASSERT_TRUE(other.held());
+  expect_complaint({"address_in_use.yaml", "11:26: heads[0].network.bind", "",
+                    "UDP 127.91.0.18:52901 is in use by another program (expected a free port)"});
+}
+
+TEST(AddressInUse, is_refused_for_the_pose_stream) {
+  const HeldAddress other(SOCK_STREAM, "127.91.0.19", 14600);
+  ASSERT_TRUE(other.held());
+  expect_complaint({"pose_port_in_use.yaml", "5:15: poses.tcp.bind", "",
+                    "TCP 127.91.0.19:14600 is in use by another program (expected a free port)"});
+}
+
+TEST(OverlappingHeads, are_refused_with_what_they_share) {
+  const std::string file = broken_folder + "overlapping_heads.yaml";
+  const ProcessResult result = run_process({SONARD_PROGRAM, "check", file});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(
+      lines_of(result.err),
+      testing::UnorderedElementsAre(
+          AllOf(StartsWith(file + ":18:26: heads[1].network.bind: UDP 127.91.0.8:52901 overlaps"),
+                HasSubstr("heads[0].network.bind")),
+          StartsWith(file + ":18:26: heads[1].network.alternate_address: 127.91.0.8 already belongs to")));
+}
+
+// --- what ships
+// ------------------------------------------------------------------------------------------------------
+
+/// Runs the program in a network of its own, which has the address of a 720i: no daemon that happens to run
+/// on this machine is in the way.
+ProcessResult check_in_own_network(const std::string& config) {
+  const std::string set_up = "ip link set lo up && ip address add 10.61.19.200/24 dev lo && exec \"$@\"";
+  std::vector<std::string> command{"unshare", "--net"};
+  if (geteuid() != 0) {
+    command.emplace_back("--map-root-user");
+  }
+  for (const std::string& word :
+       {std::string("sh"), std::string("-c"), set_up, std::string("sh"), std::string(SONARD_PROGRAM),
+        std::string("check"), source_folder + "/configs/" + config}) {
+    command.push_back(word);
+  }
+  return run_process(command);
+}
+
+class ShippedConfig : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedConfig, is_good_without_a_warning) {
+  const ProcessResult result = check_in_own_network(GetParam());
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(lines_of(result.out), Contains(AllOf(StartsWith("world "), HasSubstr(" triangles"))));
+  EXPECT_THAT(lines_of(result.out), Contains(StartsWith("head ")));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
+                         testing::Values("demo.yaml", "gemini-netns.yaml", "ssiv.yaml", "paper.yaml"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           name.resize(name.find('.'));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(Check, can_leave_addresses_alone) {
+  const ProcessResult result =
+      run_process({SONARD_PROGRAM, "check", "--no-network", broken_folder + "foreign_address.yaml"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+}
+
+TEST(CommandLine, has_its_own_exit_code_for_wrong_use) {
+  EXPECT_EQ(run_process({SONARD_PROGRAM}).exit_code, 64);
+  EXPECT_EQ(run_process({SONARD_PROGRAM, "check"}).exit_code, 64);
+  EXPECT_EQ(run_process({SONARD_PROGRAM, "serve", "x.yaml"}).exit_code, 64);
+  EXPECT_EQ(run_process({SONARD_PROGRAM, "run", "x.yaml", "--log-level", "loud"}).exit_code, 64);
+}
+
+TEST(CommandLine, explains_itself) {
+  const ProcessResult help = run_process({SONARD_PROGRAM, "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out,
+              AllOf(HasSubstr("run"), HasSubstr("check"), HasSubstr("selftest"), HasSubstr("Exit codes:")));
+  const ProcessResult version = run_process({SONARD_PROGRAM, "--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.out, StartsWith("sonard "));
+}
+
+TEST(Run, refuses_a_broken_configuration_like_check) {
+  const std::string file = broken_folder + "bad_unit.yaml";
+  const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr(file + ":15:18: water.temperature_c: '10C' carries a unit"));
+}
+
+TEST(Run, names_the_key_of_a_missing_world) {
+  const std::string file = broken_folder + "missing_world.yaml";
+  const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(lines_of(result.err), Contains(StartsWith(file + ":3:9: world.file: ")));
+}
+
+TEST(Run, has_its_own_exit_code_for_an_address_in_use) {
+  const HeldAddress other(SOCK_DGRAM, "127.91.0.18", 52901);
+  ASSERT_TRUE(other.held());
+  const std::string file = broken_folder + "address_in_use.yaml";
+  const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(lines_of(result.err), Contains(StartsWith(file + ":11:26: heads[0].network.bind: ")));
+}
+
+TEST(SelfTest, passes_and_shows_the_gl_in_use) {
+  const ProcessResult result = run_process({SONARD_PROGRAM, "selftest"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(lines_of(result.out), Contains(StartsWith("gl ")));
+  EXPECT_THAT(lines_of(result.out), Contains("PASS"));
+}
+
+}  // namespace
+}  // namespace sonard::test
