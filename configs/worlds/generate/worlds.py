@@ -80,8 +80,8 @@ def docking_station():
     files = _boulder_files("meshes/boulders")
     parts = station_meshes()
     files |= {
-        f"{folder}/seabed.ply": seabed.mesh(30.0, 14.0, 0.23, 1.085).ply(),
-        f"{folder}/cobbles.ply": _cobbles(seabed, 5, 130, keep_out).ply(),
+        f"{folder}/seabed.ply": seabed.mesh(30.0, 13.5, 0.25, 1.09).ply(),
+        f"{folder}/cobbles.ply": _cobbles(seabed, 5, 110, keep_out).ply(),
         f"{folder}/pipe.ply": pipe.pipe_mesh().ply(),
         f"{folder}/anodes.ply": pipe.anode_mesh((-21.0, -8.9, 3.4, 15.6)).ply(),
         f"{folder}/clamps.ply": pipe.clamp_mesh((-4.0, 8.6)).ply(),
