@@ -1,8 +1,10 @@
 #include "protocol/gemini/codec.hpp"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <tuple>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include "protocol/common/byte_reader.hpp"
@@ -32,8 +34,7 @@ constexpr std::size_t max_serial_bytes = 255;
 constexpr std::size_t mdio_script_offset = 10;
 constexpr std::size_t max_mdio_words = (max_datagram_size - mdio_script_offset) / 2;
 
-// ----- members on the wire, by type
-// -----------------------------------------------------------------------------
+// ---- Members on the wire, by type
 
 template <class Value>
 void read_value(ByteReader& reader, std::string_view name, Value& value) {
@@ -92,8 +93,7 @@ void write_value(ByteWriter& writer, const MacAddress& mac) {
   writer.bytes(octets);
 }
 
-// ----- header and layout tables
-// ---------------------------------------------------------------------------------
+// ---- Header and layout tables
 
 struct TypedHeader {
   std::uint8_t type = 0;
@@ -163,9 +163,7 @@ void write_fields(ByteWriter& writer, const Message& message) {
              Layout<Message>::fields);
 }
 
-// ----- bodies: by the table; an overload for one message says what no table can
-// -------------------------------
-// ------------------------------------------------------------
+// ---- Bodies: by the table; an overload for one message says what no table can
 
 template <HasLayout Message>
 void read_body(ByteReader& reader, Message& message) {
@@ -296,46 +294,33 @@ void write_body(ByteWriter& writer, const SerialData& message) {
   }
 }
 
-// ----- dispatch over the variants
-// ---------------------------------------------------------------------------------
+// ---- Dispatch over the variants
 
-template <class Message>
-constexpr bool has_type(std::uint8_t type) {
-  if constexpr (std::is_same_v<Message, Unknown>) {
-    return false;
-  } else {
-    return static_cast<std::uint8_t>(Message::type) == type;
-  }
-}
-
+/// Turns `variant` into a Message and reads it, if that is what `typed` announces.
 template <class Message, class Variant>
-Result<Variant, WireError> decode_as(ByteReader& reader, const Header& header) {
-  Result<Variant, WireError> result{Variant{std::in_place_type<Message>}};
+void read_if_announced(ByteReader& reader, const TypedHeader& typed, Variant& variant) {
   if constexpr (!std::is_same_v<Message, Unknown>) {
-    auto& message = std::get<Message>(result.value());
-    message.header = header;
-    read_body(reader, message);
-    if (!reader.ok()) {
-      return *reader.error();
+    if (typed.type == static_cast<std::uint8_t>(Message::type)) {
+      auto& message = variant.template emplace<Message>();
+      message.header = typed.header;
+      read_body(reader, message);
     }
   }
-  return result;
 }
 
 template <class... Messages>
 Result<std::variant<Messages...>, WireError> decode(std::span<const std::uint8_t> datagram,
                                                     const std::variant<Messages...>*) {
-  using Variant = std::variant<Messages...>;
   ByteReader reader{datagram};
   const TypedHeader typed = read_header(reader);
+  std::variant<Messages...> variant{Unknown{typed.header, typed.type}};
+  if (reader.ok()) {
+    (read_if_announced<Messages>(reader, typed, variant), ...);
+  }
   if (!reader.ok()) {
     return *reader.error();
   }
-  std::optional<Result<Variant, WireError>> result;
-  static_cast<void>(((has_type<Messages>(typed.type) &&
-                      (result.emplace(decode_as<Messages, Variant>(reader, typed.header)), true)) ||
-                     ...));
-  return result ? *std::move(result) : Variant{Unknown{typed.header, typed.type}};
+  return variant;
 }
 
 template <class Variant>

@@ -96,9 +96,7 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// ---------------------------------------------------------------------------------------------------------------
-// Surface -> head
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Surface -> head
 
 /// 0x20, 8 bytes: stay-alive. Answered by Acknowledge (3.2).
 struct StatusRequest {
@@ -391,9 +389,7 @@ struct GoingOffline {
   bool operator==(const GoingOffline&) const = default;
 };
 
-// ---------------------------------------------------------------------------------------------------------------
-// Head -> surface
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Head -> surface
 
 /// Sensor of a board as sent in Status: bit 15 present, bits 9..0 two's complement in 0.25 degC (3.3).
 /// Clamps to -128 .. +127.75; rounds to the nearest step. "Not fitted" is plain 0.
