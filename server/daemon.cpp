@@ -160,7 +160,7 @@ void Daemon::start_sources() {
     } catch (const PoseSourceError& error) {
       throw StartError("poses", exit_network, error.what());
     }
-    spdlog::info("poses from {}", source->description());
+    spdlog::info("{}", source->description());
   }
 }
 

@@ -1,0 +1,410 @@
+#!/usr/bin/env python3
+"""The daemon and its clients as separate processes on separate machines (network namespaces on one wire).
+
+    link_test.py --programs DIR [TestCase.test_name ...]
+"""
+
+import argparse
+import csv
+import math
+import os
+import signal
+import sys
+import tempfile
+import time
+import unittest
+
+import wire
+from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, SURFACE_ADDRESS, Deadline, Lab, need,
+                 receive)
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+PROGRAMS = None  # folder of the programs under test
+
+# The machine that runs these tests may be busy with others: patience costs nothing when all is well.
+START_S = 60
+PATIENCE_S = 60
+
+HEAD = """
+  - name: {name}
+    type: gemini_720i
+    sonar_id: {sonar_id}
+    network:
+      alternate_address: {address}
+      netmask: 255.255.255.0
+      bind: {bind}
+      allow: [10.61.19.0/24]
+    timing:
+      min_ping_period_ms: 10
+    acoustics:
+      seed: {sonar_id}
+      physical:
+        speckle: {speckle}
+        noise: {noise}
+    dump:
+      directory: {dump}
+{more}"""
+
+DAEMON = """
+world:
+  file: {world}
+poses:
+  initial:
+    position_m: [0, 0, 0]
+  udp:
+    bind: 127.0.0.1:14600
+  extrapolation_limit_ms: 300
+  stale: {stale}
+sampling:
+  views: 3
+  columns_per_view: 64
+  rows: 32
+heads:
+{heads}
+"""
+
+
+def key_values(line):
+    return dict(item.split("=", 1) for item in line.split() if "=" in item)
+
+
+class LinkTest(unittest.TestCase):
+    def setUp(self):
+        need("ip")
+        self.folder = tempfile.TemporaryDirectory(prefix="sonard-link-")
+        self.addCleanup(self.folder.cleanup)
+
+    # ---- Set-up ----
+
+    def make_lab(self, surfaces=1):
+        lab = Lab(surfaces)
+        lab.__enter__()
+        self.addCleanup(lab.__exit__)
+        return lab
+
+    def head_config(self, name="bow", sonar_id=513, address=HEAD_ADDRESS, bind=None, noisy=True, more=""):
+        return HEAD.format(name=name, sonar_id=sonar_id, address=address, bind=bind or address,
+                           speckle="per_ping" if noisy else "off", noise="true" if noisy else "false",
+                           dump=self.folder.name, more=more)
+
+    def start_daemon(self, lab, *heads, stale="hold"):
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(DAEMON.format(world=WORLD, stale=stale, heads="".join(heads)))
+        daemon = lab.start(lab.head, os.path.join(PROGRAMS, "sonard"), "run", path)
+        daemon.wait_for_line(r"sonard ready heads=%d " % len(heads), START_S)
+        return daemon
+
+    def start_viewer(self, lab, *options, surface=None):
+        namespace = surface or lab.surface
+        address = SURFACE_ADDRESS if namespace is lab.surface else "10.61.19.11"
+        return lab.start(namespace, os.path.join(PROGRAMS, "sonarview"), "--surface-address", address, "--log-pings",
+                         "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S), "--range", "4", *options)
+
+    # ---- Checks ----
+
+    def rendered(self, name="bow"):
+        """CRC-32 of every ping as the renderer handed it over, by its transmit time."""
+        with open(os.path.join(self.folder.name, name + ".csv"), encoding="utf-8") as file:
+            return {int(row["transmit_us"]): row["crc32"] for row in csv.DictReader(file)}
+
+    def check_pings(self, viewer, count, name="bow"):
+        """All of them complete and bit-identical to what was rendered. Returns the viewer's summary."""
+        logged = [key_values(line) for line in viewer.lines if line.startswith("ping ")]
+        self.assertEqual(len(logged), count)
+        rendered = self.rendered(name)
+        for ping in logged:
+            self.assertEqual(ping["lines_lost"], "0", ping)
+            self.assertEqual(ping["crc32"], rendered.get(int(ping["transmit_us"])), ping)
+        self.assertEqual(len({ping["transmit_us"] for ping in logged}), count, "the same ping was counted twice")
+        summary = key_values([line for line in viewer.lines if line.startswith("summary ")][-1])
+        self.assertEqual(summary["pings_complete"], str(count))
+        self.assertEqual(summary["pings_incomplete"], "0")
+        self.assertEqual(summary["lines_missing"], "0")
+        return summary
+
+    def end_daemon(self, daemon):
+        code, seconds = daemon.terminate(10)
+        self.assertEqual(code, 0, daemon.output())
+        return seconds
+
+    def run_pings(self, viewer_options=(), more_config="", count=200):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config(more=more_config))
+        viewer = self.start_viewer(lab, "--pings", str(count), *viewer_options)
+        self.assertEqual(viewer.wait(100), 0, viewer.output())
+        summary = self.check_pings(viewer, count)
+        self.end_daemon(daemon)
+        return summary
+
+
+class Pings(LinkTest):
+    """200 pings, found by broadcast, every image complete and bit-identical to what the renderer handed over."""
+
+    LOSSY = ("--drop-rx", "0.05", "--drop-tx", "0.05", "--seed")
+
+    def test_single(self):
+        summary = self.run_pings()
+        self.assertEqual(summary["pings_missed"], "0")
+
+    def test_continuous(self):
+        summary = self.run_pings(["--continuous", "40"])
+        self.assertEqual(summary["pings_missed"], "0")
+
+    def test_single_with_loss_both_ways(self):
+        summary = self.run_pings([*self.LOSSY, "1"])
+        self.assertGreater(int(summary["dropped_rx"]), 1000)
+        self.assertGreater(int(summary["dropped_tx"]), 10)
+        self.assertEqual(summary["pings_abandoned"], "0")
+
+    def test_continuous_with_loss_both_ways(self):
+        summary = self.run_pings([*self.LOSSY, "2", "--continuous", "100"])
+        self.assertGreater(int(summary["dropped_rx"]), 1000)
+        self.assertEqual(summary["pings_missed"], "0")
+
+    def test_single_over_a_link_with_every_fault(self):
+        self.run_pings(count=100, more_config="""    link:
+      seed: 11
+      to_surface: {loss: 0.03, duplicate: 0.02, reorder: 0.02, delay_ms: 3, jitter_ms: 1}
+      from_surface: {loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 3, jitter_ms: 2}
+""")
+
+    def test_compressed_run_length_coded_16_bit(self):
+        for options in (["--compression", "2"], ["--bits", "16"]):
+            with self.subTest(options=options):
+                self.run_pings(options, count=20)
+
+
+class Surfaces(LinkTest):
+    """Clients that come, go, fall silent and share the wire."""
+
+    def test_killed_in_the_middle_of_a_ping_and_started_again(self):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config())
+        for life in range(3):
+            viewer = self.start_viewer(lab, "--range", "50", "--compression", "0", "--continuous", "50")
+            viewer.wait_for_line("^ping ", PATIENCE_S, count=1 + life)
+            time.sleep(0.01 + 0.02 * life)  # a ping of 6028 lines takes 0.16 s on the wire
+            viewer.signal(signal.SIGKILL)
+            viewer.wait(10)
+        viewer = self.start_viewer(lab, "--pings", "20")
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.output())
+        self.check_pings(viewer, 20)
+        self.end_daemon(daemon)
+
+    def test_two_heads_at_once_for_two_surfaces(self):
+        lab = self.make_lab(surfaces=2)
+        daemon = self.start_daemon(lab, self.head_config(),
+                                   self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
+        viewers = [self.start_viewer(lab, "--sonar-id", str(513 + i), "--pings", "60", surface=surface)
+                   for i, surface in enumerate(lab.surfaces)]
+        for viewer, name in zip(viewers, ("bow", "stern")):
+            self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.output())
+            self.check_pings(viewer, 60, name)
+        self.assertFalse(set(self.rendered("bow").values()) & set(self.rendered("stern").values()),
+                         "two heads with different seeds made the same image")
+        self.end_daemon(daemon)
+
+    def test_daemon_ends_within_a_second_while_it_pings(self):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config())
+        viewer = self.start_viewer(lab, "--continuous", "20")
+        viewer.wait_for_line("^ping ", PATIENCE_S, count=5)
+        seconds = self.end_daemon(daemon)
+        self.assertLess(seconds, 1.0)
+        self.assertIn("head=bow ends: pings_sent=", daemon.output())
+
+
+class RawSurface:
+    """A surface made of two sockets and the bytes of the document."""
+
+    def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS):
+        self.sonar_id = sonar_id
+        self.head = head
+        self.reports = lab.surface.udp_socket("0.0.0.0", REPORT_PORT)
+        self.commands = lab.surface.udp_socket(SURFACE_ADDRESS, COMMAND_PORT)
+
+    def close(self):
+        self.reports.close()
+        self.commands.close()
+
+    def send(self, message, to=None):
+        self.commands.sendto(message, (to or self.head, COMMAND_PORT))
+
+    def next_of(self, message_type, seconds=PATIENCE_S):
+        """The next datagram of this type and its sender; None when none comes in time."""
+        deadline = Deadline(seconds)
+        while not deadline.over():
+            got = receive(self.reports, deadline.left())
+            if got and wire.message_type(got[0]) == message_type:
+                return got
+        return None
+
+    def next_ping(self, seconds=PATIENCE_S):
+        """The next complete ping; lines that the socket lost would make it time out."""
+        deadline = Deadline(seconds)
+        ping = None
+        while not deadline.over():
+            got = receive(self.reports, deadline.left())
+            if not got:
+                continue
+            if wire.message_type(got[0]) == wire.PING_HEAD:
+                ping = wire.Ping(got[0])
+            elif ping:
+                ping.add(got[0])
+                if ping.complete():
+                    return ping
+        raise AssertionError(f"no complete ping within {seconds} s")
+
+    def drain(self):
+        while receive(self.reports, 0):
+            pass
+
+
+class Wire(LinkTest):
+    """What a client of another make sees: bytes and timing by the document, without our protocol code."""
+
+    def start(self, *heads, **keywords):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, *heads, **keywords)
+        surface = RawSurface(lab)
+        self.addCleanup(surface.close)
+        return lab, daemon, surface
+
+    def test_status_is_broadcast_once_a_second(self):
+        _, _, surface = self.start(self.head_config())
+        arrivals = []
+        for _ in range(4):
+            datagram, sender = surface.next_of(wire.STATUS)
+            arrivals.append(time.monotonic())
+            status = wire.Status(datagram)
+            self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
+            self.assertEqual((status.header_id, status.sonar_id), (513, 513))
+            self.assertEqual(status.fixed, wire.address("10.61.19.200"))
+            self.assertEqual(status.alternate, wire.address(HEAD_ADDRESS))
+            self.assertEqual(status.netmask, wire.address("255.255.255.0"))
+            self.assertEqual(status.surface, 0)
+            self.assertNotEqual(status.boot & 0x1FF, 0x001)
+        # The first may have waited in the socket's queue.
+        self.assertAlmostEqual(arrivals[3] - arrivals[1], 2.0, delta=0.5)
+
+    def test_target_to_port_is_in_the_low_beams(self):
+        _, _, surface = self.start(self.head_config(noisy=False))
+        surface.send(wire.ping_config(513, lines=483, spreading=293))
+        ping = surface.next_ping()
+        self.assertEqual((ping.count, ping.beams), (483, 256))
+        energy = [sum(ping.lines[i][beam] for i in range(ping.count)) for beam in range(256)]
+        self.assertGreater(sum(energy[:128]), 0)
+        self.assertEqual(sum(energy[128:]), 0)
+        # Sphere of radius 0.5 m at (3, 2) m: bearing -33.69 degrees, half its width asin(0.5 / sqrt(13)) = 7.97.
+        seen = [math.degrees(wire.bearing_rad(beam)) for beam in range(256) if energy[beam] > 0]
+        self.assertGreater(min(seen), -33.69 - 7.97 - 1.0)
+        self.assertLess(max(seen), -33.69 + 7.97 + 1.0)
+        middle = min(range(256), key=lambda beam: abs(math.degrees(wire.bearing_rad(beam)) + 33.69))
+        first = min(i for i in range(ping.count) if ping.lines[i][middle] > 0)
+        self.assertAlmostEqual(first * wire.line_step_m(1500.0), math.sqrt(13) - 0.5, delta=0.05)
+
+    def test_silence_for_three_seconds_suspends_and_any_command_resumes(self):
+        _, daemon, surface = self.start(self.head_config())
+        surface.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        surface.next_ping()
+        asked = time.monotonic()
+        last_ping = asked
+        while time.monotonic() - last_ping < 1.5:  # 15 periods without a ping: it has stopped
+            self.assertLess(time.monotonic() - asked, 30, "went on pinging without a surface")
+            if surface.next_of(wire.PING_HEAD, seconds=0.2):
+                last_ping = time.monotonic()
+        # The configuration was the last command: 3 s, and what a busy machine adds.
+        self.assertGreater(last_ping - asked, 1.5)
+        self.assertLess(last_ping - asked, 6.0)
+        daemon.wait_for_line(f"surface {SURFACE_ADDRESS} lost", PATIENCE_S)
+        surface.drain()
+        self.assertEqual(wire.Status(surface.next_of(wire.STATUS)[0]).surface, 0)
+        surface.send(wire.status_request(513))
+        self.assertIsNotNone(surface.next_of(wire.ACKNOWLEDGE))
+        surface.next_ping()
+        surface.drain()
+        self.assertEqual(wire.Status(surface.next_of(wire.STATUS)[0]).surface, wire.address(SURFACE_ADDRESS))
+
+    def test_commands_for_another_id_are_dropped(self):
+        _, _, surface = self.start(self.head_config())
+        surface.send(wire.status_request(600))
+        surface.send(wire.status_request(513))
+        self.assertIsNotNone(surface.next_of(wire.ACKNOWLEDGE))
+        self.assertIsNone(surface.next_of(wire.ACKNOWLEDGE, seconds=1.0))
+
+    def test_answers_come_from_the_address_that_was_addressed(self):
+        _, _, surface = self.start(self.head_config(bind="0.0.0.0"))
+        for address in (HEAD_ADDRESS, SECOND_HEAD_ADDRESS):
+            surface.send(wire.status_request(513), to=address)
+            _, sender = surface.next_of(wire.ACKNOWLEDGE)
+            self.assertEqual(sender, (address, COMMAND_PORT))
+        _, sender = surface.next_of(wire.STATUS)
+        self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
+
+
+class StalePoses(LinkTest):
+    def start(self, stale):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config(), stale=stale)
+        surface = RawSurface(lab)
+        self.addCleanup(surface.close)
+        self.poses = lab.head.udp_socket("127.0.0.1", 0)
+        self.addCleanup(self.poses.close)
+        return daemon, surface
+
+    def send_poses(self, surface, seconds, x_m):
+        """50 poses a second; the surface keeps the connection alive."""
+        deadline = Deadline(seconds)
+        while not deadline.over():
+            self.poses.sendto(wire.pose_update(time.monotonic_ns(), (x_m, 0.0, 0.0)), ("127.0.0.1", 14600))
+            surface.send(wire.status_request(513))
+            time.sleep(0.02)
+
+    def pings_within(self, surface, seconds):
+        """Ping heads seen, while the surface keeps the connection alive."""
+        heads, deadline = 0, Deadline(seconds)
+        while not deadline.over():
+            surface.send(wire.status_request(513))
+            step = Deadline(0.2)
+            while not step.over():
+                got = receive(surface.reports, step.left())
+                heads += 1 if got and wire.message_type(got[0]) == wire.PING_HEAD else 0
+        return heads
+
+    def test_hold_goes_on_from_the_last_pose(self):
+        _, surface = self.start("hold")
+        surface.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.send_poses(surface, 0.5, 1.0)
+        time.sleep(0.5)  # beyond the limit of 300 ms
+        surface.drain()
+        self.assertGreater(self.pings_within(surface, 2.0), 3)
+
+    def test_silence_sends_status_only_until_a_pose_arrives(self):
+        daemon, surface = self.start("silence")
+        surface.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.send_poses(surface, 0.5, 1.0)
+        surface.next_ping()
+        time.sleep(1.0)
+        surface.drain()
+        self.assertEqual(self.pings_within(surface, 1.5), 0)
+        self.assertIsNotNone(surface.next_of(wire.STATUS))
+        self.send_poses(surface, 0.3, 2.0)
+        surface.next_ping()
+        daemon.terminate(10)
+        self.assertRegex(daemon.output(), r"head=bow ends: .* pings_without_pose=[1-9]")
+
+
+def main():
+    global PROGRAMS
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
+    parser.add_argument("tests", nargs="*")
+    arguments = parser.parse_args()
+    PROGRAMS = os.path.abspath(arguments.programs)
+    unittest.main(argv=[sys.argv[0], "-v", *arguments.tests], module=__name__)
+
+
+if __name__ == "__main__":
+    main()
