@@ -26,7 +26,7 @@ struct Arguments {
   std::string file;
   std::string to = "127.0.0.1:14600";
   bool tcp = false;
-  std::string axes = "enu";
+  std::string axes = "enu_flu";
   double rate_hz = 50.0;
   double speed = 1.0;
   bool loop = false;
@@ -45,8 +45,8 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->required();
   app.add_option("--to", arguments.to, "Where sonard listens, HOST:PORT")->capture_default_str();
   app.add_flag("--tcp", arguments.tcp, "Connect by TCP instead of sending UDP datagrams");
-  app.add_option("--axes", arguments.axes, "Axes of the file: enu (world ENU, vehicle FLU) or ned (NED, FRD)")
-      ->check(CLI::IsMember({"enu", "ned"}))
+  app.add_option("--axes", arguments.axes, "Axes of world and vehicle in the file")
+      ->check(CLI::IsMember({"enu_flu", "ned_frd"}))
       ->capture_default_str();
   app.add_option("--rate", arguments.rate_hz, "Poses per second, interpolated from the file")
       ->check(CLI::Range(1e-3, 1e4))
@@ -89,7 +89,7 @@ client::CastSettings settings(const Arguments& arguments, const pose::Trajectory
 /// Casts until the end, a signal or a failure. @return the exit status.
 int cast(const Arguments& arguments) {
   const pose::Trajectory trajectory = pose::load_trajectory(
-      arguments.file, arguments.axes == "ned" ? pose::Axes::ned_frd : pose::Axes::enu_flu);
+      arguments.file, arguments.axes == "ned_frd" ? pose::Axes::ned_frd : pose::Axes::enu_flu);
   const client::CastSettings cast_settings = settings(arguments, trajectory);
 
   boost::asio::io_context io;

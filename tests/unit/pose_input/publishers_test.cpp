@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "server/config/addresses.hpp"
 #include "server/pose/tcp_pose_source.hpp"
@@ -76,7 +77,7 @@ TEST_F(PublishersTest, PosecastByTcpAtDoubleSpeed) {
 TEST_F(PublishersTest, PosecastConvertsNed) {
   UdpPoseSource source{io_, {{localhost, 0}, loopback}, clock_, sink_};
   source.start();
-  ChildProcess posecast{{POSECAST, file("0 10 20 30 0 0 0 1\n"), "--axes", "ned", "--to",
+  ChildProcess posecast{{POSECAST, file("0 10 20 30 0 0 0 1\n"), "--axes", "ned_frd", "--to",
                          endpoint_text(source.local_endpoint())}};
   EXPECT_EQ(run(posecast), 0) << posecast.output();
   ASSERT_EQ(delivered_.size(), 1U);
@@ -167,6 +168,22 @@ TEST_F(PublishersTest, PythonExample) {
   const pose::Vec3 miss = expected.position_m - last.T_world_vehicle.position_m;
   EXPECT_LT(pose::norm(miss), 1e-6);
   EXPECT_GT(pose::norm(last.T_world_vehicle.position_m - first.T_world_vehicle.position_m), 0.05);
+}
+
+TEST(PosesPage, ShowsLinesOfTheTestedExample) {
+  const auto text_of = [](const char* path) {
+    std::ifstream file{path};
+    return std::string{std::istreambuf_iterator<char>{file}, {}};
+  };
+  const std::string page = text_of(SONARD_SOURCE_DIR "/docs/poses.md");
+  const std::string example = text_of(SONARD_SOURCE_DIR "/clients/examples/publish_pose.py");
+  const std::size_t begin = page.find("```python\n") + 10;
+  std::istringstream block{page.substr(begin, page.find("```", begin) - begin)};
+  int lines = 0;
+  for (std::string line; std::getline(block, line); ++lines) {
+    EXPECT_THAT(example, HasSubstr(line + "\n"));
+  }
+  EXPECT_GT(lines, 8);
 }
 
 }  // namespace
