@@ -171,7 +171,7 @@ void Check::check_sampling(const GeminiHeadConfig& head) {
   try {
     render::make_sample_grid(settings.aperture, settings.sampling, options);
   } catch (const render::RequestError& error) {
-    problem("sampling", error.what());
+    problem("sampling", fmt::format("head '{}': {}", head.name, error.what()));
   }
 }
 
@@ -228,16 +228,19 @@ void Check::try_socket(const Endpoint& endpoint, const std::string& key) {
 
 /// Later clients stay silent towards a head whose mask is not that of their own interface.
 void Check::check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces) {
-  const gemini::DeviceConfig& device = config_.heads[index].device;
+  const GeminiHeadConfig& head = config_.heads[index];
+  const gemini::DeviceConfig& device = head.device;
   const std::optional<InterfaceAddress> owner = owner_of(device.alternate_address, interfaces);
-  if (!owner) {
-    warning(fmt::format("heads[{}].network.alternate_address", index),
-            fmt::format("{} is not an address of this machine, but clients will send there",
-                        address_text(device.alternate_address)));
-  } else if (owner->netmask != device.netmask) {
+  if (owner && owner->netmask != device.netmask) {
     warning(fmt::format("heads[{}].network.netmask", index),
             fmt::format("{} is reported, but interface {} has {}: clients that compare them send nothing",
                         address_text(device.netmask), owner->interface, address_text(owner->netmask)));
+  }
+  // Where the head is bound to it, trying the socket has already told.
+  if (!owner && head.bind_address != device.alternate_address) {
+    warning(fmt::format("heads[{}].network.alternate_address", index),
+            fmt::format("{} is not an address of this machine, but clients will send there",
+                        address_text(device.alternate_address)));
   }
 }
 

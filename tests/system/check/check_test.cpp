@@ -86,19 +86,20 @@ INSTANTIATE_TEST_SUITE_P(
                            "is '1' (expected a whole number from 2 to 65535)"},
                     Broken{"alternate_address_zero.yaml", "11:26: heads[0].network.alternate_address", "",
                            "0.0.0.0 is not the address of one host"},
-                    Broken{"malformed.yaml", "14:30", "", "(expected valid YAML)"},
-                    Broken{"too_few_columns.yaml", "15:11: sampling", "", "column"}),
+                    Broken{"malformed.yaml", "14:31", "", "(expected valid YAML)"},
+                    Broken{"too_few_columns.yaml", "15:11: sampling", "", "gets no column"}),
     [](const auto& test) { return test.param.file.substr(0, test.param.file.find('.')); });
 
 INSTANTIATE_TEST_SUITE_P(
     Assets, BrokenConfig,
     testing::Values(
-        Broken{"missing_world.yaml", "3:9: world.file", "assets/absent.sdf", "cannot"},
-        Broken{"malformed_world.yaml", "3:9: world.file", "assets/malformed.sdf:6", ""},
-        Broken{"missing_mesh.yaml", "3:9: world.file", "assets/missing_mesh.sdf:9", "absent.obj"},
-        Broken{"zero_triangles.yaml", "3:9: world.file", "assets/zero_triangles.sdf:9", "triangle"},
-        Broken{"unknown_material.yaml", "3:9: world.file", "assets/unknown_material.sdf:10", "mithril"},
-        Broken{"missing_trajectory.yaml", "5:22: poses.trajectory.file", "assets/absent.csv", "No such file"},
+        Broken{"missing_world.yaml", "3:9: world.file", "assets/absent.sdf", "not found"},
+        Broken{"malformed_world.yaml", "3:9: world.file", "assets/malformed.sdf:4", "not well-formed"},
+        Broken{"missing_mesh.yaml", "3:9: world.file", "assets/missing_mesh.sdf:8", "absent.obj"},
+        Broken{"zero_triangles.yaml", "3:9: world.file", "assets/zero_triangles.sdf:8", "triangle"},
+        Broken{"unknown_material.yaml", "3:9: world.file", "assets/unknown_material.sdf:8", "mithril"},
+        Broken{"missing_trajectory.yaml", "5:22: poses.trajectory.file", "assets/absent.csv",
+               "cannot be read"},
         Broken{"nan_pose.yaml", "5:22: poses.trajectory.file", "assets/nan_pose.csv:4", "finite"},
         Broken{"time_goes_back.yaml", "5:22: poses.trajectory.file", "assets/time_goes_back.csv:4", "time"}),
     [](const auto& test) { return test.param.file.substr(0, test.param.file.find('.')); });
@@ -114,6 +115,9 @@ INSTANTIATE_TEST_SUITE_P(Addresses, BrokenConfig,
 class HeldAddress {
  public:
   HeldAddress(int type, const char* address, std::uint16_t port) : socket_(socket(AF_INET, type, 0)) {
+    // Two tests may hold it at a time; the program does not ask for this, so it is refused all the same.
+    const int on = 1;
+    setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     sockaddr_in name{};
     name.sin_family = AF_INET;
     name.sin_port = htons(port);
