@@ -79,7 +79,7 @@ std::string decode(const std::filesystem::path& file) {
 Pixels load_pixels(const std::filesystem::path& file) {
   require_local_file(file, extensions, "image");
   try {
-    const IsolatedResult result = run_isolated([&] { return decode(file); });
+    const IsolatedResult result = run_isolated([&] { return decode(file); }, reading_limit_s(file));
     BlobReader reader(result.bytes);
     Pixels pixels;
     pixels.width_px = static_cast<int>(reader.get_number());

@@ -18,7 +18,6 @@
 namespace sonard::render {
 namespace {
 
-constexpr rlim_t processor_seconds = 120;
 enum class Outcome : char { returned = 'R', threw = 'T' };
 
 /// A file in memory that parent and child share.
@@ -72,20 +71,21 @@ class MemoryFile {
   int fd_;
 };
 
-void confine_child(int log_fd) {
+void confine_child(int log_fd, unsigned int processor_limit_s) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  const rlimit processor{processor_seconds, processor_seconds};
+  const rlimit processor{processor_limit_s, processor_limit_s};
   ::setrlimit(RLIMIT_CPU, &processor);
   ::dup2(log_fd, STDOUT_FILENO);
   ::dup2(log_fd, STDERR_FILENO);
 }
 
-[[noreturn]] void run_child(const std::function<std::string()>& work, const MemoryFile& result, int log_fd) {
-  confine_child(log_fd);
+[[noreturn]] void run_child(const std::function<std::string()>& work, const MemoryFile& result, int log_fd,
+                            unsigned int processor_limit_s) {
+  confine_child(log_fd, processor_limit_s);
   bool stored = false;
   try {
     const std::string bytes = work();
@@ -115,7 +115,7 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
-IsolatedResult run_isolated(const std::function<std::string()>& work) {
+IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned int processor_limit_s) {
   const MemoryFile result("sonard-result");
   const MemoryFile log("sonard-log");
   // Buffered text would otherwise be written twice.
@@ -126,7 +126,7 @@ IsolatedResult run_isolated(const std::function<std::string()>& work) {
     throw IsolatedFailure(std::string("fork: ") + std::strerror(errno));
   }
   if (child == 0) {
-    run_child(work, result, log.fd());
+    run_child(work, result, log.fd(), processor_limit_s);
   }
   const int status = wait_for(child);
   if (WIFSIGNALED(status)) {

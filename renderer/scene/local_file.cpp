@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <string>
 #include <system_error>
 
@@ -19,6 +20,15 @@ std::string lower_extension(const std::filesystem::path& file) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
+}
+
+unsigned int reading_limit_s(const std::filesystem::path& file) {
+  constexpr std::uintmax_t base_s = 3;
+  constexpr std::uintmax_t bytes_per_s = 1'000'000;
+  constexpr std::uintmax_t longest_s = 3600;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  return static_cast<unsigned int>(std::min(longest_s, base_s + (error ? 0 : size / bytes_per_s)));
 }
 
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,

@@ -13,6 +13,10 @@ namespace sonard::render {
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
                         std::string_view what);
 
+/// Processor time that reading the file may take: the plugins need about 0.05 s for a megabyte, and on some
+/// damaged files they never end.
+unsigned int reading_limit_s(const std::filesystem::path& file);
+
 /// Extension in lower case without the dot.
 std::string lower_extension(const std::filesystem::path& file);
 

@@ -99,8 +99,8 @@ double collada_unit_m(const std::filesystem::path& file) {
 }
 
 RawMesh read_raw(const MeshFileRequest& request, std::vector<std::string>& warnings) {
-  const IsolatedResult result =
-      run_isolated([&] { return to_bytes(read_with_osg(request.file, request.submesh)); });
+  const IsolatedResult result = run_isolated(
+      [&] { return to_bytes(read_with_osg(request.file, request.submesh)); }, reading_limit_s(request.file));
   // The one remark of a plugin that costs an acoustic material: a name that no material library defines.
   static const std::regex lost_material(R"(unable to find material '([^']+)')");
   for (std::sregex_iterator it(result.log.begin(), result.log.end(), lost_material), end; it != end; ++it) {

@@ -51,8 +51,8 @@ void check_attributes(const sdf::ElementPtr& element, std::initializer_list<std:
   for (const auto& given : element->GetAttributes()) {
     const std::string key = given->GetKey();
     if (!key.starts_with("xmlns") && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
-      throw WorldError(fmt::format("{}: <{}> has no attribute '{}'; it has: {}", place_of(element),
-                                   element->GetName(), key, fmt::join(allowed, ", ")));
+      throw WorldError(fmt::format("{}: <{}> has no attribute '{}'; besides its text it may have: {}",
+                                   place_of(element), element->GetName(), key, fmt::join(allowed, ", ")));
     }
   }
 }
@@ -70,7 +70,7 @@ void check_own_element(const sdf::ElementPtr& element, const std::string& parent
       throw WorldError(
           fmt::format("{}: <{}> inside <{}>: it belongs in <world>", place_of(element), name, parent));
     }
-    check_attributes(element, {});
+    check_attributes(element, {});  // the height is its text
   } else {
     throw WorldError(fmt::format("{}: unknown element <{}>; there are <{}> and <{}>", place_of(element), name,
                                  material_element, water_surface_element));

@@ -88,8 +88,12 @@ class IncludeFinder {
   std::string find(const std::string& uri) {
     for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
       try {
-        const fs::path found = resolver_.resolve(uri, *folder);
+        fs::path found = resolver_.resolve(uri, *folder);
         const fs::path model_folder = fs::is_directory(found) ? found : found.parent_path();
+        // A folder without a manifest is clear enough when it holds a model.sdf.
+        if (!fs::exists(model_folder / "model.config") && fs::is_regular_file(model_folder / "model.sdf")) {
+          found = found == model_folder ? model_folder / "model.sdf" : found;
+        }
         resolver_.add_model_folder(model_folder.parent_path());
         folders_.push_back(model_folder);
         return found.string();
@@ -139,17 +143,40 @@ std::optional<std::string> first_coded(const std::vector<std::string>& lines) {
   return std::nullopt;
 }
 
-/// libsdformat does not say which model it means.
-sdf::ElementPtr find_empty_model(const sdf::ElementPtr& element) {
-  if (element->GetName() == "model" && !element->HasElement("link") && !element->HasElement("model")) {
-    return element;
-  }
+template <typename Predicate>
+sdf::ElementPtr find_last(const sdf::ElementPtr& element, const Predicate& matches) {
+  sdf::ElementPtr found = matches(element) ? element : nullptr;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (auto found = find_empty_model(child)) {
-      return found;
+    if (auto inside = find_last(child, matches)) {
+      found = inside;
     }
   }
-  return nullptr;
+  return found;
+}
+
+/// Where an error without a place is: libsdformat names elements in its messages as "name[NAME]"; of a model
+/// without a link it says nothing at all.
+std::string guessed_place(const sdf::Error& error, const sdf::ElementPtr& root, const fs::path& world_file) {
+  if (!root) {
+    return world_file.string();
+  }
+  sdf::ElementPtr element;
+  if (error.Code() == sdf::ErrorCode::MODEL_WITHOUT_LINK) {
+    element = find_last(root, [](const sdf::ElementPtr& e) {
+      return e->GetName() == "model" && !e->HasElement("link") && !e->HasElement("model");
+    });
+  } else {
+    const std::string message = error.Message();
+    const std::size_t begin = message.find("with name[");
+    const std::size_t end = message.find(']', begin);
+    if (begin != std::string::npos && end != std::string::npos) {
+      const std::string name = message.substr(begin + 10, end - begin - 10);
+      element = find_last(root, [&](const sdf::ElementPtr& e) {
+        return e->HasAttribute("name") && e->Get<std::string>("name") == name;
+      });
+    }
+  }
+  return element ? place_of(element) : world_file.string();
 }
 
 std::string message_of_xml_error(const fs::path& world_file, const std::string& printed) {
@@ -160,7 +187,7 @@ std::string message_of_xml_error(const fs::path& world_file, const std::string& 
   }
   const std::size_t name_end = printed.find(' ', name);
   return fmt::format("{}:{}: not well-formed XML ({})", world_file.string(),
-                     std::stoi("0" + printed.substr(number + 12)),
+                     std::max(1, std::stoi("0" + printed.substr(number + 12))),
                      printed.substr(name + 6, name_end - name - 6));
 }
 
@@ -180,12 +207,8 @@ std::string message_of(const sdf::Errors& errors, const std::vector<std::string>
   if (detail && detail->find("XML_ERROR") != std::string::npos) {
     return message_of_xml_error(world_file, *detail);
   }
-  if (first.Code() == sdf::ErrorCode::MODEL_WITHOUT_LINK && root.Element()) {
-    if (const auto model = find_empty_model(root.Element())) {
-      return fmt::format("{}: model '{}' has no link", place_of(model), model->Get<std::string>("name"));
-    }
-  }
-  return fmt::format("{}: {}{}", world_file.string(), first.Message(), detail ? ": " + *detail : "");
+  return fmt::format("{}: {}{}", guessed_place(first, root.Element(), world_file), first.Message(),
+                     detail ? ": " + *detail : "");
 }
 
 /// Compares where each included file came from with where its URI points.
@@ -233,6 +256,7 @@ sdf::Root parse_sdf(const fs::path& world_file, UriResolver& resolver, std::vect
     const FindCallbackScope scope(callback);
     sdf::ParserConfig config;
     config.SetFindCallback(callback);
+    config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::WARN);
     errors = root.Load(world_file.string(), config);
     printed = capture.lines();
   }

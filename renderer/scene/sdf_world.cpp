@@ -235,7 +235,10 @@ class WorldBuilder {
     }
     const auto element = geometry.Element();
     const auto kind = element ? element->GetFirstElement() : nullptr;
-    if (kind && kind->GetName() != "empty") {
+    if (!kind) {
+      throw WorldError("there is no geometry");
+    }
+    if (kind->GetName() != "empty") {
       throw WorldError(
           fmt::format("geometry <{}> is not supported; there are box, sphere, ellipsoid, cylinder, capsule, "
                       "plane, heightmap, mesh",
@@ -320,22 +323,23 @@ class WorldBuilder {
   }
 
   static std::string normal_map_uri(const sdf::Material& material) {
-    if (const sdf::Pbr* pbr = material.PbrMaterial()) {
-      for (const auto type : {sdf::PbrWorkflowType::METAL, sdf::PbrWorkflowType::SPECULAR}) {
-        const sdf::PbrWorkflow* workflow = pbr->Workflow(type);
-        if (workflow != nullptr && !workflow->NormalMap().empty()) {
-          if (workflow->NormalMapType() == sdf::NormalMapSpace::OBJECT) {
-            throw WorldError("object-space normal maps are not supported: use one in tangent space");
-          }
-          return workflow->NormalMap();
-        }
+    bool in_object_space = material.Shader() == sdf::ShaderType::NORMAL_MAP_OBJECTSPACE;
+    std::string uri = in_object_space || material.Shader() == sdf::ShaderType::NORMAL_MAP_TANGENTSPACE
+                          ? material.NormalMap()
+                          : std::string();
+    for (const auto type : {sdf::PbrWorkflowType::METAL, sdf::PbrWorkflowType::SPECULAR}) {
+      const sdf::PbrWorkflow* workflow =
+          material.PbrMaterial() != nullptr ? material.PbrMaterial()->Workflow(type) : nullptr;
+      if (workflow != nullptr && !workflow->NormalMap().empty()) {
+        uri = workflow->NormalMap();
+        in_object_space = workflow->Element()->FindElement("normal_map")->Get<std::string>("type") == "object";
+        break;
       }
     }
-    if (!material.NormalMap().empty() && material.Shader() == sdf::ShaderType::NORMAL_MAP_OBJECTSPACE) {
+    if (!uri.empty() && in_object_space) {
       throw WorldError("object-space normal maps are not supported: use one in tangent space");
     }
-    return material.Shader() == sdf::ShaderType::NORMAL_MAP_TANGENTSPACE ? material.NormalMap()
-                                                                         : std::string();
+    return uri;
   }
 
   fs::path file_;

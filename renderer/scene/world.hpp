@@ -24,8 +24,8 @@ struct AcousticMaterial {
   std::string name = "default";
   /// Reflectance rho of mode `paper` (Cerqueira et al. 2017, 3.2): the echo intensity is min(1, rho cos phi).
   /// >= 0.
-  double reflectance = 0.35;
-  /// Lambert coefficient mu of mode `physical`: s_b = mu cos^2(phi). Linear, in (0, 1/pi] for a passive
+  double reflectance = 1.0;
+  /// Lambert coefficient mu of mode `physical`: s_b = mu cos^2(phi). Linear, in [0, 1/pi] for a passive
   /// surface.
   double lambert_mu = 0.0063;
 };

@@ -1,0 +1,88 @@
+// Files for one test, gone after it; and what a mesh measures.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render::test {
+
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "sonard-scene-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("mkdtemp failed");
+    }
+    path_ = std::filesystem::canonical(name);
+  }
+  ~TempFolder() { std::filesystem::remove_all(path_); }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  std::filesystem::path write(const std::string& name, const std::string& content) const {
+    const std::filesystem::path file = path_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << content;
+    return file;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline glm::dvec3 corner(const TriangleMesh& mesh, std::size_t index) {
+  return glm::dvec3(mesh.positions[mesh.indices[index]]);
+}
+
+/// Twice the area long, by the right-hand rule.
+inline glm::dvec3 area_normal(const TriangleMesh& mesh, std::size_t triangle) {
+  const glm::dvec3 a = corner(mesh, 3 * triangle);
+  return glm::cross(corner(mesh, 3 * triangle + 1) - a, corner(mesh, 3 * triangle + 2) - a);
+}
+
+inline double area_m2(const TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    sum += 0.5 * glm::length(area_normal(mesh, t));
+  }
+  return sum;
+}
+
+/// By the divergence theorem: positive when a closed surface is wound outward.
+inline double volume_m3(const TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    sum += glm::dot(corner(mesh, 3 * t), area_normal(mesh, t)) / 6.0;
+  }
+  return sum;
+}
+
+struct Bounds {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+inline Bounds bounds(const TriangleMesh& mesh) {
+  Bounds box;
+  for (const glm::vec3& p : mesh.positions) {
+    box.low = glm::min(box.low, glm::dvec3(p));
+    box.high = glm::max(box.high, glm::dvec3(p));
+  }
+  return box;
+}
+
+}  // namespace sonard::render::test
