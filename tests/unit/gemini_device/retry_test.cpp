@@ -19,7 +19,7 @@ std::vector<std::string> story(const Bench& bench, std::size_t from = 0) {
     if (const auto* head = std::get_if<PingHead>(&report)) {
       words.emplace_back((head->ping_id & 0x100) != 0 ? "h" : "H");
     } else if (const auto* line = std::get_if<PingLine>(&report)) {
-      words.push_back((line->resent() ? "r" : "") + std::to_string(line->line_number()));
+      words.push_back(std::string(line->resent() ? "r" : "").append(std::to_string(line->line_number())));
     } else if (const auto* tail = std::get_if<PingTail>(&report)) {
       words.emplace_back(tail->resent() ? "t" : "T");
     }
