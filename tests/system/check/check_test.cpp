@@ -6,10 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
 #include <ostream>
+#include <regex>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -111,42 +115,60 @@ INSTANTIATE_TEST_SUITE_P(Addresses, BrokenConfig,
                            return test.param.file.substr(0, test.param.file.find('.'));
                          });
 
-/// A socket that holds an address as long as it lives.
-class HeldAddress {
+/// A socket on a port of the kernel's choice, held as long as it lives, and the broken configuration that
+/// asks for it.
+class HeldPort {
  public:
-  HeldAddress(int type, const char* address, std::uint16_t port) : socket_(socket(AF_INET, type, 0)) {
-    // Two tests may hold it at a time; the program does not ask for this, so it is refused all the same.
-    const int on = 1;
-    setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  /// @param file below broken_folder; its "40000" becomes the port
+  HeldPort(int type, const char* address, const std::string& file) : socket_(socket(AF_INET, type, 0)) {
     sockaddr_in name{};
     name.sin_family = AF_INET;
-    name.sin_port = htons(port);
     inet_pton(AF_INET, address, &name.sin_addr);
-    held_ = bind(socket_, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0 &&
-            (type != SOCK_STREAM || listen(socket_, 1) == 0);
+    socklen_t length = sizeof name;
+    auto* const generic = reinterpret_cast<sockaddr*>(&name);
+    if (bind(socket_, generic, length) != 0 || (type == SOCK_STREAM && listen(socket_, 1) != 0) ||
+        getsockname(socket_, generic, &length) != 0) {
+      throw std::system_error(errno, std::generic_category(), address);
+    }
+    port_ = std::to_string(ntohs(name.sin_port));
+    config_ = testing::TempDir() + std::to_string(getpid()) + "_" + file;
+    std::stringstream text;
+    text << std::ifstream(broken_folder + file).rdbuf();
+    const std::string with_port = std::regex_replace(text.str(), std::regex("40000"), port_);
+    std::ofstream(config_) << std::regex_replace(with_port, std::regex("assets/"), broken_folder + "assets/");
   }
-  ~HeldAddress() { close(socket_); }
-  HeldAddress(const HeldAddress&) = delete;
-  HeldAddress& operator=(const HeldAddress&) = delete;
-  bool held() const { return held_; }
+  ~HeldPort() {
+    close(socket_);
+    std::filesystem::remove(config_);
+  }
+  HeldPort(const HeldPort&) = delete;
+  HeldPort& operator=(const HeldPort&) = delete;
+
+  const std::string& port() const { return port_; }
+  const std::string& config() const { return config_; }
 
  private:
   int socket_;
-  bool held_ = false;
+  std::string port_;
+  std::string config_;
 };
 
 TEST(AddressInUse, is_refused_for_a_head) {
-  const HeldAddress other(SOCK_DGRAM, "127.91.0.18", 52901);
-  ASSERT_TRUE(other.held());
-  expect_complaint({"address_in_use.yaml", "11:26: heads[0].network.bind", "",
-                    "UDP 127.91.0.18:52901 is in use by another program (expected a free port)"});
+  const HeldPort held(SOCK_DGRAM, "127.91.0.18", "address_in_use.yaml");
+  const ProcessResult result = run_process({SONARD_PROGRAM, "check", held.config()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(lines_of(result.err),
+              Contains(held.config() + ":11:26: heads[0].network.bind: UDP 127.91.0.18:" + held.port() +
+                       " is in use by another program (expected a free port)"));
 }
 
 TEST(AddressInUse, is_refused_for_the_pose_stream) {
-  const HeldAddress other(SOCK_STREAM, "127.91.0.19", 14600);
-  ASSERT_TRUE(other.held());
-  expect_complaint({"pose_port_in_use.yaml", "5:15: poses.tcp.bind", "",
-                    "TCP 127.91.0.19:14600 is in use by another program (expected a free port)"});
+  const HeldPort held(SOCK_STREAM, "127.91.0.19", "pose_port_in_use.yaml");
+  const ProcessResult result = run_process({SONARD_PROGRAM, "check", held.config()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(lines_of(result.err),
+              Contains(held.config() + ":5:15: poses.tcp.bind: TCP 127.91.0.19:" + held.port() +
+                       " is in use by another program (expected a free port)"));
 }
 
 TEST(OverlappingHeads, are_refused_with_what_they_share) {
@@ -238,12 +260,10 @@ TEST(Run, names_the_key_of_a_missing_world) {
 }
 
 TEST(Run, has_its_own_exit_code_for_an_address_in_use) {
-  const HeldAddress other(SOCK_DGRAM, "127.91.0.18", 52901);
-  ASSERT_TRUE(other.held());
-  const std::string file = broken_folder + "address_in_use.yaml";
-  const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
+  const HeldPort held(SOCK_DGRAM, "127.91.0.18", "address_in_use.yaml");
+  const ProcessResult result = run_process({SONARD_PROGRAM, "run", held.config()});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(lines_of(result.err), Contains(StartsWith(file + ":11:26: heads[0].network.bind: ")));
+  EXPECT_THAT(lines_of(result.err), Contains(StartsWith(held.config() + ":11:26: heads[0].network.bind: ")));
 }
 
 TEST(SelfTest, passes_and_shows_the_gl_in_use) {
