@@ -157,7 +157,7 @@ class Program:
     def __init__(self, command, name):
         self.name = name
         self.lines = []
-        self._news = threading.Condition()
+        self._news = threading.Condition()  # its lock may be taken twice by one thread
         self._ended = False
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                          errors="replace")
@@ -177,6 +177,11 @@ class Program:
         with self._news:
             return "\n".join(self.lines)
 
+    def tail(self, count=40):
+        """The last lines, for messages of failed tests."""
+        with self._news:
+            return f"{self.name} ends with:\n" + "\n".join(self.lines[-count:])
+
     def wait_for_line(self, pattern, seconds, count=1):
         """The `count`-th line in which the pattern is found."""
         deadline = Deadline(seconds)
@@ -187,8 +192,7 @@ class Program:
                     return found[count - 1]
                 if self._ended or deadline.over():
                     why = "ended" if self._ended else f"was silent for {seconds} s"
-                    raise AssertionError(f"{self.name} {why} before line {count} of '{pattern}'; its output:\n"
-                                         + "\n".join(self.lines[-60:]))
+                    raise AssertionError(f"{self.name} {why} before line {count} of '{pattern}'; {self.tail()}")
                 self._news.wait(deadline.left())
 
     def wait(self, seconds):
@@ -196,7 +200,7 @@ class Program:
         try:
             code = self._process.wait(seconds)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"{self.name} has not ended within {seconds} s; its output:\n{self.output()}")
+            raise AssertionError(f"{self.name} has not ended within {seconds} s; {self.tail()}")
         self._reader.join(5)
         return code
 

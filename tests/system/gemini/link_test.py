@@ -37,6 +37,10 @@ HEAD = """
       allow: [10.61.19.0/24]
     timing:
       min_ping_period_ms: 10
+      # A head does not wait long for a client that asks for lines again (docs/protocols/gemini.md 7.3); these do, because
+      # here the client may share a busy processor, and a late request is not what these tests are about.
+      retry_hold_ms: 100
+      retry_hold_max_ms: 5000
     acoustics:
       seed: {sonar_id}
       physical:
@@ -96,11 +100,11 @@ class LinkTest(unittest.TestCase):
         daemon.wait_for_line(r"sonard ready heads=%d " % len(heads), START_S)
         return daemon
 
-    def start_viewer(self, lab, *options, surface=None):
+    def start_viewer(self, lab, *options, surface=None, range_m=4):
         namespace = surface or lab.surface
         address = SURFACE_ADDRESS if namespace is lab.surface else "10.61.19.11"
         return lab.start(namespace, os.path.join(PROGRAMS, "sonarview"), "--surface-address", address, "--log-pings",
-                         "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S), "--range", "4", *options)
+                         "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S), "--range", str(range_m), *options)
 
     # ---- Checks ----
 
@@ -126,14 +130,14 @@ class LinkTest(unittest.TestCase):
 
     def end_daemon(self, daemon):
         code, seconds = daemon.terminate(10)
-        self.assertEqual(code, 0, daemon.output())
+        self.assertEqual(code, 0, daemon.tail())
         return seconds
 
     def run_pings(self, viewer_options=(), more_config="", count=200):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config(more=more_config))
         viewer = self.start_viewer(lab, "--pings", str(count), *viewer_options)
-        self.assertEqual(viewer.wait(100), 0, viewer.output())
+        self.assertEqual(viewer.wait(100), 0, viewer.tail())
         summary = self.check_pings(viewer, count)
         self.end_daemon(daemon)
         return summary
@@ -183,13 +187,13 @@ class Surfaces(LinkTest):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config())
         for life in range(3):
-            viewer = self.start_viewer(lab, "--range", "50", "--compression", "0", "--continuous", "50")
+            viewer = self.start_viewer(lab, "--compression", "0", "--continuous", "50", range_m=50)
             viewer.wait_for_line("^ping ", PATIENCE_S, count=1 + life)
             time.sleep(0.01 + 0.02 * life)  # a ping of 6028 lines takes 0.16 s on the wire
             viewer.signal(signal.SIGKILL)
             viewer.wait(10)
         viewer = self.start_viewer(lab, "--pings", "20")
-        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.output())
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
         self.check_pings(viewer, 20)
         self.end_daemon(daemon)
 
@@ -200,7 +204,7 @@ class Surfaces(LinkTest):
         viewers = [self.start_viewer(lab, "--sonar-id", str(513 + i), "--pings", "60", surface=surface)
                    for i, surface in enumerate(lab.surfaces)]
         for viewer, name in zip(viewers, ("bow", "stern")):
-            self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.output())
+            self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
             self.check_pings(viewer, 60, name)
         self.assertFalse(set(self.rendered("bow").values()) & set(self.rendered("stern").values()),
                          "two heads with different seeds made the same image")
