@@ -27,7 +27,7 @@ constexpr nanoseconds config_patience_most = seconds{2};
 /// breaks once in 1e13 times on a link that loses 5 %. Over a slow link the answer takes longer than that
 /// hold, so there it has to be asked for several times.
 constexpr ResponseTime::Limits answer_limits{milliseconds{3}, milliseconds{2}, milliseconds{25}};
-constexpr nanoseconds answer_patience_continuous = milliseconds{4};
+constexpr nanoseconds answer_patience_continuous = milliseconds{2};
 constexpr nanoseconds answer_patience_most = milliseconds{100};
 constexpr int fruitless_rounds_at_full_speed = 4;
 
@@ -36,7 +36,7 @@ constexpr int fruitless_rounds_at_full_speed = 4;
 constexpr nanoseconds reorder_patience = milliseconds{1};
 /// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
 /// waits for before it sends one. A false alarm costs a re-sent tail.
-constexpr nanoseconds stream_patience = milliseconds{4};
+constexpr nanoseconds stream_patience = milliseconds{8};
 constexpr int burst_lines = 32;
 /// The tail follows the last line, and the head comes before the first, at once.
 constexpr nanoseconds neighbour_patience = milliseconds{2};
@@ -54,7 +54,7 @@ constexpr nanoseconds linger_time = milliseconds{10};
 constexpr nanoseconds unrequested_patience = milliseconds{100};
 
 constexpr int copies_of_a_repeated_request = 2;
-constexpr int few_lines = 64;  ///< up to here a second copy costs the link nothing that counts
+constexpr int few_lines = 16;  ///< up to here a second copy costs the link nothing that counts
 constexpr std::size_t most_ranges_a_round = 256;
 constexpr int probes_before_config = 3;
 constexpr std::size_t ended_kept = 8;
@@ -319,7 +319,7 @@ void Surface::await_next(TimePoint now) {
 // ---------------------------------------------------------------------------------------------------------------
 
 void Surface::on_report(TimePoint now, const PingHead& head) {
-  if (!programme_ || stopped_) {
+  if (!takes_pings()) {
     return;
   }
   if (!is_receivable(head)) {
@@ -349,7 +349,7 @@ void Surface::on_report(TimePoint now, const PingHead& head) {
 }
 
 void Surface::on_report(TimePoint now, const PingLine& line) {
-  if (!programme_ || stopped_) {
+  if (!takes_pings()) {
     return;
   }
   Incoming* ping = incoming_for(now, line.ping_id);
@@ -380,7 +380,7 @@ void Surface::on_report(TimePoint now, const PingLine& line) {
 }
 
 void Surface::on_report(TimePoint now, const PingTail& tail) {
-  if (!programme_ || stopped_) {
+  if (!takes_pings()) {
     return;
   }
   Incoming* ping = incoming_for(now, tail.ping_id);

@@ -198,6 +198,8 @@ class Surface {
   void watch_for_silence(TimePoint now);
 
   // The ping that is coming in.
+  /// Nothing can be asked of a head whose address is not known yet.
+  bool takes_pings() const { return head_ && programme_ && !stopped_; }
   Incoming* find_incoming(std::uint8_t id);
   Incoming* incoming_for(TimePoint now, std::uint8_t id);
   Incoming& begin(TimePoint now, std::uint8_t id);

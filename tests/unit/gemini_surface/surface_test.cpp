@@ -177,6 +177,20 @@ TEST_F(SurfaceTest, IsSilentUntilAStatusComes) {
   EXPECT_FALSE(surface_.head());
 }
 
+TEST_F(SurfaceTest, PingsOfAnUnknownHeadAreIgnored) {
+  // A client before us has died; its head still pings.
+  surface_.start(now_, config(RunMode::continuous), 1);
+  hear_head(5);
+  hear_lines(5, 0, 10);
+  hear_lines(5, 20, 10);
+  hear_tail(5);
+  pass(1s);
+  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+  now_ += 1s;
+  hear(status());
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));
+}
+
 TEST_F(SurfaceTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
   hear(status());
   const auto sent = surface_.take_outgoing();

@@ -1,0 +1,15 @@
+#include "clients/sonarview/datagram_dropper.hpp"
+
+namespace sonard::client {
+
+DatagramDropper::DatagramDropper(double probability, std::uint64_t seed, std::uint64_t direction)
+    : random_(2 * seed + direction), probability_(probability) {}
+
+bool DatagramDropper::drop() {
+  // The distributions of the standard library differ from one to the next; this does not.
+  const bool lost = static_cast<double>(random_() >> 11) * 0x1p-53 < probability_;
+  dropped_ += lost ? 1 : 0;
+  return lost;
+}
+
+}  // namespace sonard::client
