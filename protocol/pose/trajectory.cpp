@@ -156,7 +156,7 @@ class Parser {
 /// Time within the trajectory after playing for `elapsed`.
 std::int64_t time_in(const Trajectory& trajectory, const Playback& playback,
                      std::chrono::nanoseconds elapsed) {
-  const double duration_ns = static_cast<double>(trajectory.end_ns() - trajectory.start_ns());
+  const auto duration_ns = static_cast<double>(trajectory.end_ns() - trajectory.start_ns());
   double played_ns =
       static_cast<double>(playback.from_ns) + playback.speed * static_cast<double>(elapsed.count());
   if (playback.loop && duration_ns > 0.0) {
@@ -177,7 +177,7 @@ TrajectoryState Trajectory::at(std::int64_t time_ns) const {
     return {(later == points_.begin() ? points_.front() : points_.back()).T_world_vehicle, {}};
   }
   const TrajectoryPoint& from = *std::prev(later);
-  const double segment_ns = static_cast<double>(later->time_ns - from.time_ns);
+  const auto segment_ns = static_cast<double>(later->time_ns - from.time_ns);
   const Transform now = interpolate(from.T_world_vehicle, later->T_world_vehicle,
                                     static_cast<double>(time_ns - from.time_ns) / segment_ns);
   const double per_second = 1e9 / segment_ns;
