@@ -59,7 +59,7 @@ bool fits(const PingImage& image, const PingJob& job) {
 
 EncodedPing::EncodedPing(const PingHead& head, std::uint16_t line_scale, const PingImage& image)
     : head_(head), line_scale_(line_scale) {
-  const std::size_t lines = static_cast<std::size_t>(line_count());
+  const auto lines = static_cast<std::size_t>(line_count());
   const std::size_t sample_size = head_.eight_bit() ? 1 : 2;
   std::vector<std::uint8_t> bytes;
   bytes.reserve(64 + lines * (line_header_size + sample_size * beam_count));
@@ -80,7 +80,7 @@ EncodedPing::EncodedPing(const PingHead& head, std::uint16_t line_scale, const P
 }
 
 SharedBytes EncodedPing::datagram(int index) const {
-  const std::size_t i = static_cast<std::size_t>(index);
+  const auto i = static_cast<std::size_t>(index);
   return {bytes_, offsets_[i], offsets_[i + 1] - offsets_[i]};
 }
 

@@ -199,19 +199,19 @@ TEST(Retries, AskedForInSinglePingModeAreServedBeforeTheNextHeadAndNoLonger) {
 
 TEST(Retries, HoldAHeadThatWasAskedForBeforeThem) {
   Bench bench;
-  bench.command(ping_of(1000));  // 27 ms
+  bench.command(ping_of(2000));  // 54 ms
   bench.run_until(10ms);
   bench.command(ping_of(100));  // a surface that asks at its own pace
   bench.run_until(20ms);
   bench.command(retry_of(RetryKind::lines, 10));
-  bench.run_until(33ms);  // less than 10 ms after r10, which left with the tail
+  bench.run_until(60ms);  // less than 10 ms after r10, which left with the tail
   bench.command(retry_of(RetryKind::tail));
   bench.run_until(200ms);
   const auto words = story(bench);
-  ASSERT_EQ(words.size(), 1002U + 2U + 102U);
-  EXPECT_EQ(words[1002], "r10");
-  EXPECT_EQ(words[1003], "t");
-  EXPECT_EQ(words[1004], "H");
+  ASSERT_EQ(words.size(), 2002U + 2U + 102U);
+  EXPECT_EQ(words[2002], "r10");
+  EXPECT_EQ(words[2003], "t");
+  EXPECT_EQ(words[2004], "H");
 }
 
 TEST(Retries, StillWorkAfterSilence) {
