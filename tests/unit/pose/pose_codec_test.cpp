@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <bit>
@@ -130,7 +131,7 @@ TEST(PoseCodec, DecodesWhatProtocEncodes) {
 
 /// What protoc makes of a message.
 std::string read_by_protoc(const Bytes& bytes) {
-  const std::string path = testing::TempDir() + "sonard_pose_message.bin";
+  const std::string path = testing::TempDir() + "sonard_pose_message_" + std::to_string(getpid());
   std::ofstream{path, std::ios::binary}.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   const std::string command = std::string{PROTOC} + " --proto_path=" + SONARD_SOURCE_DIR +
                               "/protocol/pose --decode=sonard.pose.PoseUpdate pose.proto < " + path;

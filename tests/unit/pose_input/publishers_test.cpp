@@ -22,14 +22,9 @@ using testing::HasSubstr;
 
 class PublishersTest : public SourceTest {
  protected:
-  std::string file(const std::string& text) {
-    const std::string path =
-        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
-    std::ofstream{path} << text;
-    return path;
-  }
+  static std::string file(const std::string& text) { return write_file(text).string(); }
   /// North at 2 m/s for half a second.
-  std::string motion() {
+  static std::string motion() {
     return file("t,x,y,z,qx,qy,qz,qw\n0,0,0,-5,0,0,0,1\n0.25,0,0.5,-5,0,0,0,1\n0.5,0,1,-5,0,0,0,1\n");
   }
   int run(ChildProcess& child) {

@@ -2,10 +2,15 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "server/pose/pose_source.hpp"
@@ -49,6 +54,14 @@ class SourceTest : public testing::Test {
     pose::PoseSample result;
     result.T_world_vehicle.position_m.x = std::numeric_limits<double>::quiet_NaN();
     return result;
+  }
+
+  /// A file of this test in this process, so that test runs side by side do not meet.
+  static std::filesystem::path write_file(const std::string& text) {
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    const std::filesystem::path path = testing::TempDir() + test + "_" + std::to_string(getpid()) + ".csv";
+    std::ofstream{path} << text;
+    return path;
   }
 
   static constexpr Ipv4 localhost = 0x7F000001;

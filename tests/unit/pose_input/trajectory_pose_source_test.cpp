@@ -13,11 +13,8 @@ using std::chrono::milliseconds;
 class TrajectoryPoseSourceTest : public SourceTest {
  protected:
   /// East at 1 m/s for 0.3 s.
-  std::filesystem::path file() {
-    const std::filesystem::path path =
-        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
-    std::ofstream{path} << "t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\n10.3,0.3,0,0,0,0,0,1\n";
-    return path;
+  static std::filesystem::path file() {
+    return write_file("t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\n10.3,0.3,0,0,0,0,0,1\n");
   }
 };
 
