@@ -79,6 +79,8 @@ void confine_child(int log_fd, unsigned int processor_limit_s) {
   ::setrlimit(RLIMIT_CORE, &no_core);
   const rlimit processor{processor_limit_s, processor_limit_s};
   ::setrlimit(RLIMIT_CPU, &processor);
+  // Work that waits for something uses no processor time; a busy machine gives a share of one.
+  ::alarm(60 + 20 * processor_limit_s);
   ::dup2(log_fd, STDOUT_FILENO);
   ::dup2(log_fd, STDERR_FILENO);
 }
@@ -131,7 +133,7 @@ IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned i
   const int status = wait_for(child);
   if (WIFSIGNALED(status)) {
     const int signal_number = WTERMSIG(status);
-    if (signal_number == SIGXCPU || signal_number == SIGKILL) {
+    if (signal_number == SIGXCPU || signal_number == SIGALRM || signal_number == SIGKILL) {
       throw IsolatedFailure("the reader was stopped: it used too much time or memory");
     }
     throw IsolatedFailure("the reader crashed (signal " + std::to_string(signal_number) +

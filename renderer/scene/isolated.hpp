@@ -19,8 +19,9 @@ struct IsolatedResult {
 
 /// Calls `work` in a forked child and hands back the bytes it returns. The mesh and image plugins crash or
 /// loop on some damaged files (a truncated PLY is enough), print to the terminal and keep global state; none
-/// of that reaches this process. A child that uses more than `processor_limit_s` of processor time is
-/// stopped. Called at start-up, before other threads use the libraries that `work` uses.
+/// of that reaches this process. A child that uses more than `processor_limit_s` of processor time, or takes
+/// a minute and 20 times as long by the wall clock, is stopped. Called at start-up, before other threads use
+/// the libraries that `work` uses.
 /// @throws IsolatedFailure; also with the message of an exception that `work` threw.
 IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned int processor_limit_s);
 

@@ -86,6 +86,7 @@ class IncludeFinder {
       : resolver_(resolver), folders_{world_file.parent_path()} {}
 
   std::string find(const std::string& uri) {
+    std::string failure;
     for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
       try {
         fs::path found = resolver_.resolve(uri, *folder);
@@ -98,13 +99,16 @@ class IncludeFinder {
         folders_.push_back(model_folder);
         return found.string();
       } catch (const WorldError& error) {
-        failure_ = error.what();
+        failure = error.what();
       }
+    }
+    if (failure_.empty()) {
+      failure_ = failure;
     }
     return {};
   }
 
-  /// Why the last URI that was not found was not found.
+  /// Why the first URI that was not found was not found.
   const std::string& failure() const { return failure_; }
 
  private:
@@ -124,23 +128,20 @@ std::optional<std::string> first_printed(const std::vector<std::string>& lines, 
   return std::nullopt;
 }
 
-/// "Error Code 13: [XML path:file:L4]: Msg: text" as "file:4: text".
-std::optional<std::string> first_coded(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) {
-    if (!line.starts_with("Error Code")) {
-      continue;
-    }
-    const std::size_t message = line.find("Msg: ");
-    const std::size_t number = line.rfind(":L", message);
-    const std::size_t file = line.rfind(":/", number);
-    if (message == std::string::npos || number == std::string::npos || file == std::string::npos) {
-      return line;
-    }
-    const std::size_t number_end = line.find(']', number);
-    return fmt::format("{}:{}: {}", line.substr(file + 1, number - file - 1),
-                       line.substr(number + 2, number_end - number - 2), line.substr(message + 5));
+/// "[XML path:file:L4]: text" or "...[XML path:file:L4]: Msg: text" as "file:4: text".
+std::string located(const std::string& line, const fs::path& world_file) {
+  const std::size_t number = line.find(":L");
+  const std::size_t number_end = line.find("]: ", number);
+  const std::size_t file = line.rfind(":/", number);
+  if (number == std::string::npos || number_end == std::string::npos || file == std::string::npos) {
+    return fmt::format("{}: {}", world_file.string(), line);
   }
-  return std::nullopt;
+  std::string text = line.substr(number_end + 3);
+  if (text.starts_with("Msg: ")) {
+    text.erase(0, 5);
+  }
+  return fmt::format("{}:{}: {}", line.substr(file + 1, number - file - 1),
+                     line.substr(number + 2, number_end - number - 2), text);
 }
 
 template <typename Predicate>
@@ -263,15 +264,18 @@ sdf::Root parse_sdf(const fs::path& world_file, UriResolver& resolver, std::vect
   if (!errors.empty()) {
     throw WorldError(message_of(errors, printed, root, world_file, finder));
   }
-  if (const auto coded = first_coded(printed)) {
-    throw WorldError(*coded + (finder.failure().empty() ? "" : "; " + finder.failure()));
+  const auto coded = std::find_if(printed.begin(), printed.end(),
+                                  [](const std::string& line) { return line.starts_with("Error Code"); });
+  if (coded != printed.end()) {
+    throw WorldError(located(*coded, world_file) + (finder.failure().empty() ? "" : "; " + finder.failure()));
   }
   if (const auto error = first_printed(printed, "Error")) {
     throw WorldError(fmt::format("{}: {}", world_file.string(), *error));
   }
   for (const std::string& line : printed) {
     if (line.starts_with("Warning [")) {
-      warnings.push_back(fmt::format("{}: {}", world_file.string(), *first_printed({line}, "Warning")));
+      const std::string text = *first_printed({line}, "Warning");
+      warnings.push_back(located(text.substr(0, text.find(" Copying[")), world_file));
     }
   }
   if (root.WorldCount() > 1 || (root.WorldCount() == 0 && root.Model() == nullptr)) {

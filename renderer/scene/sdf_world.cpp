@@ -332,7 +332,8 @@ class WorldBuilder {
           material.PbrMaterial() != nullptr ? material.PbrMaterial()->Workflow(type) : nullptr;
       if (workflow != nullptr && !workflow->NormalMap().empty()) {
         uri = workflow->NormalMap();
-        in_object_space = workflow->Element()->FindElement("normal_map")->Get<std::string>("type") == "object";
+        in_object_space =
+            workflow->Element()->FindElement("normal_map")->Get<std::string>("type") == "object";
         break;
       }
     }
