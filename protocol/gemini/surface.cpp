@@ -115,8 +115,12 @@ void Surface::start(TimePoint now, const PingConfig& config, std::uint64_t pings
   silence_due_.reset();
   lingering_.reset();
   last_id_.reset();
+  last_end_.reset();
   if (incoming_) {
     incoming_->requested = false;
+  }
+  if (head_ && !stay_alive_due_) {
+    stay_alive_due_ = now;
   }
   request_ping(now);
 }
@@ -146,7 +150,7 @@ void Surface::advance(TimePoint now) {
   if (lingering_ && lingering_due_ <= now) {
     close_lingering(now);
   }
-  if (incoming_ && due_by(due(*incoming_), now)) {
+  if (incoming_ && due(*incoming_) <= now) {
     on_incoming_due(now);
   }
   if (due_by(next_request_due_, now) && !incoming_) {
@@ -304,7 +308,10 @@ void Surface::await_next(TimePoint now) {
     return;
   }
   if (programme_->continuous()) {
-    silence_due_ = now + 2 * std::chrono::microseconds{programme_->config.interping_us} + seconds{1};
+    // A head that renders slowly takes longer than it was told to.
+    const nanoseconds interval = std::chrono::microseconds{programme_->config.interping_us};
+    silence_due_ = now + 2 * std::max(interval, now - last_end_.value_or(now)) + seconds{1};
+    last_end_ = now;
   } else if (repeated) {
     // The first configuration may have arrived after all, and a second ping be under way. A third
     // configuration would now cut the repair of that one short, and so on for ever.
@@ -531,7 +538,7 @@ void Surface::ask_again(TimePoint now, Incoming& ping) {
   }
 }
 
-std::optional<TimePoint> Surface::due(const Incoming& ping) const {
+TimePoint Surface::due(const Incoming& ping) const {
   if (!ping.requested) {
     return ping.heard + unrequested_patience;
   }
@@ -581,9 +588,13 @@ void Surface::stop_when_finished() {
   }
 }
 
-/// Another ping begins while one is incomplete: the head has dropped the old one (7.3).
+/// Another ping begins before the end of one: the head has dropped the old one (7.3).
 void Surface::supersede(TimePoint now) {
   Incoming& ping = *incoming_;
+  if (ping.requested && ping.assembly.is_complete()) {
+    finish(now);  // only the tail was awaited
+    return;
+  }
   if (!ping.requested) {
     ++statistics_.pings_unrequested;
   } else if (!programme_->continuous()) {
@@ -606,8 +617,8 @@ void Surface::finish(TimePoint now) {
   close_lingering(now);
   Incoming ping = std::move(*incoming_);
   incoming_.reset();
-  note_end(ping);
   if (!ping.requested) {
+    note_end(ping);
     ++statistics_.pings_unrequested;
     if (next_request_due_) {
       next_request_due_ = now;  // this was the second ping that had to pass
@@ -622,9 +633,11 @@ void Surface::finish(TimePoint now) {
     if (!request_) {
       request_.emplace(Request{});
     }
-    request_->due = now;  // the configuration is still to be answered
+    // The configuration is still to be answered; if it is by a late head, all of the ping can be repaired.
+    request_->due = now;
     return;
   }
+  note_end(ping);
   deliver(now, std::move(ping));
   await_next(now);
 }

@@ -209,7 +209,7 @@ class Surface {
   void follow_first_pass(TimePoint now, Incoming& ping, int number);
   void ask_unasked(Incoming& ping, int end);
   void ask_again(TimePoint now, Incoming& ping);
-  std::optional<TimePoint> due(const Incoming& ping) const;
+  TimePoint due(const Incoming& ping) const;
   void on_incoming_due(TimePoint now);
   void settle(TimePoint now);
   void supersede(TimePoint now);
@@ -234,6 +234,7 @@ class Surface {
   std::optional<Request> request_;
   std::optional<TimePoint>
       next_request_due_;                  ///< single mode: the next configuration waits for a second ping
+  std::optional<TimePoint> last_end_;     ///< continuous mode: of the newest ping
   std::optional<TimePoint> silence_due_;  ///< continuous mode: pings should have come by then
 
   std::optional<Incoming> incoming_;

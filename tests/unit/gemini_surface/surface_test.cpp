@@ -449,6 +449,57 @@ TEST_F(SurfaceTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
   EXPECT_EQ(surface_.statistics().configs_sent, 1U);
 }
 
+TEST_F(SurfaceTest, AHeadThatComesVeryLateStillSavesThePing) {
+  meet_and_start(config(), 1);
+  const TimePoint transmitted = now_;
+  hear_lines(5, 0, lines);
+  hear_tail(5);
+  while (surface_.statistics().pings_abandoned == 0) {
+    pass(1ms);
+    ASSERT_LT(now_, 5s);
+  }
+  pass(1ms);
+  hear_head(5, transmitted, true);
+  hear_tail(5, true);
+  hear_lines(5, 0, lines, true);
+  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+}
+
+TEST_F(SurfaceTest, APingThatLacksOnlyItsTailIsDeliveredWhenTheNextBegins) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, lines);
+  hear_line(6, 0);  // the configuration came twice
+  const auto pings = surface_.take_pings();
+  ASSERT_THAT(pings, SizeIs(1));
+  EXPECT_EQ(pings[0].head.ping_id, 5);
+  EXPECT_EQ(surface_.statistics().pings_abandoned, 0U);
+}
+
+TEST_F(SurfaceTest, CanStartAgainAfterAStop) {
+  meet_and_start(config(RunMode::continuous), 1);
+  hear_ping(5);
+  ASSERT_TRUE(surface_.finished());
+  static_cast<void>(surface_.take_outgoing());
+  surface_.start(now_, config(), 1);
+  surface_.advance(now_);
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));
+  EXPECT_FALSE(surface_.finished());
+  pass(1500ms);
+  EXPECT_THAT(said<StatusRequest>(), SizeIs(testing::Ge(1U)));
+}
+
+TEST_F(SurfaceTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
+  meet_and_start(config(RunMode::continuous));  // asks for 10 pings a second
+  for (int id = 0; id < 5; ++id) {
+    hear_ping(id);
+    pass(1500ms);
+    hear(status());
+  }
+  EXPECT_LE(surface_.statistics().configs_sent, 2U);
+}
+
 TEST_F(SurfaceTest, ASecondPingToARepeatedConfigurationIsLetPass) {
   meet_and_start(config());
   pass(1100ms);
