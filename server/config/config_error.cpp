@@ -1,13 +1,15 @@
 #include "server/config/config_error.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace sonard::server {
 namespace {
 
 std::vector<ConfigProblem> in_file_order(std::vector<ConfigProblem> problems) {
-  std::stable_sort(problems.begin(), problems.end(),
-                   [](const ConfigProblem& a, const ConfigProblem& b) { return a.at < b.at; });
+  std::stable_sort(problems.begin(), problems.end(), [](const ConfigProblem& a, const ConfigProblem& b) {
+    return std::tie(a.at.line, a.at.column) < std::tie(b.at.line, b.at.column);
+  });
   return problems;
 }
 

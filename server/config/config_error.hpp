@@ -1,7 +1,6 @@
 // What is wrong with a configuration file, and where.
 #pragma once
 
-#include <compare>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -16,8 +15,6 @@ namespace sonard::server {
 struct SourcePosition {
   int line = 0;
   int column = 0;
-
-  auto operator<=>(const SourcePosition&) const = default;
 };
 
 struct ConfigProblem {

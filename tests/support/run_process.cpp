@@ -40,6 +40,7 @@ class Capture {
 pid_t start(const std::vector<std::string>& command, const Capture& out, const Capture& err) {
   std::vector<std::string> words = command;
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) {
     arguments.push_back(word.data());
   }
