@@ -1,4 +1,5 @@
 // What ships in configs/ loads without a warning, and the two that scripts rely on say what they promise.
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <vector>
@@ -6,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "protocol/pose/trajectory.hpp"
 #include "server/config/loader.hpp"
 
 namespace sonard::server {
@@ -38,6 +40,18 @@ void expect_demo_head(const DaemonConfig& config) {
   EXPECT_TRUE(config.poses.T_world_vehicle_initial.has_value());
   const double pi = std::numbers::pi;
   EXPECT_NEAR((head.T_vehicle_sonar.orientation * glm::dvec3(1, 0, 0)).z, -std::sin(20 * pi / 180), 1e-12);
+}
+
+TEST(ShippedConfigs, demo_starts_where_its_trajectory_starts) {
+  const pose::Transform first =
+      pose::load_trajectory(configs / "trajectories" / "docking_demo.csv").points().front().T_world_vehicle;
+  for (const char* file : {"demo.yaml", "gemini-netns.yaml", "paper.yaml"}) {
+    const render::Pose initial = load_config(configs / file).config.poses.T_world_vehicle_initial.value();
+    const glm::dvec3 position(first.position_m.x, first.position_m.y, first.position_m.z);
+    EXPECT_LT(glm::length(initial.position_m - position), 1e-3) << file;
+    const glm::dquat q(first.orientation.w, first.orientation.x, first.orientation.y, first.orientation.z);
+    EXPECT_GT(std::abs(glm::dot(initial.orientation, q)), 1 - 1e-6) << file;
+  }
 }
 
 TEST(ShippedConfigs, demo_serves_loopback) {
