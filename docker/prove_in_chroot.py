@@ -5,7 +5,8 @@
 
 Each stage becomes a folder made by debootstrap from the mirror this machine's apt uses; RUN, COPY, ENV, WORKDIR and USER
 are done there in chroots with their own mount and process namespaces. Then the daemon is started as the image would
-start it, in a network namespace that has only loopback and 10.61.19.200, once with each of the two demo configurations.
+start it, in a network namespace that has only loopback and 10.61.19.200: once with the demo configuration, from which
+sonarview takes three pings, and once with the one of the compose file.
 Needs root, debootstrap, git, iproute2 and the Debian release that the Dockerfile names as its base.
 """
 
@@ -64,8 +65,8 @@ class Stage:
         chroot = ["chroot", f"--userspec={self.user}:{self.user}", str(self.root), *inside]
         setup = f"mount -t proc proc {shlex.quote(str(self.root / 'proc'))} && "
         if not network:
-            setup += ("ip link set lo up && ip link add eth0 type dummy && ip address add 10.61.19.200/24 brd + dev eth0 && "
-                      "ip link set eth0 up && ")
+            setup += ("ip link set lo up && ip link add eth0 type veth peer name far_end && ip link set far_end up && "
+                      "ip address add 10.61.19.200/24 brd + dev eth0 && ip link set eth0 up && ")
         return ["unshare", "--mount", "--pid", "--fork", "--kill-child", *([] if network else ["--net"]), "sh", "-c",
                 setup + "exec " + shlex.join(chroot)]
 
@@ -155,8 +156,8 @@ def prove_libraries(stage):
             raise SystemExit("\n".join(missing))
 
 
-def prove_serving(stage, arguments):
-    """Starts the image's command, waits until it is ready, ends it with SIGTERM and expects a clean exit."""
+def prove_serving(stage, arguments, client=None):
+    """Starts the image's command, waits until it is ready, runs `client` beside it, ends it with SIGTERM; all must exit with 0."""
     print(f"==> {shlex.join(stage.entrypoint + arguments)} as {stage.user}", flush=True)
     log_path = stage.root.parent / "sonard.log"
     with open(log_path, "w") as log:
@@ -167,7 +168,10 @@ def prove_serving(stage, arguments):
             process.kill()
             raise SystemExit(f"not ready:\n{log_path.read_text()}")
         time.sleep(0.1)
-    daemon = daemon_pid(process.pid)
+    daemon = deepest_descendant(process.pid)
+    if client:
+        subprocess.run(["nsenter", f"--net=/proc/{daemon}/ns/net", "chroot", f"--userspec={stage.user}", stage.root, *client],
+                       check=True, timeout=READY_DEADLINE_S)
     os.kill(daemon, signal.SIGTERM)
     code = process.wait(timeout=20)
     print(log_path.read_text().rstrip())
@@ -175,8 +179,8 @@ def prove_serving(stage, arguments):
         raise SystemExit(f"ended with exit code {code}")
 
 
-def daemon_pid(ancestor):
-    """The daemon below unshare, as seen from here: the deepest descendant."""
+def deepest_descendant(ancestor):
+    """The daemon below unshare, by the number it has out here."""
     pid = ancestor
     while True:
         children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
@@ -195,7 +199,7 @@ def main():
     options.work.mkdir(parents=True, exist_ok=True)
     stage = build(options.work.resolve())
     prove_libraries(stage)
-    prove_serving(stage, stage.command)
+    prove_serving(stage, stage.command, ["/usr/local/bin/sonarview", "--pings", "3", "--quiet"])
     prove_serving(stage, ["run", "configs/gemini-netns.yaml"])
     if not options.keep:
         for name in ("build", "final"):
