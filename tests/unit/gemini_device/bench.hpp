@@ -70,7 +70,7 @@ Message to_head(Message message = {}) {
 /// 8 bit, uncompressed, pings out of water too.
 inline PingConfig ping_of(int lines, RunMode mode = RunMode::single,
                           std::chrono::microseconds interval = 200ms) {
-  PingConfig config = to_head<PingConfig>();
+  auto config = to_head<PingConfig>();
   config.run_mode = static_cast<std::uint16_t>(mode);
   config.ext_mode = 0x0204;
   config.end_range = static_cast<std::uint16_t>(lines);
@@ -79,7 +79,7 @@ inline PingConfig ping_of(int lines, RunMode mode = RunMode::single,
 }
 
 inline RetryRequest retry_of(RetryKind kind, int first = 0, int count = 1) {
-  RetryRequest request = to_head<RetryRequest>();
+  auto request = to_head<RetryRequest>();
   request.kind = kind;
   request.first_line = static_cast<std::uint16_t>(first);
   request.line_count = static_cast<std::uint16_t>(count);

@@ -83,7 +83,7 @@ std::vector<std::uint8_t> readback(std::string_view address_bytes, std::string_v
 
 TEST(Commands, FlashIsWrittenAndReadBack) {
   Bench bench;
-  FlashWrite write = to_head<FlashWrite>();
+  auto write = to_head<FlashWrite>();
   write.address = 0x0001'0400;
   write.data.fill(0xFF);
   write.data[0] = 0xAB;
@@ -102,7 +102,7 @@ TEST(Commands, FlashIsWrittenAndReadBack) {
 
 TEST(Commands, FlashWriteBeyondTheMemoryIsReportedAsFailed) {
   Bench bench;
-  FlashWrite write = to_head<FlashWrite>();
+  auto write = to_head<FlashWrite>();
   write.address = 0x0080'0000;
   const auto answer = answers(bench, encode(Command{write}));
   ASSERT_EQ(answer.size(), 1U);
@@ -150,7 +150,7 @@ TEST(Commands, UnusableProgrammedAddressesLeaveTheHeadReachable) {
       AddressBlock{0xC0A8024D, 0}};
   for (const AddressBlock& block : unusable) {
     Bench bench;
-    InfoBlockWrite write = to_head<InfoBlockWrite>();
+    auto write = to_head<InfoBlockWrite>();
     write.block = block;
     bench.command(write);
     bench.command(to_head<Reboot>());
@@ -160,7 +160,7 @@ TEST(Commands, UnusableProgrammedAddressesLeaveTheHeadReachable) {
 
 TEST(Commands, ProductionBlocksAreStoredWithoutEffect) {
   Bench bench;
-  InfoBlockWrite write = to_head<InfoBlockWrite>();
+  auto write = to_head<InfoBlockWrite>();
   write.block = IdentityBlock{777, 1};
   EXPECT_EQ(answers(bench, encode(Command{write})),
             Datagrams{from_hex("44 01 59 02 00 00 00 00 00 00 3e 00 00 80 00 00")});
@@ -206,7 +206,7 @@ TEST(Commands, RebootIsFiveSecondsOfSilenceAndAClockFromZero) {
 
 TEST(Commands, OtherRebootControlsConcernTheBootLoader) {
   Bench bench;
-  Reboot command = to_head<Reboot>();
+  auto command = to_head<Reboot>();
   command.control = 2;
   bench.command(command);
   bench.run_until(1s);

@@ -157,7 +157,7 @@ TEST(Pacing, InterPacketGapIsALeastDistance) {
     std::mt19937 random(3);
     Bench bench;
     bench.lateness = [&] { return std::chrono::nanoseconds(random() % 60'000); };
-    NetworkConfig network = to_head<NetworkConfig>();
+    auto network = to_head<NetworkConfig>();
     network.inter_packet_gap = c.gap;
     bench.command(network);
     const auto sent = one_ping(bench, ping_of(300));
@@ -169,7 +169,7 @@ TEST(Pacing, InterPacketGapIsALeastDistance) {
 
 TEST(Pacing, GapOfAFewMicrosecondsIsMetWithinABurst) {
   Bench bench;
-  NetworkConfig network = to_head<NetworkConfig>();
+  auto network = to_head<NetworkConfig>();
   network.inter_packet_gap = 563;  // 4.5 us
   bench.command(network);
   const auto sent = one_ping(bench, ping_of(1205));
@@ -179,7 +179,7 @@ TEST(Pacing, GapOfAFewMicrosecondsIsMetWithinABurst) {
 
 TEST(Pacing, GapIsForgottenAtReboot) {
   Bench bench;
-  NetworkConfig network = to_head<NetworkConfig>();
+  auto network = to_head<NetworkConfig>();
   network.inter_packet_gap = 65535;
   bench.command(network);
   bench.command(to_head<Reboot>());

@@ -312,7 +312,7 @@ TEST(Pinging, AnyValidCommandKeepsTheHeadAwake) {
 
 TEST(Pinging, SilenceCutsAPingThatIsLongerThanThat) {
   Bench bench;
-  NetworkConfig slow = to_head<NetworkConfig>();
+  auto slow = to_head<NetworkConfig>();
   slow.inter_packet_gap = 65535;
   bench.command(slow);
   bench.command(ping_of(20000));  // 524 us each: 10.5 s

@@ -132,7 +132,7 @@ TEST(Retries, AreServedWhileTheNextPingIsRendered) {
 
 TEST(Retries, ArePendingNoMoreOnceTheNextHeadHasLeft) {
   Bench bench;
-  NetworkConfig slow = to_head<NetworkConfig>();
+  auto slow = to_head<NetworkConfig>();
   slow.inter_packet_gap = 65535;  // 524 us for each: 100 lines take 52 ms, more than a head is held back
   bench.command(slow);
   bench.command(ping_of(100, RunMode::continuous, 100ms));
