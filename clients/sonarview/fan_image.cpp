@@ -13,7 +13,7 @@
 namespace sonard::client {
 namespace {
 
-constexpr int margin_px = 56;
+constexpr int margin_px = 68;
 constexpr int font = cv::FONT_HERSHEY_DUPLEX;
 constexpr double font_scale = 0.5;
 constexpr int label_gap_px = 8;
@@ -109,13 +109,17 @@ void FanImage::draw_grid() {
   const double port_deg = degrees(geometry_.port_edge_rad());
   const double starboard_deg = degrees(geometry_.starboard_edge_rad());
   const double step_m = ring_step_m(range_m);
-  for (int ring = 1; ring * step_m <= range_m * whole_range_slack; ++ring) {
-    const int radius_px = cvRound(ring * step_m * geometry_.pixels_per_metre());
-    // OpenCV counts clockwise from the right.
+  // OpenCV counts angles clockwise from the right.
+  const auto arc = [&](double radius_m) {
+    const int radius_px = cvRound(radius_m * geometry_.pixels_per_metre());
     cv::ellipse(grid_, apex, {radius_px, radius_px}, 0.0, port_deg - 90.0, starboard_deg - 90.0,
                 amber::grid(), 1, cv::LINE_AA);
-    cv::Point2d beside = geometry_.pixel(ring * step_m, geometry_.starboard_edge_rad());
-    put_label(grid_, metres_text(ring * step_m), {beside.x + label_gap_px, beside.y + label_gap_px}, 0.0);
+  };
+  arc(range_m);
+  for (int ring = 1; ring * step_m <= range_m * whole_range_slack; ++ring) {
+    arc(std::min(ring * step_m, range_m));
+    const cv::Point2d end = geometry_.pixel(ring * step_m, geometry_.starboard_edge_rad());
+    put_label(grid_, metres_text(ring * step_m), {end.x + label_gap_px, end.y + 1.5 * label_gap_px}, 0.0);
   }
   for (const int bearing_deg : {-60, -30, 0, 30, 60}) {
     const double bearing_rad =
