@@ -14,18 +14,24 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <system_error>
+#include <utility>
 
 namespace sonard::render {
 namespace {
 
 enum class Outcome : char { returned = 'R', threw = 'T' };
 
+std::string failed(const std::string& call) {
+  return call + ": " + std::generic_category().message(errno);
+}
+
 /// A file in memory that parent and child share.
 class MemoryFile {
  public:
   explicit MemoryFile(const char* name) : fd_(::memfd_create(name, MFD_CLOEXEC)) {
     if (fd_ < 0) {
-      throw IsolatedFailure(std::string("memfd_create: ") + std::strerror(errno));
+      throw IsolatedFailure(failed("memfd_create"));
     }
   }
   ~MemoryFile() { ::close(fd_); }
@@ -109,7 +115,7 @@ int wait_for(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) {
-      throw IsolatedFailure(std::string("waitpid: ") + std::strerror(errno));
+      throw IsolatedFailure(failed("waitpid"));
     }
   }
   return status;
@@ -125,7 +131,7 @@ IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned i
   std::fflush(nullptr);
   const pid_t child = ::fork();
   if (child < 0) {
-    throw IsolatedFailure(std::string("fork: ") + std::strerror(errno));
+    throw IsolatedFailure(failed("fork"));
   }
   if (child == 0) {
     run_child(work, result, log.fd(), processor_limit_s);

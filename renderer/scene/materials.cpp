@@ -123,6 +123,7 @@ std::string unknown_name_message(std::string_view name) {
 
 std::vector<std::string> acoustic_material_names() {
   std::vector<std::string> names;
+  names.reserve(table.size());
   for (const TableRow& row : table) {
     names.emplace_back(row.name);
   }

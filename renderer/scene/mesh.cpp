@@ -203,9 +203,9 @@ std::vector<float> split_by_handedness(TriangleMesh& mesh) {
       } else if (handedness[vertex] != sign) {
         if (copy_of[vertex] == 0) {
           copy_of[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
-          mesh.positions.push_back(glm::vec3(mesh.positions[vertex]));
-          mesh.normals.push_back(glm::vec3(mesh.normals[vertex]));
-          mesh.texcoords.push_back(glm::vec2(mesh.texcoords[vertex]));
+          mesh.positions.push_back(mesh.positions[vertex]);
+          mesh.normals.push_back(mesh.normals[vertex]);
+          mesh.texcoords.push_back(mesh.texcoords[vertex]);
           handedness.push_back(sign);
         }
         mesh.indices[i + k] = copy_of[vertex];
@@ -241,7 +241,7 @@ void add_tangents(TriangleMesh& mesh) {
     const glm::dvec3 a(mesh.positions[corner[0]]);
     const glm::dvec3 edge1 = glm::dvec3(mesh.positions[corner[1]]) - a;
     const glm::dvec3 edge2 = glm::dvec3(mesh.positions[corner[2]]) - a;
-    const double v0 = static_cast<double>(mesh.texcoords[corner[0]].y);
+    const auto v0 = static_cast<double>(mesh.texcoords[corner[0]].y);
     const double dv1 = static_cast<double>(mesh.texcoords[corner[1]].y) - v0;
     const double dv2 = static_cast<double>(mesh.texcoords[corner[2]].y) - v0;
     const glm::dvec3 tangent = (edge1 * dv2 - edge2 * dv1) * (cross > 0.0 ? 1.0 : -1.0);

@@ -39,7 +39,7 @@ class OneFileOnly : public osgDB::ReadFileCallback {
   Result readScript(const std::string&, const osgDB::Options*) override { return refused(); }
 
  private:
-  static Result refused() { return Result(Result::FILE_NOT_FOUND); }
+  static Result refused() { return {Result::FILE_NOT_FOUND}; }
 
   std::string file_;
 };

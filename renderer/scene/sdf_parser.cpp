@@ -237,7 +237,7 @@ void verify_includes(const sdf::ElementPtr& element, const UriResolver& resolver
 }  // namespace
 
 std::string place_of(const sdf::ElementPtr& element) {
-  const std::string file = element->FilePath();
+  std::string file = element->FilePath();
   for (auto e = element; e; e = e->GetParent()) {
     if (e->LineNumber() && e->FilePath() == file) {
       return fmt::format("{}:{}", file, *e->LineNumber());

@@ -26,6 +26,7 @@ std::optional<fs::path> existing(const fs::path& path) {
 
 std::string list(const std::vector<fs::path>& folders) {
   std::vector<std::string> names;
+  names.reserve(folders.size());
   for (const fs::path& folder : folders) {
     names.push_back(folder.string());
   }
@@ -38,7 +39,7 @@ std::vector<fs::path> model_folders_from_environment() {
   std::vector<fs::path> folders;
   for (const char* variable :
        {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
-    const char* value = std::getenv(variable);
+    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): at start-up, nothing sets it
     std::istringstream entries(value == nullptr ? "" : value);
     for (std::string entry; std::getline(entries, entry, ':');) {
       if (!entry.empty()) {
@@ -49,7 +50,7 @@ std::vector<fs::path> model_folders_from_environment() {
   return folders;
 }
 
-UriResolver::UriResolver(const fs::path& world_file, std::vector<fs::path> model_folders) {
+UriResolver::UriResolver(const fs::path& world_file, const std::vector<fs::path>& model_folders) {
   const fs::path folder = fs::absolute(world_file).parent_path();
   for (const fs::path& candidate : {folder, folder / "models", folder.parent_path() / "models"}) {
     add_model_folder(candidate);

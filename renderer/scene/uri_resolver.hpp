@@ -12,7 +12,8 @@ class UriResolver {
  public:
   /// Looks for `model://NAME/...` in the folder of `world_file`, in `models/` there, beside it (`../models`),
   /// and then in `model_folders`.
-  UriResolver(const std::filesystem::path& world_file, std::vector<std::filesystem::path> model_folders);
+  UriResolver(const std::filesystem::path& world_file,
+              const std::vector<std::filesystem::path>& model_folders);
 
   /// A folder that holds models, found while loading: `model://` is looked for there too.
   void add_model_folder(const std::filesystem::path& folder);
