@@ -204,6 +204,9 @@ void Daemon::run_io() {
 void Daemon::stop_io() {
   for (const std::unique_ptr<PoseSource>& source : sources_) {
     source->stop();
+    const PoseSourceCounters& done = source->counters();
+    spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}", source->description(),
+                 done.samples, done.malformed, done.bad_value, done.refused);
   }
   for (const std::unique_ptr<GeminiHead>& head : heads_) {
     head->stop();

@@ -31,7 +31,7 @@ void FaultyLink::push(TimePoint now, Datagram datagram) {
   const bool lose = draw() < faults_.loss;
   const bool duplicate = draw() < faults_.duplicate;
   const bool reorder = draw() < faults_.reorder;
-  const double jitter_ns = static_cast<double>(faults_.jitter.count());
+  const auto jitter_ns = static_cast<double>(faults_.jitter.count());
   const TimePoint due = now + faults_.delay + TimePoint{static_cast<std::int64_t>(jitter_ns * draw())};
   const TimePoint second_due = now + faults_.delay + TimePoint{static_cast<std::int64_t>(jitter_ns * draw())};
 

@@ -50,7 +50,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   asio::steady_timer timer;
   std::optional<TimePoint> timer_deadline;
   asio::steady_timer report_timer;
-  GeminiHeadCounters counters;  // its `device` is filled in by total()
+  GeminiHeadCounters counters;  // total() adds what the parts count themselves
   GeminiHeadLog log;
   bool running = false;
 
@@ -170,6 +170,9 @@ void GeminiHead::Impl::listen_for_triggers() {
 GeminiHeadCounters GeminiHead::Impl::total() const {
   GeminiHeadCounters all = counters;
   all.device = device.counters();
+  all.socket = socket->counters();
+  all.to_surface = to_surface.counters();
+  all.from_surface = from_surface.counters();
   return all;
 }
 
@@ -276,7 +279,7 @@ void GeminiHead::Impl::send(TimePoint now, const std::vector<gemini::Outgoing>& 
     }
   }
   if (config.link.to_surface.transparent()) {
-    socket->send(std::move(datagrams));
+    socket->send(std::move(datagrams));  // the hot path: a batch stays a batch
     return;
   }
   for (Datagram& datagram : datagrams) {
@@ -354,6 +357,7 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
     ++counters.pings_without_pose;
     return false;
   }
+  log.ping(job, device.clock_us(job.transmit_time), *T_world_sonar);
   RenderJob request;
   request.stream = stream;
   request.head = config.name;

@@ -43,6 +43,16 @@ void GeminiHeadLog::settings(const gemini::PingJob& job) {
       job.sound_speed_mps, job.sixteen_bit ? 16 : 8, job.transmit ? "" : " listening only");
 }
 
+void GeminiHeadLog::ping(const gemini::PingJob& job, std::uint64_t transmit_us,
+                         const render::Pose& T_world_sonar) const {
+  const glm::dvec3& p = T_world_sonar.position_m;
+  const glm::dvec3 axis = T_world_sonar.orientation * glm::dvec3(1, 0, 0);
+  spdlog::debug(
+      "head={} ping number={} id={} transmit_us={} position_m=[{:.3f}, {:.3f}, {:.3f}] axis=[{:.4f}, {:.4f}, "
+      "{:.4f}]",
+      head_, job.ping_number, job.ping_number % 256, transmit_us, p.x, p.y, p.z, axis.x, axis.y, axis.z);
+}
+
 void GeminiHeadLog::stranger(Ipv4 address) {
   if (strangers_.size() < most_strangers && strangers_.insert(address).second) {
     spdlog::warn("head={} drops what {} sends: the address is not in `allow`", head_, address_text(address));
@@ -88,10 +98,26 @@ void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
   const gemini::DeviceCounters& device = total.device;
   spdlog::info(
       "head={} ends: pings_sent={} pings_failed={} pings_without_pose={} pings_suppressed={} lines_sent={} "
-      "lines_resent={} tails_resent={} commands={} wrong_id={} bad_datagrams={} not_allowed={}",
+      "lines_resent={} tails_resent={} commands={} wrong_id={} bad_datagrams={}",
       head_, device.pings_sent, device.pings_failed, total.pings_without_pose, device.pings_suppressed,
       device.lines_sent, device.lines_resent, device.tails_resent, device.commands, device.wrong_id,
-      device.bad_datagrams, total.not_allowed);
+      device.bad_datagrams);
+  const UdpEndpointCounters& socket = total.socket;
+  spdlog::info(
+      "head={} socket: sent={} received={} not_allowed={} truncated={} kernel_dropped={} blocked={} "
+      "send_failed={} "
+      "overflowed={}",
+      head_, socket.sent, socket.received, total.not_allowed, socket.truncated, socket.kernel_dropped,
+      socket.blocked, socket.send_failed, socket.overflowed);
+  log_faults("to_surface", total.to_surface);
+  log_faults("from_surface", total.from_surface);
+}
+
+void GeminiHeadLog::log_faults(const char* direction, const FaultyLinkCounters& link) const {
+  if (link.lost + link.duplicated + link.reordered > 0) {
+    spdlog::info("head={} link {}: passed={} lost={} duplicated={} reordered={}", head_, direction,
+                 link.passed, link.lost, link.duplicated, link.reordered);
+  }
 }
 
 }  // namespace sonard::server

@@ -2,18 +2,21 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "protocol/gemini/ping_job.hpp"
+#include "renderer/pose.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/gemini_head_counters.hpp"
 
 namespace sonard::server {
 
-/// Each function may be called as often as one likes: only what is new is logged. docs/your-driver.md shows
-/// these lines to users in the order in which they come.
+/// Each function may be called as often as one likes: only what is new is logged, at level info and above.
+/// docs/your-driver.md shows these lines to users in the order in which they come.
 class GeminiHeadLog {
  public:
   explicit GeminiHeadLog(std::string head) : head_(std::move(head)) {}
@@ -22,6 +25,8 @@ class GeminiHeadLog {
   void surface(Ipv4 address);
   /// A ping is about to be rendered with these settings.
   void settings(const gemini::PingJob& job);
+  /// Level debug, one line per ping.
+  void ping(const gemini::PingJob& job, std::uint64_t transmit_us, const render::Pose& T_world_sonar) const;
   /// A datagram came from an address that is not served.
   void stranger(Ipv4 address);
   void render_error(const std::string& what);
@@ -31,6 +36,8 @@ class GeminiHeadLog {
   void totals(const GeminiHeadCounters& total) const;
 
  private:
+  void log_faults(const char* direction, const FaultyLinkCounters& link) const;
+
   std::string head_;
   Ipv4 surface_ = 0;
   std::optional<gemini::PingJob> settings_;

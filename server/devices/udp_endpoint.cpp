@@ -29,7 +29,8 @@ constexpr std::size_t batch_size = 64;         // datagrams per system call
 constexpr std::size_t most_bytes = 2048;       // longer than any message a device accepts
 constexpr int receive_rounds_per_wake = 4;     // then others get their turn on the I/O thread
 constexpr int receive_buffer_bytes = 4 << 20;  // the kernel gives at most net.core.rmem_max
-constexpr int send_buffer_bytes = 4 << 20;
+// Small on purpose: on a slow link datagrams then wait in the head, which knows of it, and not in the kernel.
+constexpr int send_buffer_bytes = 256 << 10;
 
 constexpr std::size_t receive_control_bytes =
     CMSG_SPACE(sizeof(in_pktinfo)) + CMSG_SPACE(sizeof(std::uint32_t));

@@ -40,10 +40,14 @@ class Deadline:
 
 
 def _ip(*arguments):
-    done = subprocess.run(["ip", *arguments], capture_output=True, text=True)
+    _run("ip", *arguments)
+
+
+def _run(*command):
+    done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         raise RuntimeError(
-            f"'ip {' '.join(arguments)}' failed: {done.stderr.strip()}\n"
+            f"'{' '.join(command)}' failed: {done.stderr.strip()}\n"
             "The system tests need iproute2 and the right to make network namespaces (root, CAP_SYS_ADMIN and "
             "CAP_NET_ADMIN); in a container start it with these capabilities.")
 
@@ -143,6 +147,10 @@ class Lab:
         program = Program(namespace.command(*arguments), os.path.basename(arguments[0]))
         self._programs.append(program)
         return program
+
+    def tc(self, namespace, *arguments):
+        """Shapes the traffic that leaves by an interface."""
+        _run("tc", "-netns", namespace.name, *arguments)
 
     def _remove(self):
         for program in self._programs:

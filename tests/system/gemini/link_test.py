@@ -309,6 +309,45 @@ class Wire(LinkTest):
         first = min(i for i in range(ping.count) if ping.lines[i][middle] > 0)
         self.assertAlmostEqual(first * wire.line_step_m(1500.0), math.sqrt(13) - 0.5, delta=0.05)
 
+    def place_of_target(self, ping):
+        """Bearing of the middle of all that echoes, degrees to starboard."""
+        beams = [beam for beam in range(256) if any(ping.lines[i][beam] for i in range(ping.count))]
+        self.assertTrue(beams, "nothing is seen")
+        return math.degrees(sum(wire.bearing_rad(beam) for beam in beams) / len(beams))
+
+    def test_poses_move_the_vehicle_and_the_bodies(self):
+        lab, _, surface = self.start(self.head_config(noisy=False))
+        poses = lab.head.udp_socket("127.0.0.1", 0)
+        self.addCleanup(poses.close)
+
+        def ping_after(*arguments, **keywords):
+            message = wire.pose_update(time.monotonic_ns(), *arguments, **keywords)
+            poses.sendto(message, ("127.0.0.1", 14600))
+            time.sleep(0.2)  # poses and commands come by different sockets
+            surface.send(wire.ping_config(513, lines=483, spreading=293))
+            return surface.next_ping()
+
+        # The sphere is 33.69 degrees to port of the x axis. Turned 60 degrees to port, the sonar has it 26.31 degrees to
+        # starboard.
+        self.assertAlmostEqual(self.place_of_target(ping_after((0, 0, 0))), -33.69, delta=1.0)
+        turned = ping_after((0, 0, 0), yaw_rad=math.radians(60))
+        self.assertAlmostEqual(self.place_of_target(turned), 26.31, delta=1.0)
+        # The sphere itself moved to the mirrored place.
+        moved = ping_after((0, 0, 0), bodies=[("sphere", (3.0, -2.0, 0.0))])
+        self.assertAlmostEqual(self.place_of_target(moved), 33.69, delta=1.0)
+
+    def test_link_slower_than_the_head_loses_nothing(self):
+        lab, daemon, surface = self.start(self.head_config())
+        # 20 Mbit/s, where the head sends 80: the queue of the socket fills up and the head has to wait.
+        lab.tc(lab.head, "qdisc", "add", "dev", "eth0", "root", "tbf", "rate", "20mbit", "burst", "5kb", "limit", "50mb")
+        surface.send(wire.ping_config(513, lines=10000))
+        ping = surface.next_ping()
+        self.assertEqual(ping.crc32(), int(self.rendered()[ping.transmit_us], 16))
+        self.end_daemon(daemon)
+        socket_line = key_values(daemon.wait_for_line("head=bow socket: ", PATIENCE_S))
+        self.assertGreater(int(socket_line["blocked"]), 0, "the link was not slow enough for this test to mean something")
+        self.assertEqual((socket_line["send_failed"], socket_line["overflowed"]), ("0", "0"))
+
     def test_silence_for_three_seconds_suspends_and_any_command_resumes(self):
         _, daemon, surface = self.start(self.head_config())
         surface.send(wire.ping_config(513, lines=64, continuous_ms=100))

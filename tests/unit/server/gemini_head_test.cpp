@@ -1,6 +1,8 @@
 #include "server/devices/gemini_head.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -263,6 +265,31 @@ TEST_F(GeminiHeadTest, DatagramAtTheTriggerSocketIsOneEdge) {
   surface.send({{*config.trigger, 0, gemini::SharedBytes(Bytes{1})}});
   ASSERT_TRUE(run_until_received(0x43, 1));
   EXPECT_EQ(renderer->pings, 1);
+}
+
+// docs/protocols/gemini.md 3.7 and 3.9: bank 2 holds address and mask, a reboot applies them.
+TEST_F(GeminiHeadTest, MovesToTheAddressThatAClientHasProgrammed) {
+  config.device.reboot_time = std::chrono::milliseconds{50};
+  start();
+  const Ipv4 new_address = test::own_loopback_address(44);
+  Bytes write_bank_2(152);
+  const Bytes start_of_write{0x24, 0x01, 0x59, 0x02, 0, 0, 0, 0, 0x02};
+  std::copy(start_of_write.begin(), start_of_write.end(), write_bank_2.begin());
+  for (int i = 0; i < 4; ++i) {
+    write_bank_2[static_cast<std::size_t>(16 + i)] = static_cast<std::uint8_t>(new_address >> (8 * i));
+  }
+  write_bank_2[23] = 0xFF;  // mask 255.0.0.0
+  command(write_bank_2);
+  ASSERT_TRUE(run_until_received(0x44, 1));
+  command({0x2b, 0x01, 0x59, 0x02, 0, 0, 0, 0, 0x01, 0, 0, 0});
+  const auto is_from_new_address = [&] {
+    return !received.empty() && received.back().bytes[0] == 0x40 &&
+           received.back().remote.address == new_address;
+  };
+  ASSERT_TRUE(run_until(is_from_new_address));
+  surface.send({{{new_address, 52901}, 0, gemini::SharedBytes(status_request)}});
+  ASSERT_TRUE(run_until_received(0x49, 1));
+  EXPECT_EQ(received.back().remote.address, new_address);
 }
 
 TEST_F(GeminiHeadTest, AnswerToAHeadThatIsGoneIsHarmless) {
