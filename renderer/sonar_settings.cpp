@@ -45,14 +45,4 @@ std::vector<double> equal_sine_edges(int beam_count, double half_width_rad) {
   return edges;
 }
 
-PaperModel PaperModel::release_2018(double attenuation_per_m) {
-  PaperModel model;
-  model.attenuation_per_m = attenuation_per_m;
-  model.speckle = Speckle::folded_gaussian;
-  model.speckle_mean = 0.95;
-  model.speckle_sd = 0.30;
-  model.speckle_floor = 0.03;
-  return model;
-}
-
 }  // namespace sonard::render

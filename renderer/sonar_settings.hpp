@@ -63,8 +63,17 @@ struct PaperModel {
   double speckle_sd = 0.15;
   double speckle_floor = 0.0;
 
-  /// What the authors' later public releases did: folded N(0.95, 0.30) with floor 0.03, attenuation on.
-  static PaperModel release_2018(double attenuation_per_m);
+  /// What the authors' later public releases did: folded N(0.95, 0.30) with floor 0.03, and attenuation, here
+  /// that of cool sea water at 720 kHz (0.2085 dB/m as a factor of amplitude).
+  static PaperModel release_2018() {
+    PaperModel model;
+    model.attenuation_per_m = 0.024;
+    model.speckle = Speckle::folded_gaussian;
+    model.speckle_mean = 0.95;
+    model.speckle_sd = 0.30;
+    model.speckle_floor = 0.03;
+    return model;
+  }
 };
 
 /// Mode `physical`: water, source and receiver (docs/physics.md 2.1-2.9, 2.16). Levels are intensities in dB.

@@ -310,10 +310,17 @@ struct RasterSampler::Impl {
     }
   }
 
-  static void set_up_state(osg::StateSet& state) {
+  void set_up_state(osg::StateSet& state) {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->addShader(new osg::Shader(osg::Shader::VERTEX, surface_vertex_shader));
     program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surface_fragment_shader));
+    program->compileGLObjects(*context->getState());
+    osg::Program::PerContextProgram* linked = program->getPCP(*context->getState());
+    if (!linked->isLinked()) {
+      std::string reason;
+      linked->getInfoLog(reason);
+      throw RendererError("the surface shader does not build on " + description + ": " + reason);
+    }
     state.setAttributeAndModes(program);
     state.setAttributeAndModes(
         new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));

@@ -171,6 +171,11 @@ void read_physical_model(YamlSection& section, render::PhysicalModel& model) {
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {
   using Speckle = render::PaperModel::Speckle;
+  bool later_release = false;
+  section.choice("preset", later_release, {{"paper2017", false}, {"paper2018", true}});
+  if (later_release) {
+    model = render::PaperModel::release_2018();
+  }
   section.number("sigmoid_slope", model.sigmoid_slope, Range::above(0.0, 1000.0));
   section.number("sigmoid_centre", model.sigmoid_centre, Range::from(0.0, 1.0));
   section.boolean("two_sided", model.two_sided);

@@ -66,10 +66,10 @@ TEST_F(Paper, ReflectanceAboveOneClamps) {
 TEST_F(Paper, AttenuationOfTheLaterReleaseActsBeforeTheSigmoid) {
   SonarRenderer renderer(wall_world(1.0));
   PingRequest request = paper_request(1000, 0.025);
-  request.settings.paper = PaperModel::release_2018(0.01);
+  request.settings.paper = PaperModel::release_2018();
   const EchoImage image = renderer.render_echo(request);
   const double range_m = 402.5 * 0.025;
-  EXPECT_NEAR(image.at(127, 402), sigmoid(10 / range_m * std::exp(-0.02 * range_m)), 0.006);
+  EXPECT_NEAR(image.at(127, 402), sigmoid(10 / range_m * std::exp(-2 * 0.024 * range_m)), 0.006);
 }
 
 TEST_F(Paper, BackFacesCanBeDropped) {

@@ -245,7 +245,7 @@ TEST(PaperReceiver, ShadowsStayExactlyZero) {
 TEST(PaperReceiver, Release2018HasAFloorAndFoldedSpeckle) {
   WorkerPool workers;
   PingRequest request = paper_request(50);
-  request.settings.paper = PaperModel::release_2018(0.1);
+  request.settings.paper = PaperModel::release_2018();
   for (const std::uint16_t v : Receiver().receive(uniform_echo(50, 0), request, 0, workers).u16) {
     ASSERT_EQ(v, static_cast<std::uint16_t>(0.03F * 65535 + 0.5F));
   }

@@ -54,6 +54,17 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_FALSE(head.dump_directory);
 }
 
+TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
+  const LoadedConfig loaded =
+      load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");
+  const render::PaperModel& paper = loaded.config.heads[0].acoustics.paper;
+  EXPECT_EQ(paper.speckle, render::PaperModel::Speckle::folded_gaussian);
+  EXPECT_EQ(paper.speckle_mean, 0.9);
+  EXPECT_EQ(paper.speckle_sd, 0.30);  // docs/physics.md 1.2, A8
+  EXPECT_EQ(paper.speckle_floor, 0.03);
+  EXPECT_GT(paper.attenuation_per_m, 0.0);
+}
+
 TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device) {
   // Fresh water: only the f^2 term is left, so 161.088 dB/km at 720 kHz (docs/physics.md 2.2) scales exactly.
   const LoadedConfig loaded =
