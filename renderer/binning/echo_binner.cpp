@@ -1,17 +1,19 @@
 #include "renderer/binning/echo_binner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
 #include "renderer/binning/footprint.hpp"
+#include "renderer/simd.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-/// One beam's accumulators. Values are weights scaled by `scale`, so that a sum over every sample of the beam
-/// with the largest response still fits 62 bits.
+/// One beam's accumulators, in units of 1 / scale. What one sample gives to one line fits 31 bits, so it is
+/// rounded and widened eight at a time; a line can take more than 2^32 of them.
 struct BeamSums {
   std::vector<std::int64_t> echo;
   std::vector<std::int64_t> weight;  // only for means
@@ -34,13 +36,21 @@ void add_point(const Splat& splat, double line_scale, BeamSums& sums) {
     return;
   }
   const auto k = static_cast<std::size_t>(line);
-  sums.echo[k] += static_cast<std::int64_t>(splat.echo);
+  sums.echo[k] += static_cast<std::int32_t>(splat.echo);
   if (!sums.weight.empty()) {
-    sums.weight[k] += static_cast<std::int64_t>(splat.weight);
+    sums.weight[k] += static_cast<std::int32_t>(splat.weight);
   }
 }
 
-void add_footprint(const Splat& splat, BeamSums& sums) {
+/// Adds `amount` spread over the lines [first, first + count), of which `below` holds the shares below each
+/// edge.
+inline void add_shares(const float* below, int count, float amount, std::int64_t* sums) {
+  for (int i = 0; i < count; ++i) {
+    sums[i] += static_cast<std::int32_t>(amount * (below[i + 1] - below[i]) + 0.5F);
+  }
+}
+
+inline void add_footprint(const Splat& splat, BeamSums& sums) {
   const Footprint footprint = Footprint::make(splat.position, splat.a, splat.b);
   const auto lines = static_cast<float>(sums.echo.size());
   const float end = footprint.rise_from + footprint.base();
@@ -49,15 +59,14 @@ void add_footprint(const Splat& splat, BeamSums& sums) {
   }
   const auto first = static_cast<int>(std::max(0.0F, footprint.rise_from));
   const auto last = static_cast<int>(std::min(lines - 1, end));
-  float below = footprint.below(static_cast<float>(first));
-  for (int k = first; k <= last; ++k) {
-    const float next = footprint.below(static_cast<float>(k + 1));
-    const float share = next - below;
-    below = next;
-    sums.echo[static_cast<std::size_t>(k)] += static_cast<std::int64_t>(splat.echo * share);
-    if (!sums.weight.empty()) {
-      sums.weight[static_cast<std::size_t>(k)] += static_cast<std::int64_t>(splat.weight * share);
-    }
+  const int count = last - first + 1;
+  std::array<float, static_cast<std::size_t>(2 * Footprint::widest) + 4> below;
+  for (int i = 0; i <= count; ++i) {
+    below[static_cast<std::size_t>(i)] = footprint.below(static_cast<float>(first + i));
+  }
+  add_shares(below.data(), count, splat.echo, &sums.echo[static_cast<std::size_t>(first)]);
+  if (!sums.weight.empty()) {
+    add_shares(below.data(), count, splat.weight, &sums.weight[static_cast<std::size_t>(first)]);
   }
 }
 
@@ -72,7 +81,7 @@ class BeamBinner {
         legacy_scale_(options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0),
         scale_(scale) {}
 
-  void add_part(const ColumnPart& part, BeamSums& sums) const {
+  SONARD_SIMD_CLONES void add_part(const ColumnPart& part, BeamSums& sums) const {
     const SubView& view = grid_.views[static_cast<std::size_t>(part.view)];
     const SurfaceSample* column = views_[static_cast<std::size_t>(part.view)] + part.column;
     const float* weights = &grid_.weights[part.weights];
@@ -117,25 +126,34 @@ class BeamBinner {
   /// is affine in x and y, so the range at the cell's centre follows exactly from the pixel's range and its
   /// derivatives.
   void place(const SurfaceSample& sample, float x, float y, const Cell& cell, Splat& splat) const {
-    const float qq = 1 + x * x + y * y;
-    // Relative slopes of the inverse depth, from equation (2) of docs/physics.md 2.3.
-    const float slope_x = x / qq - sample.range_dx / sample.range_m;
-    const float slope_y = y / qq - sample.range_dy / sample.range_m;
-    const float inverse_depth = 1 + slope_x * cell.x_offset + slope_y * cell.y_offset;
     float range = sample.range_m;
     float range_dx = sample.range_dx;
     float range_dy = sample.range_dy;
-    if (inverse_depth > 0.5F) {  // else the plane turns away within the pixel: keep the pixel's own values
-      const float cx = x + cell.x_offset;
-      const float cy = y + cell.y_offset;
-      const float cell_qq = 1 + cx * cx + cy * cy;
-      range *= std::sqrt(cell_qq / qq) / inverse_depth;
-      range_dx = range * (cx / cell_qq - slope_x / inverse_depth);
-      range_dy = range * (cy / cell_qq - slope_y / inverse_depth);
+    if (cell.x_offset != 0 || cell.y_offset != 0) {
+      move_to_cell(cell, x, y, range, range_dx, range_dy);
     }
     splat.position = range * lines_per_m_;
     splat.a = std::abs(range_dx + cell.slope * range_dy) * cell.width * lines_per_m_;
     splat.b = std::abs(range_dy) * cell.height * lines_per_m_;
+  }
+
+  /// From the centre of the pixel at (x, y) to that of the cell.
+  static void move_to_cell(const Cell& cell, float x, float y, float& range, float& range_dx,
+                           float& range_dy) {
+    const float qq = 1 + x * x + y * y;
+    // Relative slopes of the inverse depth, from equation (2) of docs/physics.md 2.3.
+    const float slope_x = x / qq - range_dx / range;
+    const float slope_y = y / qq - range_dy / range;
+    const float inverse_depth = 1 + slope_x * cell.x_offset + slope_y * cell.y_offset;
+    if (inverse_depth < 0.5F) {
+      return;  // the plane turns away within the pixel: keep the pixel's own values
+    }
+    const float cx = x + cell.x_offset;
+    const float cy = y + cell.y_offset;
+    const float cell_qq = 1 + cx * cx + cy * cy;
+    range *= std::sqrt(cell_qq / qq) / inverse_depth;
+    range_dx = range * (cx / cell_qq - slope_x / inverse_depth);
+    range_dy = range * (cy / cell_qq - slope_y / inverse_depth);
   }
 
   const SampleGrid& grid_;
@@ -146,22 +164,11 @@ class BeamBinner {
   float scale_;
 };
 
-/// Power of two that maps the largest possible sum of one line to below 2^62. Responses are at most 1: mu <=
-/// 1/pi and sigmoid <= 1; a beam's weights add up to at most its solid angle.
+/// Power of two that maps the largest possible sample to below 2^30. Responses are at most 1: mu <= 1/pi,
+/// sigmoid <= 1.
 float fixed_point_scale(const SampleGrid& grid) {
-  double largest = 0;
-  for (int beam = 0; beam < grid.beam_count(); ++beam) {
-    double sum = 0;
-    for (int p = grid.beam_parts[static_cast<std::size_t>(beam)];
-         p < grid.beam_parts[static_cast<std::size_t>(beam) + 1]; ++p) {
-      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
-      for (int row = 0; row < part.row_end - part.row_begin; ++row) {
-        sum += static_cast<double>(grid.weights[part.weights + static_cast<std::size_t>(row)]);
-      }
-    }
-    largest = std::max(largest, sum);
-  }
-  return static_cast<float>(std::exp2(std::floor(61 - std::log2(largest))));
+  const float largest = *std::max_element(grid.weights.begin(), grid.weights.end());
+  return std::exp2(std::floor(29 - std::log2(largest)));
 }
 
 }  // namespace

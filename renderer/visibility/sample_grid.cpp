@@ -118,7 +118,8 @@ class GridBuilder {
     ColumnPart part;
     part.view = view_index;
     part.column = column;
-    part.x_offset = static_cast<float>(x - centre);
+    const bool whole = x_to - x_from > (1 - 1e-9) * view.pixel_width();
+    part.x_offset = whole ? 0.0F : static_cast<float>(x - centre);
     part.width = static_cast<float>(x_to - x_from);
     if (options_.elevation_mask) {
       part.limit_slope = static_cast<float>(std::tan(grid_.elevation_limit_rad) * x / std::hypot(1.0, x));
