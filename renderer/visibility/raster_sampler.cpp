@@ -11,6 +11,7 @@
 
 #include <osg/Camera>
 #include <osg/ClipControl>
+#include <osg/CullFace>
 #include <osg/Depth>
 #include <osg/Geode>
 #include <osg/Geometry>
@@ -19,6 +20,7 @@
 #include <osg/Program>
 #include <osg/Texture2D>
 #include <osgUtil/CullVisitor>
+#include <osgUtil/RenderBin>
 #include <osgUtil/SceneView>
 
 #include "renderer/errors.hpp"
@@ -209,17 +211,23 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
   return node;
 }
 
-/// One camera drawing one SubView into a float image that is read back.
+/// One camera drawing one SubView into a float texture, and the copy that is read back.
 struct ViewTarget {
   osg::ref_ptr<osgUtil::SceneView> scene_view;
-  osg::ref_ptr<osg::Image> image;
+  osg::ref_ptr<osg::Texture2D> texture;
+  std::vector<SurfaceSample> samples;
 };
 
 ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state) {
   ViewTarget target;
-  target.image = new osg::Image;
-  target.image->setInternalTextureFormat(GL_RGBA32F_ARB);
-  target.image->allocateImage(view.columns, view.rows, 1, GL_RGBA, GL_FLOAT);
+  target.texture = new osg::Texture2D;
+  target.texture->setTextureSize(view.columns, view.rows);
+  target.texture->setInternalFormat(GL_RGBA32F_ARB);
+  target.texture->setSourceFormat(GL_RGBA);
+  target.texture->setSourceType(GL_FLOAT);
+  target.texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+  target.texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+  target.samples.resize(static_cast<std::size_t>(view.columns) * static_cast<std::size_t>(view.rows));
 
   target.scene_view = new osgUtil::SceneView;
   target.scene_view->setDefaults(osgUtil::SceneView::COMPILE_GLOBJECTS_AT_INIT);
@@ -234,7 +242,7 @@ ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state)
   camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
   camera->setDrawBuffer(GL_COLOR_ATTACHMENT0_EXT);
   camera->setReadBuffer(GL_COLOR_ATTACHMENT0_EXT);
-  camera->attach(osg::Camera::COLOR_BUFFER0, target.image);
+  camera->attach(osg::Camera::COLOR_BUFFER0, target.texture);
   camera->attach(osg::Camera::DEPTH_BUFFER, GL_DEPTH_COMPONENT32F);
   camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
   camera->setViewMatrix(view_matrix(view));
@@ -277,6 +285,8 @@ struct RasterSampler::Impl {
   int max_texture_px = 0;
 
   explicit Impl(const World& world) : context(new EglContext) {
+    // Near things first: what they hide is not shaded.
+    osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
     context->realize();
     make_current();
     description = "raster, " + context->describe();
@@ -325,7 +335,7 @@ struct RasterSampler::Impl {
     state.setAttributeAndModes(
         new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
     state.setAttributeAndModes(new osg::Depth(osg::Depth::GREATER, 0.0, 1.0));
-    state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF);
+    state.setAttribute(new osg::CullFace(osg::CullFace::BACK));  // on only when back faces are to be dropped
     state.setMode(GL_LIGHTING, osg::StateAttribute::OFF);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF);
     state.addUniform(new osg::Uniform("normal_map", normal_map_unit));
@@ -339,7 +349,7 @@ struct RasterSampler::Impl {
             osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));
     state.getOrCreateUniform("attenuation_per_m", osg::Uniform::FLOAT)
         ->set(static_cast<float>(surface.attenuation_per_m));
-    state.getOrCreateUniform("two_sided", osg::Uniform::BOOL)->set(surface.two_sided);
+    state.setMode(GL_CULL_FACE, surface.two_sided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
   }
 
   void set_views(const std::vector<SubView>& wanted) {
@@ -368,7 +378,13 @@ struct RasterSampler::Impl {
       target.scene_view->cull();
       target.scene_view->draw();
     }
-    glFinish();
+    // All views are drawn before the first is read: reading waits for the drawing to end.
+    for (ViewTarget& target : targets) {
+      target.texture->getTextureObject(context->getState()->getContextID())->bind();
+      glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target.samples.data());
+    }
+    context->getState()->haveAppliedTextureAttribute(context->getState()->getActiveTextureUnit(),
+                                                     osg::StateAttribute::TEXTURE);
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
       throw RendererError("OpenGL error " + std::to_string(error) + " while drawing the scene");
     }
@@ -392,7 +408,7 @@ std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sona
   static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
   std::vector<const SurfaceSample*> samples;
   for (const ViewTarget& target : impl_->targets) {
-    samples.push_back(reinterpret_cast<const SurfaceSample*>(target.image->data()));
+    samples.push_back(target.samples.data());
   }
   return samples;
 }

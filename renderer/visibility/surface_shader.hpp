@@ -1,4 +1,4 @@
-// The GLSL of RasterSampler: one SurfaceSample per pixel.
+// The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the shader.
 #pragma once
 
 namespace sonard::render {
@@ -36,7 +36,6 @@ uniform float lambert_mu;
 uniform int model;            // 0 paper, 1 physical
 uniform vec2 sigmoid;         // slope, centre
 uniform float attenuation_per_m;
-uniform bool two_sided;
 
 vec3 shading_normal(vec3 plane) {
   if (shading == 0) return plane;
@@ -51,7 +50,6 @@ vec3 shading_normal(vec3 plane) {
 }
 
 void main() {
-  if (!two_sided && !gl_FrontFacing) discard;
   vec2 t = (gl_FragCoord.xy / pixels * 2.0 - 1.0) * tan_half;
   vec2 pixel = 2.0 * tan_half / pixels;
   float inverse_depth = gl_FragCoord.w;
