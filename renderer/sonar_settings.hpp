@@ -89,9 +89,10 @@ struct PhysicalModel {
   double tvg_max_db = 75.0;                 ///< ceiling of the two terms together
   /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it.
   double gain_db = 60.0;
-  double near_field_blank_m = 0.0;   ///< output is exactly 0 nearer than this
-  double broadside_stripe_db = 0.0;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
-  /// Leakage of an echo along its whole range line, re the echo; negative, 0 = off.
+  // What recordings of Gemini-class heads show (docs/physics.md 2.16).
+  double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
+  double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
+  /// What leaks of the strongest echo of a range line into all its beams; negative, 0 = off. Real: about -25.
   double side_lobe_floor_db = 0.0;
 };
 

@@ -110,30 +110,17 @@ PingSamples make_samples(const SonarSettings& settings) {
   return samples;
 }
 
-/// The echo of one native line, beam after beam, plus what leaks along the line through the side lobes.
+/// The echo of one native line, beam after beam. What leaks through the side lobes is measured against the
+/// strongest echo of the line (docs/physics.md 2.16), so it is modelled so.
 void gather_line(const EchoImage& echo, int line, float leak, float* out) {
-  float sum = 0;
+  float strongest = 0;
   for (int b = 0; b < echo.beams; ++b) {
     out[b] = echo.at(b, line);
-    sum += out[b];
+    strongest = std::max(strongest, out[b]);
   }
-  if (leak > 0) {
-    for (int b = 0; b < echo.beams; ++b) {
-      out[b] += leak * sum;
-    }
+  for (int b = 0; b < echo.beams; ++b) {
+    out[b] += leak * strongest;
   }
-}
-
-/// Per line leakage factor: the side-lobe floor, counted once per independent beam of the array.
-float leak_factor(const SonarSettings& settings) {
-  if (settings.physical.side_lobe_floor_db >= 0) {
-    return 0.0F;
-  }
-  const auto& edges = settings.aperture.beam_edges_rad;
-  const double beams_per_width =
-      std::max(1.0, settings.aperture.receive_beamwidth_rad * settings.aperture.beam_count() /
-                        (edges.front() - edges.back()));
-  return static_cast<float>(decibels_to_power(settings.physical.side_lobe_floor_db) / beams_per_width);
 }
 
 /// Noise amplitude per beam: 1, raised in a stripe two acoustic beams wide in the middle of the fan.
@@ -293,7 +280,8 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
   const std::vector<float> profile = noise_profile(settings);
   const auto noise =
       model.noise ? static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db))) : 0.0F;
-  const float leak = leak_factor(settings);
+  const auto leak =
+      model.side_lobe_floor_db < 0 ? static_cast<float>(decibels_to_power(model.side_lobe_floor_db)) : 0.0F;
   const int looks = 1 << settings.range.compression_log2;
 
   workers.run((samples.lines + lines_per_job - 1) / lines_per_job, [&](int job) {

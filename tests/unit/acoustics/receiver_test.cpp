@@ -19,6 +19,9 @@ PingRequest physical_request(int lines) {
   model.tvg_absorption_db_per_m = 0;
   model.gain_db = 0;
   model.noise = false;
+  model.near_field_blank_m = 0;
+  model.broadside_stripe_db = 0;
+  model.side_lobe_floor_db = 0;
   request.settings.sixteen_bit = true;
   request.seed = 5;
   return request;
@@ -213,11 +216,31 @@ TEST(Receiver, SideLobesLeakAlongTheRangeLine) {
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   request.settings.physical.side_lobe_floor_db = -25;
   EchoImage echo = uniform_echo(1, 0);
-  for (std::size_t b = 127; b < 129; ++b) {  // one acoustic beam wide
+  for (std::size_t b = 127; b < 129; ++b) {  // two beams of spacing
     echo.intensity[b] = 0.25F;
   }
   const PingSamples samples = Receiver().receive(echo, request, 0, workers);
   EXPECT_NEAR(20 * std::log10(samples.u16[10] / 32768.0), -25, 1.0);
+}
+
+// docs/physics.md 2.16: +3 to 4 dB of noise in the middle of the fan, two acoustic beams wide.
+TEST(Receiver, BroadsideStripeRaisesNoiseInMidFan) {
+  WorkerPool workers;
+  PingRequest request = physical_request(2000);
+  request.settings.physical.noise = true;
+  request.settings.physical.noise_level_db = -30;
+  request.settings.physical.broadside_stripe_db = 3.5;
+  const PingSamples samples = Receiver().receive(uniform_echo(2000, 0), request, 0, workers);
+  const auto power_db = [&](int beam) {
+    double sum = 0;
+    for (int line = 0; line < samples.lines; ++line) {
+      sum += std::pow(samples.u16[static_cast<std::size_t>(line * beams + beam)] / 65535.0, 2);
+    }
+    return 10 * std::log10(sum / samples.lines);
+  };
+  EXPECT_NEAR(power_db(127) - power_db(60), 3.5, 0.5);
+  EXPECT_NEAR(power_db(200) - power_db(60), 0, 0.4);
+  EXPECT_NEAR(power_db(60), -30, 0.3);
 }
 
 PingRequest paper_request(int lines) {
