@@ -112,17 +112,12 @@ struct SonarRenderer::Impl {
 
   /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
   const SampleGrid& grid_for(const SonarSettings& settings) {
-    GridOptions options;
-    if (settings.model == Model::paper) {
-      options.whole_columns = settings.paper.legacy_columns;
-      options.elevation_mask = settings.paper.elevation_mask;
-    }
-    if (!grid_key || !same_grid(*grid_key, settings) || grid_options.whole_columns != options.whole_columns ||
-        grid_options.elevation_mask != options.elevation_mask) {
+    const GridOptions options = grid_options(settings);
+    if (!grid_key || !same_grid(*grid_key, settings) || made_with != options) {
       grid_key.reset();
       grid = make_sample_grid(settings.aperture, settings.sampling, options);
       grid_key = settings;
-      grid_options = options;
+      made_with = options;
     }
     return grid;
   }
@@ -137,7 +132,7 @@ struct SonarRenderer::Impl {
 
   SampleGrid grid;
   std::optional<SonarSettings> grid_key;
-  GridOptions grid_options;
+  GridOptions made_with;
 };
 
 SonarRenderer::SonarRenderer(const World& world) : impl_(std::make_unique<Impl>(world)) {}

@@ -13,7 +13,6 @@
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/scene/world.hpp"
-#include "renderer/visibility/sample_grid.hpp"
 #include "server/config/addresses.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/devices/gemini_settings.hpp"
@@ -160,16 +159,9 @@ void Check::check_head(std::size_t index) {
   }
 }
 
-/// The fan is cut into pixels as it will be for any ping; the range of a ping changes nothing of it.
 void Check::check_sampling(const GeminiHeadConfig& head) {
-  const render::SonarSettings settings = to_sonar_settings(gemini::PingJob{}, head.acoustics);
-  render::GridOptions options;
-  if (settings.model == render::Model::paper) {
-    options.whole_columns = settings.paper.legacy_columns;
-    options.elevation_mask = settings.paper.elevation_mask;
-  }
   try {
-    render::make_sample_grid(settings.aperture, settings.sampling, options);
+    check_sampling_of(head.acoustics);
   } catch (const render::RequestError& error) {
     problem("sampling", fmt::format("head '{}': {}", head.name, error.what()));
   }

@@ -20,6 +20,7 @@
 #include "renderer/sonar_renderer.hpp"
 #include "server/clock.hpp"
 #include "server/devices/gemini_head.hpp"
+#include "server/devices/gemini_settings.hpp"
 #include "server/devices/ping_dump.hpp"
 #include "server/devices/udp_endpoint.hpp"
 #include "server/exit_codes.hpp"
@@ -227,6 +228,11 @@ render::World load(const DaemonConfig& config) {
     for (const std::string& warning : world.warnings) {
       spdlog::warn("{}", warning);
     }
+    if (world.triangle_count() == 0) {
+      throw StartError(
+          "world.file", exit_config,
+          config.world_file.string() + ": the world has no triangles (expected a surface that echoes)");
+    }
     return world;
   } catch (const render::WorldError& error) {
     throw StartError("world.file", exit_config, error.what());
@@ -237,6 +243,13 @@ render::World load(const DaemonConfig& config) {
 
 int run_daemon(const DaemonConfig& config) {
   const render::World world = load(config);
+  for (const GeminiHeadConfig& head : config.heads) {
+    try {
+      check_sampling_of(head.acoustics);
+    } catch (const render::RequestError& error) {
+      throw StartError("sampling", exit_config, fmt::format("head '{}': {}", head.name, error.what()));
+    }
+  }
   return serve(config, world, [&world] { return make_open_gl_renderer(world); });
 }
 

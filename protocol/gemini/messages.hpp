@@ -66,9 +66,6 @@ enum class MessageType : std::uint8_t {
   diagnostic = 0x4D,
 };
 
-/// "ping_config", ...; "unknown" for a type that has no struct here.
-std::string_view to_string(MessageType type);
-
 /// Bytes 0..7 of every message without the type, which the struct implies (2). A head accepts any value but
 /// in sonar_id.
 struct Header {
@@ -171,7 +168,6 @@ struct PingConfig {
   std::uint8_t velocimeter_tx_mark = 17;
 
   RunMode mode() const { return static_cast<RunMode>(run_mode & 3); }
-  bool falling_edge() const { return (run_mode & 0x8000) != 0; }
   DataType data_type() const { return static_cast<DataType>(ext_mode & ext_bits::data_type_mask); }
   /// Samples of one byte: bit 2 set and the data are magnitudes.
   bool eight_bit() const;

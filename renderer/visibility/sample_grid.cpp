@@ -163,6 +163,15 @@ class GridBuilder {
 
 }  // namespace
 
+GridOptions grid_options(const SonarSettings& settings) {
+  GridOptions options;
+  if (settings.model == Model::paper) {
+    options.whole_columns = settings.paper.legacy_columns;
+    options.elevation_mask = settings.paper.elevation_mask;
+  }
+  return options;
+}
+
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
   check(aperture, sampling);
   SampleGrid grid;

@@ -55,7 +55,12 @@ struct SampleGrid {
 struct GridOptions {
   bool whole_columns = false;  ///< a column belongs to the beam that holds its centre
   bool elevation_mask = true;  ///< false: every row of a column counts
+
+  bool operator==(const GridOptions&) const = default;
 };
+
+/// What the model of `settings` asks for.
+GridOptions grid_options(const SonarSettings& settings);
 
 /// @throws RequestError when the aperture or the sampling cannot be gridded, or when a beam would get no
 /// column.

@@ -232,9 +232,12 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
   device.set_out_of_water(out_of_water(now));
   device.advance(now);
   send(now, device.take_outgoing());
-  const std::optional<gemini::PingJob> job = device.take_job();
-  if (job && !render(*job)) {
-    // The device must hear of it, and has a next deadline only after it has advanced over it.
+  while (const std::optional<gemini::PingJob> job = device.take_job()) {
+    if (render(*job)) {
+      break;
+    }
+    // The device must hear of it, and has a next deadline only after it has advanced over it. Rendering
+    // ahead, it may ask for the next ping at once; each turn moves on by a ping period, so this ends.
     device.on_image_failed(now, job->ping_number);
     device.advance(now);
     send(now, device.take_outgoing());
@@ -323,7 +326,7 @@ void GeminiHead::Impl::follow_addresses() {
   spdlog::info("head={} answers on {} mask {} from now on", config.name, address_text(current.alternate),
                address_text(current.netmask));
   check_interface();
-  if (socket->local_endpoint().address != before.alternate) {
+  if (current.alternate == before.alternate || socket->local_endpoint().address != before.alternate) {
     return;
   }
   try {

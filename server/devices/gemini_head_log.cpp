@@ -25,7 +25,8 @@ void GeminiHeadLog::surface(Ipv4 address) {
     return;
   }
   if (address == 0) {
-    spdlog::info("head={} surface {} lost: no command for the time-out", head_, address_text(surface_));
+    spdlog::info("head={} surface {} lost: no command for the time-out, or reboot", head_,
+                 address_text(surface_));
   } else {
     spdlog::info("head={} surface {} connected", head_, address_text(address));
   }
@@ -89,6 +90,13 @@ void GeminiHeadLog::rates(const GeminiHeadCounters& total, std::chrono::duration
   if (const std::uint64_t wrong = total.device.wrong_id - before.device.wrong_id; wrong > 0) {
     spdlog::warn("head={} {} commands were for another sonar ID", head_, wrong);
   }
+  if (const std::uint64_t unsupported = total.device.unsupported_data - before.device.unsupported_data;
+      unsupported > 0) {
+    spdlog::warn(
+        "head={} {} ping configurations asked for data that is not made here (I/Q, channels) or for run mode "
+        "3",
+        head_, unsupported);
+  }
   if (const std::uint64_t bad = total.device.bad_datagrams - before.device.bad_datagrams; bad > 0) {
     spdlog::warn("head={} {} datagrams were no commands of a Gemini 720i", head_, bad);
   }
@@ -98,10 +106,13 @@ void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
   const gemini::DeviceCounters& device = total.device;
   spdlog::info(
       "head={} ends: pings_sent={} pings_failed={} pings_without_pose={} pings_suppressed={} lines_sent={} "
-      "lines_resent={} tails_resent={} commands={} wrong_id={} bad_datagrams={}",
+      "lines_resent={} tails_resent={} heads_resent={} retries_dropped={} commands={} wrong_id={} "
+      "bad_datagrams={} "
+      "unknown_type={} unsupported_data={} surface_changes={} surface_timeouts={} reboots={}",
       head_, device.pings_sent, device.pings_failed, total.pings_without_pose, device.pings_suppressed,
-      device.lines_sent, device.lines_resent, device.tails_resent, device.commands, device.wrong_id,
-      device.bad_datagrams);
+      device.lines_sent, device.lines_resent, device.tails_resent, device.heads_resent,
+      device.retries_dropped, device.commands, device.wrong_id, device.bad_datagrams, device.unknown_type,
+      device.unsupported_data, device.surface_changes, device.surface_timeouts, device.reboots);
   const UdpEndpointCounters& socket = total.socket;
   spdlog::info(
       "head={} socket: sent={} received={} not_allowed={} truncated={} kernel_dropped={} blocked={} "

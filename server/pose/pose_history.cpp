@@ -62,7 +62,10 @@ void PoseHistory::insert_body(const pose::NamedTransform& body, std::int64_t tim
   auto track = bodies_.find(body.name);
   if (track == bodies_.end()) {
     if (bodies_.size() == max_bodies) {
-      ++counters_.bodies_ignored;
+      if (++counters_.bodies_ignored == 1) {
+        spdlog::warn("the pose stream names more than {} bodies: '{}' and later ones are ignored", max_bodies,
+                     body.name);
+      }
       return;
     }
     track = bodies_.emplace(body.name, PoseTrack{body_points}).first;

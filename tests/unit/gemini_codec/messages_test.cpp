@@ -44,14 +44,12 @@ TEST(Temperature, die_has_a_scale_of_its_own) {
   EXPECT_EQ(die_temperature_code(1000.0), 1023);
 }
 
-TEST(PingConfig, run_mode_is_two_bits_and_an_edge) {
+TEST(PingConfig, run_mode_is_two_bits) {
   PingConfig config;
   config.run_mode = 0x8002;
   EXPECT_EQ(config.mode(), RunMode::external_trigger);
-  EXPECT_TRUE(config.falling_edge());
   config.run_mode = 0x0011;  // later surfaces set further bits
   EXPECT_EQ(config.mode(), RunMode::continuous);
-  EXPECT_FALSE(config.falling_edge());
 }
 
 TEST(PingConfig, eight_bit_holds_for_magnitudes_only) {
@@ -149,12 +147,6 @@ TEST(Status, default_does_not_read_as_boot_loader) {
   EXPECT_NE(status.boot_status & 0x1FF, 0x001U);
   EXPECT_EQ(status.product_code(), 0);
   EXPECT_EQ(status.link_type & link_bits::vdsl, 0);
-}
-
-TEST(MessageTypes, have_names) {
-  EXPECT_EQ(to_string(MessageType::ping_config), "ping_config");
-  EXPECT_EQ(to_string(MessageType::diagnostic), "diagnostic");
-  EXPECT_EQ(to_string(static_cast<MessageType>(0x46)), "unknown");
 }
 
 }  // namespace

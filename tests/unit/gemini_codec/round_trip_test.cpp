@@ -131,8 +131,8 @@ void round_trip() {
     const Bytes bytes = encode(sent);
     EXPECT_LE(bytes.size(), max_datagram_size);
     const auto received = decode_any(sent, bytes);
-    ASSERT_TRUE(received) << to_string(Message::type) << ": " << to_string(received.error());
-    ASSERT_TRUE(*received == sent) << to_string(Message::type) << " round " << round;
+    ASSERT_TRUE(received) << static_cast<int>(Message::type) << ": " << to_string(received.error());
+    ASSERT_TRUE(*received == sent) << static_cast<int>(Message::type) << " round " << round;
   }
 }
 

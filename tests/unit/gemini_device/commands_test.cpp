@@ -119,7 +119,7 @@ TEST(Commands, InfoBlocksAreReadAtTheirAddresses) {
   EXPECT_TRUE(answers(bench, "25 01 59 02 00 00 00 00 03 00 00 00").empty());
 }
 
-/// 0x24 as a later surface sends it, for 192.168.2.77/24: example of docs/protocols/gemini-observed.md 3.
+/// 0x24 as a later surface sends it, for 192.168.2.77/24: see tests/data/gemini/notes.md.
 std::vector<std::uint8_t> write_address_77() {
   auto command = from_hex("24 01 59 02 00 00 02 01 02 00 00 00 00 00 00 00 4d 02 a8 c0 00 ff ff ff");
   command.resize(152, 0);

@@ -1,5 +1,5 @@
 // The truths are the worked example of docs/protocols/gemini.md 10 and the values seen from a later library
-// (gemini-observed.md 3, 0x21).
+// (tests/data/gemini/notes.md).
 #include "protocol/gemini/ping_settings.hpp"
 
 #include <gtest/gtest.h>

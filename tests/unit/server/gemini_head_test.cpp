@@ -222,6 +222,22 @@ TEST_F(GeminiHeadTest, WithoutAPoseItAnswersButDoesNotPing) {
   EXPECT_EQ(renderer->pings, 0);
 }
 
+// Rendering further ahead than a ping period, the next ping is due at once when one could not be made.
+TEST_F(GeminiHeadTest, RenderingAheadItKeepsTryingWithoutAPose) {
+  pose_config.T_world_vehicle_initial.reset();
+  config.device.render_lead = std::chrono::milliseconds{35};
+  start();
+  Bytes continuous = ping_config;
+  continuous[16] = 0x01;
+  continuous[24] = 0xe8;  // 33000 us, below the head's own limit of 33.3 ms
+  continuous[25] = 0x80;
+  continuous[26] = 0x00;
+  command(continuous);
+  // 20 periods are 0.67 s: less than a status period, whose timer would otherwise move things on.
+  EXPECT_TRUE(
+      run_until([&] { return head->counters().pings_without_pose >= 20; }, std::chrono::milliseconds{950}));
+}
+
 TEST_F(GeminiHeadTest, PingsAgainWhenAPoseHasArrived) {
   pose_config.T_world_vehicle_initial.reset();
   start();
