@@ -56,8 +56,8 @@ double beam_echo(double psi_from, double psi_to, double from_m, double to_m, dou
 
 }  // namespace
 
-double run_self_test() {
-  SonarRenderer renderer(make_wall());
+double run_self_test(const RendererOptions& options) {
+  SonarRenderer renderer(make_wall(), options);
   PingRequest request;
   SonarSettings& settings = request.settings;
   constexpr int beams = 16;
@@ -89,7 +89,7 @@ double run_self_test() {
   const double error = std::sqrt(squared / compared);
   if (!(error < worst_error)) {
     throw RendererError(fmt::format("self test: the echo of a wall is off by {:.1f} % RMS on {}", error * 100,
-                                    renderer.gl_description()));
+                                    renderer.backend_description()));
   }
   return error;
 }

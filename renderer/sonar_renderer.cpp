@@ -6,8 +6,8 @@
 
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/binning/echo_binner.hpp"
-#include "renderer/visibility/raster_sampler.hpp"
 #include "renderer/visibility/sample_grid.hpp"
+#include "renderer/visibility/sampler_choice.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -103,12 +103,13 @@ class Stopwatch {
 }  // namespace
 
 struct SonarRenderer::Impl {
-  std::unique_ptr<Sampler> sampler;
-  WorkerPool workers;
+  WorkerPool workers;  // outlives the sampler, which uses it
+  ChosenSampler chosen;
   Receiver receiver;
   PingStatistics statistics;
 
-  explicit Impl(const World& world) : sampler(std::make_unique<RasterSampler>(world)) {}
+  Impl(const World& world, const RendererOptions& options)
+      : workers(options.threads), chosen(choose_sampler(world, options.backend, workers)) {}
 
   /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
   const SampleGrid& grid_for(const SonarSettings& settings) {
@@ -135,15 +136,20 @@ struct SonarRenderer::Impl {
   GridOptions made_with;
 };
 
-SonarRenderer::SonarRenderer(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
 SonarRenderer::~SonarRenderer() = default;
 
-const std::string& SonarRenderer::gl_description() const {
-  return impl_->sampler->description();
+Backend SonarRenderer::backend() const {
+  return impl_->chosen.backend;
+}
+
+const std::string& SonarRenderer::backend_description() const {
+  return impl_->chosen.description;
 }
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  return impl_->sampler->set_body_pose(body_name, checked(T_world_body));
+  return impl_->chosen.sampler->set_body_pose(body_name, checked(T_world_body));
 }
 
 EchoImage SonarRenderer::render_echo(const PingRequest& request) {
@@ -158,8 +164,8 @@ EchoImage SonarRenderer::render_echo(const PingRequest& request) {
     return image;
   }
   Stopwatch watch;
-  const auto views = impl_->sampler->sample(T_world_sonar, grid, surface_model(settings),
-                                            settings.range.max_range_m() * range_margin);
+  const auto views = impl_->chosen.sampler->sample(T_world_sonar, grid, surface_model(settings),
+                                                   settings.range.max_range_m() * range_margin);
   impl_->statistics.visibility_s = watch.lap();
   BinningResult bins = bin_echoes(grid, views, settings.range, binning_options(settings), impl_->workers);
   image.intensity = std::move(bins.echo);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/backend.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
@@ -52,18 +53,20 @@ struct PingStatistics {
 };
 
 /// Renders pings of one world. Every call, construction and destruction included, comes from one thread,
-/// which owns the GL context. Several sonars may share one renderer; each gives its own `stream` number,
-/// which keeps their speckle apart.
+/// which owns the GL context if there is one. Several sonars may share one renderer; each gives its own
+/// `stream` number, which keeps their speckle apart.
 class SonarRenderer {
  public:
-  /// @throws RendererError when no OpenGL 4.5 context can be made.
-  explicit SonarRenderer(const World& world);
+  /// @throws RendererError when the backend asked for cannot be had: `raster` without OpenGL 4.5.
+  explicit SonarRenderer(const World& world, const RendererOptions& options = {});
   ~SonarRenderer();
   SonarRenderer(const SonarRenderer&) = delete;
   SonarRenderer& operator=(const SonarRenderer&) = delete;
 
-  /// "vendor / renderer / version" of the GL in use.
-  const std::string& gl_description() const;
+  /// The backend in use: `raster` or `ray`.
+  Backend backend() const;
+  /// The same and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
+  const std::string& backend_description() const;
 
   /// Moves a body of the world. @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
@@ -86,7 +89,7 @@ class SonarRenderer {
 
 /// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2).
 /// @return the RMS error over bins above 1e-2 of the beam's maximum.
-/// @throws RendererError when GL fails, the image is empty or the error exceeds 5 %.
-double run_self_test();
+/// @throws RendererError when the backend fails, the image is empty or the error exceeds 5 %.
+double run_self_test(const RendererOptions& options = {});
 
 }  // namespace sonard::render

@@ -36,7 +36,7 @@ class OpenGlRenderer final : public PingRenderer {
  public:
   explicit OpenGlRenderer(const render::World& world) : renderer_(world) {}
 
-  std::string description() const override { return renderer_.gl_description(); }
+  std::string description() const override { return renderer_.backend_description(); }
   bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
     return renderer_.set_body_pose(body, T_world_body);
   }

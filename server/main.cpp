@@ -102,8 +102,8 @@ int check(const CommandLine& arguments) {
 
 int selftest() {
   try {
-    fmt::print("gl     {}\n", render::SonarRenderer(render::World{}).gl_description());
-    fmt::print("wall   {:.3f} % RMS from its closed form\n", 100.0 * render::run_self_test());
+    fmt::print("backend  {}\n", render::SonarRenderer(render::World{}).backend_description());
+    fmt::print("wall     {:.3f} % RMS from its closed form\n", 100.0 * render::run_self_test());
   } catch (const render::RendererError&) {
     fmt::print("FAIL\n");
     throw;

@@ -17,8 +17,8 @@ class GlTest : public ::testing::Test {
   void SetUp() override {
     static const std::string problem = [] {
       try {
-        const render::SonarRenderer renderer(render::World{});
-        std::printf("OpenGL: %s\n", renderer.gl_description().c_str());
+        const render::SonarRenderer renderer(render::World{}, {render::Backend::raster, 0});
+        std::printf("%s\n", renderer.backend_description().c_str());
         return std::string();
       } catch (const render::RendererError& error) {
         return std::string(error.what());

@@ -1,0 +1,22 @@
+// Which method finds the visible surfaces, and on how many threads a ping is made.
+#pragma once
+
+#include <string_view>
+
+namespace sonard::render {
+
+enum class Backend {
+  automatic,  ///< `raster` where OpenGL runs on hardware, `ray` where it is software or missing
+  raster,     ///< OpenSceneGraph and OpenGL 4.5 through EGL
+  ray,        ///< Embree on the CPU; never opens EGL
+};
+
+/// As the key `backend` of a configuration spells it: "auto", "raster", "ray".
+std::string_view name_of(Backend backend);
+
+struct RendererOptions {
+  Backend backend = Backend::automatic;
+  unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,29 @@
+// From the backend that was asked for to the sampler that runs here.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "renderer/backend.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/sampler.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+struct ChosenSampler {
+  std::unique_ptr<Sampler> sampler;
+  Backend backend = Backend::ray;  ///< never `automatic`
+  /// What the sampler runs on and, where `automatic` chose it, what OpenGL there is.
+  std::string description;
+};
+
+/// @throws RendererError when `wanted` is `raster` and there is no OpenGL 4.5, or when Embree fails.
+ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& workers);
+
+/// Whether the renderer string of an OpenGL context ("vendor / renderer / version") names a rasteriser that
+/// runs on the CPU.
+bool is_software_gl(std::string_view description);
+
+}  // namespace sonard::render
