@@ -1,0 +1,274 @@
+#include "tests/scenes/scenes.hpp"
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "tests/scenes/manifold.hpp"
+#include "tests/scenes/shapes.hpp"
+
+namespace sonard::test {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double sonar_height_m = 4.0;
+constexpr double sonar_tilt_rad = 20 * degree;
+constexpr std::size_t seabed_triangles = 106'830;
+/// 40 x 40 m that hold the whole fan out to 21 m, edges included.
+constexpr BedExtent seabed_extent{-6, 34, -20, 20};
+constexpr int seabed_cells = 223;  // of 0.18 m
+
+// ---- bodies
+
+render::Body make_body(std::string name, render::TriangleMesh mesh) {
+  render::BodyPart part;
+  part.mesh = std::make_shared<const render::TriangleMesh>(std::move(mesh));
+  part.material.lambert_mu = scene_lambert_mu;
+  return {std::move(name), {}, {std::move(part)}};
+}
+
+render::Body make_flat_bed(const BedExtent& extent) {
+  return make_body("bed", make_bed(extent, 1, 1, flat_height_m));
+}
+
+/// A rectangle of 2 * half_width_m by 2 * half_height_m across the x axis.
+render::Body make_wall(double x_m, double half_width_m, double half_height_m) {
+  render::TriangleMesh mesh;
+  for (const auto& [y, z] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+    mesh.positions.emplace_back(glm::dvec3(x_m, y * half_width_m, z * half_height_m));
+  }
+  mesh.indices = {0, 2, 1, 0, 3, 2};  // seen from the origin
+  return make_body("wall", std::move(mesh));
+}
+
+/// What lies on the seabed: 7372 triangles, the same in every scene, each heard by other beams.
+std::vector<render::Body> make_objects() {
+  return {
+      make_body("box", make_block({9.0, 5.2, 0.4}, {1.6, 1.0, 1.6}, 25 * degree)),
+      make_body("sphere", make_ball({8.5, -1.8, 0.55}, 0.6, 64, 32)),
+      make_body("pipeline", make_tube({7.5, -9.5, 0.2}, {16.0, -4.0, 0.2}, 0.25, 64, 19)),
+      make_body("pole", make_tube({11.5, 1.6, -0.5}, {11.5, 1.6, 1.8}, 0.05, 32, 12)),
+  };
+}
+
+std::size_t triangle_count(const std::vector<render::Body>& bodies) {
+  render::World world;
+  world.bodies = bodies;
+  return world.triangle_count();
+}
+
+// ---- sonars
+
+render::SonarSettings fan(int beams, double width_rad, double height_rad, int lines, double range_m) {
+  render::SonarSettings settings;
+  settings.aperture.beam_edges_rad = render::equal_angle_edges(beams, width_rad);
+  settings.aperture.vertical_beamwidth_rad = height_rad;
+  settings.range = {lines, range_m / lines, 0, false};
+  settings.physical.absorption_db_per_m = 0;
+  return settings;
+}
+
+render::SonarSettings forward_looking(int lines, double range_m) {
+  return fan(256, 120 * degree, 20 * degree, lines, range_m);
+}
+
+/// Above (0, 0), turned to port by `yaw_rad`, then looking down by `tilt_rad`.
+render::Pose sonar_pose(double height_m, double yaw_rad, double tilt_rad) {
+  render::Pose pose;
+  pose.position_m.z = height_m;
+  pose.orientation =
+      glm::angleAxis(yaw_rad, glm::dvec3(0, 0, 1)) * glm::angleAxis(tilt_rad, glm::dvec3(0, 1, 0));
+  return pose;
+}
+
+Scene make(const std::string& name, std::vector<render::Body> bodies, const render::Pose& T_world_sonar,
+           const render::SonarSettings& settings) {
+  Scene scene;
+  scene.name = name;
+  scene.world.name = name;
+  scene.world.bodies = std::move(bodies);
+  scene.T_world_sonar = T_world_sonar;
+  scene.settings = settings;
+  return scene;
+}
+
+// ---- scenes
+
+PlaneTruth bed_below(double height_m, double tilt_rad, const render::SonarSettings& settings) {
+  return {height_m, std::sin(tilt_rad), 0, -std::cos(tilt_rad), settings.aperture.elevation_limit_rad()};
+}
+
+Scene make_plane(const std::string& name) {
+  Scene scene =
+      make(name, {make_body("bed", make_bed(seabed_extent, seabed_cells, seabed_cells, flat_height_m))},
+           sonar_pose(sonar_height_m, 0, sonar_tilt_rad), forward_looking(1000, 20));
+  scene.plane = bed_below(sonar_height_m, sonar_tilt_rad, scene.settings);
+  return scene;
+}
+
+/// One beam of a scanning sonar, turned to where the pipeline lies.
+Scene make_scanning(const std::string& name, BedHeight height) {
+  Scene scene = make_seabed_scene(name, height, seabed_triangles);
+  scene.T_world_sonar = sonar_pose(sonar_height_m, -30 * degree, sonar_tilt_rad);
+  scene.settings = fan(1, 3 * degree, 35 * degree, 500, 20);
+  return scene;
+}
+
+Scene make_b1(const std::string& name) {
+  Scene scene = make(name, {make_wall(10, 80, 40)}, {}, forward_looking(2600, 20.8));
+  scene.plane = PlaneTruth{10, 1, 0, 0, scene.settings.aperture.elevation_limit_rad()};
+  return scene;
+}
+
+Scene make_b2(const std::string& name, double height_m) {
+  Scene scene = make(name, {make_flat_bed({-200, 200, -200, 200})}, sonar_pose(height_m, 0, 0),
+                     forward_looking(1000, 50));
+  scene.plane = bed_below(height_m, 0, scene.settings);
+  return scene;
+}
+
+/// Spheres and vertical cylinders, some of them in each other's shadow.
+Scene make_b3(const std::string& name) {
+  std::vector<render::Body> bodies{make_flat_bed(seabed_extent)};
+  const glm::dvec2 spheres[] = {{8.0, 0.0}, {9.5, 2.6}, {10.5, -3.5}, {13.0, 0.8}};
+  const glm::dvec2 cylinders[] = {{8.2, -5.0}, {9.0, 4.5}, {12.0, -1.4}, {14.0, 4.0}};
+  for (const glm::dvec2& at : spheres) {
+    bodies.push_back(
+        make_body("sphere" + std::to_string(bodies.size()), make_ball(glm::dvec3(at, 0.5), 0.5, 128, 64)));
+  }
+  for (const glm::dvec2& at : cylinders) {
+    bodies.push_back(make_body("cylinder" + std::to_string(bodies.size()),
+                               make_tube(glm::dvec3(at, 0), glm::dvec3(at, 1.2), 0.3, 128, 16)));
+  }
+  return make(name, std::move(bodies), sonar_pose(sonar_height_m, 0, sonar_tilt_rad),
+              forward_looking(1000, 20));
+}
+
+/// A tank of 6 x 5 x 3 m without water surface, the sonar in one corner.
+Scene make_b5(const std::string& name) {
+  render::Pose T_world_sonar = sonar_pose(1.6, 35 * degree, 10 * degree);
+  T_world_sonar.position_m += glm::dvec3(1.2, 1.1, 0);
+  return make(name, {make_body("tank", make_block({3, 2.5, 1.5}, {6, 5, 3}, 0))}, T_world_sonar,
+              forward_looking(1000, 8));
+}
+
+/// Pipes of 2, 5, 10 and 20 cm at 5, 10, 20, 40 and 80 m, each upright (2 m, shorter where the fan is) and
+/// lying across its bearing (2 degrees wide), one every 3 degrees.
+Scene make_b7(const std::string& name) {
+  constexpr double spacing_rad = 3 * degree;
+  std::vector<render::Body> bodies;
+  for (const double range_m : {5.0, 10.0, 20.0, 40.0, 80.0}) {
+    for (const double radius_m : {0.01, 0.025, 0.05, 0.10}) {
+      const double upright_m = std::min(1.0, range_m * std::tan(8 * degree));
+      const double across_m = range_m * std::tan(1 * degree);
+      for (const bool upright : {true, false}) {
+        const double bearing = (static_cast<double>(bodies.size()) - 19.5) * spacing_rad;
+        const glm::dvec3 out(std::cos(bearing), std::sin(bearing), 0);
+        const glm::dvec3 half =
+            upright ? glm::dvec3(0, 0, upright_m) : across_m * glm::dvec3(-out.y, out.x, 0);
+        bodies.push_back(make_body("pipe" + std::to_string(bodies.size()),
+                                   make_tube(range_m * out - half, range_m * out + half, radius_m, 32, 8)));
+      }
+    }
+  }
+  return make(name, std::move(bodies), {}, forward_looking(1000, 85));
+}
+
+/// The world and the place that configs/demo.yaml starts with, heard by a Gemini out to 20 m.
+Scene make_docking(const std::string& name) {
+  Scene scene;
+  scene.name = name;
+  scene.world = render::load_world(SONARD_SOURCE_DIR "/configs/worlds/docking_station.sdf");
+  scene.T_world_sonar = sonar_pose(-25.6, 80 * degree, sonar_tilt_rad);
+  scene.T_world_sonar.position_m += glm::dvec3(-2.136, -11.913, 0);
+  scene.settings =
+      forward_looking(2411, 2411 * 1500.0 / 180844);  // native lines (docs/protocols/gemini.md 6.5)
+  scene.settings.aperture.beam_edges_rad = render::equal_sine_edges(256, 60 * degree);
+  return scene;
+}
+
+using Maker = std::function<Scene(const std::string& name)>;
+
+Maker seabed(BedHeight height, std::size_t triangles) {
+  return [=](const std::string& name) { return make_seabed_scene(name, height, triangles); };
+}
+
+Maker scanning(BedHeight height) {
+  return [=](const std::string& name) { return make_scanning(name, height); };
+}
+
+Maker b2(double height_m) {
+  return [=](const std::string& name) { return make_b2(name, height_m); };
+}
+
+Maker b4(std::size_t triangles) {
+  return [=](const std::string& name) { return make_manifold_scene(name, triangles); };
+}
+
+const std::vector<std::pair<std::string, Maker>>& makers() {
+  static const std::vector<std::pair<std::string, Maker>> all{
+      {"plane", make_plane},
+      {"flat100k", seabed(flat_height_m, seabed_triangles)},
+      {"swell100k", seabed(swell_height_m, seabed_triangles)},
+      {"ripple100k", seabed(ripple_height_m, seabed_triangles)},
+      {"msis_swell", scanning(swell_height_m)},
+      {"msis_ripple", scanning(ripple_height_m)},
+      {"b1_wall", make_b1},
+      {"b2_seabed_2m", b2(2)},
+      {"b2_seabed_5m", b2(5)},
+      {"b2_seabed_10m", b2(10)},
+      {"b3_cluster", make_b3},
+      {"b5_tank", make_b5},
+      {"b6_water", [](const std::string& name) { return make(name, {}, {}, forward_looking(1000, 20)); }},
+      {"b7_pipes", make_b7},
+      {"docking", make_docking},
+      {"b4_manifold_1e4", b4(10'000)},
+      {"b4_manifold_1e5", b4(100'000)},
+      {"swell1m", seabed(swell_height_m, 1'000'000)},
+      {"b4_manifold_1e6", b4(1'000'000)},
+      {"b4_manifold_1e7", b4(10'000'000)},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, maker] : makers()) {
+    names.push_back(name);
+  }
+  return names;
+}
+
+Scene make_scene(const std::string& name) {
+  for (const auto& [known, maker] : makers()) {
+    if (known == name) {
+      return maker(name);
+    }
+  }
+  throw std::invalid_argument("no scene is called '" + name + "'");
+}
+
+Scene make_seabed_scene(const std::string& name, BedHeight height, std::size_t triangles) {
+  std::vector<render::Body> bodies = make_objects();
+  const double bed_triangles = static_cast<double>(triangles) - static_cast<double>(triangle_count(bodies));
+  const int cells = std::max(1, static_cast<int>(std::lround(std::sqrt(std::max(2.0, bed_triangles) / 2))));
+  bodies.insert(bodies.begin(), make_body("bed", make_bed(seabed_extent, cells, cells, height)));
+  return make(name, std::move(bodies), sonar_pose(sonar_height_m, 0, sonar_tilt_rad),
+              forward_looking(1000, 20));
+}
+
+Scene make_manifold_scene(const std::string& name, std::size_t triangles) {
+  render::Body manifold = make_body("manifold", make_manifold(triangles));
+  manifold.T_world_body.position_m = {12, 0, 0};
+  manifold.T_world_body.orientation = glm::angleAxis(25 * degree, glm::dvec3(0, 0, 1));
+  return make(name, {make_flat_bed(seabed_extent), std::move(manifold)},
+              sonar_pose(sonar_height_m, 0, sonar_tilt_rad), forward_looking(1000, 20));
+}
+
+}  // namespace sonard::test
