@@ -50,7 +50,7 @@ std::vector<render::Body> make_objects() {
   return {
       make_body("box", make_block({9.0, 5.2, 0.4}, {1.6, 1.0, 1.6}, 25 * degree)),
       make_body("sphere", make_ball({8.5, -1.8, 0.55}, 0.6, 64, 32)),
-      make_body("pipeline", make_tube({7.5, -9.5, 0.2}, {16.0, -4.0, 0.2}, 0.25, 64, 19)),
+      make_body("pipeline", make_tube({6.5, -9.5, 0.2}, {14.0, -6.0, 0.2}, 0.25, 64, 19)),
       make_body("pole", make_tube({11.5, 1.6, -0.5}, {11.5, 1.6, 1.8}, 0.05, 32, 12)),
   };
 }
