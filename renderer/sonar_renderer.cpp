@@ -63,10 +63,11 @@ SurfaceModel surface_model(const SonarSettings& settings) {
 
 BinningOptions binning_options(const SonarSettings& settings) {
   BinningOptions options;
+  options.footprint = settings.sampling.footprint;
   if (settings.model == Model::paper) {
     options.mean = true;
-    options.footprint = settings.paper.footprint;
-    options.legacy_bin_index = settings.paper.legacy_bin_index && !settings.paper.footprint;
+    options.footprint = options.footprint && settings.paper.footprint;
+    options.legacy_bin_index = settings.paper.legacy_bin_index && !options.footprint;
   }
   return options;
 }

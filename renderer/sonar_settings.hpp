@@ -101,6 +101,8 @@ struct Sampling {
   int views = 3;  ///< side-by-side frusta; more are used where one would exceed 60 degrees
   int columns_per_view = 256;
   int rows = 512;
+  /// false: a sample is a point in range, as where footprints are unknown; for comparison (docs/benchmark.md).
+  bool footprint = true;
 };
 
 struct SonarSettings {
