@@ -1,0 +1,18 @@
+// A fingerprint of everything that goes into a reference image.
+#pragma once
+
+#include <string>
+
+#include "renderer/pose.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::oracle {
+
+/// SHA-256 (hexadecimal) over geometry, poses, materials, aperture, range lines and model. Lengths and
+/// coordinates count to 1e-6, rotations and angles to 1e-9, so that the last bit of another machine's sine
+/// makes no difference. Names, sampling and receiver do not count: the mean echo does not depend on them.
+std::string scene_hash(const render::World& world, const render::Pose& T_world_sonar,
+                       const render::SonarSettings& settings);
+
+}  // namespace sonard::oracle

@@ -1,0 +1,52 @@
+// The echo of one vertical half-plane through the sonar: visibility exact, elevation integrated piece by
+// piece.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tests/oracle/echo_law.hpp"
+#include "tests/oracle/envelope.hpp"
+#include "tests/oracle/facets.hpp"
+
+namespace sonard::oracle {
+
+/// Echo of one slice, or a sum of slices, per range line.
+struct LineSums {
+  std::vector<double> echo;    ///< per radian of azimuth
+  std::vector<double> weight;  ///< mode `paper`: pattern times solid angle per radian; else empty
+
+  explicit LineSums(const EchoLaw& law)
+      : echo(static_cast<std::size_t>(law.lines()), 0.0),
+        weight(law.is_mean() ? static_cast<std::size_t>(law.lines()) : 0, 0.0) {}
+};
+
+/// Cuts the facets at one azimuth, finds what is seen of the cuts and integrates it over elevation. The cuts
+/// are straight, their visible parts are found exactly (Envelope), and along each the range is a hyperbola
+/// whose crossings of the line edges are known in closed form: there is no sampling in elevation or range,
+/// and no footprint. Keeps buffers; one thread uses one.
+class Slicer {
+ public:
+  Slicer(const Facets& facets, const EchoLaw& law);
+
+  /// Adds the echo per radian at azimuth `psi_rad` to `sums`. Only `candidates` (indices of facets) are
+  /// looked at; those that do not meet the half-plane do no harm.
+  void add(double psi_rad, std::span<const std::uint32_t> candidates, LineSums& sums);
+
+ private:
+  struct Cut;
+  void cut(std::uint32_t index);
+  void add_piece(const VisiblePiece& piece, LineSums& sums) const;
+  void add_branch(const Cut& cut, double side, double from, double to, LineSums& sums) const;
+  void add_panel(const Cut& cut, double from, double to, std::size_t line, LineSums& sums) const;
+
+  const Facets& facets_;
+  const EchoLaw& law_;
+  double tan_limit_;
+  double cos_psi_ = 1.0, sin_psi_ = 0.0;
+  std::vector<Sightline> sightlines_;
+  Envelope envelope_;
+};
+
+}  // namespace sonard::oracle
