@@ -12,6 +12,8 @@ namespace sonard::render {
 struct Pose {
   glm::dvec3 position_m{0.0};
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
+
+  bool operator==(const Pose&) const = default;
 };
 
 /// T_a_c = T_a_b * T_b_c.

@@ -21,6 +21,9 @@ struct SurfaceSample {
   float range_dy = 0.0F;
 };
 
+/// Surfaces nearer than this along the axis of their view are not seen.
+inline constexpr float nearest_depth_m = 0.02F;
+
 /// How a surface turns incidence into `SurfaceSample::response`.
 struct SurfaceModel {
   Model model = Model::physical;

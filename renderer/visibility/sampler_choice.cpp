@@ -4,10 +4,38 @@
 #include <array>
 #include <cctype>
 
+#include <osg/ref_ptr>
+
 #include "renderer/errors.hpp"
+#include "renderer/visibility/egl_context.hpp"
 #include "renderer/visibility/raster_sampler.hpp"
+#include "renderer/visibility/ray_sampler.hpp"
 
 namespace sonard::render {
+
+namespace {
+
+struct GlProbe {
+  std::string description;  ///< empty: there is none
+  std::string problem;
+};
+
+GlProbe probe_gl() {
+  try {
+    const osg::ref_ptr<EglContext> context = new EglContext;
+    context->realize();
+    if (!context->makeCurrent()) {
+      return {"", "an OpenGL context that cannot be used"};
+    }
+    GlProbe probe{context->describe(), ""};
+    context->close();
+    return probe;
+  } catch (const RendererError& error) {
+    return {"", error.what()};
+  }
+}
+
+}  // namespace
 
 bool is_software_gl(std::string_view description) {
   std::string lower(description);
@@ -20,13 +48,23 @@ bool is_software_gl(std::string_view description) {
                      [&](std::string_view name) { return lower.find(name) != std::string::npos; });
 }
 
-ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& /*workers*/) {
-  if (wanted == Backend::ray) {
-    throw RendererError("the ray backend is not built in");
+ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& workers) {
+  std::string reason;
+  if (wanted == Backend::automatic) {
+    const GlProbe gl = probe_gl();
+    wanted = gl.description.empty() || is_software_gl(gl.description) ? Backend::ray : Backend::raster;
+    reason =
+        gl.description.empty() ? "; auto found " + gl.problem : "; auto found OpenGL on " + gl.description;
   }
-  auto sampler = std::make_unique<RasterSampler>(world);
-  std::string description = sampler->description();
-  return {std::move(sampler), Backend::raster, std::move(description)};
+  ChosenSampler chosen;
+  chosen.backend = wanted;
+  if (wanted == Backend::ray) {
+    chosen.sampler = std::make_unique<RaySampler>(world, workers);
+  } else {
+    chosen.sampler = std::make_unique<RasterSampler>(world);
+  }
+  chosen.description = chosen.sampler->description() + reason;
+  return chosen;
 }
 
 }  // namespace sonard::render

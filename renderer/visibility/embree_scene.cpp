@@ -1,0 +1,264 @@
+#include "renderer/visibility/embree_scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <type_traits>
+#include <vector>
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include "renderer/errors.hpp"
+#include "renderer/simd.hpp"
+#include "renderer/visibility/ray_shading.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class T>
+using Handle = std::unique_ptr<std::remove_pointer_t<T>, Release>;
+
+using IntersectPacket = void (*)(const RayPacket&, RTCScene, RTCIntersectContext&, float max_depth, RayHits&);
+
+/// Traces a packet as packet_size / N packets of Embree's type `RayHit` for N rays.
+template <class RayHit, int N, void (*intersect)(const int*, RTCScene, RTCIntersectContext*, RayHit*)>
+void intersect_by(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context, float max_depth,
+                  RayHits& hits) {
+  alignas(64) std::array<int, N> valid;
+  valid.fill(-1);
+  for (std::size_t first = 0; first < packet_size; first += N) {
+    RayHit query;
+    for (std::size_t i = 0; i < N; ++i) {
+      query.ray.org_x[i] = query.ray.org_y[i] = query.ray.org_z[i] = 0.0F;
+      query.ray.tnear[i] = nearest_depth_m;
+      query.ray.dir_x[i] = rays.x[first + i];
+      query.ray.dir_y[i] = rays.y[first + i];
+      query.ray.dir_z[i] = rays.z[first + i];
+      query.ray.time[i] = 0.0F;
+      query.ray.tfar[i] = max_depth;
+      query.ray.mask[i] = ~0U;
+      query.ray.id[i] = query.ray.flags[i] = 0;
+      query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.Ng_x[i] = query.hit.Ng_y[i] = query.hit.Ng_z[i] = 0.0F;
+      query.hit.u[i] = query.hit.v[i] = 0.0F;
+      query.hit.primID[i] = 0;
+    }
+    intersect(valid.data(), scene, &context, &query);
+    std::copy_n(query.ray.tfar, N, hits.depth.begin() + first);
+    std::copy_n(query.hit.Ng_x, N, hits.normal_x.begin() + first);
+    std::copy_n(query.hit.Ng_y, N, hits.normal_y.begin() + first);
+    std::copy_n(query.hit.Ng_z, N, hits.normal_z.begin() + first);
+    std::copy_n(query.hit.u, N, hits.u.begin() + first);
+    std::copy_n(query.hit.v, N, hits.v.begin() + first);
+    std::copy_n(query.hit.primID, N, hits.triangle.begin() + first);
+    std::copy_n(query.hit.instID[0], N, hits.part.begin() + first);
+  }
+}
+
+/// Lets rays pass through triangles that they meet from behind.
+void pass_back_faces(const RTCFilterFunctionNArguments* arguments) {
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    const float facing =
+        RTCRayN_dir_x(arguments->ray, arguments->N, i) * RTCHitN_Ng_x(arguments->hit, arguments->N, i) +
+        RTCRayN_dir_y(arguments->ray, arguments->N, i) * RTCHitN_Ng_y(arguments->hit, arguments->N, i) +
+        RTCRayN_dir_z(arguments->ray, arguments->N, i) * RTCHitN_Ng_z(arguments->hit, arguments->N, i);
+    if (facing >= 0) {
+      arguments->valid[i] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+static_assert(no_part == RTC_INVALID_GEOMETRY_ID);
+
+struct EmbreeScene::Impl {
+  struct Mesh {
+    std::shared_ptr<const TriangleMesh> triangles;  // Embree reads the indices in place
+    Handle<RTCScene> scene;
+  };
+  struct Part {
+    Handle<RTCGeometry> instance;
+    std::size_t body = 0;
+    Pose T_body_part;
+    SurfaceShader shader;
+  };
+
+  Handle<RTCDevice> device;
+  IntersectPacket intersect = nullptr;
+  std::string description;
+  std::vector<Mesh> meshes;
+  std::vector<Part> parts;
+  std::vector<Pose> T_world_body;
+  std::map<std::string, std::size_t> body_index;
+  Handle<RTCScene> scene;
+  Pose T_world_sonar;
+  bool placed = false;
+
+  Impl(const World& world, WorkerPool& workers, const std::string& settings) {
+    // Meshes are built side by side, each by one thread: the tree, and with it which of two triangles that
+    // share an edge a ray on it meets, is then the same every time.
+    device.reset(rtcNewDevice(("threads=1,ignore_config_files=1," + settings).c_str()));
+    check("set up");
+    choose_packets();
+    add_world(world);
+    workers.run(static_cast<int>(meshes.size()), [&](int i) { build(meshes[static_cast<std::size_t>(i)]); });
+    check("build the meshes");
+    add_instances();
+  }
+
+  /// @throws RendererError when Embree has met an error since the last call.
+  void check(const char* action) const {
+    const RTCError error = rtcGetDeviceError(device.get());
+    if (error != RTC_ERROR_NONE || !device) {
+      throw RendererError(fmt::format("Embree could not {}: {}", action,
+                                      error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory"
+                                      : error == RTC_ERROR_UNSUPPORTED_CPU
+                                          ? "it does not support this CPU"
+                                          : "error " + std::to_string(error)));
+    }
+  }
+
+  void choose_packets() {
+    int width = 4;
+    intersect = &intersect_by<RTCRayHit4, 4, &rtcIntersect4>;
+    if (rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) {
+      width = 16;
+      intersect = &intersect_by<RTCRayHit16, 16, &rtcIntersect16>;
+    } else if (rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
+      width = 8;
+      intersect = &intersect_by<RTCRayHit8, 8, &rtcIntersect8>;
+    }
+    const auto version = [&](RTCDeviceProperty part) { return rtcGetDeviceProperty(device.get(), part); };
+    description = fmt::format("Embree {}.{}.{}, packets of {}", version(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                              version(RTC_DEVICE_PROPERTY_VERSION_MINOR),
+                              version(RTC_DEVICE_PROPERTY_VERSION_PATCH), width);
+  }
+
+  void add_world(const World& world) {
+    std::map<const TriangleMesh*, std::size_t> mesh_index;
+    std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
+    for (const Body& body : world.bodies) {
+      body_index.emplace(body.name, T_world_body.size());
+      for (const BodyPart& part : body.parts) {
+        const auto [entry, is_new] = mesh_index.try_emplace(part.mesh.get(), meshes.size());
+        if (is_new) {
+          meshes.push_back({part.mesh, Handle<RTCScene>(rtcNewScene(device.get()))});
+        }
+        std::shared_ptr<const NormalPyramid>& pyramid = pyramids[part.normal_map.get()];
+        if (part.normal_map && !pyramid) {
+          pyramid = std::make_shared<const NormalPyramid>(*part.normal_map);
+        }
+        Handle<RTCGeometry> instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+        rtcSetGeometryInstancedScene(instance.get(), meshes[entry->second].scene.get());
+        parts.push_back(
+            {std::move(instance), T_world_body.size(), part.T_body_part, SurfaceShader(part, pyramid)});
+      }
+      T_world_body.push_back(body.T_world_body);
+    }
+  }
+
+  void build(const Mesh& mesh) const {
+    const TriangleMesh& triangles = *mesh.triangles;
+    const Handle<RTCGeometry> geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    // A copy, because Embree reads beyond the last vertex.
+    void* vertices =
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                sizeof(glm::vec3), std::max<std::size_t>(1, triangles.positions.size()));
+    if (vertices == nullptr) {
+      return;  // check() tells
+    }
+    std::memcpy(vertices, triangles.positions.data(), triangles.positions.size() * sizeof(glm::vec3));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               triangles.indices.data(), 0, 3 * sizeof(std::uint32_t),
+                               triangles.triangle_count());
+    rtcCommitGeometry(geometry.get());
+    rtcSetSceneFlags(mesh.scene.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcAttachGeometry(mesh.scene.get(), geometry.get());
+    rtcCommitScene(mesh.scene.get());
+  }
+
+  void add_instances() {
+    scene.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      rtcAttachGeometryByID(scene.get(), parts[i].instance.get(), static_cast<unsigned>(i));
+    }
+    check("place the meshes");
+  }
+};
+
+EmbreeScene::EmbreeScene(const World& world, WorkerPool& workers, const std::string& embree_settings)
+    : impl_(std::make_unique<Impl>(world, workers, embree_settings)) {}
+EmbreeScene::~EmbreeScene() = default;
+
+bool EmbreeScene::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  const auto entry = impl_->body_index.find(body_name);
+  if (entry == impl_->body_index.end()) {
+    return false;
+  }
+  Pose& pose = impl_->T_world_body[entry->second];
+  impl_->placed = impl_->placed && pose == T_world_body;
+  pose = T_world_body;
+  return true;
+}
+
+void EmbreeScene::place(const Pose& T_world_sonar) {
+  if (impl_->placed && T_world_sonar == impl_->T_world_sonar) {
+    return;
+  }
+  impl_->placed = false;
+  const Pose T_sonar_world = inverse(T_world_sonar);
+  for (Impl::Part& part : impl_->parts) {
+    const Pose T_sonar_part = T_sonar_world * impl_->T_world_body[part.body] * part.T_body_part;
+    part.shader.turn(T_sonar_part.orientation);
+    const auto& [x, y, z] = part.shader.axes();
+    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_sonar_part.position_m)};
+    static_assert(sizeof(columns) == 12 * sizeof(float));
+    rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcCommitGeometry(part.instance.get());
+  }
+  rtcCommitScene(impl_->scene.get());
+  impl_->check("place the sonar");
+  impl_->T_world_sonar = T_world_sonar;
+  impl_->placed = true;
+}
+
+void EmbreeScene::trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,
+                        SurfacePacket& surfaces) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.filter = model.two_sided ? nullptr : &pass_back_faces;
+  RayHits hits;
+  impl_->intersect(rays, impl_->scene.get(), context, max_depth, hits);
+  std::uint32_t pending = 0;  // lanes that wait to be shaded
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    const bool hit = hits.part[i] != no_part;
+    surfaces.depth[i] = hit ? hits.depth[i] : 0.0F;
+    pending |= hit ? 1U << i : 0U;
+  }
+  surfaces.part = hits.part;
+  surfaces.triangle = hits.triangle;
+  while (pending != 0) {
+    const std::uint32_t part = hits.part[static_cast<std::size_t>(std::countr_zero(pending))];
+    impl_->parts[part].shader.shade(rays, hits, part, model, surfaces);
+    for (std::size_t i = 0; i < packet_size; ++i) {
+      pending &= hits.part[i] == part ? ~(1U << i) : ~0U;
+    }
+  }
+}
+
+const std::string& EmbreeScene::description() const {
+  return impl_->description;
+}
+
+}  // namespace sonard::render

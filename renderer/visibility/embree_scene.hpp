@@ -1,0 +1,46 @@
+// The world in Embree: packets of sixteen rays from the sonar go in, surfaces come out.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "renderer/pose.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/ray_packet.hpp"
+#include "renderer/visibility/sampler.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Holds one acceleration structure per mesh and, above them, one over the parts in coordinates relative to
+/// the sonar: world positions are subtracted in double, once per part and pose. place() and set_body_pose()
+/// come from one thread while nobody traces; trace() may be called from any number of threads.
+class EmbreeScene {
+ public:
+  /// @param embree_settings for rtcNewDevice(), for tests: "isa=sse4.2".
+  /// @throws RendererError when Embree cannot be set up or runs out of memory.
+  EmbreeScene(const World& world, WorkerPool& workers, const std::string& embree_settings = {});
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// @return false when the world has no body of that name.
+  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+
+  /// Puts the sonar here, and the bodies where they were last moved to. Costs nothing when neither changed.
+  /// @throws RendererError when Embree fails.
+  void place(const Pose& T_world_sonar);
+
+  /// The first surface along each ray between the depths nearest_depth_m and `max_depth`, in lengths of q.
+  void trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,
+             SurfacePacket& surfaces) const;
+
+  /// "Embree 3.13.5, packets of 16".
+  const std::string& description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::render

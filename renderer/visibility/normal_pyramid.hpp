@@ -1,0 +1,43 @@
+// A normal map as both samplers read it: averaged over the area of a sample, the same arithmetic in C++ and
+// GLSL.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+/// Levels of a normal map, each half as wide and high as the one before, down to one texel. A texel holds the
+/// MEAN of the unit normals below it, and nothing makes it unit again: an echo is proportional to n.d, so the
+/// mean echo of an area is that of its mean normal. (Unit normals would let a rough surface shine like a
+/// smooth one where samples are coarser than its bumps.)
+struct NormalPyramid {
+  struct Level {
+    int width_px = 0;
+    int height_px = 0;
+    std::size_t first_texel = 0;
+  };
+  /// Components times 32767; the fourth is padding. The format GL calls RGBA16_SNORM.
+  using Texel = std::array<std::int16_t, 4>;
+
+  std::vector<Level> levels;
+  std::vector<Texel> texels;  ///< level after level, row 0 at v = 0
+
+  explicit NormalPyramid(const NormalMap& map);
+
+  /// Mean normal around `uv` (repeated beyond [0, 1]) over 2^level texels, linear between texels and between
+  /// levels. `level` is held to what there is.
+  glm::vec3 mean_normal(const glm::vec2& uv, float level) const;
+
+ private:
+  glm::vec3 bilinear(const Level& level, const glm::vec2& uv) const;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,61 @@
+// Visibility by tracing rays on the CPU: one ray per pixel, sixteen at a time, on all cores.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/embree_scene.hpp"
+#include "renderer/visibility/sampler.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Needs no graphics of any kind. Pixels that no part of the grid uses are left as "nothing seen".
+class RaySampler final : public Sampler {
+ public:
+  /// @param workers outlives the sampler; nobody else uses it during a call.
+  /// @param embree_settings see EmbreeScene.
+  /// @throws RendererError when Embree cannot be set up or runs out of memory.
+  RaySampler(const World& world, WorkerPool& workers, const std::string& embree_settings = {});
+
+  std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
+                                           const SurfaceModel& surface, double max_range_m) override;
+  bool set_body_pose(const std::string& body_name, const Pose& T_world_body) override;
+  const std::string& description() const override { return description_; }
+
+ private:
+  /// Patch of packet_side x packet_side pixels, cut at the sides of the view.
+  struct Tile {
+    std::size_t view = 0;
+    int column = 0, row = 0;  ///< of its first pixel
+  };
+  struct Rows {
+    int begin = 0, end = 0;
+    bool operator==(const Rows&) const = default;
+  };
+  /// A view in single precision.
+  struct View {
+    SubView geometry;
+    std::vector<float> tangent_x, ray_x, ray_y;  ///< by column; rays in the sonar frame
+    std::vector<float> tangent_y;                ///< by row; the z of a ray
+    glm::vec3 starboard;                         ///< what tangent x multiplies
+    std::vector<SurfaceSample> samples;
+
+    explicit View(const SubView& view);
+  };
+
+  void prepare(const SampleGrid& grid);
+  void trace(const Tile& tile, const SurfaceModel& surface, float max_range_m);
+
+  WorkerPool& workers_;
+  EmbreeScene scene_;
+  std::string description_;
+  std::vector<View> views_;
+  std::vector<std::vector<Rows>> used_;  // by view and column of tiles: the rows that parts of the grid use
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace sonard::render
