@@ -3,6 +3,8 @@ add_library(sonard_flags INTERFACE)
 target_include_directories(sonard_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
 target_compile_options(sonard_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
+  # A multiply-add where the machine has one would make images depend on the machine (renderer/simd.hpp).
+  -ffp-contract=off
   # GCC before 14 reports false positives of these in optimised standard library code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow>)
 if(SONARD_SANITIZE)

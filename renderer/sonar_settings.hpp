@@ -23,6 +23,8 @@ struct Aperture {
   double elevation_limit_rad() const;
   /// One-way power pattern at an elevation; 1 on the axis.
   double elevation_weight(double elevation_rad) const;
+
+  bool operator==(const Aperture&) const = default;
 };
 
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.
@@ -40,6 +42,8 @@ struct RangeLines {
 
   double max_range_m() const { return count * step_m; }
   int output_count() const { return count >> compression_log2; }
+
+  bool operator==(const RangeLines&) const = default;
 };
 
 enum class Model {
@@ -94,6 +98,8 @@ struct PhysicalModel {
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   /// What leaks of the strongest echo of a range line into all its beams; negative, 0 = off. Real: about -25.
   double side_lobe_floor_db = 0.0;
+
+  bool operator==(const PhysicalModel&) const = default;
 };
 
 /// How finely the world is sampled.

@@ -2,10 +2,7 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <cstdint>
 #include <functional>
-#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -13,6 +10,11 @@ namespace sonard::render {
 
 /// Runs independent jobs on all cores. Which thread runs which job is left open, so a job must write only
 /// what is its own; results are then the same for any number of threads. One caller at a time.
+///
+/// A ping is a few loops shortly after one another, each a fraction of a millisecond. Whoever waits therefore
+/// spins for some tens of microseconds before it sleeps in the kernel: workers for the next loop, the caller
+/// for the end of this one. Between pings all workers sleep. A worker that wakes late costs nothing: the
+/// others have taken its share.
 class WorkerPool {
  public:
   /// @param threads total number of threads including the caller; 0: one per core.
@@ -21,22 +23,25 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
+  /// Threads that share the jobs, the caller included; >= 1.
+  unsigned size() const { return static_cast<unsigned>(threads_.size()) + 1; }
+
   /// Calls job(0) ... job(count - 1), each once, and returns when all are done. Jobs must not throw.
   void run(int count, const std::function<void(int)>& job);
 
  private:
   void work();
-  void take_jobs(const std::function<void(int)>& job, int count);
+  void take_jobs();
 
-  std::mutex mutex_;
-  std::condition_variable start_;
-  std::condition_variable done_;
-  const std::function<void(int)>* job_ = nullptr;  // guarded by mutex_, like all below but next_
+  static constexpr int stopped = -1;
+
+  // Written by the caller while `unclaimed_` is 0, read by whoever has claimed a job. A claim holds run() up
+  // until that job is done, so neither changes under a reader.
+  const std::function<void(int)>* job_ = nullptr;
   int count_ = 0;
-  std::uint64_t generation_ = 0;
-  unsigned busy_ = 0;
-  bool stop_ = false;
-  std::atomic<int> next_{0};
+  std::atomic<int> unclaimed_{0};   ///< jobs of this run that nobody has begun; `stopped` at the end
+  std::atomic<int> unfinished_{0};  ///< jobs of this run that are not done
+  bool may_spin_;
   std::vector<std::thread> threads_;
 };
 

@@ -8,17 +8,11 @@ namespace sonard::render {
 
 /// Names one field of random numbers.
 struct RandomKey {
-  std::uint32_t low = 0;
-  std::uint32_t high = 0;
+  std::uint64_t value = 0;
 };
 
 /// What a field is used for; keeps the fields of one ping apart.
-enum class RandomField : std::uint64_t {
-  speckle_base = 1,
-  speckle_innovation = 2,
-  noise = 3,
-  paper_speckle = 4
-};
+enum class RandomField : std::uint64_t { speckle = 1, noise = 2, paper_speckle = 3 };
 
 /// Mixes all inputs so that any difference gives an unrelated field.
 RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std::uint64_t ping_number);

@@ -1,9 +1,12 @@
 #include "renderer/acoustics/receiver.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "renderer/acoustics/beam_kernel.hpp"
+#include "renderer/acoustics/echo_block.hpp"
+#include "renderer/acoustics/output_lines.hpp"
 #include "renderer/acoustics/random.hpp"
 #include "renderer/simd.hpp"
 
@@ -11,115 +14,60 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int lines_per_job =
-    32;  // output lines; small enough to share evenly, large enough for whole cache lines
+using Speckle = PhysicalModel::Speckle;
 
 double decibels_to_power(double decibels) {
   return std::pow(10.0, decibels / 10);
 }
 
-/// Real and imaginary part side by side.
-struct ComplexRow {
-  std::vector<float> real, imaginary;
+/// Real and imaginary part of one line, each starting on a cache line.
+class ComplexRow {
+ public:
   explicit ComplexRow(int width)
-      : real(static_cast<std::size_t>(width)), imaginary(static_cast<std::size_t>(width)) {}
+      : stride_(aligned_stride(width)), parts_(2 * static_cast<std::size_t>(stride_)) {}
+
+  float* real() { return parts_.data(); }
+  float* imaginary() { return parts_.data() + stride_; }
+  const float* real() const { return parts_.data(); }
+  const float* imaginary() const { return parts_.data() + stride_; }
+
+  /// CN(0, 1) all along, the padding at the end included: whole vectors are faster than exact counts.
+  void draw(RandomKey key, int line) {
+    fill_complex_gaussian(key, static_cast<std::uint32_t>(line), stride_, real(), imaginary());
+  }
+  /// The filtered `white`.
+  void filter(const BeamFilter& filter, const ComplexRow& white) {
+    filter.apply(white.real(), real());
+    filter.apply(white.imaginary(), imaginary());
+  }
+
+ private:
+  int stride_;
+  AlignedVector<float> parts_;
 };
 
-/// out[b] = sum_j kernel[j] in[b + j].
+/// Envelope of echo plus noise.
 SONARD_SIMD_CLONES
-void filter_row(const float* in, const float* kernel, int taps, int beams, float* out) {
+void envelope_row(const float* __restrict echo, float floor, const float* __restrict speckle_re,
+                  const float* __restrict speckle_im, float noise, const float* __restrict profile,
+                  const float* __restrict noise_re, const float* __restrict noise_im, float gain, int beams,
+                  float* __restrict out) {
   for (int b = 0; b < beams; ++b) {
-    out[b] = kernel[0] * in[b];
-  }
-  for (int j = 1; j < taps; ++j) {
-    for (int b = 0; b < beams; ++b) {
-      out[b] += kernel[j] * in[b + j];
-    }
-  }
-}
-
-/// Envelope of echo plus noise; both fields come filtered.
-SONARD_SIMD_CLONES
-void envelope_row(const float* echo, const float* speckle_re, const float* speckle_im,
-                  const float* noise_scale, const float* noise_re, const float* noise_im, float noise,
-                  float gain, int beams, float* out) {
-  for (int b = 0; b < beams; ++b) {
-    const float amplitude = std::sqrt(echo[b]);
-    const float n = noise * noise_scale[b];
+    const float amplitude = std::sqrt(echo[b] + floor);
+    const float n = noise * profile[b];
     const float re = amplitude * speckle_re[b] + n * noise_re[b];
     const float im = amplitude * speckle_im[b] + n * noise_im[b];
     out[b] = gain * std::sqrt(re * re + im * im);
   }
 }
 
+/// Envelope of noise alone.
 SONARD_SIMD_CLONES
-void evolve_row(const float* innovation, float keep, float fresh, int width, float* state) {
-  for (int i = 0; i < width; ++i) {
-    state[i] = keep * state[i] + fresh * innovation[i];
-  }
-}
-
-/// Native lines go in, output lines are written when complete.
-class OutputLines {
- public:
-  OutputLines(const SonarSettings& settings, int beams, PingSamples& samples)
-      : settings_(settings), beams_(beams), sum_(static_cast<std::size_t>(beams)), samples_(samples) {}
-
-  void begin() { std::fill(sum_.begin(), sum_.end(), 0.0F); }
-
-  void add(const float* amplitude) {
-    if (settings_.range.compression_peak) {
-      for (std::size_t b = 0; b < sum_.size(); ++b) {
-        sum_[b] = std::max(sum_[b], amplitude[b]);
-      }
-    } else {
-      for (std::size_t b = 0; b < sum_.size(); ++b) {
-        sum_[b] += amplitude[b];
-      }
-    }
-  }
-
-  /// Quantises last, rounding to nearest and clamping: nothing wraps.
-  void end(int line) {
-    const float looks =
-        settings_.range.compression_peak ? 1.0F : static_cast<float>(1 << settings_.range.compression_log2);
-    const std::size_t at = static_cast<std::size_t>(line) * static_cast<std::size_t>(beams_);
-    for (std::size_t b = 0; b < sum_.size(); ++b) {
-      const float amplitude = sum_[b] / looks;
-      if (settings_.sixteen_bit) {
-        samples_.u16[at + b] = static_cast<std::uint16_t>(std::min(65535.0F, amplitude * 65535.0F + 0.5F));
-      } else {
-        samples_.u8[at + b] = static_cast<std::uint8_t>(std::min(255.0F, amplitude * 255.0F + 0.5F));
-      }
-    }
-  }
-
- private:
-  const SonarSettings& settings_;
-  int beams_;
-  std::vector<float> sum_;
-  PingSamples& samples_;
-};
-
-PingSamples make_samples(const SonarSettings& settings) {
-  PingSamples samples;
-  samples.beams = settings.aperture.beam_count();
-  samples.lines = settings.range.output_count();
-  const std::size_t size = static_cast<std::size_t>(samples.beams) * static_cast<std::size_t>(samples.lines);
-  settings.sixteen_bit ? samples.u16.resize(size) : samples.u8.resize(size);
-  return samples;
-}
-
-/// The echo of one native line, beam after beam. What leaks through the side lobes is measured against the
-/// strongest echo of the line (docs/physics.md 2.16), so it is modelled so.
-void gather_line(const EchoImage& echo, int line, float leak, float* out) {
-  float strongest = 0;
-  for (int b = 0; b < echo.beams; ++b) {
-    out[b] = echo.at(b, line);
-    strongest = std::max(strongest, out[b]);
-  }
-  for (int b = 0; b < echo.beams; ++b) {
-    out[b] += leak * strongest;
+void noise_envelope_row(float noise, const float* __restrict profile, const float* __restrict noise_re,
+                        const float* __restrict noise_im, float gain, int beams, float* __restrict out) {
+  const float scale = gain * noise;
+  for (int b = 0; b < beams; ++b) {
+    out[b] = scale * profile[b] * std::sqrt(noise_re[b] * noise_re[b] + noise_im[b] * noise_im[b]);
   }
 }
 
@@ -133,6 +81,36 @@ std::vector<float> noise_profile(const SonarSettings& settings) {
     profile.push_back(static_cast<float>(std::sqrt(1 + peak * std::exp(-x * x))));
   }
   return profile;
+}
+
+/// Shares blocks of lines among the threads. `Lines` is made once per thread, for its buffers, and takes
+/// native lines one by one.
+template <class Lines, class Ping>
+PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
+                          WorkerPool& workers) {
+  PingSamples samples = make_samples(settings);
+  const int looks_log2 = settings.range.compression_log2;
+  const int lines_per_block = EchoBlock::most_lines >> looks_log2;
+  const int blocks = (samples.lines + lines_per_block - 1) / lines_per_block;
+  std::atomic<int> next{0};
+  workers.run(std::min(blocks, static_cast<int>(workers.size())), [&](int) {
+    EchoBlock block(echo);
+    Lines lines(ping, block);
+    OutputLines output(settings, samples);
+    for (int i = next++; i < blocks; i = next++) {
+      const int begin = i * lines_per_block;
+      const int end = std::min(begin + lines_per_block, samples.lines);
+      block.load(begin << looks_log2, (end - begin) << looks_log2);
+      for (int line = begin; line < end; ++line) {
+        output.begin();
+        for (int native = line << looks_log2; native < (line + 1) << looks_log2; ++native) {
+          lines.add_native_line(native, output);
+        }
+        output.end(line);
+      }
+    }
+  });
+  return samples;
 }
 
 }  // namespace
@@ -149,178 +127,238 @@ std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& 
   return amplitudes;
 }
 
-/// How the white field under the speckle is to be had for this ping.
-struct Receiver::SpeckleStep {
-  SpeckleField* field = nullptr;  ///< null: draw it afresh from `base`
-  int known_lines = 0;            ///< lines of the field that hold an earlier ping
-  float keep = 1.0F;              ///< weight of the old field
-  RandomKey base, innovation;
-
-  /// White field of one line. Each line is asked for once per ping, by one thread.
-  void draw(int line, ComplexRow& row) const {
-    const int width = static_cast<int>(row.real.size());
-    const auto key_row = static_cast<std::uint32_t>(line);
-    if (field == nullptr) {
-      fill_complex_gaussian(base, key_row, width, row.real.data(), row.imaginary.data());
-      return;
-    }
-    float* real = &field->real[static_cast<std::size_t>(line) * row.real.size()];
-    float* imaginary = &field->imaginary[static_cast<std::size_t>(line) * row.real.size()];
-    if (line >= known_lines) {
-      fill_complex_gaussian(base, key_row, width, real, imaginary);
-    } else if (keep < 1.0F) {
-      const float fresh = std::sqrt(1 - keep * keep);
-      fill_complex_gaussian(innovation, key_row, width, row.real.data(), row.imaginary.data());
-      evolve_row(row.real.data(), keep, fresh, width, real);
-      evolve_row(row.imaginary.data(), keep, fresh, width, imaginary);
-    }
-    std::copy_n(real, width, row.real.data());
-    std::copy_n(imaginary, width, row.imaginary.data());
+ReceiverTables::ReceiverTables(const SonarSettings& settings)
+    : aperture(settings.aperture),
+      range(settings.range),
+      model(settings.physical),
+      sixteen_bit(settings.sixteen_bit),
+      filter(receive_kernel(aperture), aperture.beam_count()),
+      gain(tvg_amplitudes(model, range)),
+      profile(noise_profile(settings)) {
+  const float codes = codes_per_amplitude(settings);
+  for (float& g : gain) {
+    g *= codes;
   }
-};
+  if (model.noise) {
+    noise = static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db)));
+  }
+  if (model.side_lobe_floor_db < 0) {
+    leak = static_cast<float>(decibels_to_power(model.side_lobe_floor_db));
+  }
+}
 
-Receiver::SpeckleStep Receiver::advance_speckle(const PingRequest& request, int stream, int width) {
-  using Speckle = PhysicalModel::Speckle;
+bool ReceiverTables::fits(const SonarSettings& settings) const {
+  return aperture == settings.aperture && range == settings.range && model == settings.physical &&
+         sixteen_bit == settings.sixteen_bit;
+}
+
+void Receiver::advance_speckle(const PingRequest& request, Stream& state) {
   const PhysicalModel& model = request.settings.physical;
-  SpeckleStep step;
-  const bool per_ping = model.speckle == Speckle::per_ping;
-  step.base = make_random_key(request.seed, stream, RandomField::speckle_base,
-                              per_ping ? request.ping_number + 1 : 0);
-  if (model.speckle != Speckle::ou) {
-    speckle_.erase(stream);
-    return step;
+  const bool kept = model.speckle == Speckle::ou || model.speckle == Speckle::frozen;
+  if (state.kind != model.speckle || state.seed != request.seed || state.grain != state.tables.filter) {
+    state.kind = model.speckle;
+    state.seed = request.seed;
+    state.grain = state.tables.filter;
+    state.speckle = SpeckleField(kept ? request.settings.aperture.beam_count() : 0);
+    state.T_world_sonar = request.T_world_sonar;
   }
-  SpeckleField& field = speckle_[stream];
-  if (field.width != width || field.seed != request.seed) {
-    field = {};
-    field.width = width;
-    field.seed = request.seed;
-    field.T_world_sonar = request.T_world_sonar;
+  if (kept) {
+    state.speckle.ensure_lines(request.settings.range.count);
   }
-  // docs/physics.md 2.8: correlation falls with the motion since the last ping, over half the aperture and
-  // half a beam.
-  const double moved =
-      glm::length(request.T_world_sonar.position_m - field.T_world_sonar.position_m) / (model.aperture_m / 2);
-  const glm::dquat turn = glm::conjugate(field.T_world_sonar.orientation) * request.T_world_sonar.orientation;
-  const double turned = 2 * std::asin(std::min(1.0, glm::length(glm::dvec3(turn.x, turn.y, turn.z)))) /
-                        (request.settings.aperture.receive_beamwidth_rad / 2);
-  step.keep = static_cast<float>(std::exp(-moved * moved - turned * turned));
-  step.innovation =
-      make_random_key(request.seed, stream, RandomField::speckle_innovation, request.ping_number);
-  step.known_lines = std::min(field.lines, request.settings.range.count);
-  field.lines = request.settings.range.count;
-  field.T_world_sonar = request.T_world_sonar;
-  const std::size_t size = static_cast<std::size_t>(field.lines) * static_cast<std::size_t>(width);
-  field.real.resize(size);
-  field.imaginary.resize(size);
-  step.field = &field;
-  return step;
+  if (model.speckle == Speckle::ou) {
+    // docs/physics.md 2.8: correlation falls with the motion since the last ping, over half the aperture and
+    // half a beam.
+    const double moved = glm::length(request.T_world_sonar.position_m - state.T_world_sonar.position_m) /
+                         (model.aperture_m / 2);
+    const glm::dquat turn =
+        glm::conjugate(state.T_world_sonar.orientation) * request.T_world_sonar.orientation;
+    const double turned = 2 * std::asin(std::min(1.0, glm::length(glm::dvec3(turn.x, turn.y, turn.z)))) /
+                          (request.settings.aperture.receive_beamwidth_rad / 2);
+    state.speckle.fade(moved * moved + turned * turned);
+  }
+  state.T_world_sonar = request.T_world_sonar;
 }
 
 namespace {
 
-/// Mode `paper`: I * n, then gain with a clamp (docs/physics.md 1.1, 1.2 A8, A9).
-PingSamples receive_paper(const EchoImage& echo, const PingRequest& request, int stream,
-                          WorkerPool& workers) {
-  using Speckle = PaperModel::Speckle;
-  const SonarSettings& settings = request.settings;
-  const PaperModel& model = settings.paper;
-  PingSamples samples = make_samples(settings);
-  const RandomKey key =
-      make_random_key(request.seed, stream, RandomField::paper_speckle, request.ping_number);
-  const int looks = 1 << settings.range.compression_log2;
-  const auto scale =
-      static_cast<float>(std::sqrt(2.0) * model.speckle_sd);  // CN(0, 1) has variance 1/2 per part
-  workers.run((samples.lines + lines_per_job - 1) / lines_per_job, [&](int job) {
-    OutputLines output(settings, samples.beams, samples);
-    ComplexRow random(samples.beams);
-    std::vector<float> value(static_cast<std::size_t>(samples.beams));
-    for (int line = job * lines_per_job; line < std::min(samples.lines, (job + 1) * lines_per_job); ++line) {
-      output.begin();
-      for (int native = line * looks; native < (line + 1) * looks; ++native) {
-        gather_line(echo, native, 0.0F, value.data());
-        if (model.speckle != Speckle::off) {
-          fill_complex_gaussian(key, static_cast<std::uint32_t>(native), samples.beams, random.real.data(),
-                                random.imaginary.data());
-          for (std::size_t b = 0; b < value.size(); ++b) {
-            const float n = static_cast<float>(model.speckle_mean) + scale * random.real[b];
-            const float factor = model.speckle == Speckle::folded_gaussian ? std::abs(n) : std::max(0.0F, n);
-            value[b] = std::max(value[b] * factor, static_cast<float>(model.speckle_floor));
-          }
-        }
-        for (float& v : value) {
-          v = std::min(1.0F, v * static_cast<float>(2 * model.gain));
-        }
-        output.add(value.data());
-      }
-      output.end(line);
+struct PhysicalPing {
+  const ReceiverTables& tables;
+  SpeckleField& speckle;
+  RandomKey speckle_key, noise_key;
+};
+
+/// Mode `physical`, line by line.
+class PhysicalLines {
+ public:
+  PhysicalLines(const PhysicalPing& ping, const EchoBlock& block)
+      : ping_(ping),
+        block_(block),
+        beams_(ping.tables.filter.beams()),
+        white_(ping.tables.filter.row_width()),
+        speckle_(beams_),
+        noise_(beams_),
+        codes_(static_cast<std::size_t>(beams_)) {
+    if (ping.tables.model.speckle == Speckle::off) {
+      std::fill_n(speckle_.real(), beams_, 1.0F);  // the echo is a constant phasor
     }
-  });
-  return samples;
+  }
+
+  void add_native_line(int native, OutputLines& output) {
+    if (is_blanked(native)) {
+      return;
+    }
+    const ReceiverTables& tables = ping_.tables;
+    const float gain = tables.gain[static_cast<std::size_t>(native)];
+    const float strongest = block_.strongest(native);
+    if (!is_noiseless()) {
+      white_.draw(ping_.noise_key, native);
+      noise_.filter(tables.filter, white_);
+    }
+    if (!is_without_echo(strongest)) {
+      const Phasors phasors = speckle_of(native);
+      envelope_row(block_.line(native), tables.leak * strongest, phasors.real, phasors.imaginary,
+                   tables.noise, tables.profile.data(), noise_.real(), noise_.imaginary(), gain, beams_,
+                   codes_.data());
+    } else if (!is_noiseless()) {
+      noise_envelope_row(tables.noise, tables.profile.data(), noise_.real(), noise_.imaginary(), gain, beams_,
+                         codes_.data());
+    } else {
+      return;
+    }
+    output.add(codes_.data());
+  }
+
+ private:
+  struct Phasors {
+    const float* real;
+    const float* imaginary;
+  };
+
+  // What is not worked out, and why that changes nothing. Each rule is one predicate.
+
+  /// Near field that the device blanks: the output is 0 by definition. Changes the image by 0.
+  bool is_blanked(int native) const {
+    const ReceiverTables& tables = ping_.tables;
+    return (native + 0.5) * tables.range.step_m < tables.model.near_field_blank_m;
+  }
+  /// No noise asked for: its amplitude is 0. Changes the image by 0.
+  bool is_noiseless() const { return ping_.tables.noise == 0; }
+  /// No echo in any beam of the line, and so no leak either: speckle would multiply 0. Changes this image by
+  /// 0; later ones only in which random numbers they get, as the field makes up for what it missed
+  /// (SpeckleField).
+  static bool is_without_echo(float strongest) { return !(strongest > 0); }
+  /// Nothing has moved since the line was last evolved: its speckle is what it was. Changes the image by 0.
+  bool is_unmoved(int native) const { return ping_.speckle.is_current(native); }
+
+  Phasors speckle_of(int native) {
+    switch (ping_.tables.model.speckle) {
+      case Speckle::off:
+        break;
+      case Speckle::per_ping:
+        draw_speckle(native);
+        break;
+      case Speckle::frozen:
+      case Speckle::ou:
+        if (!is_unmoved(native)) {
+          draw_speckle(native);
+          ping_.speckle.evolve(native, speckle_.real(), speckle_.imaginary());
+        }
+        return {ping_.speckle.real(native), ping_.speckle.imaginary(native)};
+    }
+    return {speckle_.real(), speckle_.imaginary()};
+  }
+
+  void draw_speckle(int native) {
+    white_.draw(ping_.speckle_key, native);
+    speckle_.filter(ping_.tables.filter, white_);
+  }
+
+  const PhysicalPing& ping_;
+  const EchoBlock& block_;
+  int beams_;
+  ComplexRow white_, speckle_, noise_;
+  AlignedVector<float> codes_;
+};
+
+struct PaperPing {
+  PaperModel model;
+  RandomKey key;
+  float codes = 0;  ///< per amplitude
+};
+
+SONARD_SIMD_CLONES
+void speckle_row(const float* __restrict gaussian, float mean, float scale, bool folded, float floor,
+                 int beams, float* __restrict value) {
+  for (int b = 0; b < beams; ++b) {
+    const float n = mean + scale * gaussian[b];
+    value[b] = std::max(value[b] * (folded ? std::abs(n) : std::max(0.0F, n)), floor);
+  }
 }
+
+SONARD_SIMD_CLONES
+void clamp_row(float gain, float codes, int beams, float* __restrict value) {
+  for (int b = 0; b < beams; ++b) {
+    value[b] = std::min(1.0F, value[b] * gain) * codes;
+  }
+}
+
+/// Mode `paper`, line by line: I * n, then gain with a clamp (docs/physics.md 1.1, 1.2 A8, A9).
+class PaperLines {
+ public:
+  PaperLines(const PaperPing& ping, const EchoBlock& block)
+      : ping_(ping),
+        block_(block),
+        beams_(block.beams()),
+        random_((beams_ + 1) / 2),
+        value_(static_cast<std::size_t>(beams_)) {}
+
+  void add_native_line(int native, OutputLines& output) {
+    const PaperModel& model = ping_.model;
+    std::copy_n(block_.line(native), beams_, value_.data());
+    if (model.speckle != PaperModel::Speckle::off) {
+      random_.draw(ping_.key, native);
+      // Both parts of a complex number are used, each of variance 1/2: beams in the first half of the row get
+      // real parts, the others imaginary ones.
+      speckle_row(random_.real(), static_cast<float>(model.speckle_mean),
+                  static_cast<float>(std::sqrt(2.0) * model.speckle_sd),
+                  model.speckle == PaperModel::Speckle::folded_gaussian,
+                  static_cast<float>(model.speckle_floor), beams_, value_.data());
+    }
+    clamp_row(static_cast<float>(2 * model.gain), ping_.codes, beams_, value_.data());
+    output.add(value_.data());
+  }
+
+ private:
+  const PaperPing& ping_;
+  const EchoBlock& block_;
+  int beams_;
+  ComplexRow random_;
+  AlignedVector<float> value_;
+};
 
 }  // namespace
 
 PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
                               WorkerPool& workers) {
   const SonarSettings& settings = request.settings;
+  const auto key = [&](RandomField field, std::uint64_t ping_number) {
+    return make_random_key(request.seed, stream, field, ping_number);
+  };
   if (settings.model == Model::paper) {
-    return receive_paper(echo, request, stream, workers);
+    const PaperPing ping{settings.paper, key(RandomField::paper_speckle, request.ping_number),
+                         codes_per_amplitude(settings)};
+    return receive_lines<PaperLines>(echo, ping, settings, workers);
   }
-  const PhysicalModel& model = settings.physical;
-  PingSamples samples = make_samples(settings);
-  const int beams = samples.beams;
-  const std::vector<float> kernel = receive_kernel(settings.aperture);
-  const int taps = static_cast<int>(kernel.size());
-  const int width = beams + taps - 1;
-  const bool speckled = model.speckle != PhysicalModel::Speckle::off;
-  const SpeckleStep speckle = advance_speckle(request, stream, width);
-  const RandomKey noise_key = make_random_key(request.seed, stream, RandomField::noise, request.ping_number);
-  const std::vector<float> gain = tvg_amplitudes(model, settings.range);
-  const std::vector<float> profile = noise_profile(settings);
-  const auto noise =
-      model.noise ? static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db))) : 0.0F;
-  const auto leak =
-      model.side_lobe_floor_db < 0 ? static_cast<float>(decibels_to_power(model.side_lobe_floor_db)) : 0.0F;
-  const int looks = 1 << settings.range.compression_log2;
-
-  workers.run((samples.lines + lines_per_job - 1) / lines_per_job, [&](int job) {
-    OutputLines output(settings, beams, samples);
-    ComplexRow white(width);
-    ComplexRow speckle_row(beams);
-    ComplexRow noise_row(beams);
-    // Without speckle the echo is a constant phasor.
-    std::fill(speckle_row.real.begin(), speckle_row.real.end(), 1.0F);
-    std::vector<float> line_echo(static_cast<std::size_t>(beams));
-    std::vector<float> envelope(static_cast<std::size_t>(beams));
-    for (int line = job * lines_per_job; line < std::min(samples.lines, (job + 1) * lines_per_job); ++line) {
-      output.begin();
-      for (int native = line * looks; native < (line + 1) * looks; ++native) {
-        if (speckled) {
-          speckle.draw(native,
-                       white);  // also where the output is blanked: every line of the field must stay current
-          filter_row(white.real.data(), kernel.data(), taps, beams, speckle_row.real.data());
-          filter_row(white.imaginary.data(), kernel.data(), taps, beams, speckle_row.imaginary.data());
-        }
-        if ((native + 0.5) * settings.range.step_m < model.near_field_blank_m) {
-          continue;
-        }
-        gather_line(echo, native, leak, line_echo.data());
-        if (model.noise) {
-          fill_complex_gaussian(noise_key, static_cast<std::uint32_t>(native), width, white.real.data(),
-                                white.imaginary.data());
-          filter_row(white.real.data(), kernel.data(), taps, beams, noise_row.real.data());
-          filter_row(white.imaginary.data(), kernel.data(), taps, beams, noise_row.imaginary.data());
-        }
-        envelope_row(line_echo.data(), speckle_row.real.data(), speckle_row.imaginary.data(), profile.data(),
-                     noise_row.real.data(), noise_row.imaginary.data(), noise,
-                     gain[static_cast<std::size_t>(native)], beams, envelope.data());
-        output.add(envelope.data());
-      }
-      output.end(line);
-    }
-  });
-  return samples;
+  Stream& state = streams_[stream];
+  if (!state.tables.fits(settings)) {
+    state.tables = ReceiverTables(settings);
+  }
+  advance_speckle(request, state);
+  // Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
+  const std::uint64_t speckle_ping = state.kind == Speckle::frozen ? 0 : request.ping_number;
+  const PhysicalPing ping{state.tables, state.speckle, key(RandomField::speckle, speckle_ping),
+                          key(RandomField::noise, request.ping_number)};
+  return receive_lines<PhysicalLines>(echo, ping, settings, workers);
 }
 
 }  // namespace sonard::render

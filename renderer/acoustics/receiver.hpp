@@ -5,11 +5,32 @@
 #include <map>
 #include <vector>
 
+#include "renderer/acoustics/beam_filter.hpp"
+#include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
+
+/// What mode `physical` works out from the settings alone; kept for as long as they stay the same.
+struct ReceiverTables {
+  Aperture aperture;
+  RangeLines range;
+  PhysicalModel model;
+  bool sixteen_bit = false;
+
+  BeamFilter filter;
+  std::vector<float> gain;     ///< per native line: amplitude to codes, TVG included
+  std::vector<float> profile;  ///< per beam: noise amplitude relative to that away from broadside
+  float noise = 0;             ///< amplitude before TVG; 0: off
+  float leak = 0;              ///< share of a line's strongest echo that all its beams get
+
+  ReceiverTables() = default;
+  explicit ReceiverTables(const SonarSettings& settings);
+  /// True: made from these settings.
+  bool fits(const SonarSettings& settings) const;
+};
 
 /// The receiver of all sonars that share a renderer. One thread calls it. Mode `physical` with speckle `ou`
 /// keeps a field per stream, so that speckle survives small motions as it does in the water; everything else
@@ -20,20 +41,19 @@ class Receiver {
   PingSamples receive(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers);
 
  private:
-  /// White complex Gaussians under the speckle of one stream, per native line, wider than the fan by the
-  /// kernel.
-  struct SpeckleField {
-    int width = 0;
-    int lines = 0;
+  struct Stream {
+    ReceiverTables tables;
+    SpeckleField speckle;
+    // What the field was made for; with another of these it is begun anew.
+    PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
+    BeamFilter grain;
     std::uint64_t seed = 0;
-    Pose T_world_sonar;
-    std::vector<float> real, imaginary;  ///< [line * width + column]
+    Pose T_world_sonar;  ///< at the last ping
   };
 
-  struct SpeckleStep;
-  SpeckleStep advance_speckle(const PingRequest& request, int stream, int width);
+  static void advance_speckle(const PingRequest& request, Stream& state);
 
-  std::map<int, SpeckleField> speckle_;
+  std::map<int, Stream> streams_;
 };
 
 /// Time-varying gain and gain setting of mode `physical` per native line, as amplitude.

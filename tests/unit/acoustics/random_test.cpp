@@ -69,7 +69,7 @@ TEST(Random, FieldsAreUnrelated) {
   EXPECT_GT(correlation(base, base), 0.9);
   for (const RandomKey other :
        {make_random_key(2, 0, RandomField::noise, 10), make_random_key(1, 1, RandomField::noise, 10),
-        make_random_key(1, 0, RandomField::speckle_base, 10),
+        make_random_key(1, 0, RandomField::speckle, 10),
         make_random_key(1, 0, RandomField::noise, 11)}) {
     EXPECT_NEAR(correlation(base, other), 0, 5.0 / 64);
   }
@@ -77,7 +77,7 @@ TEST(Random, FieldsAreUnrelated) {
 
 TEST(Random, RowsDoNotDependOnTheirLength) {
   std::vector<float> re(300), im(300), short_re(5), short_im(5);
-  const RandomKey key = make_random_key(9, 2, RandomField::speckle_base, 0);
+  const RandomKey key = make_random_key(9, 2, RandomField::speckle, 0);
   fill_complex_gaussian(key, 17, 300, re.data(), im.data());
   fill_complex_gaussian(key, 17, 5, short_re.data(), short_im.data());
   for (std::size_t i = 0; i < 5; ++i) {

@@ -1,0 +1,32 @@
+// Applies the receive pattern to rows of white numbers.
+#pragma once
+
+#include <vector>
+
+namespace sonard::render {
+
+/// A symmetric filter across beams.
+class BeamFilter {
+ public:
+  BeamFilter() = default;
+  /// @param kernel c_j, j = -half ... half, as receive_kernel() makes it: an odd number of weights, c_j =
+  /// c_-j.
+  BeamFilter(const std::vector<float>& kernel, int beams);
+
+  int beams() const { return beams_; }
+  /// Numbers that a row must hold to be filtered to `beams()`. Beyond the kernel's own reach they are read
+  /// with weight 0, so they need to be finite.
+  int row_width() const { return beams_ + 2 * reach_; }
+
+  /// out[b] = sum_j c_j row[b + reach + j], for all beams.
+  void apply(const float* row, float* out) const;
+
+  bool operator==(const BeamFilter&) const = default;
+
+ private:
+  int beams_ = 0;
+  int reach_ = 0;
+  std::vector<float> weights_;  ///< c_0 ... c_reach, zero beyond the kernel
+};
+
+}  // namespace sonard::render

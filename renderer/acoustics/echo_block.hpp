@@ -1,0 +1,34 @@
+// A few native lines of an echo image, turned so that the beams of a line lie side by side.
+#pragma once
+
+#include "renderer/aligned_vector.hpp"
+#include "renderer/sonar_renderer.hpp"
+
+namespace sonard::render {
+
+class EchoBlock {
+ public:
+  /// Native lines that fit.
+  static constexpr int most_lines = 32;
+
+  explicit EchoBlock(const EchoImage& echo);
+
+  /// Takes the lines [first, first + count), 0 < count <= most_lines.
+  void load(int first, int count);
+
+  int beams() const { return echo_.beams; }
+  /// Intensity of one of the loaded lines in each beam; starts on a cache line.
+  const float* line(int native) const {
+    return &rows_[static_cast<std::size_t>(native - first_) * static_cast<std::size_t>(stride_)];
+  }
+  /// The strongest beam of the line; 0: there is no echo in any.
+  float strongest(int native) const;
+
+ private:
+  const EchoImage& echo_;
+  int first_ = 0;
+  int stride_;
+  AlignedVector<float> rows_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,35 @@
+// The end of the receiver: range compression and the quantiser.
+#pragma once
+
+#include "renderer/aligned_vector.hpp"
+#include "renderer/sonar_renderer.hpp"
+
+namespace sonard::render {
+
+/// Buffers of the size and kind that `settings` ask for, all zero.
+PingSamples make_samples(const SonarSettings& settings);
+
+/// What amplitude 1 (full scale) is in codes of the output, shared among the native lines of a mean:
+/// amplitudes come to OutputLines multiplied with this.
+float codes_per_amplitude(const SonarSettings& settings);
+
+/// Joins native lines to output lines. Each thread has one of its own; they share the samples.
+class OutputLines {
+ public:
+  OutputLines(const SonarSettings& settings, PingSamples& samples);
+
+  void begin();
+  /// @param codes amplitude of one native line in each beam, times codes_per_amplitude(). A line that is 0
+  /// throughout may be left out.
+  void add(const float* codes);
+  /// Quantises last, rounding to nearest and clamping: nothing wraps.
+  void end(int output_line);
+
+ private:
+  PingSamples& samples_;
+  bool peak_;
+  bool empty_ = true;
+  AlignedVector<float> sum_;
+};
+
+}  // namespace sonard::render

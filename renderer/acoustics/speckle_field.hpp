@@ -1,0 +1,56 @@
+// The field under the speckle of one sonar, kept from ping to ping.
+#pragma once
+
+#include <vector>
+
+#include "renderer/aligned_vector.hpp"
+
+namespace sonard::render {
+
+/// Complex Gaussians CN(0, 1) per native line and beam, with the grain of the array, which fade as the sonar
+/// moves: an Ornstein-Uhlenbeck process (docs/physics.md 2.8). The kernel across beams is linear and the same
+/// for every ping, so the filtered field is kept and fades just as the white one would.
+///
+/// Fading is lazy. A line remembers up to which motion it was evolved; the steps missed since are made up for
+/// in one. That is exact in distribution: a * exp(-d1) and then exp(-d2) with fresh innovations each is one
+/// step of exp(-d1 - d2). Lines are independent, so threads may evolve different lines at the same time; all
+/// else belongs to one thread.
+class SpeckleField {
+ public:
+  explicit SpeckleField(int beams = 0);
+
+  /// At least so many lines; new ones hold nothing and take the first innovation whole.
+  void ensure_lines(int lines);
+  /// All lines lose correlation: exp(-decay) of the field is left. @param decay >= 0
+  void fade(double decay);
+
+  /// True: the line has not faded since it was last evolved; evolve() has nothing to do.
+  bool is_current(int line) const { return evolved_at_[static_cast<std::size_t>(line)] == decay_; }
+  /// Brings the line up to date. @param innovation filtered CN(0, 1), `beams` numbers per part, unrelated to
+  /// all earlier ones of this line.
+  void evolve(int line, const float* innovation_re, const float* innovation_im);
+
+  const float* real(int line) const { return &field_[at(line)]; }
+  const float* imaginary(int line) const { return &field_[at(line)] + stride_; }
+
+ private:
+  /// Weights of the old field and of the innovation, squares adding up to 1.
+  struct Step {
+    float keep, fresh;
+  };
+  static Step step_of(double decay);
+
+  std::size_t at(int line) const {
+    return 2 * static_cast<std::size_t>(line) * static_cast<std::size_t>(stride_);
+  }
+
+  int beams_;
+  int stride_;
+  double decay_ = 0;                ///< sum of all fading so far
+  double last_decay_ = 0;           ///< `decay_` before the last fading: where most lines come from
+  Step last_step_{1.0F, 0.0F};      ///< from there to now
+  std::vector<double> evolved_at_;  ///< per line the value of `decay_` it was last evolved to; -inf: never
+  AlignedVector<float> field_;      ///< per line a row of real and one of imaginary parts
+};
+
+}  // namespace sonard::render
