@@ -1,0 +1,105 @@
+#include "tests/bench/image_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+
+namespace sonard::bench {
+
+namespace {
+
+constexpr double loud = 1e-2;   // re the largest bin of the beam: what errors are counted on
+constexpr double faint = 1e-6;  // -60 dB
+constexpr double hole = 1e-3;   // re the reference of the same bin
+constexpr double trimmed_share = 0.01;
+
+using Beam = std::span<const float>;
+
+Beam beam_of(const render::EchoImage& image, int beam) {
+  const auto lines = static_cast<std::size_t>(image.lines);
+  return Beam(image.intensity).subspan(static_cast<std::size_t>(beam) * lines, lines);
+}
+
+double sum(Beam beam) {
+  return std::accumulate(beam.begin(), beam.end(), 0.0);
+}
+
+/// In lines, from the sonar; the length of the beam when it never gets there.
+double first_echo(Beam beam, double level) {
+  double reached = 0;
+  for (std::size_t k = 0; k < beam.size(); ++k) {
+    const double echo = static_cast<double>(beam[k]);
+    if (reached + echo >= level) {
+      return static_cast<double>(k) + (level - reached) / echo;
+    }
+    reached += echo;
+  }
+  return static_cast<double>(beam.size());
+}
+
+double root_mean(std::span<const double> squares) {
+  return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) /
+                   static_cast<double>(squares.size()));
+}
+
+struct Share {
+  std::uint64_t hits = 0, all = 0;
+  void count(bool hit) {
+    hits += hit ? 1 : 0;
+    ++all;
+  }
+  double value() const { return all == 0 ? 0 : static_cast<double>(hits) / static_cast<double>(all); }
+};
+
+}  // namespace
+
+std::optional<ImageError> compare_images(const render::EchoImage& image, const render::EchoImage& reference) {
+  if (image.beams != reference.beams || image.lines != reference.lines) {
+    throw std::invalid_argument("image and reference differ in size");
+  }
+  ImageError error;
+  std::vector<double> squares;
+  Share holes, faint_holes;
+  int heard_beams = 0;
+  for (int b = 0; b < reference.beams; ++b) {
+    const Beam truth = beam_of(reference, b), measured = beam_of(image, b);
+    const double strongest = static_cast<double>(*std::max_element(truth.begin(), truth.end()));
+    if (strongest <= 0) {
+      continue;
+    }
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const double expected = static_cast<double>(truth[k]), found = static_cast<double>(measured[k]);
+      const bool empty = found < hole * expected;
+      if (expected > loud * strongest) {
+        squares.push_back((found / expected - 1) * (found / expected - 1));
+        holes.count(empty);
+      }
+      if (expected > faint * strongest) {
+        faint_holes.count(empty);
+      }
+    }
+    const double level = loud * strongest;
+    error.first_echo_bins =
+        std::max(error.first_echo_bins, std::abs(first_echo(measured, level) - first_echo(truth, level)));
+    const double total = std::abs(sum(measured) / sum(truth) - 1);
+    error.beam_total_mean += total;
+    error.beam_total_worst = std::max(error.beam_total_worst, total);
+    ++heard_beams;
+  }
+  if (heard_beams == 0) {
+    return std::nullopt;
+  }
+  error.beam_total_mean /= heard_beams;
+  error.hole_fraction = holes.value();
+  error.hole_fraction_60db = faint_holes.value();
+  error.bins = squares.size();
+  error.bin_rms = root_mean(squares);
+  std::sort(squares.begin(), squares.end());
+  const auto dropped = static_cast<std::size_t>(trimmed_share * static_cast<double>(squares.size()));
+  error.bin_rms_trim = root_mean(std::span(squares).first(squares.size() - dropped));
+  return error;
+}
+
+}  // namespace sonard::bench

@@ -1,0 +1,17 @@
+// What the numbers were measured on.
+#pragma once
+
+#include <string>
+
+namespace sonard::bench {
+
+/// Processor, cores, memory, system, compiler and build type, one line each.
+std::string describe_machine();
+
+/// Starts to watch the largest resident memory of this process anew. @return false where the kernel refuses.
+bool reset_peak_memory();
+
+/// Largest resident memory since reset_peak_memory(); NaN where it cannot be read.
+double peak_memory_mib();
+
+}  // namespace sonard::bench

@@ -1,0 +1,89 @@
+// sonard_bench: run time against error, on the scenes of tests/scenes (docs/benchmark.md).
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "renderer/sonar_renderer.hpp"
+#include "tests/bench/campaign.hpp"
+#include "tests/bench/machine.hpp"
+#include "tests/bench/plans.hpp"
+#include "tests/bench/targets.hpp"
+
+namespace sonard::bench {
+namespace {
+
+struct Options {
+  bool quick = false;
+  std::string json;
+  std::string backend = "both";
+  std::string references = SONARD_SOURCE_DIR "/tests/data/oracle";
+  std::vector<std::string> scenes;
+};
+
+/// The one that users get comes first: its table is the one to read.
+std::vector<render::Backend> backends_of(const std::string& name) {
+  if (name == "ray") {
+    return {render::Backend::ray};
+  }
+  if (name == "raster") {
+    return {render::Backend::raster};
+  }
+  const render::Backend automatic = render::SonarRenderer(render::World{}).backend();
+  if (name == "auto") {
+    return {automatic};
+  }
+  return {automatic, automatic == render::Backend::ray ? render::Backend::raster : render::Backend::ray};
+}
+
+void run(const Options& options) {
+  fmt::print("{}", describe_machine());
+  const std::vector<render::Backend> backends = backends_of(options.backend);
+  Campaign campaign(backends, options.references);
+  if (options.quick) {
+    run_quick(campaign);
+  } else {
+    run_sweep(campaign, options.scenes);
+  }
+  for (const render::Backend backend : backends) {
+    const std::string name(render::name_of(backend));
+    const auto description = campaign.descriptions().find(name);
+    if (description == campaign.descriptions().end()) {
+      continue;
+    }
+    fmt::print("\n{}\n", description->second);
+    if (options.quick) {
+      fmt::print("{}", format_targets(target_rows(campaign.results(), name)));
+    }
+  }
+  if (!options.json.empty()) {
+    write_json(campaign.results(), options.json);
+  }
+}
+
+}  // namespace
+}  // namespace sonard::bench
+
+int main(int argc, char** argv) {
+  sonard::bench::Options options;
+  CLI::App app("Measures the time of a ping and the error of its image.");
+  app.add_flag("--quick", options.quick, "Only what the project's targets need, in less than a minute");
+  app.add_option("--json", options.json,
+                 "File for a flat list of {scene, backend, preset, metric, value, unit}");
+  app.add_option("--backend", options.backend, "Which backends to measure")
+      ->check(CLI::IsMember({"both", "auto", "raster", "ray"}))
+      ->capture_default_str();
+  app.add_option("--references", options.references, "Folder of the oracle's images")->capture_default_str();
+  app.add_option("--scene", options.scenes, "Only scenes whose name starts so; not with --quick")
+      ->excludes("--quick");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    sonard::bench::run(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sonard_bench: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,45 @@
+// What the benchmark found, as the flat list that other tools read.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sonard::bench {
+
+/// Which sonar in which world, seen by which backend, sampled how.
+struct Subject {
+  std::string scene;
+  std::string backend;  ///< `raster` or `ray`
+  std::string preset;   ///< name of a point (points.hpp)
+
+  bool operator==(const Subject&) const = default;
+};
+
+struct Measurement {
+  Subject subject;
+  std::string metric;  ///< docs/benchmark.md lists them
+  double value;
+  std::string unit;  ///< "ms", "1" for ratios, "bins", "count", "MiB"
+};
+
+class Measurements {
+ public:
+  /// A value that is not finite was not measured: it is left out.
+  void add(const Subject& subject, const std::string& metric, double value, const std::string& unit);
+
+  std::optional<double> find(const Subject& subject, const std::string& metric) const;
+  const std::vector<Measurement>& all() const { return all_; }
+
+  /// A JSON array of {scene, backend, preset, metric, value, unit}, one object a line.
+  std::string to_json() const;
+
+ private:
+  std::vector<Measurement> all_;
+};
+
+/// Makes the folder too. @throws std::runtime_error naming the file.
+void write_json(const Measurements& measurements, const std::filesystem::path& file);
+
+}  // namespace sonard::bench

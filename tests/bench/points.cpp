@@ -1,0 +1,60 @@
+#include "tests/bench/points.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace sonard::bench {
+
+namespace {
+
+constexpr double wide_fan_rad = 1.0;  // one planar view would waste samples at its sides
+
+/// Views of equal angle hold columns of equal tangent: C a beam is their mean.
+render::Sampling grid(const render::Aperture& aperture, int columns_per_beam, int rows) {
+  render::Sampling sampling;
+  const double width_rad = aperture.beam_edges_rad.front() - aperture.beam_edges_rad.back();
+  sampling.views = width_rad > wide_fan_rad ? 3 : 1;
+  sampling.columns_per_view = static_cast<int>(
+      std::ceil(static_cast<double>(columns_per_beam) * aperture.beam_count() / sampling.views));
+  sampling.rows = rows;
+  return sampling;
+}
+
+}  // namespace
+
+std::vector<Point> preset_points() {
+  return {default_point()};
+}
+
+Point default_point() {
+  return {"default", [](render::SonarSettings& settings) { settings.sampling = {}; }};
+}
+
+Point grid_point(int columns_per_beam, int rows) {
+  return {fmt::format("grid_{}x{}", columns_per_beam, rows), [=](render::SonarSettings& settings) {
+            settings.sampling = grid(settings.aperture, columns_per_beam, rows);
+          }};
+}
+
+Point point_binning(int columns_per_beam, int rows) {
+  return {fmt::format("point_{}x{}", columns_per_beam, rows), [=](render::SonarSettings& settings) {
+            settings.sampling = grid(settings.aperture, columns_per_beam, rows);
+            settings.sampling.footprint = false;
+          }};
+}
+
+Point paper_point() {
+  const auto apply = [](render::SonarSettings& settings) {
+    settings.model = render::Model::paper;
+    settings.paper.footprint = false;
+    settings.paper.elevation_mask = false;
+    settings.paper.legacy_bin_index = true;
+    settings.paper.legacy_columns = true;
+    settings.sampling.views = 1;
+    settings.sampling.columns_per_view = 1024;
+    settings.sampling.rows = 512;
+  };
+  return {"paper", apply, false};
+}
+
+}  // namespace sonard::bench

@@ -1,0 +1,49 @@
+#include "tests/bench/plans.hpp"
+
+namespace sonard::bench {
+
+namespace {
+
+constexpr Repetition some{7, 201, 0.25};
+constexpr Repetition many{50, 1000, 0.3};  // pings of some ten microseconds
+constexpr Repetition few{2, 3, 0.3};
+
+Plan presets(const Repetition& repetition) {
+  Plan plan;
+  for (const Point& point : preset_points()) {
+    const bool slow = point.name == "reference";
+    plan.points.push_back({point, slow ? few : repetition});
+  }
+  return plan;
+}
+
+/// Point binning at growing numbers of samples.
+void add_point_ladder(Plan& plan) {
+  for (const auto& [columns, rows] : {std::pair{4, 512}, {8, 1024}, {16, 2048}}) {
+    plan.points.push_back({point_binning(columns, rows), few, render::Backend::ray});
+  }
+}
+
+}  // namespace
+
+void run_quick(Campaign& campaign) {
+  for (const char* name : {"plane", "flat100k", "swell100k", "ripple100k", "swell1m"}) {
+    const test::Scene scene = test::make_scene(name);
+    Plan plan = presets(some);
+    if (scene.name == "plane") {
+      plan.receivers = {{1000, "receiver_ms", many}, {2411, "receiver_2411_ms", many}};
+    }
+    if (scene.name == "flat100k") {
+      plan.points.push_back({paper_point(), some});
+    }
+    if (scene.name != "ripple100k" && scene.name != "swell1m") {
+      add_point_ladder(plan);
+    }
+    campaign.run(scene, plan);
+  }
+  for (const char* name : {"msis_swell", "msis_ripple"}) {
+    campaign.run(test::make_scene(name), presets(many));
+  }
+}
+
+}  // namespace sonard::bench

@@ -1,0 +1,156 @@
+#include "tests/bench/scene_run.hpp"
+
+#include <cstring>
+
+#include "tests/bench/image_error.hpp"
+#include "tests/bench/machine.hpp"
+
+namespace sonard::bench {
+
+namespace {
+
+constexpr double ms_per_s = 1e3;
+constexpr double step_between_pings_m = 1e-3;
+constexpr int poses = 16;
+constexpr int warm_up_pings = 3;
+
+/// Starts the watch over memory, then makes the renderer.
+render::World watched(const render::World& world) {
+  reset_peak_memory();
+  return world;
+}
+
+/// The pose of timed ping `i`, always another one than before.
+void move(render::PingRequest& request, const render::Pose& start, int i) {
+  request.T_world_sonar.position_m = start.position_m;
+  request.T_world_sonar.position_m.x += step_between_pings_m * (1 + i % poses);
+  request.ping_number = static_cast<std::uint64_t>(i);
+}
+
+bool same_bits(const render::EchoImage& a, const render::EchoImage& b) {
+  return a.intensity.size() == b.intensity.size() &&
+         std::memcmp(a.intensity.data(), b.intensity.data(), a.intensity.size() * sizeof(float)) == 0;
+}
+
+bool is_scanning(const test::Scene& scene) {
+  return scene.settings.aperture.beam_count() == 1;
+}
+
+}  // namespace
+
+SceneRun::SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results)
+    : scene_(scene), results_(results), renderer_(watched(scene.world), options) {}
+
+Subject SceneRun::subject(const Point& point) const {
+  return {scene_.name, std::string(render::name_of(renderer_.backend())), point.name};
+}
+
+render::PingRequest SceneRun::request(const Point& point) const {
+  render::PingRequest request = scene_.request();
+  point.apply(request.settings);
+  return request;
+}
+
+void SceneRun::measure(const Point& point, const Reference* reference, const Repetition& repetition) {
+  const render::PingRequest still = request(point);
+  const render::EchoImage image = renderer_.render_echo(still);
+  const render::PingStatistics statistics = renderer_.last_statistics();
+  const Stages stages = time_pings(still, repetition);
+  const bool repeatable = same_bits(image, renderer_.render_echo(still));
+  const Timing unchanged_ms = time_unchanged(still, {3, repetition.most, repetition.budget_s / 4});
+  add_times(subject(point), stages, unchanged_ms);
+  results_.add(subject(point), "samples", static_cast<double>(statistics.samples), "count");
+  results_.add(subject(point), "repeatable", repeatable ? 1 : 0, "1");
+  results_.add(subject(point), "peak_memory", peak_memory_mib(), "MiB");
+  if (reference != nullptr) {
+    add_errors(subject(point), point, image, *reference);
+  }
+}
+
+SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetition& repetition) {
+  const render::Pose start = request.T_world_sonar;
+  const int warm_up = repetition.fewest < warm_up_pings ? 1 : warm_up_pings;
+  for (int i = 0; i < warm_up; ++i) {
+    move(request, start, i);
+    renderer_.render_echo(request);
+  }
+  Stages stages;
+  const double start_s = now_s();
+  for (int i = 0; repetition.wants_more(i, start_s); ++i) {
+    move(request, start, warm_up + i);
+    const double from_s = now_s();
+    renderer_.render_echo(request);
+    stages.ping_ms.add(ms_per_s * (now_s() - from_s));
+    stages.visibility_ms.add(ms_per_s * renderer_.last_statistics().visibility_s);
+    stages.binning_ms.add(ms_per_s * renderer_.last_statistics().binning_s);
+  }
+  return stages;
+}
+
+/// @pre the last ping was this very request.
+Timing SceneRun::time_unchanged(const render::PingRequest& request, const Repetition& repetition) {
+  Timing unchanged_ms;
+  const double start_s = now_s();
+  for (int i = 0; repetition.wants_more(i, start_s); ++i) {
+    const double from_s = now_s();
+    renderer_.render_echo(request);
+    unchanged_ms.add(ms_per_s * (now_s() - from_s));
+  }
+  return unchanged_ms;
+}
+
+void SceneRun::measure_receiver(const Point& point, int lines, const std::string& metric,
+                                const Repetition& repetition) {
+  render::PingRequest ping = request(point);
+  ping.settings.range = {lines, scene_.settings.range.max_range_m() / lines, 0, false};
+  const render::Pose start = ping.T_world_sonar;
+  Timing receiver_ms;
+  const double start_s = now_s();
+  for (int i = -warm_up_pings; i < 0 || repetition.wants_more(i, start_s); ++i) {
+    move(ping, start, i + warm_up_pings);
+    renderer_.render_ping(ping);
+    if (i >= 0) {
+      receiver_ms.add(ms_per_s * renderer_.last_statistics().receiver_s);
+    }
+  }
+  results_.add(subject(point), metric, receiver_ms.median(), "ms");
+  results_.add(subject(point), metric + "_p95", receiver_ms.p95(), "ms");
+  results_.add(subject(point), metric + "_min", receiver_ms.min(), "ms");
+}
+
+void SceneRun::add_times(const Subject& subject, const Stages& stages, const Timing& unchanged_ms) {
+  results_.add(subject, "ping_ms", stages.ping_ms.median(), "ms");
+  results_.add(subject, "ping_ms_p95", stages.ping_ms.p95(), "ms");
+  results_.add(subject, "ping_ms_min", stages.ping_ms.min(), "ms");
+  results_.add(subject, "visibility_ms", stages.visibility_ms.median(), "ms");
+  results_.add(subject, "binning_ms", stages.binning_ms.median(), "ms");
+  results_.add(subject, "unchanged_ms", unchanged_ms.median(), "ms");
+  results_.add(subject, "ping_over_visibility", stages.ping_ms.median() / stages.visibility_ms.median(), "1");
+  results_.add(subject, "unchanged_over_ping", unchanged_ms.median() / stages.ping_ms.median(), "1");
+  if (is_scanning(scene_)) {
+    results_.add(subject, "msis_ping_ms", stages.ping_ms.median(), "ms");
+  }
+}
+
+void SceneRun::add_errors(const Subject& subject, const Point& point, const render::EchoImage& image,
+                          const Reference& reference) {
+  const std::optional<ImageError> error = compare_images(image, reference.image);
+  if (!error) {
+    return;  // nothing is heard
+  }
+  results_.add(subject, "hole_fraction", error->hole_fraction, "1");
+  results_.add(subject, "hole_fraction_60db", error->hole_fraction_60db, "1");
+  if (!point.energy) {
+    return;
+  }
+  results_.add(subject, "bin_rms", error->bin_rms, "1");
+  results_.add(subject, "bin_rms_trim", error->bin_rms_trim, "1");
+  results_.add(subject, "first_echo_bins", error->first_echo_bins, "bins");
+  results_.add(subject, "beam_total_mean", error->beam_total_mean, "1");
+  results_.add(subject, "beam_total_worst", error->beam_total_worst, "1");
+  if (reference.error_rms) {
+    results_.add(subject, "reference_rms", *reference.error_rms, "1");
+  }
+}
+
+}  // namespace sonard::bench

@@ -1,0 +1,53 @@
+// One scene in one renderer, measured at points.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "renderer/sonar_renderer.hpp"
+#include "tests/bench/measurements.hpp"
+#include "tests/bench/points.hpp"
+#include "tests/bench/reference.hpp"
+#include "tests/bench/timing.hpp"
+#include "tests/scenes/scenes.hpp"
+
+namespace sonard::bench {
+
+/// Holds the renderer of a scene. Everything it finds is added to `results`, named after the scene, the
+/// backend and the point. Timed pings stand a millimetre apart, so that none can reuse another; the error is
+/// that of the scene's own pose.
+class SceneRun {
+ public:
+  /// @throws render::RendererError when the backend cannot be had.
+  SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results);
+
+  /// Times the mean echo (`ping_ms` and its stages, `unchanged_ms`), counts samples and memory, compares with
+  /// the reference where there is one, and with itself (`repeatable`).
+  void measure(const Point& point, const Reference* reference, const Repetition& repetition);
+
+  /// Times the whole `physical` receiver on `lines` native lines as `metric`.
+  void measure_receiver(const Point& point, int lines, const std::string& metric,
+                        const Repetition& repetition);
+
+  render::Backend backend() const { return renderer_.backend(); }
+  const std::string& backend_description() const { return renderer_.backend_description(); }
+
+ private:
+  struct Stages {
+    Timing ping_ms, visibility_ms, binning_ms;
+  };
+
+  Subject subject(const Point& point) const;
+  render::PingRequest request(const Point& point) const;
+  Stages time_pings(render::PingRequest request, const Repetition& repetition);
+  Timing time_unchanged(const render::PingRequest& request, const Repetition& repetition);
+  void add_times(const Subject& subject, const Stages& stages, const Timing& unchanged_ms);
+  void add_errors(const Subject& subject, const Point& point, const render::EchoImage& image,
+                  const Reference& reference);
+
+  const test::Scene& scene_;
+  Measurements& results_;
+  render::SonarRenderer renderer_;
+};
+
+}  // namespace sonard::bench

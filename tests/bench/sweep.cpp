@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tests/bench/plans.hpp"
+
+namespace sonard::bench {
+
+namespace {
+
+constexpr Repetition usual{5, 101, 0.5};
+constexpr double degree = std::numbers::pi / 180;
+
+/// Presets, grids and points from coarse to fine, and the paper's own.
+Plan ladder() {
+  Plan plan;
+  for (const Point& point : preset_points()) {
+    plan.points.push_back({point, usual});
+  }
+  for (const auto& [columns, rows] :
+       {std::pair{1, 128}, {2, 128}, {2, 256}, {3, 512}, {4, 512}, {4, 1024}, {8, 1024}, {16, 2048}}) {
+    plan.points.push_back({grid_point(columns, rows), usual});
+  }
+  for (const auto& [columns, rows] : {std::pair{2, 256}, {4, 512}, {8, 1024}, {16, 2048}}) {
+    plan.points.push_back({point_binning(columns, rows), usual});
+  }
+  plan.points.push_back({paper_point(), usual});
+  return plan;
+}
+
+Plan presets_only(unsigned threads = 0) {
+  Plan plan;
+  plan.threads = threads;
+  for (const Point& point : preset_points()) {
+    plan.points.push_back({point, usual});
+  }
+  return plan;
+}
+
+test::Scene renamed(test::Scene scene, const std::string& name) {
+  scene.name = name;
+  return scene;
+}
+
+class Sweep {
+ public:
+  Sweep(Campaign& campaign, const std::vector<std::string>& only) : campaign_(campaign), only_(only) {}
+
+  /// `make` is called only when the name is asked for: the larger worlds take seconds.
+  void run(const std::string& name, const Plan& plan, const std::function<test::Scene()>& make) {
+    if (wanted(name)) {
+      campaign_.run(make(), plan);
+    }
+  }
+
+  void every_scene() {
+    // Its mesh files are read in forked processes, which wants to happen before there are other threads.
+    run("docking", ladder(), [] { return test::make_scene("docking"); });
+    for (const std::string& name : test::scene_names()) {
+      if (name != "docking") {
+        const bool large = name == "b4_manifold_1e7";
+        run(name, large ? presets_only() : ladder(), [&] { return test::make_scene(name); });
+      }
+    }
+  }
+
+  void triangles() {
+    for (const int exponent : {4, 5, 6, 7}) {
+      const std::string name = fmt::format("swell@triangles=1e{}", exponent);
+      run(name, presets_only(), [&] {
+        const auto count = static_cast<std::size_t>(std::llround(std::pow(10.0, exponent)));
+        return test::make_seabed_scene(name, test::swell_height_m, count);
+      });
+    }
+  }
+
+  void beams() {
+    for (const int beams : {1, 128, 256, 512}) {
+      const std::string name = fmt::format("swell100k@beams={}", beams);
+      run(name, presets_only(), [&] {
+        test::Scene scene = renamed(test::make_scene("swell100k"), name);
+        const double width_rad = beams == 1 ? 3 * degree : 120 * degree;
+        scene.settings.aperture.beam_edges_rad = render::equal_angle_edges(beams, width_rad);
+        return scene;
+      });
+    }
+  }
+
+  void bins() {
+    for (const int bins : {250, 500, 1000, 2000, 4000, 15000}) {
+      const std::string name = fmt::format("swell100k@bins={}", bins);
+      run(name, presets_only(), [&] {
+        test::Scene scene = renamed(test::make_scene("swell100k"), name);
+        scene.settings.range = {bins, scene.settings.range.max_range_m() / bins, 0, false};
+        return scene;
+      });
+    }
+  }
+
+  void cores() {
+    for (const unsigned cores : {1U, 2U}) {
+      const std::string name = fmt::format("swell100k@cores={}", cores);
+      run(name, presets_only(cores), [&] { return renamed(test::make_scene("swell100k"), name); });
+    }
+  }
+
+ private:
+  bool wanted(const std::string& name) const {
+    return only_.empty() || std::any_of(only_.begin(), only_.end(),
+                                        [&](const std::string& start) { return name.rfind(start, 0) == 0; });
+  }
+
+  Campaign& campaign_;
+  const std::vector<std::string>& only_;
+};
+
+}  // namespace
+
+void run_sweep(Campaign& campaign, const std::vector<std::string>& only) {
+  Sweep sweep(campaign, only);
+  sweep.every_scene();
+  sweep.triangles();
+  sweep.beams();
+  sweep.bins();
+  sweep.cores();
+}
+
+}  // namespace sonard::bench

@@ -1,0 +1,217 @@
+#include "tests/bench/targets.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace sonard::bench {
+
+namespace {
+
+constexpr double first_echo_bound_bins = 0.5;
+constexpr double faint_hole_bound = 1e-3;
+constexpr double default_rms = 0.01;
+constexpr double fast_rms = 0.05;
+
+class Rows {
+ public:
+  Rows(const Measurements& measurements, std::string backend)
+      : measurements_(measurements), backend_(std::move(backend)) {}
+
+  /// A ping of `scene` within `must` ms and `rms`.
+  void ping(const std::string& preset, const std::string& scene, double must, double aim, double rms) {
+    TargetRow row{fmt::format("{} {}, ms", preset, scene), must, aim,         false,
+                  find(scene, preset, "ping_ms"),          rms,  std::nullopt};
+    row.quality = quality(scene, preset);
+    rows.push_back(row);
+  }
+
+  void plain(const std::string& what, std::optional<double> measured, double must,
+             std::optional<double> aim) {
+    rows.push_back({what, must, aim, false, measured, std::nullopt, std::nullopt});
+  }
+
+  void samples_ratio(const std::string& scene, double must, double aim) {
+    std::optional<double> ratio;
+    const auto error = find(scene, "default", "bin_rms");
+    const auto samples = find(scene, "default", "samples");
+    if (error && samples) {
+      const auto needed = samples_needed(point_curve(scene), *error);
+      ratio = needed ? std::optional(*needed / *samples) : std::nullopt;
+    }
+    rows.push_back({"samples at equal error, points / default, " + scene, must, aim, true, ratio,
+                    std::nullopt, std::nullopt});
+  }
+
+  std::optional<double> find(const std::string& scene, const std::string& preset,
+                             const std::string& metric) const {
+    return measurements_.find({scene, backend_, preset}, metric);
+  }
+
+  /// The largest of a metric over the scenes with objects, at the default preset.
+  std::optional<double> worst(const std::string& metric) const {
+    std::optional<double> result;
+    for (const char* scene : {"flat100k", "swell100k", "ripple100k"}) {
+      const auto value = find(scene, "default", metric);
+      result = value && (!result || *value > *result) ? value : result;
+    }
+    return result;
+  }
+
+  std::optional<double> ratio(const std::string& scene, const std::string& to_scene) const {
+    const auto a = find(scene, "default", "ping_ms"), b = find(to_scene, "default", "ping_ms");
+    return a && b ? std::optional(*a / *b) : std::nullopt;
+  }
+
+  /// How many points did not give the same bits twice.
+  std::optional<double> unrepeatable() const {
+    std::optional<double> count;
+    for (const Measurement& m : measurements_.all()) {
+      if (m.metric == "repeatable" && m.subject.backend == backend_) {
+        count = count.value_or(0) + (m.value == 1 ? 0 : 1);
+      }
+    }
+    return count;
+  }
+
+  std::vector<TargetRow> rows;
+
+ private:
+  std::optional<Quality> quality(const std::string& scene, const std::string& preset) const {
+    const auto rms = find(scene, preset, "bin_rms");
+    if (!rms) {
+      return std::nullopt;
+    }
+    const auto also = [&](const char* metric) { return find(scene, preset, metric).value_or(NAN); };
+    return Quality{*rms, also("bin_rms_trim"), also("first_echo_bins"), also("hole_fraction"),
+                   also("hole_fraction_60db")};
+  }
+
+  /// Of whichever backend measured it: points are the same in both.
+  std::vector<SamplesAndError> point_curve(const std::string& scene) const {
+    std::vector<SamplesAndError> curve;
+    for (const Measurement& m : measurements_.all()) {
+      const bool of_points = m.subject.scene == scene && m.subject.preset.rfind("point_", 0) == 0;
+      if (of_points && m.metric == "bin_rms") {
+        if (const auto samples = measurements_.find(m.subject, "samples")) {
+          curve.push_back({*samples, m.value});
+        }
+      }
+    }
+    return curve;
+  }
+
+  const Measurements& measurements_;
+  std::string backend_;
+};
+
+std::string_view words(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::not_measured:
+      return "not measured";
+    case Verdict::missed:
+      return "MISSED";
+    case Verdict::error_unknown:
+      return "time met, no reference";
+    case Verdict::error_too_high:
+      return "MISSED: error";
+    case Verdict::must_met:
+      return "must met";
+    case Verdict::aim_met:
+      return "aim met";
+  }
+  return "";
+}
+
+std::string number(std::optional<double> value) {
+  if (!value) {
+    return "-";
+  }
+  const double size = std::abs(*value);
+  return size >= 100 ? fmt::format("{:.0f}", *value) : fmt::format("{:.3g}", *value);
+}
+
+std::string describe(const Quality& quality) {
+  return fmt::format("{:5.2f} % ({:.2f} %)  {:10.2f}  {:.1e} / {:.1e}", 100 * quality.bin_rms,
+                     100 * quality.bin_rms_trim, quality.first_echo_bins, quality.hole_fraction,
+                     quality.hole_fraction_60db);
+}
+
+}  // namespace
+
+Verdict TargetRow::verdict() const {
+  if (!measured) {
+    return Verdict::not_measured;
+  }
+  const auto reaches = [&](double bound) { return at_least ? *measured >= bound : *measured <= bound; };
+  if (!reaches(must)) {
+    return Verdict::missed;
+  }
+  if (rms_bound && !quality) {
+    return Verdict::error_unknown;
+  }
+  if (rms_bound && !keeps(*quality, *rms_bound)) {
+    return Verdict::error_too_high;
+  }
+  return aim && reaches(*aim) ? Verdict::aim_met : Verdict::must_met;
+}
+
+bool keeps(const Quality& quality, double rms_bound) {
+  return quality.bin_rms <= rms_bound && quality.first_echo_bins <= first_echo_bound_bins &&
+         quality.hole_fraction == 0 && quality.hole_fraction_60db <= faint_hole_bound;
+}
+
+std::vector<TargetRow> target_rows(const Measurements& measurements, const std::string& backend) {
+  Rows table(measurements, backend);
+  table.ping("default", "flat100k", 4, 1.5, default_rms);
+  table.ping("default", "swell100k", 15, 6, default_rms);
+  table.ping("default", "ripple100k", 60, 20, default_rms);
+  table.ping("fast", "flat100k", 1.5, 0.6, fast_rms);
+  table.ping("fast", "swell100k", 3, 1.5, fast_rms);
+  table.ping("fast", "ripple100k", 15, 6, fast_rms);
+  table.ping("default", "msis_swell", 0.1, 0.03, default_rms);
+  table.ping("default", "msis_ripple", 0.4, 0.15, default_rms);
+  table.plain("receiver 256x1000, ms", table.find("plane", "default", "receiver_ms"), 1, 0.4);
+  table.plain("receiver 256x2411, ms", table.find("plane", "default", "receiver_2411_ms"), 2, 1);
+  table.plain("swell1m / swell100k, default", table.ratio("swell1m", "swell100k"), 2.3, 1.4);
+  table.plain("ping / visibility, default, worst", table.worst("ping_over_visibility"), 1.4, 1.2);
+  table.samples_ratio("plane", 200, 1000);
+  table.samples_ratio("flat100k", 50, 250);
+  table.samples_ratio("swell100k", 20, 60);
+  table.plain("unchanged / full ping, worst", table.worst("unchanged_over_ping"), 1.0 / 20, std::nullopt);
+  table.plain("points that differ when repeated", table.unrepeatable(), 0, std::nullopt);
+  return table.rows;
+}
+
+std::string format_targets(const std::vector<TargetRow>& rows) {
+  constexpr const char* line = "{:<53} {:>8} {:>7} {:>6}  {:<23} {:<46}\n";
+  std::string text = fmt::format(line, "what", "measured", "must", "aim", "verdict",
+                                 "bin RMS (trimmed)  first echo  holes / -60 dB");
+  for (const TargetRow& row : rows) {
+    const std::string must = fmt::format("{} {}", row.at_least ? ">=" : "<=", number(row.must));
+    text += fmt::format(line, row.what, number(row.measured), must, number(row.aim), words(row.verdict()),
+                        row.quality ? describe(*row.quality) : "");
+  }
+  return text;
+}
+
+std::optional<double> samples_needed(std::vector<SamplesAndError> curve, double error) {
+  if (curve.size() < 2 || !(error > 0)) {
+    return std::nullopt;
+  }
+  std::sort(curve.begin(), curve.end(),
+            [](const SamplesAndError& a, const SamplesAndError& b) { return a.samples < b.samples; });
+  std::size_t next = 1;
+  while (next + 1 < curve.size() && curve[next].error > error) {
+    ++next;
+  }
+  const SamplesAndError &a = curve[next - 1], &b = curve[next];
+  const double order = std::log(a.error / b.error) / std::log(b.samples / a.samples);
+  if (!(order > 0)) {
+    return std::nullopt;
+  }
+  return a.samples * std::pow(a.error / error, 1 / order);
+}
+
+}  // namespace sonard::bench
