@@ -1,4 +1,5 @@
 // sonard_oracle: renders the references of tests/data/oracle.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>

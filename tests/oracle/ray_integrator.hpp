@@ -24,8 +24,8 @@ struct RayOptions {
   double cosine_tolerance = 0.01;
   /// false: a cell is a point in range. Slow to converge, but there is no formula in it that could be wrong.
   bool footprint = true;
-  unsigned threads = 0;    ///< 0: one per core
-  std::vector<int> beams;  ///< only these are rendered, the others are 0; empty: all
+  unsigned threads = 0;      ///< 0: one per core
+  std::vector<int> beams{};  ///< only these are rendered, the others are 0; empty: all
 };
 
 /// The result is the same bits for any number of threads.

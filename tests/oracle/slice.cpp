@@ -18,19 +18,26 @@ struct SlicePoint {
 
 constexpr double touching_m = 1e-9;  // nearer than this to the z axis a surface is cut off
 
-/// The part of the segment with rho >= touching_m. @return false when there is none.
-bool clip_to_front(SlicePoint& p, SlicePoint& q) {
-  if (p.rho > q.rho) {
-    std::swap(p, q);
-  }
-  if (!(q.rho > touching_m)) {
+/// Cuts off where `inside`, an affine function of the point, is negative. @return false when nothing is left.
+template <class Inside>
+bool clip(SlicePoint& p, SlicePoint& q, Inside inside) {
+  const double at_p = inside(p);
+  const double at_q = inside(q);
+  if (at_p < 0 && at_q < 0) {
     return false;
   }
-  if (p.rho < touching_m) {
-    const double share = (touching_m - p.rho) / (q.rho - p.rho);
-    p = {touching_m, p.z + share * (q.z - p.z)};
+  if (at_p < 0 || at_q < 0) {
+    const double share = at_p / (at_p - at_q);
+    (at_p < 0 ? p : q) = {p.rho + share * (q.rho - p.rho), p.z + share * (q.z - p.z)};
   }
   return true;
+}
+
+/// The part inside the fan. Done here and not on tangents, which grow beyond all bounds outside it.
+bool clip_to_fan(SlicePoint& p, SlicePoint& q, double tan_limit) {
+  return clip(p, q, [&](const SlicePoint& x) { return x.rho - touching_m; }) &&
+         clip(p, q, [&](const SlicePoint& x) { return tan_limit * x.rho - x.z; }) &&
+         clip(p, q, [&](const SlicePoint& x) { return tan_limit * x.rho + x.z; });
 }
 
 // Gauss-Legendre with three nodes on [-1, 1].
@@ -89,7 +96,7 @@ void Slicer::cut(std::uint32_t index) {
     const glm::dvec3 p = facet.corners[from] + share * (facet.corners[to] - facet.corners[from]);
     ends.at(count++) = {p.x * cos_psi_ + p.y * sin_psi_, p.z};
   }
-  if (count != 2 || !clip_to_front(ends[0], ends[1])) {
+  if (count != 2 || !clip_to_fan(ends[0], ends[1], tan_limit_)) {
     return;
   }
   Sightline line{ends[0].z / ends[0].rho, ends[1].z / ends[1].rho, 1 / ends[0].rho, 0, index};
@@ -98,16 +105,10 @@ void Slicer::cut(std::uint32_t index) {
     std::swap(line.t_begin, line.t_end);
     std::swap(line.w_begin, w_end);
   }
-  if (!(line.t_end > line.t_begin) || line.t_begin >= tan_limit_ || line.t_end <= -tan_limit_) {
-    return;  // seen edge-on or outside the fan
+  if (!(line.t_end > line.t_begin)) {
+    return;  // seen edge-on
   }
   line.w_slope = (w_end - line.w_begin) / (line.t_end - line.t_begin);
-  const double cut_off = -tan_limit_ - line.t_begin;
-  if (cut_off > 0) {
-    line.w_begin += line.w_slope * cut_off;
-    line.t_begin = -tan_limit_;
-  }
-  line.t_end = std::min(line.t_end, tan_limit_);
   sightlines_.push_back(line);
 }
 

@@ -13,6 +13,17 @@ inline double cos4_integral(double u) {
   return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32;
 }
 
+/// Integral of `density` over azimuth, midpoint rule: many nodes, since range lines make kinks.
+template <class Density>
+double azimuth_integral(Density density, double psi_from, double psi_to, int nodes) {
+  const double step = (psi_to - psi_from) / nodes;
+  double sum = 0;
+  for (int i = 0; i < nodes; ++i) {
+    sum += density(psi_from + (i + 0.5) * step) * step;
+  }
+  return sum;
+}
+
 /// A plane at perpendicular distance `distance_m`, unit normal (nx, ny, nz) pointing from the sonar to it, mu
 /// = 1, alpha = 0 (T1; T2 and T3 are its special cases).
 struct PlaneTruth {
@@ -21,6 +32,11 @@ struct PlaneTruth {
 
   /// Echo per unit azimuth from ranges [r1, r2).
   double density(double psi, double r1, double r2) const {
+    return density(psi, r1, r2, -elevation_limit_rad, elevation_limit_rad);
+  }
+
+  /// The same from elevations [theta_low, theta_high) alone, where other things hide the rest.
+  double density(double psi, double r1, double r2, double theta_low, double theta_high) const {
     const double horizontal = nx * std::cos(psi) + ny * std::sin(psi);
     const double amplitude = std::hypot(horizontal, nz);
     const double centre = std::atan2(nz, horizontal);
@@ -29,20 +45,14 @@ struct PlaneTruth {
     const double inner = u_of_range(amplitude, r1);
     const double outer = u_of_range(amplitude, r2);
     double sum = 0;
-    sum += piece(centre, inner, outer);
-    sum += piece(centre, -outer, -inner);
+    sum += piece(centre, inner, outer, theta_low, theta_high);
+    sum += piece(centre, -outer, -inner, theta_low, theta_high);
     return amplitude * amplitude * amplitude / (distance_m * distance_m) * sum;
   }
 
-  /// Echo of a beam between two azimuths, by Gauss-Legendre-free brute force: midpoint rule with many nodes,
-  /// since range lines make kinks.
+  /// Echo of a beam between two azimuths.
   double beam(double psi_from, double psi_to, double r1, double r2, int nodes = 400) const {
-    const double step = (psi_to - psi_from) / nodes;
-    double sum = 0;
-    for (int i = 0; i < nodes; ++i) {
-      sum += density(psi_from + (i + 0.5) * step, r1, r2) * step;
-    }
-    return sum;
+    return azimuth_integral([&](double psi) { return density(psi, r1, r2); }, psi_from, psi_to, nodes);
   }
 
  private:
@@ -53,9 +63,9 @@ struct PlaneTruth {
   double primitive(double centre, double u) const {
     return std::cos(centre) * cos4_integral(u) + std::sin(centre) * std::pow(std::cos(u), 4) / 4;
   }
-  double piece(double centre, double u1, double u2) const {
-    const double low = std::max(u1, -elevation_limit_rad - centre);
-    const double high = std::min(u2, elevation_limit_rad - centre);
+  double piece(double centre, double u1, double u2, double theta_low, double theta_high) const {
+    const double low = std::max(u1, theta_low - centre);
+    const double high = std::min(u2, theta_high - centre);
     return high > low ? primitive(centre, high) - primitive(centre, low) : 0.0;
   }
 };
@@ -70,6 +80,40 @@ inline double sphere_echo(double radius_m, double centre_m, double r1, double r2
   const double high = std::clamp(r2, centre_m - radius_m, std::sqrt(l2));
   return std::acos(-1.0) / (2 * radius_m * centre_m) * (primitive(high) - primitive(low));
 }
+
+/// T5: an upright cylinder of radius a that fills the height of the fan, its axis at horizontal distance R0
+/// dead ahead. Echo per unit azimuth from ranges [r1, r2).
+inline double cylinder_density(double radius_m, double axis_m, double elevation_limit_rad, double psi,
+                               double r1, double r2) {
+  const double across = axis_m * std::sin(psi) / radius_m;
+  if (std::abs(across) >= 1) {
+    return 0;
+  }
+  const double facing = std::sqrt(1 - across * across);
+  const double near = axis_m * std::cos(psi) - radius_m * facing;
+  const auto elevation = [&](double r) { return r > near ? std::acos(near / r) : 0.0; };
+  const double low = std::min(elevation(r1), elevation_limit_rad);
+  const double high = std::min(elevation(r2), elevation_limit_rad);
+  return 2 * facing / (near * near) * (cos4_integral(high) - cos4_integral(low));
+}
+
+/// T7: a wide thin wall of height H across the axis at horizontal distance x, on a flat bed at depth h > H
+/// below an untilted sonar. The wall lies over the bed in front of it and hides the bed behind it.
+struct ShadowTruth {
+  double altitude_m, wall_height_m, wall_m, elevation_limit_rad;
+
+  double density(double psi, double r1, double r2) const {
+    const PlaneTruth bed{altitude_m, 0, 0, -1, elevation_limit_rad};
+    const PlaneTruth wall{wall_m, 1, 0, 0, elevation_limit_rad};
+    const double base = std::atan2(-altitude_m * std::cos(psi), wall_m);
+    const double top = std::atan2((wall_height_m - altitude_m) * std::cos(psi), wall_m);
+    const double limit = elevation_limit_rad;
+    const auto inside = [&](double theta) { return std::clamp(theta, -limit, limit); };
+    return bed.density(psi, r1, r2, -limit, inside(base)) +
+           wall.density(psi, r1, r2, inside(base), inside(top)) +
+           bed.density(psi, r1, r2, inside(top), limit);
+  }
+};
 
 /// RMS relative error over all values above `threshold` times the largest truth (docs/physics.md 3.3).
 inline double rms_error(const std::vector<double>& truth, const std::vector<double>& measured,
