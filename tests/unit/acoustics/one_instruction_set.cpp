@@ -1,0 +1,21 @@
+// The receiver once more, compiled for one instruction set alone and in a namespace of its own. The build
+// compiles this file several times, with
+//   SONARD_SIMD_CLONES  the attribute that picks the instruction set (renderer/simd.hpp)
+//   sonard              the namespace, so that all versions fit into one program
+//   MAKE_PINGS          name of the function that the test calls
+#include "renderer/acoustics/beam_filter.cpp"
+#include "renderer/acoustics/beam_kernel.cpp"
+#include "renderer/acoustics/echo_block.cpp"
+#include "renderer/acoustics/output_lines.cpp"
+#include "renderer/acoustics/random.cpp"
+#include "renderer/acoustics/receiver.cpp"
+#include "renderer/acoustics/speckle_field.cpp"
+#include "renderer/sonar_settings.cpp"
+#include "renderer/worker_pool.cpp"
+//
+#include "tests/unit/acoustics/several_pings.hpp"
+
+std::vector<std::uint16_t> MAKE_PINGS() {
+  return several_pings<sonard::render::Receiver, sonard::render::PingRequest, sonard::render::EchoImage,
+                       sonard::render::WorkerPool>();
+}

@@ -1,0 +1,46 @@
+// One set of pings, whichever version of the receiver makes them.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+/// 16 bit samples of three pings of a moving sonar with all effects on, and of one in mode `paper`. Odd sizes
+/// leave remainders to every vector length.
+template <class Receiver, class PingRequest, class EchoImage, class WorkerPool>
+std::vector<std::uint16_t> several_pings() {
+  constexpr int beams = 203;
+  constexpr int lines = 331;
+  EchoImage echo{beams, lines, {}};
+  for (int i = 0; i < beams * lines; ++i) {
+    const int line = i % lines;
+    echo.intensity.push_back(line % 7 == 0 ? 0.0F : 1e-6F * static_cast<float>(1 + i % 1009));
+  }
+  PingRequest request;
+  for (int i = 0; i <= beams; ++i) {
+    request.settings.aperture.beam_edges_rad.push_back(1 - 2.0 * i / beams);
+  }
+  request.settings.range = {lines, 0.02, 0, false};
+  request.settings.physical.noise_level_db = -100;
+  request.settings.physical.side_lobe_floor_db = -25;
+  request.settings.sixteen_bit = true;
+  WorkerPool workers(1);
+  Receiver receiver;
+  std::vector<std::uint16_t> all;
+  const auto add_ping = [&] {
+    const std::vector<std::uint16_t> samples = receiver.receive(echo, request, 0, workers).u16;
+    all.insert(all.end(), samples.begin(), samples.end());
+    ++request.ping_number;
+    request.T_world_sonar.position_m.x += 0.02;
+  };
+  add_ping();
+  add_ping();
+  request.settings.range.compression_log2 = 1;
+  add_ping();
+  request.settings.model = decltype(request.settings.model)::paper;
+  for (float& intensity : echo.intensity) {
+    intensity = std::fmod(1000 * intensity, 1.0F);
+  }
+  add_ping();
+  return all;
+}
