@@ -1,7 +1,6 @@
 #include "renderer/visibility/embree_scene.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <map>
 #include <type_traits>
@@ -28,10 +27,12 @@ using Handle = std::unique_ptr<std::remove_pointer_t<T>, Release>;
 
 using IntersectPacket = void (*)(const RayPacket&, RTCScene, RTCIntersectContext&, float max_depth, RayHits&);
 
-/// Traces a packet as packet_size / N packets of Embree's type `RayHit` for N rays.
+/// Traces a packet as packet_size / N packets of Embree's type `RayHit` for N rays. Inlined, so that it
+/// becomes part of each version of its caller.
 template <class RayHit, int N, void (*intersect)(const int*, RTCScene, RTCIntersectContext*, RayHit*)>
-void intersect_by(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context, float max_depth,
-                  RayHits& hits) {
+[[gnu::always_inline]] inline void intersect_by(const RayPacket& rays, RTCScene scene,
+                                                RTCIntersectContext& context, float max_depth,
+                                                RayHits& hits) {
   alignas(64) std::array<int, N> valid;
   valid.fill(-1);
   for (std::size_t first = 0; first < packet_size; first += N) {
@@ -61,6 +62,21 @@ void intersect_by(const RayPacket& rays, RTCScene scene, RTCIntersectContext& co
     std::copy_n(query.hit.primID, N, hits.triangle.begin() + first);
     std::copy_n(query.hit.instID[0], N, hits.part.begin() + first);
   }
+}
+
+SONARD_SIMD_CLONES void intersect_by_16(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context,
+                                        float max_depth, RayHits& hits) {
+  intersect_by<RTCRayHit16, 16, &rtcIntersect16>(rays, scene, context, max_depth, hits);
+}
+
+SONARD_SIMD_CLONES void intersect_by_8(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context,
+                                       float max_depth, RayHits& hits) {
+  intersect_by<RTCRayHit8, 8, &rtcIntersect8>(rays, scene, context, max_depth, hits);
+}
+
+void intersect_by_4(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context, float max_depth,
+                    RayHits& hits) {
+  intersect_by<RTCRayHit4, 4, &rtcIntersect4>(rays, scene, context, max_depth, hits);
 }
 
 /// Lets rays pass through triangles that they meet from behind.
@@ -100,7 +116,7 @@ struct EmbreeScene::Impl {
   std::vector<Pose> T_world_body;
   std::map<std::string, std::size_t> body_index;
   Handle<RTCScene> scene;
-  Pose T_world_sonar;
+  glm::dvec3 sonar_position_m{0.0};
   bool placed = false;
 
   Impl(const World& world, WorkerPool& workers, const std::string& settings) {
@@ -129,13 +145,13 @@ struct EmbreeScene::Impl {
 
   void choose_packets() {
     int width = 4;
-    intersect = &intersect_by<RTCRayHit4, 4, &rtcIntersect4>;
+    intersect = &intersect_by_4;
     if (rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) {
       width = 16;
-      intersect = &intersect_by<RTCRayHit16, 16, &rtcIntersect16>;
+      intersect = &intersect_by_16;
     } else if (rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
       width = 8;
-      intersect = &intersect_by<RTCRayHit8, 8, &rtcIntersect8>;
+      intersect = &intersect_by_8;
     }
     const auto version = [&](RTCDeviceProperty part) { return rtcGetDeviceProperty(device.get(), part); };
     description = fmt::format("Embree {}.{}.{}, packets of {}", version(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
@@ -211,48 +227,52 @@ bool EmbreeScene::set_body_pose(const std::string& body_name, const Pose& T_worl
   return true;
 }
 
-void EmbreeScene::place(const Pose& T_world_sonar) {
-  if (impl_->placed && T_world_sonar == impl_->T_world_sonar) {
+void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
+  if (impl_->placed && sonar_position_m == impl_->sonar_position_m) {
     return;
   }
   impl_->placed = false;
-  const Pose T_sonar_world = inverse(T_world_sonar);
   for (Impl::Part& part : impl_->parts) {
-    const Pose T_sonar_part = T_sonar_world * impl_->T_world_body[part.body] * part.T_body_part;
-    part.shader.turn(T_sonar_part.orientation);
+    const Pose T_world_part = impl_->T_world_body[part.body] * part.T_body_part;
+    part.shader.turn(T_world_part.orientation);
     const auto& [x, y, z] = part.shader.axes();
-    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_sonar_part.position_m)};
+    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_world_part.position_m - sonar_position_m)};
     static_assert(sizeof(columns) == 12 * sizeof(float));
     rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
     rtcCommitGeometry(part.instance.get());
   }
   rtcCommitScene(impl_->scene.get());
   impl_->check("place the sonar");
-  impl_->T_world_sonar = T_world_sonar;
+  impl_->sonar_position_m = sonar_position_m;
   impl_->placed = true;
 }
 
-void EmbreeScene::trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,
-                        SurfacePacket& surfaces) const {
+SONARD_SIMD_CLONES void EmbreeScene::trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,
+                                           SurfacePacket& surfaces) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   context.filter = model.two_sided ? nullptr : &pass_back_faces;
   RayHits hits;
   impl_->intersect(rays, impl_->scene.get(), context, max_depth, hits);
-  std::uint32_t pending = 0;  // lanes that wait to be shaded
   for (std::size_t i = 0; i < packet_size; ++i) {
-    const bool hit = hits.part[i] != no_part;
-    surfaces.depth[i] = hit ? hits.depth[i] : 0.0F;
-    pending |= hit ? 1U << i : 0U;
+    surfaces.depth[i] = hits.part[i] != no_part ? hits.depth[i] : 0.0F;
   }
   surfaces.part = hits.part;
   surfaces.triangle = hits.triangle;
-  while (pending != 0) {
-    const std::uint32_t part = hits.part[static_cast<std::size_t>(std::countr_zero(pending))];
+  // Neighbours mostly meet the same part: one round shades them all.
+  Lanes<std::uint32_t> waiting = hits.part;
+  while (true) {
+    std::uint32_t part = no_part;  // the greatest number, so what is left of the smallest is a part
+    for (std::size_t i = 0; i < packet_size; ++i) {
+      part = std::min(part, waiting[i]);
+    }
+    if (part == no_part) {
+      return;
+    }
     impl_->parts[part].shader.shade(rays, hits, part, model, surfaces);
     for (std::size_t i = 0; i < packet_size; ++i) {
-      pending &= hits.part[i] == part ? ~(1U << i) : ~0U;
+      waiting[i] = waiting[i] == part ? no_part : waiting[i];
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include <glm/vec3.hpp>
+
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/visibility/ray_packet.hpp"
@@ -12,9 +14,11 @@
 
 namespace sonard::render {
 
-/// Holds one acceleration structure per mesh and, above them, one over the parts in coordinates relative to
-/// the sonar: world positions are subtracted in double, once per part and pose. place() and set_body_pose()
-/// come from one thread while nobody traces; trace() may be called from any number of threads.
+/// Holds one acceleration structure per mesh and, above them, one over the parts. Rays and normals are in
+/// world axes with the sonar at the origin: world positions are subtracted in double, once per part and
+/// place, and the boxes of things that stand upright in the world stay tight however the sonar turns. place()
+/// and set_body_pose() come from one thread while nobody traces; trace() may be called from any number of
+/// threads.
 class EmbreeScene {
  public:
   /// @param embree_settings for rtcNewDevice(), for tests: "isa=sse4.2".
@@ -29,7 +33,7 @@ class EmbreeScene {
 
   /// Puts the sonar here, and the bodies where they were last moved to. Costs nothing when neither changed.
   /// @throws RendererError when Embree fails.
-  void place(const Pose& T_world_sonar);
+  void place(const glm::dvec3& sonar_position_m);
 
   /// The first surface along each ray between the depths nearest_depth_m and `max_depth`, in lengths of q.
   void trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,

@@ -8,22 +8,15 @@
 
 namespace sonard::render {
 
-/// Rays of one packet: a patch of 4 x 4 neighbours, because rays that stay together share the work of walking
-/// the tree. CPUs without 512-bit vectors trace it as halves or quarters; lanes are numbered so that these
-/// are compact too (4 x 2 and 2 x 2).
-inline constexpr int packet_size = 16;
+/// Rays of one packet: a patch of 4 x 4 neighbours, row after row, because rays that stay together share the
+/// work of walking the tree. CPUs without 512-bit vectors trace it as two patches of 4 x 2 or four rows.
 inline constexpr int packet_side = 4;
-constexpr int packet_column(int lane) {
-  return (lane & 1) | ((lane >> 1) & 2);
-}
-constexpr int packet_row(int lane) {
-  return ((lane >> 1) & 1) | ((lane >> 2) & 2);
-}
+inline constexpr int packet_size = packet_side * packet_side;
 
 template <class T>
 using Lanes = std::array<T, packet_size>;
 
-/// Rays q from the origin of the sonar frame; they need no unit length.
+/// Rays q from the sonar, in world axes; they need no unit length.
 struct alignas(64) RayPacket {
   Lanes<float> x, y, z;
   /// What q changes by from one sample to the next along the two directions of the grid: the area over which
@@ -35,7 +28,7 @@ struct alignas(64) RayPacket {
 /// without meaning.
 struct alignas(64) SurfacePacket {
   Lanes<float> depth;  ///< 0: nothing up to the depth asked for
-  /// Geometric normal in the sonar frame, neither of unit length nor turned towards the sonar.
+  /// Geometric normal in world axes, neither of unit length nor turned towards the sonar.
   Lanes<float> normal_x, normal_y, normal_z;
   Lanes<float> response;          ///< as SurfaceSample::response; may be not a number
   Lanes<std::uint32_t> part;      ///< counts the parts of all bodies in the order of the world

@@ -19,29 +19,50 @@ bool same_pixels(const SubView& a, const SubView& b) {
          a.tan_half_height == b.tan_half_height && a.columns == b.columns && a.rows == b.rows;
 }
 
-int tile_count(int pixels) {
-  return (pixels + packet_side - 1) / packet_side;
+std::size_t tile_count(int pixels) {
+  return static_cast<std::size_t>((pixels + packet_side - 1) / packet_side);
 }
 
-/// The pixel of a view, or the last one where the tile reaches beyond it.
-std::size_t held(int pixel, int count) {
-  return static_cast<std::size_t>(std::min(pixel, count - 1));
+/// Pixel `i` of tile number `tile`, or the view's last one where the tile reaches beyond it.
+int pixel_of(std::size_t tile, int i, int count) {
+  return std::min(static_cast<int>(tile) * packet_side + i, count - 1);
 }
 
 }  // namespace
 
 RaySampler::View::View(const SubView& view) : geometry(view) {
-  const double cosine = std::cos(view.azimuth_rad);
-  const double sine = std::sin(view.azimuth_rad);
-  starboard = {static_cast<float>(sine), static_cast<float>(-cosine), 0.0F};
-  for (int column = 0; column < view.columns; ++column) {
-    const double x = -view.tan_half_width + (column + 0.5) * view.pixel_width();
-    tangent_x.push_back(static_cast<float>(x));
-    ray_x.push_back(static_cast<float>(cosine + x * sine));
-    ray_y.push_back(static_cast<float>(sine - x * cosine));
+  tangent_x.resize(tile_count(view.columns));
+  tangent_y.resize(tile_count(view.rows));
+  middle_x.resize(tangent_x.size());
+  middle_y.resize(tangent_x.size());
+  middle_z.resize(tangent_x.size());
+  for (std::size_t lane = 0; lane < packet_size; ++lane) {
+    const int in_row = static_cast<int>(lane) % packet_side;
+    const int in_column = static_cast<int>(lane) / packet_side;
+    for (std::size_t tile = 0; tile < tangent_x.size(); ++tile) {
+      const int column = pixel_of(tile, in_row, view.columns);
+      tangent_x[tile][lane] = static_cast<float>(-view.tan_half_width + (column + 0.5) * view.pixel_width());
+    }
+    for (std::size_t tile = 0; tile < tangent_y.size(); ++tile) {
+      const int row = pixel_of(tile, in_column, view.rows);
+      tangent_y[tile][lane] = static_cast<float>(-view.tan_half_height + (row + 0.5) * view.pixel_height());
+    }
   }
-  for (int row = 0; row < view.rows; ++row) {
-    tangent_y.push_back(static_cast<float>(-view.tan_half_height + (row + 0.5) * view.pixel_height()));
+}
+
+void RaySampler::View::turn(const glm::dquat& R_world_sonar) {
+  const double cosine = std::cos(geometry.azimuth_rad);
+  const double sine = std::sin(geometry.azimuth_rad);
+  const glm::vec3 axis(R_world_sonar * glm::dvec3(cosine, sine, 0));
+  starboard = glm::vec3(R_world_sonar * glm::dvec3(sine, -cosine, 0));
+  up = glm::vec3(R_world_sonar * glm::dvec3(0, 0, 1));
+  for (std::size_t tile = 0; tile < tangent_x.size(); ++tile) {
+    for (std::size_t lane = 0; lane < packet_size; ++lane) {
+      const float x = tangent_x[tile][lane];
+      middle_x[tile][lane] = axis.x + x * starboard.x;
+      middle_y[tile][lane] = axis.y + x * starboard.y;
+      middle_z[tile][lane] = axis.z + x * starboard.z;
+    }
   }
 }
 
@@ -67,7 +88,7 @@ void RaySampler::prepare(const SampleGrid& grid) {
   }
   std::vector<std::vector<Rows>> used;
   for (const SubView& view : grid.views) {
-    used.emplace_back(static_cast<std::size_t>(tile_count(view.columns)), Rows{view.rows, 0});
+    used.emplace_back(tile_count(view.columns), Rows{view.rows, 0});
   }
   for (const ColumnPart& part : grid.parts) {
     Rows& rows =
@@ -84,10 +105,11 @@ void RaySampler::prepare(const SampleGrid& grid) {
     const SubView& view = views_[v].geometry;
     views_[v].samples.assign(static_cast<std::size_t>(view.columns) * static_cast<std::size_t>(view.rows),
                              {});
-    for (int row = 0; row < view.rows; row += packet_side) {
-      for (int column = 0; column < view.columns; column += packet_side) {
-        const Rows& rows = used_[v][static_cast<std::size_t>(column / packet_side)];
-        if (row < rows.end && row + packet_side > rows.begin) {
+    for (std::size_t row = 0; row < tile_count(view.rows); ++row) {
+      const int first = static_cast<int>(row) * packet_side;
+      for (std::size_t column = 0; column < tile_count(view.columns); ++column) {
+        const Rows& rows = used_[v][column];
+        if (first < rows.end && first + packet_side > rows.begin) {
           tiles_.push_back({v, column, row});
         }
       }
@@ -98,7 +120,10 @@ void RaySampler::prepare(const SampleGrid& grid) {
 std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                      const SurfaceModel& surface, double max_range_m) {
   prepare(grid);
-  scene_.place(T_world_sonar);
+  scene_.place(T_world_sonar.position_m);
+  for (View& view : views_) {
+    view.turn(T_world_sonar.orientation);
+  }
   const std::size_t jobs = (tiles_.size() + tiles_per_job - 1) / tiles_per_job;
   workers_.run(static_cast<int>(jobs), [&](int job) {
     const std::size_t begin = static_cast<std::size_t>(job) * tiles_per_job;
@@ -116,49 +141,65 @@ std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, 
 
 SONARD_SIMD_CLONES void RaySampler::trace(const Tile& tile, const SurfaceModel& surface, float max_range_m) {
   View& view = views_[tile.view];
-  const SubView& geometry = view.geometry;
-  RayPacket rays;
-  Lanes<float> tangent_x;
+  const glm::vec3 starboard = view.starboard;
+  const glm::vec3 up = view.up;
+  const Lanes<float>& tangent_x = view.tangent_x[tile.column];
+  const Lanes<float>& tangent_y = view.tangent_y[tile.row];
+  RayPacket rays{view.middle_x[tile.column], view.middle_y[tile.column], view.middle_z[tile.column],
+                 starboard * static_cast<float>(view.geometry.pixel_width()),
+                 up * static_cast<float>(view.geometry.pixel_height())};
   for (std::size_t i = 0; i < packet_size; ++i) {
-    const std::size_t column = held(tile.column + packet_column(static_cast<int>(i)), geometry.columns);
-    rays.x[i] = view.ray_x[column];
-    rays.y[i] = view.ray_y[column];
-    rays.z[i] = view.tangent_y[held(tile.row + packet_row(static_cast<int>(i)), geometry.rows)];
-    tangent_x[i] = view.tangent_x[column];
+    rays.x[i] += tangent_y[i] * up.x;
+    rays.y[i] += tangent_y[i] * up.y;
+    rays.z[i] += tangent_y[i] * up.z;
   }
-  rays.step_x = view.starboard * static_cast<float>(geometry.pixel_width());
-  rays.step_y = {0.0F, 0.0F, static_cast<float>(geometry.pixel_height())};
-
-  // No ray of a view is shorter than its axis, so the depth reaches no less far than the range.
+  // No ray of a view is shorter than its axis: the depth reaches no less far than the range.
   SurfacePacket surfaces;
   scene_.trace(rays, surface, max_range_m, surfaces);
 
-  alignas(64) std::array<SurfaceSample, packet_size> samples;
+  alignas(64) Lanes<float> range, range_dx, range_dy, response;
   for (std::size_t i = 0; i < packet_size; ++i) {
-    // Equation (2) of docs/physics.md 2.3: n.q, and n times the two directions of the tangents.
-    const float nq = surfaces.normal_x[i] * rays.x[i] + surfaces.normal_y[i] * rays.y[i] +
-                     surfaces.normal_z[i] * rays.z[i];
-    const float nx = surfaces.normal_x[i] * view.starboard.x + surfaces.normal_y[i] * view.starboard.y;
-    const float qq = 1.0F + tangent_x[i] * tangent_x[i] + rays.z[i] * rays.z[i];
-    SurfaceSample sample;
-    sample.range_m = surfaces.depth[i] * std::sqrt(qq);
-    sample.response = surfaces.response[i];
-    sample.range_dx = sample.range_m * (tangent_x[i] / qq - nx / nq);
-    sample.range_dy = sample.range_m * (rays.z[i] / qq - surfaces.normal_z[i] / nq);
+    // Equation (2) of docs/physics.md 2.3: n times the ray and the two directions of the tangents.
+    const float nx = surfaces.normal_x[i];
+    const float ny = surfaces.normal_y[i];
+    const float nz = surfaces.normal_z[i];
+    const float n_ray = nx * rays.x[i] + ny * rays.y[i] + nz * rays.z[i];
+    const float n_starboard = nx * starboard.x + ny * starboard.y + nz * starboard.z;
+    const float n_up = nx * up.x + ny * up.y + nz * up.z;
+    const float x = tangent_x[i];
+    const float y = tangent_y[i];
+    const float qq = 1.0F + x * x + y * y;
+    const float r = surfaces.depth[i] * std::sqrt(qq);
+    const float dx = r * (x / qq - n_starboard / n_ray);
+    const float dy = r * (y / qq - n_up / n_ray);
+    const bool seen = surfaces.depth[i] != 0.0F;
     // A sum is finite when all its terms are.
-    const float sum = sample.range_m + sample.response + sample.range_dx + sample.range_dy;
-    samples[i] = surfaces.depth[i] == 0.0F ? SurfaceSample{}
-                 : std::isfinite(sum)      ? sample
-                                           : SurfaceSample{-1.0F, 0.0F, 0.0F, 0.0F};
+    const bool valid = std::abs(r + surfaces.response[i] + dx + dy) < INFINITY;
+    range[i] = !seen ? 0.0F : (valid ? r : -1.0F);
+    response[i] = seen && valid ? surfaces.response[i] : 0.0F;
+    range_dx[i] = seen && valid ? dx : 0.0F;
+    range_dy[i] = seen && valid ? dy : 0.0F;
   }
-  const int columns = std::min(packet_side, geometry.columns - tile.column);
-  const int rows = std::min(packet_side, geometry.rows - tile.row);
+  Lanes<SurfaceSample> samples;
   for (std::size_t i = 0; i < packet_size; ++i) {
-    const int column = packet_column(static_cast<int>(i));
-    const int row = packet_row(static_cast<int>(i));
-    if (column < columns && row < rows) {
-      view.samples[static_cast<std::size_t>(tile.row + row) * static_cast<std::size_t>(geometry.columns) +
-                   static_cast<std::size_t>(tile.column + column)] = samples[i];
+    samples[i] = {range[i], response[i], range_dx[i], range_dy[i]};
+  }
+  store(samples, tile, view);
+}
+
+void RaySampler::store(const Lanes<SurfaceSample>& samples, const Tile& tile, View& view) {
+  const int first_column = static_cast<int>(tile.column) * packet_side;
+  const int first_row = static_cast<int>(tile.row) * packet_side;
+  const int columns = std::min(packet_side, view.geometry.columns - first_column);
+  const int rows = std::min(packet_side, view.geometry.rows - first_row);
+  SurfaceSample* to =
+      view.samples.data() + static_cast<std::ptrdiff_t>(first_row) * view.geometry.columns + first_column;
+  const SurfaceSample* from = samples.data();
+  for (int row = 0; row < rows; ++row, from += packet_side, to += view.geometry.columns) {
+    if (columns == packet_side) {
+      std::copy_n(from, packet_side, to);
+    } else {
+      std::copy_n(from, columns, to);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "renderer/scene/world.hpp"
@@ -30,25 +31,30 @@ class RaySampler final : public Sampler {
   /// Patch of packet_side x packet_side pixels, cut at the sides of the view.
   struct Tile {
     std::size_t view = 0;
-    int column = 0, row = 0;  ///< of its first pixel
+    std::size_t column = 0, row = 0;  ///< counted in tiles
   };
   struct Rows {
     int begin = 0, end = 0;
     bool operator==(const Rows&) const = default;
   };
-  /// A view in single precision.
+  /// A view with its rays in the order of a packet's lanes, single precision.
   struct View {
     SubView geometry;
-    std::vector<float> tangent_x, ray_x, ray_y;  ///< by column; rays in the sonar frame
-    std::vector<float> tangent_y;                ///< by row; the z of a ray
-    glm::vec3 starboard;                         ///< what tangent x multiplies
+    std::vector<Lanes<float>> tangent_x;  ///< by column of tiles
+    std::vector<Lanes<float>> tangent_y;  ///< by row of tiles
+    // In world axes, of the current ping: a ray is middle + tangent_y * up.
+    glm::vec3 starboard{0.0F}, up{0.0F};  ///< what the tangents multiply
+    std::vector<Lanes<float>> middle_x, middle_y,
+        middle_z;  ///< by column of tiles: axis + tangent_x * starboard
     std::vector<SurfaceSample> samples;
 
     explicit View(const SubView& view);
+    void turn(const glm::dquat& R_world_sonar);
   };
 
   void prepare(const SampleGrid& grid);
   void trace(const Tile& tile, const SurfaceModel& surface, float max_range_m);
+  static void store(const Lanes<SurfaceSample>& samples, const Tile& tile, View& view);
 
   WorkerPool& workers_;
   EmbreeScene scene_;

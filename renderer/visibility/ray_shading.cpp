@@ -36,13 +36,13 @@ SurfaceShader::SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalP
   normals_ = mapped ? Normals::of_map : mesh_->normals.empty() ? Normals::of_triangles : Normals::of_vertices;
 }
 
-void SurfaceShader::turn(const glm::dquat& R_sonar_part) {
-  axes_ = {glm::vec3(R_sonar_part * glm::dvec3(1, 0, 0)), glm::vec3(R_sonar_part * glm::dvec3(0, 1, 0)),
-           glm::vec3(R_sonar_part * glm::dvec3(0, 0, 1))};
+void SurfaceShader::turn(const glm::dquat& R_world_part) {
+  axes_ = {glm::vec3(R_world_part * glm::dvec3(1, 0, 0)), glm::vec3(R_world_part * glm::dvec3(0, 1, 0)),
+           glm::vec3(R_world_part * glm::dvec3(0, 0, 1))};
 }
 
-glm::vec3 SurfaceShader::to_part(const glm::vec3& v_sonar) const {
-  return {glm::dot(axes_[0], v_sonar), glm::dot(axes_[1], v_sonar), glm::dot(axes_[2], v_sonar)};
+glm::vec3 SurfaceShader::to_part(const glm::vec3& v_world) const {
+  return {glm::dot(axes_[0], v_world), glm::dot(axes_[1], v_world), glm::dot(axes_[2], v_world)};
 }
 
 glm::vec3 SurfaceShader::vertex_normal(std::uint32_t triangle, float u, float v) const {
@@ -62,10 +62,10 @@ float SurfaceShader::map_level(const RayPacket& rays, const RayHits& hits, std::
   const glm::vec2 map_b = mesh_->texcoords[corner[1]] - uv;
   const glm::vec2 map_c = mesh_->texcoords[corner[2]] - uv;
   const glm::vec2 size(map_->levels[0].width_px, map_->levels[0].height_px);
-  const auto texels = [&](const glm::vec3& step_sonar) {
+  const auto texels = [&](const glm::vec3& step_world) {
     // The neighbour's ray meets the plane of the triangle so far away, and the corners' weights change by so
     // much on the way.
-    const glm::vec3 step = to_part(step_sonar);
+    const glm::vec3 step = to_part(step_world);
     const glm::vec3 move = hits.depth[lane] * (step - q * (glm::dot(n, step) / glm::dot(n, q)));
     const float nn = glm::dot(n, n);
     const glm::vec2 moved = map_b * (glm::dot(glm::cross(move, edge_c), n) / nn) +

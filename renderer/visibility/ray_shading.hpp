@@ -21,8 +21,8 @@ class SurfaceShader {
   /// @param map of the part; null when it has none.
   SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalPyramid> map);
 
-  /// Sets the part's axes in the sonar frame.
-  void turn(const glm::dquat& R_sonar_part);
+  /// Sets the part's axes in the world.
+  void turn(const glm::dquat& R_world_part);
   const std::array<glm::vec3, 3>& axes() const { return axes_; }
 
   /// Fills normal and response of the lanes that hit part number `part`, this one.
@@ -40,14 +40,14 @@ class SurfaceShader {
   glm::vec3 vertex_normal(std::uint32_t triangle, float u, float v) const;
   glm::vec3 mapped_normal(const RayPacket& rays, const RayHits& hits, std::size_t lane) const;
   float map_level(const RayPacket& rays, const RayHits& hits, std::size_t lane) const;
-  glm::vec3 to_part(const glm::vec3& v_sonar) const;
+  glm::vec3 to_part(const glm::vec3& v_world) const;
 
   std::shared_ptr<const TriangleMesh> mesh_;
   std::shared_ptr<const NormalPyramid> map_;
   Normals normals_;
   float reflectance_;
   float lambert_mu_;
-  std::array<glm::vec3, 3> axes_{};  // of the part, in the sonar frame
+  std::array<glm::vec3, 3> axes_{};  // of the part, in the world
 };
 
 }  // namespace sonard::render
