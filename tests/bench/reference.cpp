@@ -12,6 +12,8 @@
 #include <string>
 #include <thread>
 
+#include "tests/bench/plane_quadrature.hpp"
+
 namespace sonard::bench {
 
 static_assert(std::endian::native == std::endian::little, "read_npy() takes the bytes as they are");
@@ -19,7 +21,6 @@ static_assert(std::endian::native == std::endian::little, "read_npy() takes the 
 namespace {
 
 constexpr std::array<char, 8> npy_magic{'\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0};
-constexpr int nodes_per_beam = 200;  // range lines make kinks across a beam: many nodes, not a high order
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason) {
   throw std::runtime_error(file.string() + ": " + reason);
@@ -77,7 +78,7 @@ render::EchoImage plane_image(const test::Scene& scene) {
       for (int k = 0; k < image.lines; ++k) {
         const double from_m = std::max(1e-9, k * range.step_m);
         const double echo =
-            scene.plane->beam(edges[b + 1], edges[b], from_m, (k + 1) * range.step_m, nodes_per_beam);
+            plane_beam_echo(*scene.plane, edges[b + 1], edges[b], from_m, (k + 1) * range.step_m);
         image.intensity[b * static_cast<std::size_t>(image.lines) + static_cast<std::size_t>(k)] =
             static_cast<float>(test::scene_lambert_mu * echo);
       }

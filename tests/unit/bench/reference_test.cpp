@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/bench/plane_quadrature.hpp"
+
 namespace sonard::bench {
 namespace {
 
@@ -110,6 +112,33 @@ TEST(PlaneReference, IsTheSeabedOfTheClosedForm) {
     EXPECT_NEAR(static_cast<double>(image.at(1, line)) / (0.03 * per_radian), 1, 1e-5);
   }
   EXPECT_EQ(image.at(0, 500), 0);  // 25 m: above the lowest ray, which meets the bed at 28.8 m
+}
+
+// Against the midpoint rule with so many nodes that kinks do not matter: a wall at the side of the fan, where
+// the first echo sweeps over 35 lines within a beam, an oblique slope, and the benchmark's own plane at its
+// fan's edge.
+TEST(PlaneReference, QuadratureFindsTheKinks) {
+  const double limit = 10 * std::numbers::pi / 180, tilt = 20 * std::numbers::pi / 180;
+  const test::PlaneTruth wall{10, 1, 0, 0, limit};
+  const test::PlaneTruth slope{9 * 0.8, 0.8, 0.36, -0.48, limit};
+  const test::PlaneTruth bed{4, std::sin(tilt), 0, -std::cos(tilt), limit};
+  struct Place {
+    test::PlaneTruth plane;
+    double psi_from, psi_to, r1;
+  };
+  int compared = 0;
+  for (const Place& place :
+       {Place{wall, 1.039, 1.047, 19.7}, Place{wall, 0.0, 0.008, 10.0}, Place{wall, -0.5, -0.492, 11.37},
+        Place{slope, 0.1, 0.108, 8.2}, Place{slope, -0.9, -0.892, 10.0}, Place{bed, 1.039, 1.047, 11.0},
+        Place{bed, 0.5, 0.508, 8.9}}) {
+    for (double r1 = place.r1; r1 < place.r1 + 0.4; r1 += 0.02) {
+      const double truth = place.plane.beam(place.psi_from, place.psi_to, r1, r1 + 0.02, 20'000);
+      const double quick = plane_beam_echo(place.plane, place.psi_from, place.psi_to, r1, r1 + 0.02);
+      EXPECT_NEAR(quick, truth, 2e-6 * truth + 1e-12) << place.psi_from << " " << r1;
+      compared += truth > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(compared, 70);
 }
 
 }  // namespace

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Draws error against time, and time against size, from what sonard_bench wrote.
+
+  tests/bench/plot.py out/bench.json docs/images/benchmark
+"""
+
+import argparse
+import pathlib
+import re
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
+
+from bench_results import Results, pareto  # noqa: E402
+
+COLOURS = {"ray": "#0b6fb8", "raster": "#c2570c"}  # told apart by colour-blind readers too
+PRESETS = {"fast": "v", "default": "s", "reference": "D"}
+SEABED = ["plane", "flat100k", "swell100k", "ripple100k", "swell1m", "docking"]
+SCANNING = ["msis_swell", "msis_ripple"]
+SIZES = {"triangles": "triangles", "beams": "beams", "bins": "range lines", "cores": "cores"}
+
+
+def draw_backend(axes, results, scene, backend):
+    colour = COLOURS[backend]
+    grid = results.curve(scene, backend, "grid_")
+    axes.plot([p[0] for p in grid], [p[1] for p in grid], "o", color=colour, ms=3.5, alpha=0.55,
+              label=f"{backend}: fixed grids")
+    points = results.curve(scene, backend, "point_")
+    axes.plot([p[0] for p in points], [p[1] for p in points], "x--", color=colour, ms=5, lw=0.8, alpha=0.55,
+              label=f"{backend}: points, no footprint")
+    presets = [p for name in PRESETS for p in results.curve(scene, backend, name) if p[2] == name]
+    for x, y, name in presets:
+        axes.plot(x, y, PRESETS[name], color=colour, ms=8, mec="black", mew=0.6)
+        axes.annotate(name, (x, y), textcoords="offset points", xytext=(6, 5), fontsize=7, color=colour)
+    front = pareto(grid + points + presets)
+    axes.plot([p[0] for p in front], [p[1] for p in front], "-", color=colour, lw=1.4, label=f"{backend}: best")
+
+
+def draw_scene(axes, results, scene):
+    for backend in results.backends():
+        draw_backend(axes, results, scene, backend)
+    for bound in (0.05, 0.01):
+        axes.axhline(bound, color="grey", lw=0.6, ls=":")
+    axes.set(xscale="log", yscale="log", title=scene)
+    axes.grid(True, which="major", lw=0.3)
+
+
+def draw_fronts(results, scenes, path):
+    """One panel a scene that has a reference; nothing where none has."""
+    scenes = [s for s in scenes if any("bin_rms" in v for b in results.backends() for v in results.of(s, b).values())]
+    if not scenes:
+        return
+    columns = min(3, len(scenes))
+    rows = -(-len(scenes) // columns)
+    figure, panels = plt.subplots(rows, columns, figsize=(4.4 * columns, 3.6 * rows), squeeze=False)
+    for axes in panels.flat[len(scenes):]:
+        axes.axis("off")
+    for axes, scene in zip(panels.flat, scenes):
+        draw_scene(axes, results, scene)
+    for axes in panels[:, 0]:
+        axes.set_ylabel("bin RMS error")
+    for axes in panels.flat[max(0, len(scenes) - columns):len(scenes)]:
+        axes.set_xlabel("ms per ping")
+    handles, labels = panels.flat[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=3, fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0, 0.05 + 0.02 / rows, 1, 1))
+    save(figure, path)
+
+
+def draw_growth(results, path):
+    """Time of each preset against what grows, log-log; scenes are named NAME@WHAT=VALUE."""
+    families = {}
+    for scene in results.scenes():
+        match = re.fullmatch(r".*@(\w+)=(.*)", scene)
+        if match:
+            families.setdefault(match[1], []).append((float(match[2]), scene))
+    if not families:
+        return
+    figure, panels = plt.subplots(1, len(families), figsize=(3.6 * len(families), 3.4), squeeze=False)
+    for axes, (what, members) in zip(panels.flat, families.items()):
+        for backend in results.backends():
+            for preset, marker in PRESETS.items():
+                line = [(x, results.points[s, backend, preset]["ping_ms"]) for x, s in sorted(members)
+                        if "ping_ms" in results.points.get((s, backend, preset), {})]
+                axes.plot([p[0] for p in line], [p[1] for p in line], marker + "-", color=COLOURS[backend], ms=4,
+                          lw=1, label=f"{backend} {preset}" if line else None)
+        axes.set(xscale="log", yscale="log", xlabel=SIZES.get(what, what))
+        axes.grid(True, which="major", lw=0.3)
+    panels[0, 0].set_ylabel("ms per ping")
+    panels[0, -1].legend(fontsize=7, frameon=False)
+    figure.tight_layout()
+    save(figure, path)
+
+
+def save(figure, path):
+    figure.savefig(path, dpi=110, metadata={"Software": None})  # the same picture gives the same bytes
+    plt.close(figure)
+    print(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("json", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    arguments = parser.parse_args()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+    results = Results(arguments.json)
+    standard = [s for s in results.scenes() if "@" not in s]
+    draw_fronts(results, [s for s in SEABED if s in standard], arguments.folder / "pareto_seabed.png")
+    draw_fronts(results, [s for s in SCANNING if s in standard], arguments.folder / "pareto_scanning.png")
+    draw_fronts(results, [s for s in standard if re.match(r"b\d_", s)], arguments.folder / "pareto_b1_to_b7.png")
+    draw_growth(results, arguments.folder / "growth.png")
+
+
+if __name__ == "__main__":
+    main()
