@@ -100,6 +100,9 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--error-max", command.slices.error_max, "and below this error of every bin")
       ->capture_default_str();
+  app.add_option("--intervals", command.slices.first_intervals,
+                 "first division of a beam of half a degree: finer than the smallest thing")
+      ->capture_default_str();
   app.add_option("--max-slices", command.slices.max_slices_per_beam, "or at this many slices")
       ->capture_default_str();
   app.add_option("--ray-check", command.ray_check_stride, "compare every so many beams with rays; 0: none")
