@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws error against time, and time against size, from what sonard_bench wrote.
 
   tests/bench/plot.py out/bench.json docs/images/benchmark
@@ -34,7 +34,7 @@ def draw_backend(axes, results, scene, backend):
     for x, y, name in presets:
         axes.plot(x, y, PRESETS[name], color=colour, ms=8, mec="black", mew=0.6)
         axes.annotate(name, (x, y), textcoords="offset points", xytext=(6, 5), fontsize=7, color=colour)
-    front = pareto(grid + points + presets)
+    front = pareto(grid + presets)
     axes.plot([p[0] for p in front], [p[1] for p in front], "-", color=colour, lw=1.4, label=f"{backend}: best")
 
 
@@ -64,7 +64,7 @@ def draw_fronts(results, scenes, path):
     for axes in panels.flat[max(0, len(scenes) - columns):len(scenes)]:
         axes.set_xlabel("ms per ping")
     handles, labels = panels.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=3, fontsize=8, frameon=False)
+    figure.legend(handles, labels, loc="lower center", ncol=min(3, columns + 1), fontsize=8, frameon=False)
     figure.tight_layout(rect=(0, 0.05 + 0.02 / rows, 1, 1))
     save(figure, path)
 

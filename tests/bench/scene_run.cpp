@@ -14,12 +14,6 @@ constexpr double step_between_pings_m = 1e-3;
 constexpr int poses = 16;
 constexpr int warm_up_pings = 3;
 
-/// Starts the watch over memory, then makes the renderer.
-render::World watched(const render::World& world) {
-  reset_peak_memory();
-  return world;
-}
-
 /// The pose of timed ping `i`, always another one than before.
 void move(render::PingRequest& request, const render::Pose& start, int i) {
   request.T_world_sonar.position_m = start.position_m;
@@ -39,7 +33,7 @@ bool is_scanning(const test::Scene& scene) {
 }  // namespace
 
 SceneRun::SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results)
-    : scene_(scene), results_(results), renderer_(watched(scene.world), options) {}
+    : scene_(scene), results_(results), renderer_(scene.world, options) {}
 
 Subject SceneRun::subject(const Point& point) const {
   return {scene_.name, std::string(render::name_of(renderer_.backend())), point.name};
@@ -52,6 +46,7 @@ render::PingRequest SceneRun::request(const Point& point) const {
 }
 
 void SceneRun::measure(const Point& point, const Reference* reference, const Repetition& repetition) {
+  reset_peak_memory();
   const render::PingRequest still = request(point);
   const render::EchoImage image = renderer_.render_echo(still);
   const render::PingStatistics statistics = renderer_.last_statistics();
