@@ -25,13 +25,13 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/visibility/egl_context.hpp"
+#include "renderer/visibility/normal_pyramid.hpp"
 #include "renderer/visibility/surface_shader.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-constexpr double near_plane_m = 0.02;          // reversed infinite depth loses nothing by a small value
 constexpr std::size_t chunk_triangles = 2048;  // what culling by view and range works on
 constexpr unsigned tangent_attribute = 6;
 constexpr int normal_map_unit = 0;
@@ -54,12 +54,13 @@ osg::Matrixd view_matrix(const SubView& view) {
 }
 
 /// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative
-/// terms (docs/physics.md 4.2). Visibility only; ranges never come from the depth buffer.
+/// terms and loses nothing by a small near distance (docs/physics.md 4.2). Visibility only; ranges never come
+/// from the depth buffer.
 osg::Matrixd projection_matrix(const SubView& view) {
   return osg::Matrixd(1 / view.tan_half_width, 0, 0, 0,   //
                       0, 1 / view.tan_half_height, 0, 0,  //
                       0, 0, 0, -1,                        //
-                      0, 0, near_plane_m, 0);
+                      0, 0, static_cast<double>(nearest_depth_m), 0);
 }
 
 /// Culls a chunk that lies wholly beyond the range of the sonar.
@@ -174,18 +175,30 @@ osg::ref_ptr<osg::Geometry> make_geometry(const TriangleMesh& mesh,
   return geometry;
 }
 
-osg::ref_ptr<osg::Texture2D> make_texture(const NormalMap& map) {
+/// The texels of all levels, as surface_shader.hpp reads them, and where the levels are.
+void add_normal_map(const NormalMap& map, osg::StateSet& state) {
+  const NormalPyramid pyramid(map);
+  constexpr std::size_t row_texels = 4096;
+  const std::size_t rows = (pyramid.texels.size() + row_texels - 1) / row_texels;
   osg::ref_ptr<osg::Image> image = new osg::Image;
-  image->allocateImage(map.width_px, map.height_px, 1, GL_RGB, GL_UNSIGNED_BYTE);
-  std::memcpy(image->data(), map.rgb.data(), map.rgb.size());
+  image->allocateImage(row_texels, static_cast<int>(rows), 1, GL_RGBA_INTEGER_EXT, GL_SHORT);
+  std::memcpy(image->data(), pyramid.texels.data(), pyramid.texels.size() * sizeof(NormalPyramid::Texel));
   osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
-  texture->setInternalFormat(GL_RGB8);
-  texture->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
-  texture->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
-  texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
-  texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
+  texture->setInternalFormat(GL_RGBA16I_EXT);
+  texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+  texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
   texture->setResizeNonPowerOfTwoHint(false);
-  return texture;
+  state.setTextureAttributeAndModes(normal_map_unit, texture);
+
+  const auto level_count = static_cast<int>(pyramid.levels.size());
+  osg::ref_ptr<osg::Uniform> levels = new osg::Uniform(osg::Uniform::INT_VEC3, "map_levels", level_count);
+  for (int i = 0; i < level_count; ++i) {
+    const NormalPyramid::Level& level = pyramid.levels[static_cast<std::size_t>(i)];
+    levels->setElement(static_cast<unsigned>(i), level.width_px, level.height_px,
+                       static_cast<int>(level.first_texel));
+  }
+  state.addUniform(levels);
+  state.addUniform(new osg::Uniform("map_level_count", level_count));
 }
 
 enum Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
@@ -203,7 +216,7 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
                           : part.mesh->normals.empty() ? geometric_normal
                                                        : vertex_normals;
   if (mapped) {
-    state->setTextureAttributeAndModes(normal_map_unit, make_texture(*part.normal_map));
+    add_normal_map(*part.normal_map, *state);
   }
   state->addUniform(new osg::Uniform("shading", static_cast<int>(shading)));
   state->addUniform(new osg::Uniform("reflectance", static_cast<float>(part.material.reflectance)));

@@ -1,4 +1,5 @@
-// The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the shader.
+// The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the
+// shader.
 #pragma once
 
 namespace sonard::render {
@@ -30,21 +31,64 @@ layout(location = 0) out vec4 surface_sample;
 uniform vec2 tan_half;        // of the view
 uniform vec2 pixels;
 uniform int shading;          // 0 geometric normal, 1 vertex normals, 2 normal map
-uniform sampler2D normal_map;
+uniform isampler2D normal_map;  // texels of all levels, one after the other, in rows of 4096
+uniform ivec3 map_levels[16];    // width, height, first texel
+uniform int map_level_count;
 uniform float reflectance;
 uniform float lambert_mu;
 uniform int model;            // 0 paper, 1 physical
 uniform vec2 sigmoid;         // slope, centre
 uniform float attenuation_per_m;
 
-vec3 shading_normal(vec3 plane) {
+// NormalPyramid::mean_normal() and its helper, term by term, on the same texels in the same order. Filters of the
+// texture unit will not do: they weigh texels in steps of 1/256, and llvmpipe gives four pixels one level.
+vec3 texel(int i) {
+  return vec3(texelFetch(normal_map, ivec2(i & 4095, i >> 12), 0).xyz);
+}
+
+vec3 bilinear(ivec3 level, vec2 uv) {
+  ivec2 size = level.xy;
+  vec2 position = uv * vec2(size) - 0.5;
+  vec2 corner = floor(position);
+  vec2 part = position - corner;
+  ivec2 low = ivec2(corner);
+  low += ivec2(lessThan(low, ivec2(0))) * size - ivec2(greaterThanEqual(low, size)) * size;
+  ivec2 high = low + 1;
+  high -= ivec2(greaterThanEqual(high, size)) * size;
+  int below = level.z + low.y * size.x;
+  int above = level.z + high.y * size.x;
+  return mix(mix(texel(below + low.x), texel(below + high.x), part.x),
+             mix(texel(above + low.x), texel(above + high.x), part.x), part.y) / 32767.0;
+}
+
+vec3 mean_normal(vec2 uv, float level) {
+  uv -= floor(uv);
+  float held = level > 0.0 ? min(level, float(map_level_count - 1)) : 0.0;
+  int low = int(held);
+  float part = held - float(low);
+  vec3 fine = bilinear(map_levels[low], uv);
+  return part > 0.0 ? mix(fine, bilinear(map_levels[low + 1], uv), part) : fine;
+}
+
+// How many texels a pixel spans, as the level whose texels are as large. Like the inverse depth, texture
+// coordinates over depth are affine in the tangents, so that their derivatives are exact.
+float map_level(float inverse_depth, vec2 inverse_depth_step) {
+  vec2 over_depth = texcoord * inverse_depth;
+  vec2 texels_per_step = vec2(map_levels[0].xy) / inverse_depth;
+  vec2 dx = (dFdx(over_depth) - texcoord * inverse_depth_step.x) * texels_per_step;
+  vec2 dy = (dFdy(over_depth) - texcoord * inverse_depth_step.y) * texels_per_step;
+  return 0.5 * log2(max(dot(dx, dx), dot(dy, dy)));
+}
+
+// Not of unit length where a map averages.
+vec3 shading_normal(vec3 plane, float level) {
   if (shading == 0) return plane;
   vec3 n = normalize(normal_eye);
   if (shading == 2) {
     vec3 t = normalize(tangent_eye.xyz - n * dot(n, tangent_eye.xyz));
     vec3 b = cross(n, t) * tangent_eye.w;
-    vec3 m = texture(normal_map, texcoord).xyz * 2.0 - 1.0;
-    n = normalize(t * m.x + b * m.y + n * m.z);
+    vec3 m = mean_normal(texcoord, level);
+    n = t * m.x + b * m.y + n * m.z;
   }
   return any(isnan(n)) ? plane : n;
 }
@@ -53,14 +97,16 @@ void main() {
   vec2 t = (gl_FragCoord.xy / pixels * 2.0 - 1.0) * tan_half;
   vec2 pixel = 2.0 * tan_half / pixels;
   float inverse_depth = gl_FragCoord.w;
-  vec2 slope = vec2(dFdx(inverse_depth), dFdy(inverse_depth)) / pixel;
+  vec2 step = vec2(dFdx(inverse_depth), dFdy(inverse_depth));
+  vec2 slope = step / pixel;
   vec3 q = vec3(t, -1.0);
   float qq = dot(q, q);
   float range = sqrt(qq) / inverse_depth;
   vec2 range_d = range * (t / qq - slope / inverse_depth);
 
   vec3 plane = normalize(vec3(slope, dot(slope, t) - inverse_depth));
-  float cos_phi = clamp(abs(dot(shading_normal(plane), q)) * inversesqrt(qq), 0.0, 1.0);
+  float level = shading == 2 ? map_level(inverse_depth, step) : 0.0;
+  float cos_phi = clamp(abs(dot(shading_normal(plane, level), q)) * inversesqrt(qq), 0.0, 1.0);
   float response;
   if (model == 1) {
     response = lambert_mu * cos_phi;

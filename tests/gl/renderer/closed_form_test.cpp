@@ -2,13 +2,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/backend_test.hpp"
 #include "tests/support/closed_forms.hpp"
-#include "tests/support/gl_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::GlTest;
+using test::BackendTest;
 using test::make_body;
 using test::make_quad;
 using test::make_world;
@@ -65,18 +65,21 @@ void expect_truth(const Comparison& comparison) {
   EXPECT_EQ(comparison.holes, 0);
 }
 
-using ClosedForm = GlTest;
+class ClosedForm : public BackendTest {};
 
-TEST_F(ClosedForm, T2_PerpendicularWall) {
-  SonarRenderer renderer(make_world({make_body("wall", make_quad({10, -80, -40}, {0, 160, 0}, {0, 0, 80}))}));
+INSTANTIATE_TEST_SUITE_P(Backends, ClosedForm, test::all_backends(), test::backend_name);
+
+TEST_P(ClosedForm, T2_PerpendicularWall) {
+  SonarRenderer renderer(make_world({make_body("wall", make_quad({10, -80, -40}, {0, 160, 0}, {0, 0, 80}))}),
+                         options());
   const PingRequest request = gemini_request(2600);
   const double limit = request.settings.aperture.elevation_limit_rad();
   expect_truth(compare(renderer.render_echo(request), request, PlaneTruth{10, 1, 0, 0, limit}));
 }
 
-TEST_F(ClosedForm, T3_FlatSeabed) {
-  SonarRenderer renderer(
-      make_world({make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0}))}));
+TEST_P(ClosedForm, T3_FlatSeabed) {
+  SonarRenderer renderer(make_world({make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0}))}),
+                         options());
   for (const double altitude_m : {1.5, 2.5, 3.0}) {
     PingRequest request = gemini_request(2411);
     request.T_world_sonar.position_m.z = altitude_m;
@@ -85,9 +88,9 @@ TEST_F(ClosedForm, T3_FlatSeabed) {
   }
 }
 
-TEST_F(ClosedForm, T3_SeabedUnderATiltedSonar) {
-  SonarRenderer renderer(
-      make_world({make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0}))}));
+TEST_P(ClosedForm, T3_SeabedUnderATiltedSonar) {
+  SonarRenderer renderer(make_world({make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0}))}),
+                         options());
   PingRequest request = gemini_request(2411);
   const double tilt = 20 * degree;
   request.T_world_sonar.position_m.z = 4;
@@ -97,13 +100,14 @@ TEST_F(ClosedForm, T3_SeabedUnderATiltedSonar) {
                        PlaneTruth{4, std::sin(tilt), 0, -std::cos(tilt), limit}));
 }
 
-TEST_F(ClosedForm, T1_ObliqueSlope) {
+TEST_P(ClosedForm, T1_ObliqueSlope) {
   // A plane through (9, 0, 0) whose normal points away, to port and up.
   const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.35, -0.5));
   const glm::dvec3 a = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1)));
   const glm::dvec3 b = glm::cross(n, a);
   const glm::dvec3 corner = glm::dvec3(9, 0, 0) - 300.0 * a - 300.0 * b;
-  SonarRenderer renderer(make_world({make_body("slope", make_quad(corner, 600.0 * a, 600.0 * b))}));
+  SonarRenderer renderer(make_world({make_body("slope", make_quad(corner, 600.0 * a, 600.0 * b))}),
+                         options());
   PingRequest request = gemini_request(4000);
   const double limit = request.settings.aperture.elevation_limit_rad();
   expect_truth(compare(renderer.render_echo(request), request, PlaneTruth{9 * n.x, n.x, n.y, n.z, limit}));
@@ -111,10 +115,10 @@ TEST_F(ClosedForm, T1_ObliqueSlope) {
 
 // Footprints near the limb reach beyond it: silhouettes converge with first order, so the total is right at
 // the demo's sampling (T4 total 1.411161e-4 is the document's worked value) and the shape at a finer one.
-TEST_F(ClosedForm, T4_Sphere) {
+TEST_P(ClosedForm, T4_Sphere) {
   Body sphere = make_body("sphere", test::make_sphere(0.5F, 256));
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
-  SonarRenderer renderer(make_world({sphere}));
+  SonarRenderer renderer(make_world({sphere}), options());
   PingRequest request = gemini_request(1100);
   const auto rms_and_total = [&] {
     const EchoImage image = renderer.render_echo(request);
@@ -143,9 +147,10 @@ TEST_F(ClosedForm, T4_Sphere) {
 }
 
 // T6: beams left of the edge hold only the near wall, beams right of it only the far one, nothing in between.
-TEST_F(ClosedForm, T6_TwoHalfPlanes) {
+TEST_P(ClosedForm, T6_TwoHalfPlanes) {
   SonarRenderer renderer(make_world({make_body("near", make_quad({8, 0, -30}, {0, 60, 0}, {0, 0, 60})),
-                                     make_body("far", make_quad({12, -90, -30}, {0, 180, 0}, {0, 0, 60}))}));
+                                     make_body("far", make_quad({12, -90, -30}, {0, 180, 0}, {0, 0, 60}))}),
+                         options());
   const PingRequest request = gemini_request(1700);
   const EchoImage image = renderer.render_echo(request);
   const auto first_line = [&](int beam) {
@@ -166,9 +171,10 @@ TEST_F(ClosedForm, T6_TwoHalfPlanes) {
 }
 
 // T7: thin wall 1.5 m high, 12 m away on a flat bed 5 m below: shadow on (13.0, 17.857) m.
-TEST_F(ClosedForm, T7_ShadowOfAWall) {
+TEST_P(ClosedForm, T7_ShadowOfAWall) {
   SonarRenderer renderer(make_world({make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0})),
-                                     make_body("wall", make_quad({12, -60, 0}, {0, 120, 0}, {0, 0, 1.5}))}));
+                                     make_body("wall", make_quad({12, -60, 0}, {0, 120, 0}, {0, 0, 1.5}))}),
+                         options());
   PingRequest request = gemini_request(900);
   request.settings.range.step_m = 0.025;
   request.settings.sampling.rows = 4096;  // a row then spans less than a line at the end of the shadow
@@ -189,9 +195,9 @@ TEST_F(ClosedForm, T7_ShadowOfAWall) {
 }
 
 // T11: a strip narrower than a beam at each beam's centre is strongest in that beam.
-TEST_F(ClosedForm, T11_EveryBeamLooksWhereItsTableSays) {
+TEST_P(ClosedForm, T11_EveryBeamLooksWhereItsTableSays) {
   SonarRenderer renderer(
-      make_world({make_body("strip", make_quad({0, -0.01F, -3}, {0, 0.02F, 0}, {0, 0, 6}))}));
+      make_world({make_body("strip", make_quad({0, -0.01F, -3}, {0, 0.02F, 0}, {0, 0, 6}))}), options());
   PingRequest request = gemini_request(1250);
   request.settings.sampling = {3, 1024, 64};
   for (int beam = 0; beam < 256; ++beam) {
@@ -218,8 +224,9 @@ TEST_F(ClosedForm, T11_EveryBeamLooksWhereItsTableSays) {
 }
 
 // T14: the echo of a wall at twice the distance is weaker by 20 log10 2 + 2 alpha d, and nothing else.
-TEST_F(ClosedForm, T14_Absorption) {
-  SonarRenderer renderer(make_world({make_body("wall", make_quad({0, -80, -40}, {0, 160, 0}, {0, 0, 80}))}));
+TEST_P(ClosedForm, T14_Absorption) {
+  SonarRenderer renderer(make_world({make_body("wall", make_quad({0, -80, -40}, {0, 160, 0}, {0, 0, 80}))}),
+                         options());
   PingRequest request = gemini_request(2600);
   constexpr double alpha_db_per_m = 0.2085;
   request.settings.physical.absorption_db_per_m = alpha_db_per_m;

@@ -3,12 +3,12 @@
 #include <numbers>
 #include <numeric>
 
-#include "tests/support/gl_test.hpp"
+#include "tests/support/backend_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::GlTest;
+using test::BackendTest;
 using test::make_body;
 using test::make_quad;
 using test::make_sphere;
@@ -40,18 +40,20 @@ double beam_sum(const EchoImage& image, int from, int to) {
                          image.intensity.begin() + static_cast<std::ptrdiff_t>(to) * image.lines, 0.0);
 }
 
-using Image = GlTest;
+class Image : public BackendTest {};
 
-TEST_F(Image, SelfTestPasses) {
-  EXPECT_LT(run_self_test(), 0.02);
+INSTANTIATE_TEST_SUITE_P(Backends, Image, test::all_backends(), test::backend_name);
+
+TEST_P(Image, SelfTestPasses) {
+  EXPECT_LT(run_self_test(options()), 0.02);
 }
 
-TEST_F(Image, SameRequestGivesTheSameBytes) {
+TEST_P(Image, SameRequestGivesTheSameBytes) {
   const PingRequest request = small_request();
-  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}));
+  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}), options());
   const PingSamples first = renderer.render_ping(request);
   EXPECT_EQ(renderer.render_ping(request).u8, first.u8);
-  SonarRenderer other(bed_and_ball({8, 1, 0.5}));
+  SonarRenderer other(bed_and_ball({8, 1, 0.5}), options());
   EXPECT_EQ(other.render_ping(request).u8, first.u8);
   PingRequest next = request;
   next.ping_number = 5;
@@ -61,15 +63,16 @@ TEST_F(Image, SameRequestGivesTheSameBytes) {
   EXPECT_NE(other.render_ping(next).u8, first.u8);
 }
 
-TEST_F(Image, TargetToPortIsInTheLowBeams) {
+TEST_P(Image, TargetToPortIsInTheLowBeams) {
   PingRequest request = small_request();
   request.T_world_sonar.orientation = {1, 0, 0, 0};
   for (const double side : {1.0, -1.0}) {
     SonarRenderer renderer(make_world({[&] {
-      Body ball = make_body("ball", make_sphere(0.5F, 32));
-      ball.T_world_body.position_m = {8, 3 * side, 3};
-      return ball;
-    }()}));
+                             Body ball = make_body("ball", make_sphere(0.5F, 32));
+                             ball.T_world_body.position_m = {8, 3 * side, 3};
+                             return ball;
+                           }()}),
+                           options());
     const EchoImage image = renderer.render_echo(request);
     const double port = beam_sum(image, 0, 32);
     const double starboard = beam_sum(image, 32, 64);
@@ -78,8 +81,8 @@ TEST_F(Image, TargetToPortIsInTheLowBeams) {
   }
 }
 
-TEST_F(Image, BodiesMove) {
-  SonarRenderer renderer(bed_and_ball({8, 2, 0.5}));
+TEST_P(Image, BodiesMove) {
+  SonarRenderer renderer(bed_and_ball({8, 2, 0.5}), options());
   const PingRequest request = small_request();
   const EchoImage before = renderer.render_echo(request);
   EXPECT_FALSE(renderer.set_body_pose("no such body", {}));
@@ -92,9 +95,9 @@ TEST_F(Image, BodiesMove) {
 }
 
 // docs/physics.md 4.3 S2: far from the origin and rotated, the picture stays.
-TEST_F(Image, FarFromTheOriginTheImageIsTheSame) {
+TEST_P(Image, FarFromTheOriginTheImageIsTheSame) {
   const PingRequest request = small_request();
-  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}));
+  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}), options());
   const EchoImage here = renderer.render_echo(request);
   const float strongest = *std::max_element(here.intensity.begin(), here.intensity.end());
   for (const double shift_m : {1e5, 1e6, 1e7}) {
@@ -104,7 +107,7 @@ TEST_F(Image, FarFromTheOriginTheImageIsTheSame) {
     for (Body& body : world.bodies) {
       body.T_world_body = T_far_world * body.T_world_body;
     }
-    SonarRenderer far_renderer(world);
+    SonarRenderer far_renderer(world, options());
     PingRequest far_request = request;
     far_request.T_world_sonar = T_far_world * request.T_world_sonar;
     const EchoImage there = far_renderer.render_echo(far_request);
@@ -116,8 +119,8 @@ TEST_F(Image, FarFromTheOriginTheImageIsTheSame) {
   }
 }
 
-TEST_F(Image, BadRequestsAreRefusedByName) {
-  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}));
+TEST_P(Image, BadRequestsAreRefusedByName) {
+  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}), options());
   const auto refused = [&](auto change) {
     PingRequest request = small_request();
     change(request);
@@ -137,8 +140,8 @@ TEST_F(Image, BadRequestsAreRefusedByName) {
 }
 
 // S3: a sonar lying in a surface, or touching it, sees no NaN.
-TEST_F(Image, GrazingAndTouchingSurfacesStayFinite) {
-  SonarRenderer renderer(bed_and_ball({0, 0, 0}));
+TEST_P(Image, GrazingAndTouchingSurfacesStayFinite) {
+  SonarRenderer renderer(bed_and_ball({0, 0, 0}), options());
   PingRequest request = small_request();
   for (const double height_m : {0.0, 1e-9, 1e-6, 1e-3, 0.1, 0.5}) {
     request.T_world_sonar.position_m = {0, 0, height_m};
@@ -149,8 +152,8 @@ TEST_F(Image, GrazingAndTouchingSurfacesStayFinite) {
   }
 }
 
-TEST_F(Image, ListeningOnlyHearsOnlyNoise) {
-  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}));
+TEST_P(Image, ListeningOnlyHearsOnlyNoise) {
+  SonarRenderer renderer(bed_and_ball({8, 1, 0.5}), options());
   PingRequest request = small_request();
   request.settings.transmit = false;
   const EchoImage image = renderer.render_echo(request);
@@ -160,7 +163,7 @@ TEST_F(Image, ListeningOnlyHearsOnlyNoise) {
 }
 
 // A normal map that tilts every normal by a known angle changes the echo of a wall by the ratio of cosines.
-TEST_F(Image, NormalMapTiltsTheNormal) {
+TEST_P(Image, NormalMapTiltsTheNormal) {
   TriangleMesh quad = make_quad({10, 80, -40}, {0, -160, 0}, {0, 0, 80});
   quad.normals.assign(4, {-1, 0, 0});
   quad.tangents.assign(4, {0, 0, 1, 1});  // tangent up: a map pointing along it looks up
@@ -179,9 +182,9 @@ TEST_F(Image, NormalMapTiltsTheNormal) {
     r.settings.aperture.vertical_beamwidth_rad = 2 * degree;
     return r;
   }();
-  const double smooth = beam_sum(SonarRenderer(world).render_echo(request), 31, 33);
+  const double smooth = beam_sum(SonarRenderer(world, options()).render_echo(request), 31, 33);
   world.bodies[0].parts[0].normal_map = map;
-  const double mapped = beam_sum(SonarRenderer(world).render_echo(request), 31, 33);
+  const double mapped = beam_sum(SonarRenderer(world, options()).render_echo(request), 31, 33);
   EXPECT_NEAR(mapped / smooth, std::cos(tilt), 0.01);
 }
 

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/gl_test.hpp"
+#include "tests/support/backend_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::GlTest;
+using test::BackendTest;
 using test::make_body;
 using test::make_quad;
 using test::make_world;
@@ -32,13 +32,15 @@ double sigmoid(double x) {
   return 1 / (1 + std::exp(-18 * (x - 2.0 / 3)));
 }
 
-using Paper = GlTest;
+class Paper : public BackendTest {};
+
+INSTANTIATE_TEST_SUITE_P(Backends, Paper, test::all_backends(), test::backend_name);
 
 // I_bin is the mean of S over the bin: S(rho D / r) for a plane, whatever the distance: no spreading, no
 // absorption.
-TEST_F(Paper, PlaneFollowsTheSigmoid) {
+TEST_P(Paper, PlaneFollowsTheSigmoid) {
   for (const double rho : {0.35, 0.8, 1.0}) {
-    SonarRenderer renderer(wall_world(rho));
+    SonarRenderer renderer(wall_world(rho), options());
     const PingRequest request = paper_request(1000, 0.025);
     const EchoImage image = renderer.render_echo(request);
     int compared = 0;
@@ -57,14 +59,14 @@ TEST_F(Paper, PlaneFollowsTheSigmoid) {
   }
 }
 
-TEST_F(Paper, ReflectanceAboveOneClamps) {
-  SonarRenderer renderer(wall_world(2.12));
+TEST_P(Paper, ReflectanceAboveOneClamps) {
+  SonarRenderer renderer(wall_world(2.12), options());
   const EchoImage image = renderer.render_echo(paper_request(1000, 0.025));
   EXPECT_NEAR(image.at(127, 402), sigmoid(1.0), 1e-4);
 }
 
-TEST_F(Paper, AttenuationOfTheLaterReleaseActsBeforeTheSigmoid) {
-  SonarRenderer renderer(wall_world(1.0));
+TEST_P(Paper, AttenuationOfTheLaterReleaseActsBeforeTheSigmoid) {
+  SonarRenderer renderer(wall_world(1.0), options());
   PingRequest request = paper_request(1000, 0.025);
   request.settings.paper = PaperModel::release_2018();
   const EchoImage image = renderer.render_echo(request);
@@ -72,9 +74,9 @@ TEST_F(Paper, AttenuationOfTheLaterReleaseActsBeforeTheSigmoid) {
   EXPECT_NEAR(image.at(127, 402), sigmoid(10 / range_m * std::exp(-2 * 0.024 * range_m)), 0.006);
 }
 
-TEST_F(Paper, BackFacesCanBeDropped) {
+TEST_P(Paper, BackFacesCanBeDropped) {
   SonarRenderer renderer(
-      make_world({make_body("towards", make_quad({10, 80, -40}, {0, -160, 0}, {0, 0, 80}))}));
+      make_world({make_body("towards", make_quad({10, 80, -40}, {0, -160, 0}, {0, 0, 80}))}), options());
   PingRequest request = paper_request(1000, 0.025);
   const auto brightest = [](const EchoImage& image) {
     return *std::max_element(image.intensity.begin(), image.intensity.end());
@@ -92,8 +94,8 @@ TEST_F(Paper, BackFacesCanBeDropped) {
 }
 
 // A4: floor(r / R_max (N - 1)) puts a wall at 10 m of 20 m, 1001 lines of it, into line 500 instead of 500.5.
-TEST_F(Paper, LegacyBinIndexAndPointSamples) {
-  SonarRenderer renderer(wall_world(1.0));
+TEST_P(Paper, LegacyBinIndexAndPointSamples) {
+  SonarRenderer renderer(wall_world(1.0), options());
   PingRequest request = paper_request(1000, 0.025);
   request.settings.paper.footprint = false;
   const auto first_line = [](const EchoImage& image) {
@@ -110,8 +112,8 @@ TEST_F(Paper, LegacyBinIndexAndPointSamples) {
 
 // docs/physics.md 1.3: one planar frustum clips elevation to atan(tan 10 cos psi); the mask over split views
 // does not.
-TEST_F(Paper, SingleFrustumClipsTheSidesOnlyWhenAskedTo) {
-  SonarRenderer renderer(wall_world(1.0));
+TEST_P(Paper, SingleFrustumClipsTheSidesOnlyWhenAskedTo) {
+  SonarRenderer renderer(wall_world(1.0), options());
   PingRequest request = paper_request(2000, 0.0125);
   const auto extent = [&](int beam) {
     const EchoImage image = renderer.render_echo(request);

@@ -1,7 +1,9 @@
-// Fixture for tests that draw. They skip with a reason where there is no OpenGL; with SONARD_REQUIRE_GL set,
-// as in CI, they fail instead, so that coverage is never lost silently.
+// Fixture for tests of the image: each runs on every backend. On `raster` they skip with a reason where there
+// is no OpenGL; with SONARD_REQUIRE_GL set, as in CI, they fail instead, so that coverage is never lost
+// silently. On `ray` they always run.
 #pragma once
 
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -12,27 +14,50 @@
 
 namespace sonard::test {
 
-class GlTest : public ::testing::Test {
+/// Why there is no rasteriser here; empty when there is one.
+inline const std::string& raster_problem() {
+  static const std::string problem = [] {
+    try {
+      const render::SonarRenderer renderer(render::World{}, {render::Backend::raster, 0});
+      std::printf("%s\n", renderer.backend_description().c_str());
+      return std::string();
+    } catch (const render::RendererError& error) {
+      return std::string(error.what());
+    }
+  }();
+  return problem;
+}
+
+/// Begins a test, or the SetUp() of a fixture, that needs the rasteriser.
+inline void require_raster() {
+  if (raster_problem().empty()) {
+    return;
+  }
+  if (std::getenv("SONARD_REQUIRE_GL") != nullptr) {
+    FAIL() << raster_problem();
+  }
+  GTEST_SKIP() << raster_problem();
+}
+
+class BackendTest : public ::testing::TestWithParam<render::Backend> {
  protected:
   void SetUp() override {
-    static const std::string problem = [] {
-      try {
-        const render::SonarRenderer renderer(render::World{}, {render::Backend::raster, 0});
-        std::printf("%s\n", renderer.backend_description().c_str());
-        return std::string();
-      } catch (const render::RendererError& error) {
-        return std::string(error.what());
-      }
-    }();
-    if (problem.empty()) {
-      return;
+    if (GetParam() == render::Backend::raster) {
+      require_raster();
     }
-    if (std::getenv("SONARD_REQUIRE_GL") != nullptr) {
-      FAIL() << problem;
-    }
-    GTEST_SKIP() << problem;
   }
+
+  /// For SonarRenderer.
+  static render::RendererOptions options() { return {GetParam(), 0}; }
 };
+
+inline auto all_backends() {
+  return ::testing::Values(render::Backend::raster, render::Backend::ray);
+}
+
+inline std::string backend_name(const ::testing::TestParamInfo<render::Backend>& info) {
+  return std::string(render::name_of(info.param));
+}
 
 /// A body of one mesh, at the world's origin.
 inline render::Body make_body(const std::string& name, render::TriangleMesh mesh, double lambert_mu = 1.0) {
