@@ -1,5 +1,7 @@
 #include "renderer/worker_pool.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -7,8 +9,12 @@ namespace sonard::render {
 
 namespace {
 
-// About twice what it takes to wake a thread that sleeps: longer spinning costs more than it saves.
-constexpr std::chrono::microseconds longest_spin{50};
+using std::chrono::microseconds;
+
+// Workers bridge the serial parts between the loops of a ping: waking one that sleeps takes 5 to 20 us.
+constexpr microseconds worker_spin{50};
+// The caller bridges what is left of a job.
+constexpr microseconds caller_spin{20};
 
 /// Lets the other half of a core run, and keeps the loop from flooding the memory bus.
 inline void pause() {
@@ -17,10 +23,10 @@ inline void pause() {
 #endif
 }
 
-/// Returns when `value` is what `wanted` says, or after longest_spin.
+/// Returns when `value` is what `wanted` says, or after `longest`.
 template <class Wanted>
-void spin_until(const std::atomic<int>& value, Wanted wanted) {
-  const auto end = std::chrono::steady_clock::now() + longest_spin;
+void spin_until(const std::atomic<int>& value, microseconds longest, Wanted wanted) {
+  const auto end = std::chrono::steady_clock::now() + longest;
   do {
     for (int i = 0; i < 32; ++i) {
       if (wanted(value.load(std::memory_order_relaxed))) {
@@ -45,8 +51,11 @@ WorkerPool::WorkerPool(unsigned threads) {
 }
 
 WorkerPool::~WorkerPool() {
-  unclaimed_ = stopped;
-  unclaimed_.notify_all();
+  {
+    const std::lock_guard lock(mutex_);
+    unclaimed_ = stopped;
+  }
+  jobs_.notify_all();
   for (std::thread& thread : threads_) {
     thread.join();
   }
@@ -62,14 +71,19 @@ void WorkerPool::run(int count, const std::function<void(int)>& job) {
   job_ = &job;
   count_ = count;
   unfinished_.store(count, std::memory_order_relaxed);
+  caller_core_.store(sched_getcpu(), std::memory_order_relaxed);
   unclaimed_.store(count);
-  unclaimed_.notify_all();
+  if (sleeping_workers_ > 0) {
+    mutex_.lock();  // a worker that counts as sleeping holds the mutex until it does
+    mutex_.unlock();
+    jobs_.notify_all();
+  }
   take_jobs();
   if (may_spin_) {
-    spin_until(unfinished_, [](int left) { return left == 0; });
+    spin_until(unfinished_, caller_spin, [](int left) { return left == 0; });
   }
-  for (int left = unfinished_.load(); left != 0; left = unfinished_.load()) {
-    unfinished_.wait(left);
+  if (unfinished_ != 0) {
+    sleep_until_done();
   }
 }
 
@@ -83,18 +97,37 @@ void WorkerPool::take_jobs() {
       unclaimed = unclaimed_.load();
     }
   }
-  if (done > 0 && unfinished_.fetch_sub(done) == done) {
-    unfinished_.notify_one();
+  if (done > 0 && unfinished_.fetch_sub(done) == done && caller_sleeps_) {
+    mutex_.lock();
+    mutex_.unlock();
+    done_.notify_one();
   }
 }
 
+void WorkerPool::sleep_until_jobs() {
+  std::unique_lock lock(mutex_);
+  ++sleeping_workers_;
+  jobs_.wait(lock, [this] { return unclaimed_ != 0; });
+  --sleeping_workers_;
+}
+
+void WorkerPool::sleep_until_done() {
+  std::unique_lock lock(mutex_);
+  caller_sleeps_ = true;
+  done_.wait(lock, [this] { return unfinished_ == 0; });
+  caller_sleeps_ = false;
+}
+
 void WorkerPool::work() {
-  while (unclaimed_.load() != stopped) {
+  while (unclaimed_ != stopped) {
     take_jobs();
-    if (may_spin_) {
-      spin_until(unclaimed_, [](int unclaimed) { return unclaimed != 0; });
+    // On a busy machine the kernel likes to wake a worker on the caller's own core. There it must make room.
+    if (may_spin_ && sched_getcpu() != caller_core_.load(std::memory_order_relaxed)) {
+      spin_until(unclaimed_, worker_spin, [](int unclaimed) { return unclaimed != 0; });
     }
-    unclaimed_.wait(0);
+    if (unclaimed_ == 0) {
+      sleep_until_jobs();
+    }
   }
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -32,6 +34,8 @@ class WorkerPool {
  private:
   void work();
   void take_jobs();
+  void sleep_until_jobs();
+  void sleep_until_done();
 
   static constexpr int stopped = -1;
 
@@ -41,7 +45,18 @@ class WorkerPool {
   int count_ = 0;
   std::atomic<int> unclaimed_{0};   ///< jobs of this run that nobody has begun; `stopped` at the end
   std::atomic<int> unfinished_{0};  ///< jobs of this run that are not done
+
+  // For sleeping only. Who is about to sleep says so under the mutex before it looks at the numbers above a
+  // last time; who changes them looks whether anybody said so after. In one order of all these accesses (they
+  // are sequentially consistent) at least one sees the other, so no wake-up is lost, and none costs a system
+  // call in vain.
+  std::mutex mutex_;
+  std::condition_variable jobs_, done_;
+  std::atomic<int> sleeping_workers_{0};
+  std::atomic<bool> caller_sleeps_{false};
+
   bool may_spin_;
+  std::atomic<int> caller_core_{-1};
   std::vector<std::thread> threads_;
 };
 
