@@ -24,7 +24,11 @@ namespace {
 struct RenderCommand {
   std::vector<std::string> scenes;
   std::filesystem::path folder = SONARD_SOURCE_DIR "/tests/data/oracle";
-  SliceOptions slices{.error_rms = 1e-5, .error_max = 1e-4, .max_slices_per_beam = 32768};
+  SliceOptions slices{.error_rms = 1e-5,
+                      .error_max = 1e-4,
+                      .max_slices_per_beam = 65536,
+                      .first_intervals = 32,
+                      .max_corners = 512};
   int ray_check_stride = 16;
 };
 
@@ -82,9 +86,10 @@ Reference render(const std::string& name, const RenderCommand& command) {
   if (command.ray_check_stride > 0) {
     check_with_rays(facets, law, truth, reference);
   }
-  reference.command =
-      fmt::format("sonard_oracle {} --error-rms {:g} --error-max {:g} --ray-check {}", name,
-                  command.slices.error_rms, command.slices.error_max, command.ray_check_stride);
+  reference.command = fmt::format(
+      "sonard_oracle {} --error-rms {:g} --error-max {:g} --intervals {} --corners {} --ray-check {}", name,
+      command.slices.error_rms, command.slices.error_max, command.slices.first_intervals,
+      command.slices.max_corners, command.ray_check_stride);
   reference.beams = truth.beams;
   reference.lines = truth.lines;
   reference.echo.assign(truth.echo.begin(), truth.echo.end());
@@ -102,6 +107,8 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--intervals", command.slices.first_intervals,
                  "first division of a beam of half a degree: finer than the smallest thing")
+      ->capture_default_str();
+  app.add_option("--corners", command.slices.max_corners, "divide a beam at its corners if they are no more")
       ->capture_default_str();
   app.add_option("--max-slices", command.slices.max_slices_per_beam, "or at this many slices")
       ->capture_default_str();

@@ -55,6 +55,15 @@ AzimuthSpan span_of(const Facet& facet) {
   return {-pi, pi};
 }
 
+/// Sorts, and leaves out what is as good as its neighbour.
+void sort_apart(std::vector<double>& azimuths) {
+  constexpr double same_rad = 1e-11;
+  std::sort(azimuths.begin(), azimuths.end());
+  azimuths.erase(
+      std::unique(azimuths.begin(), azimuths.end(), [](double a, double b) { return b - a < same_rad; }),
+      azimuths.end());
+}
+
 // Kronrod's rule with 7 nodes on [-1, 1], extending Gauss's with 3.
 struct Node {
   double at, kronrod, gauss;
@@ -93,7 +102,13 @@ class BeamIntegrator {
  public:
   BeamIntegrator(const Facets& facets, const std::vector<AzimuthSpan>& spans, const EchoLaw& law,
                  const SliceOptions& options)
-      : spans_(spans), law_(law), options_(options), slicer_(facets, law), total_(law), error_(total_.echo) {}
+      : facets_(facets),
+        spans_(spans),
+        law_(law),
+        options_(options),
+        slicer_(facets, law),
+        total_(law),
+        error_(total_.echo) {}
 
   /// Beam from `low` to `high`; writes law.lines() values and errors. @return slices cut
   std::uint64_t integrate(double low, double high, double* echo, double* error) {
@@ -110,18 +125,54 @@ class BeamIntegrator {
     std::vector<std::uint32_t> all(spans_.size());
     std::iota(all.begin(), all.end(), 0U);
     std::erase_if(all, [&](std::uint32_t i) { return !spans_[i].overlaps(low, high); });
-    const int count =
-        options_.first_intervals * static_cast<int>(std::ceil((high - low) / nominal_beam_rad - 1e-6));
-    for (int i = 0; i < count; ++i) {
-      const double from = low + (high - low) * i / count;
-      const double to = i + 1 == count ? high : low + (high - low) * (i + 1) / count;
-      intervals_.push_back(measure(from, to, all));
+    const std::vector<double> edges = first_edges(low, high, all);
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+      intervals_.push_back(measure(edges[i], edges[i + 1], all));
       apply(intervals_.back(), 1.0);
     }
     for (Interval& interval : intervals_) {
       rate(interval);
       queue_.emplace(interval.badness, static_cast<std::size_t>(&interval - intervals_.data()));
     }
+  }
+
+  /// Where the beam is divided before anything is known of it; rising.
+  std::vector<double> first_edges(double low, double high,
+                                  const std::vector<std::uint32_t>& candidates) const {
+    const double nominal_beams = std::max(1.0, std::ceil((high - low) / nominal_beam_rad - 1e-6));
+    const int count = options_.first_intervals * static_cast<int>(nominal_beams);
+    std::vector<double> edges;
+    for (int i = 0; i < count; ++i) {
+      edges.push_back(low + (high - low) * i / count);
+    }
+    std::vector<double> corners = corner_azimuths(low, high, candidates);
+    if (corners.size() <= static_cast<std::size_t>(options_.max_corners)) {
+      edges.insert(edges.end(), corners.begin(), corners.end());
+    }
+    edges.push_back(high);
+    sort_apart(edges);
+    edges.back() = high;
+    return edges;
+  }
+
+  std::vector<double> corner_azimuths(double low, double high,
+                                      const std::vector<std::uint32_t>& candidates) const {
+    std::vector<double> azimuths;
+    if (options_.max_corners == 0) {
+      return azimuths;
+    }
+    for (const std::uint32_t i : candidates) {
+      for (const glm::dvec3& corner : facets_.all()[i].corners) {
+        const double psi = std::atan2(corner.y, corner.x);
+        for (const double turned : {psi - 2 * pi, psi, psi + 2 * pi}) {
+          if (turned > low && turned < high) {
+            azimuths.push_back(turned);
+          }
+        }
+      }
+    }
+    sort_apart(azimuths);
+    return azimuths;
   }
 
   Interval measure(double from, double to, const std::vector<std::uint32_t>& candidates) {
@@ -220,6 +271,7 @@ class BeamIntegrator {
     return sum.value();
   }
 
+  const Facets& facets_;
   const std::vector<AzimuthSpan>& spans_;
   const EchoLaw& law_;
   const SliceOptions& options_;

@@ -14,8 +14,11 @@ struct SliceOptions {
   double error_max = 2e-3;         ///< of each beam; as RelativeError::max
   int max_slices_per_beam = 8192;  ///< the error reached is reported either way
   int first_intervals = 16;        ///< of each beam, of half a degree; more of a wider one
-  unsigned threads = 0;            ///< 0: one per core
-  std::vector<int> beams{};        ///< only these are rendered, the others are 0; empty: all
+  /// A beam is also divided at the azimuth of every corner of a facet, where its echo has kinks and jumps, if
+  /// it holds no more corners than this. Then no facet can hide between two slices.
+  int max_corners = 0;
+  unsigned threads = 0;      ///< 0: one per core
+  std::vector<int> beams{};  ///< only these are rendered, the others are 0; empty: all
 };
 
 /// Renders by slices. In each beam the azimuth is divided into intervals, each integrated by a Kronrod rule
