@@ -121,6 +121,7 @@ void Check::check_poses() {
       problem("poses.trajectory.file", error.what());
     }
   }
+  report_.summary.push_back(fmt::format("backend  {}", render::name_of(config_.backend)));
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));
 }
 

@@ -32,9 +32,10 @@ namespace {
 
 namespace asio = boost::asio;
 
-class OpenGlRenderer final : public PingRenderer {
+class WorldRenderer final : public PingRenderer {
  public:
-  explicit OpenGlRenderer(const render::World& world) : renderer_(world) {}
+  WorldRenderer(const render::World& world, const render::RendererOptions& options)
+      : renderer_(world, options) {}
 
   std::string description() const override { return renderer_.backend_description(); }
   bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
@@ -49,12 +50,14 @@ class OpenGlRenderer final : public PingRenderer {
   render::SonarRenderer renderer_;
 };
 
-// Runs on the render thread. The self-test comes first: a GL that draws nothing must not get as far as a
+// Runs on the render thread. The self-test comes first: a backend that draws nothing must not get as far as a
 // socket.
-std::unique_ptr<PingRenderer> make_open_gl_renderer(const render::World& world) {
-  const double error = render::run_self_test();
-  auto renderer = std::make_unique<OpenGlRenderer>(world);
-  spdlog::info("renderer self-test passed: error={:.2f}% gl=\"{}\"", 100.0 * error, renderer->description());
+std::unique_ptr<PingRenderer> make_world_renderer(const render::World& world,
+                                                  const render::RendererOptions& options) {
+  const double error = render::run_self_test(options);
+  auto renderer = std::make_unique<WorldRenderer>(world, options);
+  spdlog::info("renderer self-test passed: error={:.2f}% backend=\"{}\"", 100.0 * error,
+               renderer->description());
   return renderer;
 }
 
@@ -135,7 +138,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     }
   }
   start_sources();
-  ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} gl=\"{}\"", heads_.size(),
+  ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(), renderer_.renderer_description());
 }
 
@@ -250,7 +253,8 @@ int run_daemon(const DaemonConfig& config) {
       throw StartError("sampling", exit_config, fmt::format("head '{}': {}", head.name, error.what()));
     }
   }
-  return serve(config, world, [&world] { return make_open_gl_renderer(world); });
+  const render::RendererOptions options{config.backend, 0};
+  return serve(config, world, [&] { return make_world_renderer(world, options); });
 }
 
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer) {

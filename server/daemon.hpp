@@ -28,7 +28,7 @@ struct StartError : std::runtime_error {
 /// @throws StartError, render::RendererError before it is ready
 int run_daemon(const DaemonConfig& config);
 
-/// The same with a world already loaded and any renderer; run_daemon() without GL, for tests.
+/// The same with a world already loaded and any renderer; run_daemon() without rendering, for tests.
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer);
 
 }  // namespace sonard::server

@@ -1,6 +1,7 @@
 // The program: command line, log, and the one place where exceptions become exit codes.
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ constexpr const char* exit_code_help =
     "  0   ended by SIGINT or SIGTERM, or nothing to complain about\n"
     "  2   configuration, world or trajectory cannot be used\n"
     "  3   an address or port cannot be used\n"
-    "  4   no usable OpenGL, failed self-test, or the renderer failed while serving\n"
+    "  4   the backend asked for cannot be had, failed self-test, or the renderer failed while serving\n"
     "  64  wrong command line\n"
     "  70  a defect of this program";
 
@@ -31,6 +32,7 @@ struct CommandLine {
   std::filesystem::path config;
   std::string log_level;  ///< empty: as the configuration says
   bool no_network = false;
+  render::Backend backend = render::Backend::automatic;  ///< of selftest
 };
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
@@ -100,10 +102,11 @@ int check(const CommandLine& arguments) {
   return exit_config;
 }
 
-int selftest() {
+int selftest(const CommandLine& arguments) {
+  const render::RendererOptions options{arguments.backend, 0};
   try {
-    fmt::print("backend  {}\n", render::SonarRenderer(render::World{}).backend_description());
-    fmt::print("wall     {:.3f} % RMS from its closed form\n", 100.0 * render::run_self_test());
+    fmt::print("backend  {}\n", render::SonarRenderer(render::World{}, options).backend_description());
+    fmt::print("wall     {:.3f} % RMS from its closed form\n", 100.0 * render::run_self_test(options));
   } catch (const render::RendererError&) {
     fmt::print("FAIL\n");
     throw;
@@ -151,7 +154,12 @@ int main_program(int argc, char** argv) {
                           "Do not try whether the addresses can be bound here");
 
   CLI::App* selftest_command = app.add_subcommand(
-      "selftest", "Show the OpenGL in use and compare one known scene with its closed form");
+      "selftest", "Show the backend in use and compare one known scene with its closed form");
+  selftest_command->add_option("--backend", arguments.backend, "auto, raster or ray")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},
+                                                                         {"raster", render::Backend::raster},
+                                                                         {"ray", render::Backend::ray}}));
   for (CLI::App* command : {run_command, check_command, selftest_command}) {
     command->footer(exit_code_help);
   }
@@ -166,7 +174,7 @@ int main_program(int argc, char** argv) {
     if (run_command->parsed()) {
       return run(arguments);
     }
-    return check_command->parsed() ? check(arguments) : selftest();
+    return check_command->parsed() ? check(arguments) : selftest(arguments);
   });
 }
 

@@ -13,6 +13,7 @@
 
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/pose/pose_codec.hpp"
+#include "renderer/backend.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
 
@@ -157,6 +158,7 @@ struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
+  render::Backend backend = render::Backend::automatic;
   WaterConfig water;
   PoseConfig poses;
   std::vector<GeminiHeadConfig> heads;  ///< at least one

@@ -141,6 +141,10 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
     section.text("file", path);
     config.world_file = context.folder / path;
   });
+  root.choice("backend", config.backend,
+              {{"auto", render::Backend::automatic},
+               {"raster", render::Backend::raster},
+               {"ray", render::Backend::ray}});
   root.section("water", [&](YamlSection& section) { read_water(section, context); });
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
   config.water = context.water;

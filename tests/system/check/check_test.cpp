@@ -266,12 +266,5 @@ TEST(Run, has_its_own_exit_code_for_an_address_in_use) {
   EXPECT_THAT(lines_of(result.err), Contains(StartsWith(held.config() + ":11:26: heads[0].network.bind: ")));
 }
 
-TEST(SelfTest, passes_and_shows_the_gl_in_use) {
-  const ProcessResult result = run_process({SONARD_PROGRAM, "selftest"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(lines_of(result.out), Contains(StartsWith("gl ")));
-  EXPECT_THAT(lines_of(result.out), Contains("PASS"));
-}
-
 }  // namespace
 }  // namespace sonard::test

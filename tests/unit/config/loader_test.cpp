@@ -27,6 +27,7 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_THAT(loaded.warnings, IsEmpty());
   EXPECT_EQ(config.log_level, LogLevel::info);
   EXPECT_EQ(config.world_file, folder_ / "world.sdf");
+  EXPECT_EQ(config.backend, render::Backend::automatic);
   ASSERT_TRUE(config.poses.T_world_vehicle_initial);
   EXPECT_EQ(config.poses.T_world_vehicle_initial->position_m, glm::dvec3(1, 2, 3));
   EXPECT_FALSE(config.poses.udp || config.poses.tcp || config.poses.trajectory);
@@ -52,6 +53,12 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
   EXPECT_FALSE(head.trigger);
   EXPECT_FALSE(head.dump_directory);
+}
+
+TEST_F(Loader, reads_the_backend) {
+  EXPECT_EQ(load(minimal_config + "backend: auto\n").config.backend, render::Backend::automatic);
+  EXPECT_EQ(load(minimal_config + "backend: raster\n").config.backend, render::Backend::raster);
+  EXPECT_EQ(load(minimal_config + "backend: ray\n").config.backend, render::Backend::ray);
 }
 
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {

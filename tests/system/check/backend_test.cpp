@@ -1,0 +1,130 @@
+// Which backend the real program takes, with OpenGL and without, and how it says so.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/run_process.hpp"
+
+namespace sonard::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// EGL finds its drivers in the folders this names: none.
+const std::string no_gl = "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent";
+
+ProcessResult selftest(const std::string& setting, const std::string& backend) {
+  return run_process({"env", setting, SONARD_PROGRAM, "selftest", "--backend", backend});
+}
+
+TEST(SelfTest, passes_on_every_backend_and_names_it) {
+  const ProcessResult raster = selftest("A=", "raster");
+  EXPECT_EQ(raster.exit_code, 0) << raster.err;
+  EXPECT_THAT(raster.out, StartsWith("backend  raster, "));
+  EXPECT_THAT(raster.out, HasSubstr("\nPASS\n"));
+  const ProcessResult ray = selftest("A=", "ray");
+  EXPECT_EQ(ray.exit_code, 0) << ray.err;
+  EXPECT_THAT(ray.out, StartsWith("backend  ray, Embree 3."));
+  EXPECT_THAT(ray.out, HasSubstr("\nPASS\n"));
+}
+
+TEST(SelfTest, chooses_by_the_gl_it_finds_and_tells) {
+  const ProcessResult result = run_process({SONARD_PROGRAM, "selftest"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const bool software = result.out.find("llvmpipe") != std::string::npos;
+  EXPECT_THAT(result.out, StartsWith(software ? "backend  ray, " : "backend  raster, "));
+  EXPECT_THAT(result.out, HasSubstr("auto found OpenGL on "));
+}
+
+TEST(SelfTest, fails_with_its_own_exit_code_when_the_rasteriser_is_asked_for_without_gl) {
+  const ProcessResult result = selftest(no_gl, "raster");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("renderer: no OpenGL 4.5 through EGL"));
+}
+
+TEST(SelfTest, traces_rays_where_there_is_no_gl) {
+  for (const char* backend : {"auto", "ray"}) {
+    const ProcessResult result = selftest(no_gl, backend);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, StartsWith("backend  ray, Embree 3."));
+  }
+}
+
+TEST(SelfTest, knows_no_other_backend) {
+  EXPECT_EQ(selftest("A=", "gl").exit_code, 64);
+}
+
+/// One head on loopback beside the shipped world.
+class ServedConfig {
+ public:
+  explicit ServedConfig(const std::string& backend)
+      : path_(testing::TempDir() + std::to_string(getpid()) + "_backend_" + backend + ".yaml") {
+    std::ofstream(path_)
+        << "world: {file: " << SONARD_SOURCE_DIR
+        << "/configs/worlds/docking_station.sdf}\nbackend: " << backend
+        << "\nposes: {initial: {position_m: [0, -12, -25]}}\n"
+           "heads:\n"
+           "  - name: head\n"
+           "    type: gemini_720i\n"
+           "    sonar_id: 513\n"
+           "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0, status: [127.0.0.1]}\n";
+  }
+  ~ServedConfig() { std::filesystem::remove(path_); }
+  ServedConfig(const ServedConfig&) = delete;
+  ServedConfig& operator=(const ServedConfig&) = delete;
+
+  /// `sonard run` without OpenGL, in a network of its own; SIGTERM when it is ready. The log is in `out`.
+  ProcessResult run_without_gl() const {
+    std::vector<std::string> command{"unshare", "--net"};
+    if (geteuid() != 0) {
+      command.emplace_back("--map-root-user");
+    }
+    const std::string script =
+        "ip link set lo up; log=$1.log; shift; \"$@\" 2>\"$log\" & pid=$!; tries=300; "
+        "until grep -q 'sonard ready' \"$log\" || ! kill -0 $pid || [ $tries = 0 ]; do sleep 0.1; "
+        "tries=$((tries - 1)); done; "
+        "kill -TERM $pid; wait $pid; code=$?; cat \"$log\"; rm \"$log\"; exit $code";
+    for (const std::string& word :
+         {std::string("sh"), std::string("-c"), script, std::string("sh"), path_, std::string("env"), no_gl,
+          std::string(SONARD_PROGRAM), std::string("run"), path_}) {
+      command.push_back(word);
+    }
+    return run_process(command);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+TEST(Run, serves_with_rays_where_there_is_no_gl) {
+  const ServedConfig config("auto");
+  const ProcessResult result = config.run_without_gl();
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_THAT(result.out, HasSubstr("auto found no OpenGL 4.5 through EGL"));
+  EXPECT_THAT(result.out, testing::ContainsRegex("sonard ready heads=1 .*backend=\"ray, Embree 3"));
+}
+
+TEST(Run, ends_with_its_own_exit_code_when_the_rasteriser_is_asked_for_without_gl) {
+  const ServedConfig config("raster");
+  const ProcessResult result = config.run_without_gl();
+  EXPECT_EQ(result.exit_code, 4) << result.out;
+  EXPECT_THAT(result.out, HasSubstr("renderer: no OpenGL 4.5 through EGL"));
+}
+
+TEST(Check, shows_the_backend_that_is_asked_for) {
+  const ServedConfig config("raster");
+  const ProcessResult result = run_process({SONARD_PROGRAM, "check", "--no-network", config.path()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("\nbackend  raster\n"));
+}
+
+}  // namespace
+}  // namespace sonard::test
