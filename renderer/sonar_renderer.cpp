@@ -8,6 +8,7 @@
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
+#include "renderer/visibility/slices/slice_sampler.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -22,6 +23,7 @@ constexpr double longest_range_m = 1e5;
 constexpr double range_margin = 1.05;
 
 void check(const SonarSettings& settings) {
+  check_aperture(settings.aperture);
   const RangeLines& range = settings.range;
   if (range.count < 1 || range.count > most_native_lines) {
     throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " +
@@ -103,14 +105,68 @@ class Stopwatch {
 
 }  // namespace
 
+namespace {
+
+/// What the paper's variants ask for that only a grid of pixels has.
+bool needs_grid(const SonarSettings& settings) {
+  const PaperModel& paper = settings.paper;
+  return settings.sampling.preset == Sampling::Preset::grid || !settings.sampling.footprint ||
+         (settings.model == Model::paper &&
+          (!paper.footprint || paper.legacy_bin_index || paper.legacy_columns || !paper.elevation_mask));
+}
+
+SliceAccuracy slice_accuracy(const SonarSettings& settings) {
+  // The paper's sigmoid makes more of small changes of incidence.
+  const int slices = settings.model == Model::paper ? 2 : 1;
+  switch (settings.sampling.preset) {
+    case Sampling::Preset::fast:
+      return {slices, 4, 2.5e-2F, 0.1F, 0.05F};
+    case Sampling::Preset::reference:
+      return {8, 16, 1e-6F, 0.005F, 0.001F};
+    default:
+      return {slices, 64, 1e-3F, 0.04F, 0.01F};
+  }
+}
+
+}  // namespace
+
 struct SonarRenderer::Impl {
   WorkerPool workers;  // outlives the sampler, which uses it
   ChosenSampler chosen;
+  std::unique_ptr<SliceSampler> slices;  // of the backend `ray`
   Receiver receiver;
   PingStatistics statistics;
 
   Impl(const World& world, const RendererOptions& options)
-      : workers(options.threads), chosen(choose_sampler(world, options.backend, workers)) {}
+      : workers(options.threads), chosen(choose_sampler(world, options.backend, workers)) {
+    if (chosen.backend == Backend::ray) {
+      slices = std::make_unique<SliceSampler>(world, workers);
+    }
+  }
+
+  /// Finds what is visible and bins it; fills the statistics of both.
+  BinningResult look(const PingRequest& request, const Pose& T_world_sonar) {
+    const SonarSettings& settings = request.settings;
+    const double max_range_m = settings.range.max_range_m() * range_margin;
+    const SurfaceModel surface = surface_model(settings);
+    BinningResult bins;
+    Stopwatch watch;
+    if (slices && !needs_grid(settings)) {
+      const auto cells = slices->sample(T_world_sonar, settings.aperture, settings.range.step_m, max_range_m,
+                                        surface, slice_accuracy(settings));
+      statistics.visibility_s = watch.lap();
+      bins = bin_echoes(cells, settings.aperture, settings.range, binning_options(settings), workers);
+    } else {
+      const SampleGrid& samples = grid_for(settings);
+      const auto views = chosen.sampler->sample(T_world_sonar, samples, surface, max_range_m);
+      statistics.visibility_s = watch.lap();
+      bins = bin_echoes(samples, views, settings.range, binning_options(settings), workers);
+    }
+    statistics.binning_s = watch.lap();
+    statistics.samples = bins.samples;
+    statistics.invalid_samples = bins.invalid_samples;
+    return bins;
+  }
 
   /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
   const SampleGrid& grid_for(const SonarSettings& settings) {
@@ -150,32 +206,29 @@ const std::string& SonarRenderer::backend_description() const {
 }
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  return impl_->chosen.sampler->set_body_pose(body_name, checked(T_world_body));
+  const Pose pose = checked(T_world_body);
+  if (impl_->slices) {
+    impl_->slices->set_body_pose(body_name, pose);
+  }
+  return impl_->chosen.sampler->set_body_pose(body_name, pose);
 }
 
 EchoImage SonarRenderer::render_echo(const PingRequest& request) {
   const SonarSettings& settings = request.settings;
   check(settings);
   const Pose T_world_sonar = checked(request.T_world_sonar);
-  const SampleGrid& grid = impl_->grid_for(settings);
   EchoImage image{settings.aperture.beam_count(), settings.range.count, {}};
   impl_->statistics = {};
   if (!settings.transmit) {
     image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
     return image;
   }
+  image.intensity = impl_->look(request, T_world_sonar).echo;
   Stopwatch watch;
-  const auto views = impl_->chosen.sampler->sample(T_world_sonar, grid, surface_model(settings),
-                                                   settings.range.max_range_m() * range_margin);
-  impl_->statistics.visibility_s = watch.lap();
-  BinningResult bins = bin_echoes(grid, views, settings.range, binning_options(settings), impl_->workers);
-  image.intensity = std::move(bins.echo);
   if (settings.model == Model::physical) {
     apply_propagation(settings, image);
   }
-  impl_->statistics.binning_s = watch.lap();
-  impl_->statistics.samples = bins.samples;
-  impl_->statistics.invalid_samples = bins.invalid_samples;
+  impl_->statistics.binning_s += watch.lap();
   return image;
 }
 

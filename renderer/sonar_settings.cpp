@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+
+#include "renderer/errors.hpp"
 
 namespace sonard::render {
 
@@ -26,6 +29,25 @@ double Aperture::elevation_weight(double elevation_rad) const {
   // docs/physics.md 2.5: 0.443 makes the squared sinc one half at half the -3 dB width.
   const double amplitude = sinc(0.443 * std::sin(elevation_rad) / std::sin(vertical_beamwidth_rad / 2));
   return amplitude * amplitude;
+}
+
+void check_aperture(const Aperture& aperture) {
+  const auto& edges = aperture.beam_edges_rad;
+  if (edges.size() < 2) {
+    throw RequestError("aperture: no beams");
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!std::isfinite(edges[i]) || (i > 0 && !(edges[i] < edges[i - 1]))) {
+      throw RequestError("aperture: beam edge " + std::to_string(i) + " is not finite or not falling");
+    }
+  }
+  if (edges.front() - edges.back() > 2 * std::numbers::pi + 1e-9) {
+    throw RequestError("aperture: the fan is wider than a full turn");
+  }
+  const double limit = aperture.elevation_limit_rad();
+  if (!(limit > 0) || !(limit < std::numbers::pi / 2 * 0.97)) {
+    throw RequestError("aperture: vertical beamwidth out of range");
+  }
 }
 
 std::vector<double> equal_angle_edges(int beam_count, double width_rad) {

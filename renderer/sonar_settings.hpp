@@ -27,6 +27,10 @@ struct Aperture {
   bool operator==(const Aperture&) const = default;
 };
 
+/// @throws RequestError when there are no beams, when their edges are not finite or not falling, when the fan
+/// is wider than a full turn, or when its elevations do not end clear of the vertical.
+void check_aperture(const Aperture& aperture);
+
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.
 std::vector<double> equal_angle_edges(int beam_count, double width_rad);
 /// beam_count beams of equal sine over +-half_width_rad, as a Gemini forms them.
@@ -102,13 +106,27 @@ struct PhysicalModel {
   bool operator==(const PhysicalModel&) const = default;
 };
 
-/// How finely the world is sampled.
+/// How closely the world is followed: the error that is aimed at (docs/accuracy.md), pooled RMS over all bins
+/// above 1e-2 of their beam's maximum, or a fixed grid of samples.
 struct Sampling {
+  enum class Preset {
+    fast,       ///< 5 %
+    normal,     ///< 1 %
+    reference,  ///< as close as it gets, for offline use
+    grid,       ///< the grid below, whatever the error
+  } preset = Preset::normal;
+  // Only with `grid`:
   int views = 3;  ///< side-by-side frusta; more are used where one would exceed 60 degrees
   int columns_per_view = 256;
   int rows = 512;
-  /// false: a sample is a point in range, as where footprints are unknown; for comparison (docs/benchmark.md).
+  /// false: a sample is a point in range, as where footprints are unknown; for comparison
+  /// (docs/benchmark.md).
   bool footprint = true;
+
+  static Sampling of_grid(int views, int columns_per_view, int rows) {
+    return {Preset::grid, views, columns_per_view, rows, true};
+  }
+  bool operator==(const Sampling&) const = default;
 };
 
 struct SonarSettings {

@@ -1,210 +1,176 @@
 #include "renderer/binning/echo_binner.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
-#include "renderer/binning/footprint.hpp"
-#include "renderer/simd.hpp"
+#include "renderer/binning/grid_patches.hpp"
+#include "renderer/binning/range_profile.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-/// One beam's accumulators, in units of 1 / scale. What one sample gives to one line fits 31 bits, so it is
-/// rounded and widened eight at a time; a line can take more than 2^32 of them.
-struct BeamSums {
-  std::vector<std::int64_t> echo;
-  std::vector<std::int64_t> weight;  // only for means
+// Means are not taken where less than this share of a beam is seen: there the weights are mostly rounding.
+constexpr float least_share = 0x1p-32F;
+
+/// One beam's accumulators, and the memory of one thread.
+class BeamSums {
+ public:
+  /// @param solid_angle of the beam; responses are at most 1: mu <= 1/pi, sigmoid <= 1.
+  void reset(const RangeLines& range, double solid_angle, bool mean) {
+    lines_per_m_ = static_cast<float>(1.0 / range.step_m);
+    solid_angle_ = static_cast<float>(solid_angle);
+    mean_ = mean;
+    const auto lines = static_cast<std::size_t>(range.count);
+    echo_.reset(lines, solid_angle);
+    weight_.reset(mean ? lines : 0, solid_angle);
+    samples = 0;
+    invalid = 0;
+  }
+
+  void add(const EchoPatch& patch) {
+    const float a = patch.range_a_m * lines_per_m_, b = patch.range_b_m * lines_per_m_;
+    const float smear_a = patch.smear_a_m * lines_per_m_, smear_b = patch.smear_b_m * lines_per_m_;
+    if (!std::isfinite(a + b + smear_a + smear_b + patch.echo + patch.weight)) {
+      ++invalid;
+      return;
+    }
+    ++samples;
+    echo_.add(a, smear_a, b, smear_b, patch.echo);
+    if (mean_) {
+      weight_.add(a, smear_a, b, smear_b, patch.weight);
+    }
+  }
+
+  void add_point(double line, float echo, float weight) {
+    ++samples;
+    echo_.add_point(line, echo);
+    if (mean_) {
+      weight_.add_point(line, weight);
+    }
+  }
+
+  void read(std::size_t lines, float* out) {
+    echo_.finish();
+    echo_.read(out);
+    if (!mean_) {
+      return;
+    }
+    weight_.finish();
+    weights_.resize(lines);
+    weight_.read(weights_.data());
+    for (std::size_t k = 0; k < lines; ++k) {
+      out[k] = weights_[k] > least_share * solid_angle_ ? std::min(1.0F, out[k] / weights_[k]) : 0.0F;
+    }
+  }
+
   std::uint64_t samples = 0;
   std::uint64_t invalid = 0;
 
-  BeamSums(std::size_t lines, bool mean) : echo(lines, 0), weight(mean ? lines : 0, 0) {}
-};
-
-/// A sample cut to one part of a pixel: what falls into the beam, in range lines.
-struct Splat {
-  float position;  ///< of the centre
-  float a, b;      ///< spreads
-  float echo, weight;
-};
-
-void add_point(const Splat& splat, double line_scale, BeamSums& sums) {
-  const double line = std::floor(static_cast<double>(splat.position) * line_scale);
-  if (line < 0 || line >= static_cast<double>(sums.echo.size())) {
-    return;
-  }
-  const auto k = static_cast<std::size_t>(line);
-  sums.echo[k] += static_cast<std::int32_t>(splat.echo);
-  if (!sums.weight.empty()) {
-    sums.weight[k] += static_cast<std::int32_t>(splat.weight);
-  }
-}
-
-/// Adds `amount` spread over the lines [first, first + count), of which `below` holds the shares below each
-/// edge.
-inline void add_shares(const float* below, int count, float amount, std::int64_t* sums) {
-  for (int i = 0; i < count; ++i) {
-    sums[i] += static_cast<std::int32_t>(amount * (below[i + 1] - below[i]) + 0.5F);
-  }
-}
-
-inline void add_footprint(const Splat& splat, BeamSums& sums) {
-  const Footprint footprint = Footprint::make(splat.position, splat.a, splat.b);
-  const auto lines = static_cast<float>(sums.echo.size());
-  const float end = footprint.rise_from + footprint.base();
-  if (!(end > 0) || !(footprint.rise_from < lines)) {
-    return;
-  }
-  const auto first = static_cast<int>(std::max(0.0F, footprint.rise_from));
-  const auto last = static_cast<int>(std::min(lines - 1, end));
-  const int count = last - first + 1;
-  std::array<float, static_cast<std::size_t>(2 * Footprint::widest) + 4> below;
-  for (int i = 0; i <= count; ++i) {
-    below[static_cast<std::size_t>(i)] = footprint.below(static_cast<float>(first + i));
-  }
-  add_shares(below.data(), count, splat.echo, &sums.echo[static_cast<std::size_t>(first)]);
-  if (!sums.weight.empty()) {
-    add_shares(below.data(), count, splat.weight, &sums.weight[static_cast<std::size_t>(first)]);
-  }
-}
-
-class BeamBinner {
- public:
-  BeamBinner(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views, const RangeLines& range,
-             const BinningOptions& options, float scale)
-      : grid_(grid),
-        views_(views),
-        options_(options),
-        lines_per_m_(static_cast<float>(1.0 / range.step_m)),
-        legacy_scale_(options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0),
-        scale_(scale) {}
-
-  SONARD_SIMD_CLONES void add_part(const ColumnPart& part, BeamSums& sums) const {
-    const SubView& view = grid_.views[static_cast<std::size_t>(part.view)];
-    const SurfaceSample* column = views_[static_cast<std::size_t>(part.view)] + part.column;
-    const float* weights = &grid_.weights[part.weights];
-    const auto x = static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width());
-    const auto bottom = static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height());
-    const auto pixel_height = static_cast<float>(view.pixel_height());
-    for (int row = part.row_begin; row < part.row_end; ++row) {
-      const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
-      if (!(sample.range_m > 0)) {
-        sums.invalid += sample.range_m < 0 ? 1 : 0;
-        continue;
-      }
-      ++sums.samples;
-      const float weight = weights[row - part.row_begin] * scale_;
-      Splat splat{};
-      splat.echo = weight * sample.response;
-      splat.weight = weight;
-      if (!options_.footprint) {
-        splat.position = sample.range_m * lines_per_m_;
-        add_point(splat, legacy_scale_, sums);
-        continue;
-      }
-      Cell cell{part.x_offset, 0.0F, part.width, pixel_height, 0.0F};
-      if (row == part.row_begin) {
-        cell = {part.x_offset, part.first_y_offset, part.width, part.first_height, -part.limit_slope};
-      } else if (row + 1 == part.row_end) {
-        cell = {part.x_offset, part.last_y_offset, part.width, part.last_height, part.limit_slope};
-      }
-      place(sample, x, bottom + static_cast<float>(row) * pixel_height, cell, splat);
-      add_footprint(splat, sums);
-    }
-  }
-
  private:
-  /// What of a pixel counts: a parallelogram, its centre relative to the pixel's, tangent units.
-  struct Cell {
-    float x_offset, y_offset, width, height;
-    float slope;  ///< dy/dx of its upper and lower side
-  };
-
-  /// Range and spread of the echo from `cell` of the pixel at tangents (x, y). On a plane the inverse depth
-  /// is affine in x and y, so the range at the cell's centre follows exactly from the pixel's range and its
-  /// derivatives.
-  void place(const SurfaceSample& sample, float x, float y, const Cell& cell, Splat& splat) const {
-    float range = sample.range_m;
-    float range_dx = sample.range_dx;
-    float range_dy = sample.range_dy;
-    if (cell.x_offset != 0 || cell.y_offset != 0) {
-      move_to_cell(cell, x, y, range, range_dx, range_dy);
-    }
-    splat.position = range * lines_per_m_;
-    splat.a = std::abs(range_dx + cell.slope * range_dy) * cell.width * lines_per_m_;
-    splat.b = std::abs(range_dy) * cell.height * lines_per_m_;
-  }
-
-  /// From the centre of the pixel at (x, y) to that of the cell.
-  static void move_to_cell(const Cell& cell, float x, float y, float& range, float& range_dx,
-                           float& range_dy) {
-    const float qq = 1 + x * x + y * y;
-    // Relative slopes of the inverse depth, from equation (2) of docs/physics.md 2.3.
-    const float slope_x = x / qq - range_dx / range;
-    const float slope_y = y / qq - range_dy / range;
-    const float inverse_depth = 1 + slope_x * cell.x_offset + slope_y * cell.y_offset;
-    if (inverse_depth < 0.5F) {
-      return;  // the plane turns away within the pixel: keep the pixel's own values
-    }
-    const float cx = x + cell.x_offset;
-    const float cy = y + cell.y_offset;
-    const float cell_qq = 1 + cx * cx + cy * cy;
-    range *= std::sqrt(cell_qq / qq) / inverse_depth;
-    range_dx = range * (cx / cell_qq - slope_x / inverse_depth);
-    range_dy = range * (cy / cell_qq - slope_y / inverse_depth);
-  }
-
-  const SampleGrid& grid_;
-  const std::vector<const SurfaceSample*>& views_;
-  const BinningOptions& options_;
-  float lines_per_m_;
-  double legacy_scale_;
-  float scale_;
+  RangeProfile echo_, weight_;
+  std::vector<float> weights_;
+  float lines_per_m_ = 1.0F;
+  float solid_angle_ = 1.0F;
+  bool mean_ = false;
 };
 
-/// Power of two that maps the largest possible sample to below 2^30. Responses are at most 1: mu <= 1/pi,
-/// sigmoid <= 1.
-float fixed_point_scale(const SampleGrid& grid) {
-  const float largest = *std::max_element(grid.weights.begin(), grid.weights.end());
-  return std::exp2(std::floor(29 - std::log2(largest)));
-}
-
-}  // namespace
-
-BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers) {
+/// Runs fill(beam, sums) for every beam, each in one job, and collects what it summed. A beam has one owner,
+/// so nothing depends on the number of threads.
+template <class SolidAngle, class Fill>
+BinningResult bin_beams(int beams, const RangeLines& range, bool mean, WorkerPool& workers,
+                        const SolidAngle& solid_angle, const Fill& fill) {
   BinningResult result;
-  result.beams = grid.beam_count();
+  result.beams = beams;
   result.lines = range.count;
   const auto lines = static_cast<std::size_t>(range.count);
-  result.echo.resize(static_cast<std::size_t>(result.beams) * lines);
-  const float scale = fixed_point_scale(grid);
-  const BeamBinner binner(grid, views, range, options, scale);
+  result.echo.resize(static_cast<std::size_t>(beams) * lines);
   std::atomic<std::uint64_t> samples{0};
   std::atomic<std::uint64_t> invalid{0};
-  workers.run(result.beams, [&](int beam) {
-    BeamSums sums(lines, options.mean);
+  workers.run(beams, [&](int beam) {
+    thread_local BeamSums sums;
     const auto b = static_cast<std::size_t>(beam);
-    for (int p = grid.beam_parts[b]; p < grid.beam_parts[b + 1]; ++p) {
-      binner.add_part(grid.parts[static_cast<std::size_t>(p)], sums);
-    }
-    float* out = &result.echo[b * lines];
-    for (std::size_t k = 0; k < lines; ++k) {
-      const auto echo = static_cast<double>(sums.echo[k]);
-      if (options.mean) {
-        out[k] = sums.weight[k] > 0 ? static_cast<float>(echo / static_cast<double>(sums.weight[k])) : 0.0F;
-      } else {
-        out[k] = static_cast<float>(echo / static_cast<double>(scale));
-      }
-    }
+    sums.reset(range, solid_angle(b), mean);
+    fill(b, sums);
+    sums.read(lines, &result.echo[b * lines]);
     samples += sums.samples;
     invalid += sums.invalid;
   });
   result.samples = samples;
   result.invalid_samples = invalid;
   return result;
+}
+
+void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                const ColumnPart& part, double lines_per_m, BeamSums& sums) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
+  for (int row = part.row_begin; row < part.row_end; ++row) {
+    const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
+    const float weight = grid.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)];
+    if (sample.range_m > 0) {
+      sums.add_point(std::floor(static_cast<double>(sample.range_m) * lines_per_m), weight * sample.response,
+                     weight);
+    }
+    sums.invalid += sample.range_m < 0 ? 1 : 0;
+  }
+}
+
+double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
+  const auto begin = static_cast<std::size_t>(grid.beam_parts[beam]);
+  const auto end = static_cast<std::size_t>(grid.beam_parts[beam + 1]);
+  const std::size_t first = begin < end ? grid.parts[begin].weights : 0;
+  const std::size_t last = end < grid.parts.size() ? grid.parts[end].weights : grid.weights.size();
+  return begin < end ? std::accumulate(grid.weights.begin() + static_cast<std::ptrdiff_t>(first),
+                                       grid.weights.begin() + static_cast<std::ptrdiff_t>(last), 0.0)
+                     : 0.0;
+}
+
+}  // namespace
+
+BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers) {
+  const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
+  const auto fill = [&](std::size_t beam, BeamSums& sums) {
+    for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
+      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+      if (options.footprint) {
+        thread_local std::vector<EchoPatch> patches;
+        sums.invalid += make_grid_patches(grid, views, part, patches);
+        for (const EchoPatch& patch : patches) {
+          sums.add(patch);
+        }
+      } else {
+        add_points(grid, views, part, legacy_scale / range.step_m, sums);
+      }
+    }
+  };
+  return bin_beams(
+      grid.beam_count(), range, options.mean, workers,
+      [&](std::size_t beam) { return solid_angle_of(grid, beam); }, fill);
+}
+
+BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Aperture& aperture,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers) {
+  const int beams = aperture.beam_count();
+  std::vector<std::size_t> begins(static_cast<std::size_t>(beams) + 1, cells.size());
+  for (std::size_t i = cells.size(); i-- > 0;) {
+    begins[static_cast<std::size_t>(cells[i]->beam)] = i;
+  }
+  const auto fill = [&](std::size_t beam, BeamSums& sums) {
+    for (std::size_t i = begins[beam]; i < begins[beam + 1]; ++i) {
+      for (const EchoPatch& patch : cells[i]->patches) {
+        sums.add(patch);
+      }
+    }
+  };
+  const double height = 2 * std::sin(aperture.elevation_limit_rad());
+  const auto solid_angle = [&](std::size_t beam) {
+    return height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]);
+  };
+  return bin_beams(beams, range, options.mean, workers, solid_angle, fill);
 }
 
 }  // namespace sonard::render

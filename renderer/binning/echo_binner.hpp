@@ -7,6 +7,7 @@
 #include "renderer/sonar_settings.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler.hpp"
+#include "renderer/visibility/slices/slice_sampler.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -28,10 +29,13 @@ struct BinningResult {
   std::uint64_t invalid_samples = 0;
 };
 
-/// Sums in 64-bit fixed point: integer addition has no order, so the result is the same for any number of
-/// threads and any order of samples (docs/physics.md 4.2). `views` is what Sampler::sample() returned for
-/// `grid`.
+/// Sums of a fixed grid. `views` is what Sampler::sample() returned for `grid`. Sums are exact
+/// (RangeProfile), so the result is the same for any number of threads.
 BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers);
+
+/// The same for slices, which always have footprints. `cells` run from port to starboard.
+BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Aperture& aperture,
                          const RangeLines& range, const BinningOptions& options, WorkerPool& workers);
 
 }  // namespace sonard::render

@@ -15,23 +15,7 @@ constexpr double widest_view_rad =
     std::numbers::pi / 3;                       // beyond, pixels grow too unequal (docs/physics.md 1.3)
 constexpr double widest_single_view_rad = 2.8;  // planar projection ends below pi
 
-void check(const Aperture& aperture, const Sampling& sampling) {
-  const auto& edges = aperture.beam_edges_rad;
-  if (edges.size() < 2) {
-    throw RequestError("aperture: no beams");
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (!std::isfinite(edges[i]) || (i > 0 && !(edges[i] < edges[i - 1]))) {
-      throw RequestError("aperture: beam edge " + std::to_string(i) + " is not finite or not falling");
-    }
-  }
-  if (edges.front() - edges.back() > 2 * std::numbers::pi + 1e-9) {
-    throw RequestError("aperture: the fan is wider than a full turn");
-  }
-  const double limit = aperture.elevation_limit_rad();
-  if (!(limit > 0) || !(limit < std::numbers::pi / 2 * 0.97)) {
-    throw RequestError("aperture: vertical beamwidth out of range");
-  }
+void check(const Sampling& sampling) {
   if (sampling.views < 1 || sampling.columns_per_view < 1 || sampling.rows < 1 || sampling.views > 64 ||
       sampling.columns_per_view > 16384 || sampling.rows > 16384) {
     throw RequestError("sampling: views, columns or rows out of range");
@@ -173,7 +157,8 @@ GridOptions grid_options(const SonarSettings& settings) {
 }
 
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
-  check(aperture, sampling);
+  check_aperture(aperture);
+  check(sampling);
   SampleGrid grid;
   grid.views = make_views(aperture, sampling, options);
   grid.elevation_limit_rad = aperture.elevation_limit_rad();

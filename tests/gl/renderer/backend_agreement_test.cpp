@@ -88,6 +88,7 @@ View normal_mapped_bed() {
 /// 256 beams, 20 m; neither speckle nor noise.
 PingRequest quiet_request(const Pose& T_world_sonar) {
   PingRequest request;
+  request.settings.sampling = Sampling::of_grid(3, 256, 512);
   request.T_world_sonar = T_world_sonar;
   SonarSettings& settings = request.settings;
   settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
@@ -171,7 +172,7 @@ TEST_F(BackendAgreement, S21_NormalMapAveragedOverSamples) {
 TEST_F(BackendAgreement, S21_OddNumbersOfColumnsAndRows) {
   const View view = tank();
   PingRequest request = quiet_request(view.T_world_sonar);
-  request.settings.sampling = {3, 251, 301};
+  request.settings.sampling = Sampling::of_grid(3, 251, 301);
   expect_agreement_of(view, "odd grid", request);
 }
 

@@ -42,7 +42,7 @@ Comparison compare(const EchoImage& image, const PingRequest& request, const Pla
     for (int k = 0; k < image.lines; ++k) {
       const double from = std::max(1e-6, k * request.settings.range.step_m);
       expected.push_back(
-          truth.beam(edges[b + 1], edges[b], from, (k + 1) * request.settings.range.step_m, 120));
+          truth.beam(edges[b + 1], edges[b], from, (k + 1) * request.settings.range.step_m, 800));
       measured.push_back(static_cast<double>(image.at(beam, k)));
       expected_sum += expected.back();
       measured_sum += measured.back();
@@ -139,7 +139,7 @@ TEST_P(ClosedForm, T4_Sphere) {
   };
   const auto [coarse_rms, coarse_total] = rms_and_total();
   EXPECT_NEAR(coarse_total / 1.411161e-4, 1, 0.005);
-  request.settings.sampling = {3, 1024, 2048};
+  request.settings.sampling = Sampling::of_grid(3, 1024, 2048);
   const auto [fine_rms, fine_total] = rms_and_total();
   EXPECT_NEAR(fine_total / 1.411161e-4, 1, 0.002);
   EXPECT_LT(fine_rms, 0.02);
@@ -177,7 +177,7 @@ TEST_P(ClosedForm, T7_ShadowOfAWall) {
                          options());
   PingRequest request = gemini_request(900);
   request.settings.range.step_m = 0.025;
-  request.settings.sampling.rows = 4096;  // a row then spans less than a line at the end of the shadow
+  request.settings.sampling = Sampling::of_grid(3, 256, 4096);  // a row then spans less than a line at the end of the shadow
   request.settings.aperture.vertical_beamwidth_rad = 60 * degree;
   request.T_world_sonar.position_m.z = 5;
   const EchoImage image = renderer.render_echo(request);
@@ -199,7 +199,7 @@ TEST_P(ClosedForm, T11_EveryBeamLooksWhereItsTableSays) {
   SonarRenderer renderer(
       make_world({make_body("strip", make_quad({0, -0.01F, -3}, {0, 0.02F, 0}, {0, 0, 6}))}), options());
   PingRequest request = gemini_request(1250);
-  request.settings.sampling = {3, 1024, 64};
+  request.settings.sampling = Sampling::of_grid(3, 1024, 64);
   for (int beam = 0; beam < 256; ++beam) {
     const auto& edges = request.settings.aperture.beam_edges_rad;
     const double psi =

@@ -20,7 +20,7 @@ PingRequest small_request() {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_sine_edges(64, 60 * degree);
   request.settings.range = {800, 0.02, 1, false};
-  request.settings.sampling = {3, 128, 128};
+  request.settings.sampling = Sampling::of_grid(3, 128, 128);
   request.T_world_sonar.position_m.z = 3;
   request.T_world_sonar.orientation = glm::angleAxis(20 * degree, glm::dvec3(0, 1, 0));
   request.seed = 11;
@@ -132,7 +132,7 @@ TEST_P(Image, BadRequestsAreRefusedByName) {
   refused([](PingRequest& r) { r.settings.range.step_m = 1e9; });
   refused([](PingRequest& r) { r.settings.range.compression_log2 = 9; });
   refused([](PingRequest& r) { r.settings.aperture.beam_edges_rad.clear(); });
-  refused([](PingRequest& r) { r.settings.sampling.columns_per_view = 1 << 20; });
+  refused([](PingRequest& r) { r.settings.sampling = Sampling::of_grid(3, 1 << 20, 512); });
   refused([](PingRequest& r) { r.T_world_sonar.position_m.x = NAN; });
   refused([](PingRequest& r) { r.T_world_sonar.orientation = {0, 0, 0, 0}; });
   refused([](PingRequest& r) { r.T_world_sonar.orientation = {NAN, 0, 0, 0}; });

@@ -131,7 +131,7 @@ TEST_P(Paper, SingleFrustumClipsTheSidesOnlyWhenAskedTo) {
   const double far_side = 10 / std::cos(edges[0]);
   EXPECT_NEAR(extent(0), far_side / std::cos(10 * degree) - near_side, 0.03);
   request.settings.paper.elevation_mask = false;
-  request.settings.sampling = {1, 2048, 512};
+  request.settings.sampling = Sampling::of_grid(1, 2048, 512);
   const double clipped = std::atan(std::tan(10 * degree) * std::cos(edges[0]));
   EXPECT_NEAR(extent(0), far_side / std::cos(clipped) - near_side, 0.04);
 }

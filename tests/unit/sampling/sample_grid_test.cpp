@@ -70,7 +70,7 @@ TEST(SampleGrid, FullTurnIsSplitIntoViewsOfAtMostSixtyDegrees) {
 TEST(SampleGrid, WholeColumnsTooFewForTheCentreBeamsAreRefused) {
   Aperture aperture;
   aperture.beam_edges_rad = equal_angle_edges(256, 120 * degree);
-  Sampling sampling{1, 400, 512};
+  Sampling sampling = Sampling::of_grid(1, 400, 512);
   const GridOptions paper{true, false};
   EXPECT_THROW(make_sample_grid(aperture, sampling, paper), RequestError);
   sampling.columns_per_view = 424;
@@ -80,8 +80,8 @@ TEST(SampleGrid, WholeColumnsTooFewForTheCentreBeamsAreRefused) {
 TEST(SampleGrid, NonsenseIsRefused) {
   Aperture aperture = gemini_like();
   EXPECT_THROW(make_sample_grid(Aperture{}, Sampling{}), RequestError);
-  EXPECT_THROW(make_sample_grid(aperture, Sampling{0, 1, 1}), RequestError);
-  EXPECT_THROW(make_sample_grid(aperture, Sampling{1, 1, 1 << 20}), RequestError);
+  EXPECT_THROW(make_sample_grid(aperture, Sampling::of_grid(0, 1, 1)), RequestError);
+  EXPECT_THROW(make_sample_grid(aperture, Sampling::of_grid(1, 1, 1 << 20)), RequestError);
   aperture.beam_edges_rad[7] = NAN;
   EXPECT_THROW(make_sample_grid(aperture, Sampling{}), RequestError);
   aperture = gemini_like();

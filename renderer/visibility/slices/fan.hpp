@@ -1,0 +1,62 @@
+// The fan of a sonar as the slices see it: beams found by azimuth, limits of elevation and range.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Angle of (x, y) from the x axis, towards y, in (-pi, pi]; error below `azimuth_error_rad`. No branches, so
+/// that loops over it are vectorised.
+inline constexpr float azimuth_error_rad = 2e-5F;
+inline float fast_azimuth(float y, float x) {
+  const float ax = x < 0 ? -x : x;
+  const float ay = y < 0 ? -y : y;
+  const float shorter = ax < ay ? ax : ay;
+  const float longer = ax < ay ? ay : ax;
+  const float q = shorter / (longer + 1e-30F);
+  const float q2 = q * q;
+  // Abramowitz and Stegun 4.4.49: arctan on [0, 1].
+  float angle =
+      q * (0.9998660F + q2 * (-0.3302995F + q2 * (0.1801410F + q2 * (-0.0851330F + q2 * 0.0208351F))));
+  angle = ax < ay ? 1.57079633F - angle : angle;
+  angle = x < 0 ? 3.14159265F - angle : angle;
+  return y < 0 ? -angle : angle;
+}
+
+/// Made once per configuration.
+class Fan {
+ public:
+  Fan(const Aperture& aperture, double max_range_m);
+
+  int beam_count() const { return static_cast<int>(edges_rad_.size()) - 1; }
+  double edge_rad(int i) const { return edges_rad_[static_cast<std::size_t>(i)]; }
+  float max_range_m() const { return max_range_m_; }
+  float elevation_limit_rad() const { return elevation_limit_rad_; }
+  float tan_limit() const { return tan_limit_; }
+  /// Middle and half width of the fan in azimuth.
+  float centre_rad() const { return centre_rad_; }
+  float half_width_rad() const { return half_width_rad_; }
+
+  /// Beams that azimuths [low, high] of (-pi, pi] may touch; a few more at the ends of the range may be
+  /// named. first > last: none.
+  struct BeamRange {
+    int first = 0;
+    int last = -1;
+  };
+  BeamRange beams_between(float low_rad, float high_rad) const;
+
+ private:
+  std::vector<double> edges_rad_;
+  float elevation_limit_rad_;
+  float tan_limit_;
+  float max_range_m_;
+  float centre_rad_;
+  float half_width_rad_;
+  float buckets_per_rad_;
+  std::vector<std::uint16_t> first_beam_, last_beam_;  ///< per bucket of azimuth, from port to starboard
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,202 @@
+#include "renderer/visibility/slices/fan_triangles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr int share_count = 32;  // jobs; fixed, so that the order of triangles does not depend on the threads
+constexpr float thin_ratio = 3.0F;  // angular height over width
+constexpr auto half_turn = static_cast<float>(std::numbers::pi);
+
+/// Vertices of one cluster in the sonar frame.
+struct Corners {
+  std::array<float, MeshClusters::most_vertices> x, y, z;
+  std::array<float, MeshClusters::most_vertices> azimuth;
+  std::array<float, MeshClusters::most_vertices> horizontal_squared;
+  std::array<float, MeshClusters::most_vertices> tangent;  ///< of the elevation
+};
+
+SONARD_SIMD_CLONES
+void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Corners& out) {
+  const float* x = &part.clusters->x[cluster.first_vertex];
+  const float* y = &part.clusters->y[cluster.first_vertex];
+  const float* z = &part.clusters->z[cluster.first_vertex];
+  const glm::mat3 m = part.R_sonar_part;  // columns are the axes of the part
+  const glm::vec3 t = part.t_sonar_part_m;
+  const auto count = static_cast<int>(cluster.vertex_count);
+  for (int i = 0; i < count; ++i) {
+    const float px = m[0].x * x[i] + m[1].x * y[i] + m[2].x * z[i] + t.x;
+    const float py = m[0].y * x[i] + m[1].y * y[i] + m[2].y * z[i] + t.y;
+    out.x[static_cast<std::size_t>(i)] = px;
+    out.y[static_cast<std::size_t>(i)] = py;
+    const float pz = m[0].z * x[i] + m[1].z * y[i] + m[2].z * z[i] + t.z;
+    const float horizontal_squared = px * px + py * py;
+    out.z[static_cast<std::size_t>(i)] = pz;
+    out.azimuth[static_cast<std::size_t>(i)] = fast_azimuth(py, px);
+    out.horizontal_squared[static_cast<std::size_t>(i)] = horizontal_squared;
+    out.tangent[static_cast<std::size_t>(i)] = pz / std::sqrt(horizontal_squared + 1e-30F);
+  }
+}
+
+/// Whether a sphere is wholly outside the range, the elevation limits or the azimuths of the fan.
+bool outside(const Fan& fan, const glm::vec3& centre, float radius) {
+  constexpr float slack = 1e-3F;  // radians; more than all rounding here
+  const float horizontal = std::hypot(centre.x, centre.y);
+  const float distance = std::hypot(horizontal, centre.z);
+  if (distance - radius > fan.max_range_m()) {
+    return true;
+  }
+  if (distance <= radius * 1.01F) {
+    return false;  // the sonar is inside it
+  }
+  const float above = std::abs(std::atan2(centre.z, horizontal)) - fan.elevation_limit_rad();
+  if (above > slack && above > std::asin(radius / distance) + slack) {
+    return true;
+  }
+  if (horizontal <= radius * 1.01F) {
+    return false;
+  }
+  float aside = std::abs(std::atan2(centre.y, centre.x) - fan.centre_rad());
+  aside = std::min(aside, 2 * half_turn - aside) - fan.half_width_rad();
+  return aside > slack && aside > std::asin(radius / horizontal) + slack;
+}
+
+}  // namespace
+
+std::uint64_t FanTriangles::clusters_culled() const {
+  std::uint64_t culled = 0;
+  for (const Share& share : shares_) {
+    culled += share.culled;
+  }
+  return culled;
+}
+
+void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers) {
+  part_starts_.assign(1, 0);
+  for (const PlacedPart& part : parts) {
+    part_starts_.push_back(part_starts_.back() + static_cast<std::uint32_t>(part.clusters->clusters.size()));
+  }
+  cluster_count_ = part_starts_.back();
+  const auto beams = static_cast<std::size_t>(fan.beam_count());
+  shares_.resize(share_count);
+  workers.run(share_count, [&](int job) {
+    const auto j = static_cast<std::size_t>(job);
+    Share& share = shares_[j];
+    share.triangles.clear();
+    share.beams.clear();
+    share.per_beam.assign(beams, 0);
+    share.culled = 0;
+    collect(parts, fan, cluster_count_ * j / share_count, cluster_count_ * (j + 1) / share_count, share);
+  });
+  make_room_for_lists(beams);
+  workers.run(share_count, [&](int job) { list(shares_[static_cast<std::size_t>(job)]); });
+}
+
+void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, std::size_t begin,
+                           std::size_t end, Share& share) const {
+  Corners at;
+  const float tan_limit_squared = fan.tan_limit() * fan.tan_limit();
+  std::size_t part_number = 0;
+  for (std::size_t c = begin; c < end; ++c) {
+    while (c >= part_starts_[part_number + 1]) {
+      ++part_number;
+    }
+    const PlacedPart& part = parts[part_number];
+    const MeshClusters::Cluster& cluster = part.clusters->clusters[c - part_starts_[part_number]];
+    if (outside(fan, part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m, cluster.radius_m)) {
+      ++share.culled;
+      continue;
+    }
+    transform(part, cluster, at);
+    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+      const auto [i, j, k] = part.clusters->corners[t];
+      const float far =
+          std::max({at.horizontal_squared[i], at.horizontal_squared[j], at.horizontal_squared[k]});
+      const auto [bottom, top] = std::minmax({at.z[i], at.z[j], at.z[k]});
+      // No point of the triangle is farther out than its farthest corner, so none has less room in elevation.
+      const float room = far * tan_limit_squared;
+      if ((bottom > 0 && bottom * bottom > room) || (top < 0 && top * top > room)) {
+        continue;
+      }
+      const auto [low_t, high_t] = std::minmax({at.tangent[i], at.tangent[j], at.tangent[k]});
+      const auto [low, high] = std::minmax({at.azimuth[i], at.azimuth[j], at.azimuth[k]});
+      const FanTriangle triangle{{at.x[i], at.x[j], at.x[k]},
+                                 {at.y[i], at.y[j], at.y[k]},
+                                 {at.z[i], at.z[j], at.z[k]},
+                                 static_cast<std::uint32_t>(part_number),
+                                 part.clusters->mesh_triangle[t],
+                                 high_t - low_t > thin_ratio * (high - low),
+                                 low,
+                                 high};
+      add(triangle, {at.azimuth[i], at.azimuth[j], at.azimuth[k]}, fan, share);
+    }
+  }
+}
+
+void FanTriangles::add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
+                       Share& share) {
+  const auto [low, high] = std::minmax({azimuth[0], azimuth[1], azimuth[2]});
+  if (high - low <= half_turn) {
+    share.add(triangle, fan.beams_between(low, high));
+    return;
+  }
+  if (std::min({std::abs(azimuth[0]), std::abs(azimuth[1]), std::abs(azimuth[2])}) < half_turn / 2) {
+    // It may hold the sonar's vertical axis: any azimuth can meet it.
+    share.add(triangle, {0, fan.beam_count() - 1});
+    return;
+  }
+  // It lies behind, across the azimuth where pi meets -pi.
+  float port = half_turn;
+  float starboard = -half_turn;
+  for (const float a : azimuth) {
+    (a > 0 ? port : starboard) = a > 0 ? std::min(port, a) : std::max(starboard, a);
+  }
+  share.add(triangle, fan.beams_between(port, half_turn));
+  share.add(triangle, fan.beams_between(-half_turn, starboard));
+}
+
+void FanTriangles::Share::add(const FanTriangle& triangle, Fan::BeamRange range) {
+  if (range.first > range.last) {
+    return;
+  }
+  triangles.push_back(triangle);
+  beams.push_back(range);
+  for (int b = range.first; b <= range.last; ++b) {
+    ++per_beam[static_cast<std::size_t>(b)];
+  }
+}
+
+/// Turns the counts of each share into the places where it lists its triangles.
+void FanTriangles::make_room_for_lists(std::size_t beams) {
+  first_of_beam_.resize(beams + 1);
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < beams; ++b) {
+    first_of_beam_[b] = next;
+    for (Share& share : shares_) {
+      const std::uint32_t count = share.per_beam[b];
+      share.per_beam[b] = static_cast<std::uint32_t>(next);
+      next += count;
+    }
+  }
+  first_of_beam_[beams] = next;
+  listed_.resize(next);
+}
+
+void FanTriangles::list(Share& share) {
+  for (std::size_t i = 0; i < share.triangles.size(); ++i) {
+    for (int b = share.beams[i].first; b <= share.beams[i].last; ++b) {
+      listed_[share.per_beam[static_cast<std::size_t>(b)]++] = &share.triangles[i];
+    }
+  }
+}
+
+}  // namespace sonard::render

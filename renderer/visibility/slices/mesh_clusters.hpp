@@ -1,0 +1,43 @@
+// A mesh cut into small clusters of neighbouring triangles: what is out of the fan is dropped a cluster at a
+// time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+/// Triangles of one mesh in the order of a space-filling curve. Every cluster has its own copy of the
+/// vertices it uses, so that they are transformed where they are needed and addressed with one byte.
+struct MeshClusters {
+  struct Cluster {
+    glm::vec3 centre_m{0.0F};  ///< of a sphere around it, in the frame of the part
+    float radius_m = 0.0F;
+    std::uint32_t first_vertex = 0;
+    std::uint32_t vertex_count = 0;  ///< <= most_vertices
+    std::uint32_t first_triangle = 0;
+    std::uint32_t triangle_count = 0;
+  };
+  static constexpr std::size_t most_vertices = 128;
+  static constexpr std::size_t most_triangles = 96;
+
+  std::vector<Cluster> clusters;
+  std::vector<float> x, y, z;                        ///< vertices, cluster after cluster
+  std::vector<std::array<std::uint8_t, 3>> corners;  ///< of each triangle, within its cluster's vertices
+  std::vector<std::uint32_t> mesh_triangle;          ///< its number in the mesh
+
+  explicit MeshClusters(const TriangleMesh& mesh);
+
+ private:
+  void add_cluster(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order, std::size_t& next,
+                   std::vector<std::int32_t>& local_of_vertex);
+  void close_cluster(Cluster& cluster) const;
+};
+
+}  // namespace sonard::render

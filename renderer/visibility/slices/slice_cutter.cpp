@@ -1,0 +1,243 @@
+#include "renderer/visibility/slices/slice_cutter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr std::size_t widest_vector = 16;  // arrays end on a multiple, so that no loop has a rest
+constexpr float nearest_m = 1e-4F;         // what is nearer to the vertical axis is cut off
+constexpr float shortest = 1e-9F;          // of a segment, in t; what is shorter is seen edge-on
+
+}  // namespace
+
+void Segments::reserve(std::size_t size) {
+  for (auto* array : {&low, &high, &w_at_0, &w_slope, &low_drift, &high_drift}) {
+    array->resize(std::max(size, array->size()));
+  }
+  triangle.resize(std::max(size, triangle.size()));
+}
+
+void SliceCutter::load(std::span<const FanTriangle* const> triangles, bool two_sided) {
+  triangles_.assign(triangles.begin(), triangles.end());
+  if (!two_sided) {
+    drop_back_faces();
+  }
+  padded_ = (triangles_.size() + widest_vector - 1) / widest_vector * widest_vector;
+  for (auto* corner : {x_, y_, z_}) {
+    for (int k = 0; k < 3; ++k) {
+      corner[k].resize(padded_);
+    }
+  }
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      x_[k][i] = triangles_[i]->x[k];
+      y_[k][i] = triangles_[i]->y[k];
+      z_[k][i] = triangles_[i]->z[k];
+    }
+  }
+  for (std::size_t i = triangles_.size(); i < padded_; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      x_[k][i] = y_[k][i] = z_[k][i] = 0.0F;  // cut by no slice
+    }
+  }
+  for (auto* array :
+       {&normal_x_, &normal_y_, &normal_z_, &low_, &high_, &w_at_0_, &w_slope_, &low_drift_, &high_drift_}) {
+    array->resize(padded_);
+  }
+  fate_.resize(padded_);
+  load_normals();
+  list_thin();
+}
+
+SONARD_SIMD_CLONES
+void SliceCutter::load_normals() {
+  const float* __restrict x0 = x_[0].data();
+  const float* __restrict x1 = x_[1].data();
+  const float* __restrict x2 = x_[2].data();
+  const float* __restrict y0 = y_[0].data();
+  const float* __restrict y1 = y_[1].data();
+  const float* __restrict y2 = y_[2].data();
+  const float* __restrict z0 = z_[0].data();
+  const float* __restrict z1 = z_[1].data();
+  const float* __restrict z2 = z_[2].data();
+  float* __restrict nx = normal_x_.data();
+  float* __restrict ny = normal_y_.data();
+  float* __restrict nz = normal_z_.data();
+  const std::size_t count = padded_;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float ax = x1[i] - x0[i], ay = y1[i] - y0[i], az = z1[i] - z0[i];
+    const float bx = x2[i] - x0[i], by = y2[i] - y0[i], bz = z2[i] - z0[i];
+    const float cx = ay * bz - az * by, cy = az * bx - ax * bz, cz = ax * by - ay * bx;
+    const float scale = 1.0F / std::sqrt(cx * cx + cy * cy + cz * cz + 1e-36F);
+    nx[i] = cx * scale;
+    ny[i] = cy * scale;
+    nz[i] = cz * scale;
+  }
+}
+
+void SliceCutter::drop_back_faces() {
+  const auto seen_from_behind = [](const FanTriangle* t) {
+    const glm::vec3 a(t->x[0], t->y[0], t->z[0]);
+    const glm::vec3 b(t->x[1], t->y[1], t->z[1]);
+    const glm::vec3 c(t->x[2], t->y[2], t->z[2]);
+    return glm::dot(glm::cross(b - a, c - a), a) > 0;
+  };
+  std::erase_if(triangles_, seen_from_behind);
+}
+
+void SliceCutter::list_thin() {
+  thin_.clear();
+  for (const FanTriangle* t : triangles_) {
+    if (t->thin) {
+      thin_.push_back(t);
+    }
+  }
+}
+
+bool SliceCutter::misses_thin_triangle(const Slice& slice) const {
+  const auto azimuth = static_cast<float>(slice.azimuth_rad);
+  const float half = 0.5F * slice.width_rad;
+  return std::any_of(thin_.begin(), thin_.end(), [&](const FanTriangle* t) {
+    const float low = t->low_azimuth_rad - azimuth;
+    const float high = t->high_azimuth_rad - azimuth;
+    return (low > 0 && low < half) || (high < 0 && high > -half);
+  });
+}
+
+void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
+  const auto cosine = static_cast<float>(std::cos(slice.azimuth_rad));
+  const auto sine = static_cast<float>(std::sin(slice.azimuth_rad));
+  cut_all(cosine, sine, slice.width_rad, tan_limit);
+  segments.reserve(padded_ + 1);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    if (fate_[i] == partly_behind) {
+      clip_behind(cosine, sine, tan_limit, static_cast<int>(i));
+    }
+    segments.low[n] = low_[i];
+    segments.high[n] = high_[i];
+    segments.w_at_0[n] = w_at_0_[i];
+    segments.w_slope[n] = w_slope_[i];
+    segments.low_drift[n] = low_drift_[i];
+    segments.high_drift[n] = high_drift_[i];
+    segments.triangle[n] = static_cast<std::int32_t>(i);
+    n += fate_[i] == kept ? 1 : 0;
+  }
+  segments.count = static_cast<int>(n);
+}
+
+/// With s the distance of a corner from the plane of the slice, an edge from i to j meets it where
+/// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes the signs of numerator
+/// and denominator and nothing else, so that two triangles find the same point on their common edge.
+SONARD_SIMD_CLONES
+void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_limit) {
+  const float* __restrict x0 = x_[0].data();
+  const float* __restrict x1 = x_[1].data();
+  const float* __restrict x2 = x_[2].data();
+  const float* __restrict y0 = y_[0].data();
+  const float* __restrict y1 = y_[1].data();
+  const float* __restrict y2 = y_[2].data();
+  const float* __restrict z0 = z_[0].data();
+  const float* __restrict z1 = z_[1].data();
+  const float* __restrict z2 = z_[2].data();
+  float* __restrict low = low_.data();
+  float* __restrict high = high_.data();
+  float* __restrict at_0 = w_at_0_.data();
+  float* __restrict slope = w_slope_.data();
+  float* __restrict low_drift = low_drift_.data();
+  float* __restrict high_drift = high_drift_.data();
+  std::int32_t* __restrict fate = fate_.data();
+  const std::size_t count = padded_;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float s0 = y0[i] * cosine - x0[i] * sine, h0 = x0[i] * cosine + y0[i] * sine;
+    const float s1 = y1[i] * cosine - x1[i] * sine, h1 = x1[i] * cosine + y1[i] * sine;
+    const float s2 = y2[i] * cosine - x2[i] * sine, h2 = x2[i] * cosine + y2[i] * sine;
+    // Sides of the slice as numbers: GCC 12 does not vectorise a comparison of comparisons.
+    const float side0 = s0 >= 0 ? 1.0F : -1.0F, side1 = s1 >= 0 ? 1.0F : -1.0F,
+                side2 = s2 >= 0 ? 1.0F : -1.0F;
+    const bool cut01 = side0 * side1 < 0;
+    const bool cut20 = side2 * side0 < 0;
+    // The two edges that are cut: p is 0-1 or else 1-2, q is 2-0 or else 1-2.
+    const float hpi = cut01 ? h0 : h1, hpj = cut01 ? h1 : h2, spi = cut01 ? s0 : s1, spj = cut01 ? s1 : s2;
+    const float zpi = cut01 ? z0[i] : z1[i], zpj = cut01 ? z1[i] : z2[i];
+    const float hqi = cut20 ? h2 : h1, hqj = cut20 ? h0 : h2, sqi = cut20 ? s2 : s1, sqj = cut20 ? s0 : s2;
+    const float zqi = cut20 ? z2[i] : z1[i], zqj = cut20 ? z0[i] : z2[i];
+    const float ep = spj - spi, eq = sqj - sqi;
+    const float over_p = 1.0F / (hpi * spj - hpj * spi), over_q = 1.0F / (hqi * sqj - hqj * sqi);
+    const float tp = (zpi * spj - zpj * spi) * over_p, wp = ep * over_p;
+    const float tq = (zqi * sqj - zqj * sqi) * over_q, wq = eq * over_q;
+    // dt / d azimuth along the edge is (dz - t dh) / ds. An edge that ends inside the wedge moves no farther.
+    const float ap = ep < 0 ? -ep : ep, aq = eq < 0 ? -eq : eq;
+    const float up = width_rad / (wp < 0 ? -wp : wp), uq = width_rad / (wq < 0 ? -wq : wq);
+    const float dp = ((zpj - zpi) - tp * (hpj - hpi)) / (ap > up ? ap : up);
+    const float dq = ((zqj - zqi) - tq * (hqj - hqi)) / (aq > uq ? aq : uq);
+    const float mp = ep < 0 ? -dp : dp, mq = eq < 0 ? -dq : dq;
+    const bool p_low = tp < tq;
+    const float a = p_low ? tp : tq, b = p_low ? tq : tp, wa = p_low ? wp : wq, wb = p_low ? wq : wp;
+    const float steepness = (wb - wa) / (b - a);
+    low[i] = a;
+    high[i] = b;
+    slope[i] = steepness;
+    at_0[i] = wa - steepness * a;
+    low_drift[i] = p_low ? mp : mq;
+    high_drift[i] = p_low ? mq : mp;
+    const std::int32_t cut = side0 * side1 + side2 * side0 < 2 ? 1 : 0;
+    const std::int32_t seen = ((b - a > shortest) & (b > -tan_limit) & (a < tan_limit)) ? kept : none;
+    const std::int32_t not_in_front = ((wp <= 0) & (wq <= 0)) ? none : partly_behind;
+    fate[i] = cut * (((wp > 0) & (wq > 0)) ? seen : not_in_front);
+  }
+}
+
+/// The same for a triangle of which the plane of the slice cuts a part behind the vertical axis, in doubles
+/// and one at a time: such triangles are few.
+void SliceCutter::clip_behind(float cosine, float sine, float tan_limit, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  double s[3], h[3], z[3];
+  for (int k = 0; k < 3; ++k) {
+    const double x = static_cast<double>(x_[k][i]), y = static_cast<double>(y_[k][i]);
+    s[k] = y * static_cast<double>(cosine) - x * static_cast<double>(sine);
+    h[k] = x * static_cast<double>(cosine) + y * static_cast<double>(sine);
+    z[k] = static_cast<double>(z_[k][i]);
+  }
+  double end_h[2] = {0, 0}, end_z[2] = {0, 0};
+  int ends = 0;
+  for (int k = 0; k < 3 && ends < 2; ++k) {
+    const int j = (k + 1) % 3;
+    if ((s[k] >= 0) != (s[j] >= 0)) {
+      const double share = s[k] / (s[k] - s[j]);
+      end_h[ends] = h[k] + (h[j] - h[k]) * share;
+      end_z[ends++] = z[k] + (z[j] - z[k]) * share;
+    }
+  }
+  fate_[i] = none;
+  if (ends < 2 || std::max(end_h[0], end_h[1]) <= static_cast<double>(nearest_m)) {
+    return;
+  }
+  const int back = end_h[0] < end_h[1] ? 0 : 1;
+  if (end_h[back] < static_cast<double>(nearest_m)) {
+    const double share = (static_cast<double>(nearest_m) - end_h[back]) / (end_h[1 - back] - end_h[back]);
+    end_z[back] += (end_z[1 - back] - end_z[back]) * share;
+    end_h[back] = static_cast<double>(nearest_m);
+  }
+  const double t0 = end_z[0] / end_h[0], t1 = end_z[1] / end_h[1];
+  const int lower = t0 < t1 ? 0 : 1;
+  const double a = std::min(t0, t1), b = std::max(t0, t1);
+  if (!(b - a > static_cast<double>(shortest)) || b < -static_cast<double>(tan_limit) ||
+      a > static_cast<double>(tan_limit)) {
+    return;
+  }
+  const double steepness = (1 / end_h[1 - lower] - 1 / end_h[lower]) / (b - a);
+  low_[i] = static_cast<float>(a);
+  high_[i] = static_cast<float>(b);
+  w_slope_[i] = static_cast<float>(steepness);
+  w_at_0_[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
+  low_drift_[i] = high_drift_[i] = 0.0F;
+  fate_[i] = kept;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,89 @@
+// Visible pieces of a slice -> echo patches, and what the slice says about its two sides.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "renderer/binning/echo_patch.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/normal_pyramid.hpp"
+#include "renderer/visibility/sampler.hpp"
+#include "renderer/visibility/slices/slice_sweep.hpp"
+
+namespace sonard::render {
+
+/// How the surface of one part answers.
+struct PartSurface {
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
+  bool vertex_normals = false;
+  float lambert_mu = 0.0F;
+  float reflectance = 0.0F;
+  glm::mat3 R_part_sonar{1.0F};  ///< for this ping
+};
+
+/// What is expected at one side of a wedge if its surfaces go on as in its middle: 1 / horizontal distance at
+/// evenly spaced t, 0 where nothing is seen. Neighbours compare theirs.
+inline constexpr int side_probes = 128;
+using SideProfile = std::array<float, side_probes>;
+
+/// One-way elevation pattern as a function of t, tabled.
+class ElevationPattern {
+ public:
+  explicit ElevationPattern(const Aperture& aperture);
+  bool flat() const { return weight_.empty(); }
+  float at(float t) const;
+
+ private:
+  float tan_limit_;
+  std::vector<float> weight_;  ///< empty: 1 everywhere
+};
+
+/// One per thread; keeps its memory.
+class SlicePatcher {
+ public:
+  struct Request {
+    const Slice& slice;
+    const Segments& segments;
+    const std::vector<VisiblePiece>& pieces;
+    const SliceCutter& cutter;
+    const std::vector<PartSurface>& parts;
+    const SurfaceModel& surface;
+    const ElevationPattern& pattern;
+    float tan_limit;
+    /// Within a piece the echo is taken as even in range. Pieces are divided until that displaces it by no
+    /// more than this many lines.
+    float evenness;
+    bool any_mapped;  ///< whether any of the parts has a normal map
+    float line_m;
+  };
+
+  /// @param patches is appended to.
+  void make(const Request& request, std::vector<EchoPatch>& patches);
+
+  /// Of the slice that was made last: its profile `offset_rad` from the middle, positive to port.
+  void profile(float tan_limit, float offset_rad, SideProfile& out);
+
+ private:
+  void lay_out(const Request& request);
+  void measure(const Request& request);
+  bool divide_uneven(const Request& request);
+  bool all_even(const Request& request) const;
+  void find_probes(float tan_limit, float offset_rad);
+  static bool is_mapped(const Request& request, const VisiblePiece& piece);
+  void shade(const Request& request);
+
+  /// Pieces after division, and what is known of each; arrays, because loops over them are vectorised.
+  std::vector<VisiblePiece> pieces_, divided_;
+  std::vector<float> low_, high_, low_drift_, high_drift_;
+  std::vector<float> w_at_0_, w_slope_, w_by_azimuth_, normal_h_, normal_s_, normal_z_;
+  std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
+  std::vector<float> response_;
+  std::vector<std::int32_t> first_probe_, last_probe_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,96 @@
+// Exact visibility in slices of constant azimuth, refined where neighbouring slices disagree: the adaptive
+// sampling of the CPU.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/binning/echo_patch.hpp"
+#include "renderer/pose.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/slices/fan_triangles.hpp"
+#include "renderer/visibility/slices/slice_patches.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// How closely slices follow the world.
+struct SliceAccuracy {
+  int slices_per_beam = 1;  ///< to begin with; wide and oblique beams get more
+  int most_divisions = 64;  ///< of a first slice, a power of four
+  /// Neighbouring slices are divided while (share of elevations at which they disagree) * (width / beam
+  /// width)^2 exceeds this: the share of bins that are wrong times the square of how wrong they are.
+  float disagreement = 1e-3F;
+  float evenness = 0.04F;  ///< see SlicePatcher::Request
+  float change = 0.01F;    ///< share by which a wall's echo may change within a first slice, RMS
+};
+
+/// A wedge of the fan and what is seen in it.
+struct SliceCell {
+  Slice slice;
+  int beam = 0;
+  int divisions = 1;  ///< of the first slice of this place
+  bool misses_something = false;
+  std::vector<EchoPatch> patches;
+  SideProfile port, starboard;
+};
+
+struct SliceStatistics {
+  std::uint64_t slices = 0;
+  std::uint64_t patches = 0;
+  std::uint64_t clusters = 0;
+  std::uint64_t clusters_culled = 0;
+};
+
+/// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
+/// the width of slices makes errors, and these of second order but at silhouettes that run along the slices
+/// (docs/accuracy.md). One thread uses it; it shares its work with the pool's.
+class SliceSampler {
+ public:
+  SliceSampler(const World& world, WorkerPool& workers);
+
+  /// Cells from port to starboard; they stay valid until the next call. The same for any number of threads.
+  /// @param line_m length of a range line: what matters less than that in range is not followed.
+  std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture, double line_m,
+                                       double max_range_m, const SurfaceModel& surface,
+                                       const SliceAccuracy& accuracy);
+
+  /// @return false when the world has no body of that name.
+  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+
+  const SliceStatistics& last_statistics() const { return statistics_; }
+
+ private:
+  struct Part {
+    std::size_t body;
+    Pose T_body_part;
+  };
+  struct Setting;
+  struct Scratch;
+
+  void place_parts(const Pose& T_world_sonar);
+  void lay_first_slices(const Setting& setting);
+  void see(const Setting& setting, const std::vector<std::size_t>& fresh);
+  static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
+  bool refine(const Setting& setting, std::vector<std::size_t>& fresh);
+  std::size_t new_cell();
+
+  WorkerPool& workers_;
+  std::vector<Pose> T_world_body_;
+  std::map<std::string, std::size_t> body_number_;
+  std::vector<Part> parts_;
+  std::vector<PlacedPart> placed_;
+  std::vector<PartSurface> surfaces_;
+  bool any_mapped_ = false;
+  FanTriangles triangles_;
+  std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
+  std::size_t cells_used_ = 0;
+  std::vector<std::size_t> order_;  ///< cells from port to starboard
+  SliceStatistics statistics_;
+};
+
+}  // namespace sonard::render

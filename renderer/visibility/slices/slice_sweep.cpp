@@ -1,0 +1,203 @@
+#include "renderer/visibility/slices/slice_sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sonard::render {
+
+namespace {
+
+constexpr float never = std::numeric_limits<float>::infinity();
+constexpr int nothing = -1;
+// Relative difference of 1 / h below which two segments touch but do not cross; above the rounding of cuts.
+constexpr float touching = 1e-5F;
+
+}  // namespace
+
+const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float tan_limit) {
+  segments_ = &segments;
+  limit_ = tan_limit;
+  pieces_.clear();
+  waiting_.clear();
+  sort_by_low_end();
+  next_ = 0;
+  current_ = nothing;
+  crossing_ = never;
+  t_ = -limit_;
+  drift_ = 0.0F;
+  while (t_ < limit_) {
+    if (current_ == nothing) {
+      if (next_ == order_.size()) {
+        break;
+      }
+      step_to_next_start();
+      continue;
+    }
+    const float end = std::min(segments.high[static_cast<std::size_t>(current_)], limit_);
+    const float start = next_start();
+    if (crossing_ < start && crossing_ < end) {
+      emit(crossing_, 0.0F);
+      std::swap(current_, waiting_[crosser_]);
+      find_next_crossing();
+    } else if (start < end) {
+      meet(order_[next_++]);
+    } else {
+      step_to_end_of_current();
+    }
+  }
+  return pieces_;
+}
+
+float SliceSweep::next_start() const {
+  return next_ < order_.size() ? std::max(-limit_, segments_->low[static_cast<std::size_t>(order_[next_])])
+                               : never;
+}
+
+/// A counting sort into as many buckets as there are segments, then insertion: linear where segments are
+/// spread over the fan, as the triangles of a surface are.
+void SliceSweep::sort_by_low_end() {
+  const auto count = static_cast<std::size_t>(segments_->count);
+  const std::vector<float>& low = segments_->low;
+  const std::size_t buckets = std::clamp<std::size_t>(count, 16, 65536);
+  const float scale = static_cast<float>(buckets) / (2 * limit_);
+  bucket_.resize(count);
+  order_.resize(count);
+  bucket_begin_.assign(buckets + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float place = std::clamp((low[i] + limit_) * scale, 0.0F, static_cast<float>(buckets - 1));
+    bucket_[i] = static_cast<std::uint32_t>(place);
+    ++bucket_begin_[bucket_[i] + 1];
+  }
+  for (std::size_t b = 0; b < buckets; ++b) {
+    bucket_begin_[b + 1] += bucket_begin_[b];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    order_[bucket_begin_[bucket_[i]]++] = static_cast<std::int32_t>(i);
+  }
+  for (std::size_t i = 1; i < count; ++i) {
+    const std::int32_t segment = order_[i];
+    const float key = low[static_cast<std::size_t>(segment)];
+    std::size_t at = i;
+    while (at > 0 && low[static_cast<std::size_t>(order_[at - 1])] > key) {
+      order_[at] = order_[at - 1];
+      --at;
+    }
+    order_[at] = segment;
+  }
+}
+
+void SliceSweep::emit(float until, float drift) {
+  if (until > t_) {
+    pieces_.push_back({t_, until, drift_, drift, current_});
+    t_ = until;
+  }
+  drift_ = drift;
+}
+
+/// Nothing is seen here: go on to where something begins.
+void SliceSweep::step_to_next_start() {
+  t_ = next_start();
+  const auto first = static_cast<std::size_t>(order_[next_]);
+  drift_ = segments_->low[first] > -limit_ ? segments_->low_drift[first] : 0.0F;
+  take_nearest_waiting();
+}
+
+/// A segment begins while another is seen.
+void SliceSweep::meet(int segment) {
+  const auto s = static_cast<std::size_t>(segment);
+  const auto c = static_cast<std::size_t>(current_);
+  const float start = std::max(-limit_, segments_->low[s]);
+  float at = never;
+  const bool cross = crosses(segment, current_, start, at);
+  const bool in_front = cross ? segments_->w(segment, start) > segments_->w(current_, start)
+                              : is_nearer(segment, current_, start);
+  if (in_front) {
+    emit(start, segments_->low_drift[s]);
+    if (cross || segments_->high[c] > segments_->high[s]) {
+      waiting_.push_back(current_);
+    }
+    current_ = segment;
+    find_next_crossing();
+  } else if (cross || segments_->high[s] > segments_->high[c]) {
+    // Otherwise it ends behind the current one and is never seen.
+    waiting_.push_back(segment);
+    if (cross && at < crossing_) {
+      crossing_ = at;
+      crosser_ = waiting_.size() - 1;
+    }
+  }
+}
+
+void SliceSweep::step_to_end_of_current() {
+  const auto c = static_cast<std::size_t>(current_);
+  const bool cut_by_limit = segments_->high[c] >= limit_;
+  emit(std::min(segments_->high[c], limit_), cut_by_limit ? 0.0F : segments_->high_drift[c]);
+  t_ = std::max(t_, std::min(segments_->high[c], limit_));
+  take_nearest_waiting();
+}
+
+/// Makes the nearest of all that have begun and not ended the current one.
+void SliceSweep::take_nearest_waiting() {
+  while (next_ < order_.size() && next_start() <= t_) {
+    waiting_.push_back(order_[next_++]);
+  }
+  std::size_t kept = 0;
+  std::size_t best = 0;
+  for (const std::int32_t segment : waiting_) {
+    if (!(segments_->high[static_cast<std::size_t>(segment)] > t_)) {
+      continue;
+    }
+    waiting_[kept] = segment;
+    if (kept > 0 && is_nearer(segment, waiting_[best], t_)) {
+      best = kept;
+    }
+    ++kept;
+  }
+  waiting_.resize(kept);
+  current_ = nothing;
+  crossing_ = never;
+  if (kept > 0) {
+    current_ = waiting_[best];
+    waiting_[best] = waiting_.back();
+    waiting_.pop_back();
+    find_next_crossing();
+  }
+}
+
+/// Compared in the middle of what both span: ends are shared by neighbours.
+bool SliceSweep::is_nearer(int a, int b, float from) const {
+  const float until =
+      std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
+  const float middle = 0.5F * (from + until);
+  const float difference = segments_->w(a, middle) - segments_->w(b, middle);
+  return difference > 0 || (difference == 0 && a < b);
+}
+
+bool SliceSweep::crosses(int a, int b, float from, float& at) const {
+  const float until =
+      std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
+  const float w_from = segments_->w(a, from);
+  const float first = w_from - segments_->w(b, from);
+  const float last = segments_->w(a, until) - segments_->w(b, until);
+  const float margin = touching * std::abs(w_from);
+  if (!(first * last < 0) || std::abs(first) < margin || std::abs(last) < margin) {
+    return false;
+  }
+  at = from + (until - from) * (first / (first - last));
+  return at > from && at < until;
+}
+
+void SliceSweep::find_next_crossing() {
+  crossing_ = never;
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    float at = never;
+    if (segments_->high[static_cast<std::size_t>(waiting_[k])] > t_ &&
+        crosses(current_, waiting_[k], t_, at) && at < crossing_) {
+      crossing_ = at;
+      crosser_ = k;
+    }
+  }
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,53 @@
+// What is visible in one slice: an exact sweep over its segments from the lowest elevation to the highest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/visibility/slices/slice_cutter.hpp"
+
+namespace sonard::render {
+
+/// Part of a segment that the sonar sees, between two elevations.
+struct VisiblePiece {
+  float low, high;              ///< t at the ends; low < high
+  float low_drift, high_drift;  ///< dt / d azimuth of the ends
+  std::int32_t segment;
+};
+
+/// Finds the nearest segment at every elevation, without sampling elevations: pieces end exactly where a
+/// segment ends, where a nearer one begins, or where two cross. One per thread; keeps its memory.
+class SliceSweep {
+ public:
+  /// Pieces from -tan_limit to tan_limit in rising order; they do not overlap. Of segments in the same place
+  /// the earlier is seen.
+  const std::vector<VisiblePiece>& run(const Segments& segments, float tan_limit);
+
+ private:
+  void sort_by_low_end();
+  void step_to_next_start();
+  void step_to_end_of_current();
+  void meet(int segment);
+  void take_nearest_waiting();
+  void emit(float until, float drift);
+  bool is_nearer(int a, int b, float from) const;
+  bool crosses(int a, int b, float from, float& at) const;
+  void find_next_crossing();
+  float next_start() const;
+
+  const Segments* segments_ = nullptr;
+  float limit_ = 0.0F;
+  std::vector<std::int32_t> order_;    ///< segments by rising low end
+  std::vector<std::uint32_t> bucket_;  ///< of the sort
+  std::vector<std::uint32_t> bucket_begin_;
+  std::size_t next_ = 0;               ///< in order_
+  std::vector<std::int32_t> waiting_;  ///< begun, hidden by the current one, and possibly seen later
+  int current_ = -1;
+  float t_ = 0.0F;         ///< the sweep is here; the current piece began here
+  float drift_ = 0.0F;     ///< of that beginning
+  float crossing_ = 0.0F;  ///< where a waiting segment comes before the current one
+  std::size_t crosser_ = 0;
+  std::vector<VisiblePiece> pieces_;
+};
+
+}  // namespace sonard::render
