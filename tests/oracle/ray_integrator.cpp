@@ -163,25 +163,24 @@ class BeamGrid {
 
   void spread(const Trapezoid& shape, double echo, double weight) {
     const double step = law_.step_m();
-    const double lines = law_.lines();
     const double first = std::max(0.0, std::floor(shape.first() / step));
-    const double last = std::min(lines - 1, std::floor(shape.last() / step));
+    const double last = std::min(law_.lines() - 1.0, std::floor(shape.last() / step));
+    if (!(first <= last)) {
+      return;  // beyond the last line
+    }
     if (shape.first() == shape.last()) {
-      if (first < lines) {
-        add_share(first, 1.0, echo, weight);
-      }
+      add_share(static_cast<std::size_t>(first), 1.0, echo, weight);
       return;
     }
     double below = shape.below(first * step);
-    for (double k = first; k <= last; k += 1) {
-      const double next = shape.below((k + 1) * step);
+    for (auto k = static_cast<std::size_t>(first); k <= static_cast<std::size_t>(last); ++k) {
+      const double next = shape.below(static_cast<double>(k + 1) * step);
       add_share(k, next - below, echo, weight);
       below = next;
     }
   }
 
-  void add_share(double line, double share, double echo, double weight) {
-    const auto k = static_cast<std::size_t>(line);
+  void add_share(std::size_t k, double share, double echo, double weight) {
     echo_[k].add(share * echo);
     if (!weight_.empty()) {
       weight_[k].add(share * weight);

@@ -50,7 +50,7 @@ std::string sha256(const std::string& bytes) {
 }
 
 std::string json_error(const RelativeError& error) {
-  return fmt::format("{{\"rms\": {:.3g}, \"max\": {:.3g}}}", error.rms, error.max);
+  return fmt::format(R"({{"rms": {:.3g}, "max": {:.3g}}})", error.rms, error.max);
 }
 
 std::string json_file(const Reference& r, const std::string& image_sha256) {

@@ -45,6 +45,7 @@ constexpr std::array<double, 3> node = {-0.774596669241483377, 0.0, 0.7745966692
 constexpr std::array<double, 3> node_weight = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 constexpr double panel_angle = 0.03;    // with it the three nodes err by 1e-10 on r^-6, the steepest law
 constexpr int panels_per_facet = 8;     // of a facet whose normal is interpolated
+constexpr double most_panels = 1e5;     // for textures that have no detail worth the name
 constexpr double panels_per_texel = 2;  // a bilinear texture has a kink at each texel
 
 }  // namespace
@@ -170,10 +171,11 @@ void Slicer::add_panel(const Cut& cut, double from, double to, std::size_t line,
   const double length = std::abs(to - from);
   const double d = cut.distance_m;
   const double angle = length / std::hypot(d, std::min(std::abs(from), std::abs(to)));
-  const double panels = std::max(1.0, std::ceil(std::max(angle / panel_angle, length / cut.panel_m - 1e-9)));
+  const double wanted = std::ceil(std::max(angle / panel_angle, length / cut.panel_m - 1e-9));
+  const int panels = static_cast<int>(std::clamp(wanted, 1.0, most_panels));
   const double half = (to - from) / (2 * panels);
   const Material& material = facets_.material(*cut.facet);
-  for (double panel = 0; panel < panels; ++panel) {
+  for (int panel = 0; panel < panels; ++panel) {
     const double centre = from + (2 * panel + 1) * half;
     for (std::size_t i = 0; i < node.size(); ++i) {
       const SlicePoint p = cut.at(centre + node[i] * half);

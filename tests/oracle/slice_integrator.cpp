@@ -126,6 +126,7 @@ class BeamIntegrator {
     std::iota(all.begin(), all.end(), 0U);
     std::erase_if(all, [&](std::uint32_t i) { return !spans_[i].overlaps(low, high); });
     const std::vector<double> edges = first_edges(low, high, all);
+    intervals_.reserve(edges.size());
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
       intervals_.push_back(measure(edges[i], edges[i + 1], all));
       apply(intervals_.back(), 1.0);
@@ -142,6 +143,7 @@ class BeamIntegrator {
     const double nominal_beams = std::max(1.0, std::ceil((high - low) / nominal_beam_rad - 1e-6));
     const int count = options_.first_intervals * static_cast<int>(nominal_beams);
     std::vector<double> edges;
+    edges.reserve(static_cast<std::size_t>(count) + 1);
     for (int i = 0; i < count; ++i) {
       edges.push_back(low + (high - low) * i / count);
     }
