@@ -30,7 +30,7 @@ double sum(Beam beam) {
 double first_echo(Beam beam, double level) {
   double reached = 0;
   for (std::size_t k = 0; k < beam.size(); ++k) {
-    const double echo = static_cast<double>(beam[k]);
+    const auto echo = static_cast<double>(beam[k]);
     if (reached + echo >= level) {
       return static_cast<double>(k) + (level - reached) / echo;
     }
@@ -70,7 +70,8 @@ std::optional<ImageError> compare_images(const render::EchoImage& image, const r
       continue;
     }
     for (std::size_t k = 0; k < truth.size(); ++k) {
-      const double expected = static_cast<double>(truth[k]), found = static_cast<double>(measured[k]);
+      const auto expected = static_cast<double>(truth[k]);
+      const auto found = static_cast<double>(measured[k]);
       const bool empty = found < hole * expected;
       if (expected > loud * strongest) {
         squares.push_back((found / expected - 1) * (found / expected - 1));

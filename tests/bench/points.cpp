@@ -12,6 +12,7 @@ constexpr double wide_fan_rad = 1.0;  // one planar view would waste samples at 
 /// Views of equal angle hold columns of equal tangent: C a beam is their mean.
 render::Sampling grid(const render::Aperture& aperture, int columns_per_beam, int rows) {
   render::Sampling sampling;
+  sampling.preset = render::Sampling::Preset::grid;
   const double width_rad = aperture.beam_edges_rad.front() - aperture.beam_edges_rad.back();
   sampling.views = width_rad > wide_fan_rad ? 3 : 1;
   sampling.columns_per_view = static_cast<int>(
@@ -20,14 +21,22 @@ render::Sampling grid(const render::Aperture& aperture, int columns_per_beam, in
   return sampling;
 }
 
+Point preset_point(const std::string& name, render::Sampling::Preset preset) {
+  return {name, [=](render::SonarSettings& settings) {
+            settings.sampling = {};
+            settings.sampling.preset = preset;
+          }};
+}
+
 }  // namespace
 
 std::vector<Point> preset_points() {
-  return {default_point()};
+  return {preset_point("fast", render::Sampling::Preset::fast), default_point(),
+          preset_point("reference", render::Sampling::Preset::reference)};
 }
 
 Point default_point() {
-  return {"default", [](render::SonarSettings& settings) { settings.sampling = {}; }};
+  return preset_point("default", render::Sampling::Preset::normal);
 }
 
 Point grid_point(int columns_per_beam, int rows) {
@@ -50,8 +59,9 @@ Point paper_point() {
     settings.paper.elevation_mask = false;
     settings.paper.legacy_bin_index = true;
     settings.paper.legacy_columns = true;
+    settings.sampling.preset = render::Sampling::Preset::grid;
     settings.sampling.views = 1;
-    settings.sampling.columns_per_view = 1024;
+    settings.sampling.columns_per_view = 4 * settings.aperture.beam_count();
     settings.sampling.rows = 512;
   };
   return {"paper", apply, false};

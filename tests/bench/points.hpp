@@ -29,8 +29,8 @@ Point grid_point(int columns_per_beam, int rows);
 /// The same without footprints, named point_CxR: each sample falls into one bin.
 Point point_binning(int columns_per_beam, int rows);
 
-/// The public code of Cerqueira et al. 2017 as docs/physics.md 1.2 reads it: one planar view of 1024 x 512,
-/// whole columns, no mask, no footprints, mean of sigmoids.
+/// The public code of Cerqueira et al. 2017 as docs/physics.md 1.2 reads it: one planar view of four columns
+/// a beam and 512 rows, whole columns, no mask, no footprints, mean of sigmoids.
 Point paper_point();
 
 }  // namespace sonard::bench

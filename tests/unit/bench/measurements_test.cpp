@@ -32,7 +32,7 @@ TEST(Measurements, WhatWasNotMeasuredIsLeftOut) {
 TEST(Measurements, AreWrittenAsAFlatList) {
   Measurements measurements;
   measurements.add(swell, "ping_ms", 0.125, "ms");
-  measurements.add({"a \"quoted\" \\ name", "raster", "fast"}, "samples", 131072, "count");
+  measurements.add({R"(a "quoted" \ name)", "raster", "fast"}, "samples", 131072, "count");
   const YAML::Node list = YAML::Load(measurements.to_json());  // JSON is YAML
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[0].size(), 6U);
@@ -42,7 +42,7 @@ TEST(Measurements, AreWrittenAsAFlatList) {
   EXPECT_EQ(list[0]["metric"].as<std::string>(), "ping_ms");
   EXPECT_EQ(list[0]["value"].as<double>(), 0.125);
   EXPECT_EQ(list[0]["unit"].as<std::string>(), "ms");
-  EXPECT_EQ(list[1]["scene"].as<std::string>(), "a \"quoted\" \\ name");
+  EXPECT_EQ(list[1]["scene"].as<std::string>(), R"(a "quoted" \ name)");
   EXPECT_EQ(list[1]["value"].as<int>(), 131072);
 }
 

@@ -23,7 +23,8 @@ const render::TriangleMesh& mesh_of(const Scene& scene, const std::string& body)
 }
 
 glm::dvec3 corner(const render::TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
-  return glm::dvec3(mesh.positions[mesh.indices[3 * triangle + k]]);
+  const glm::vec3& p = mesh.positions[mesh.indices[3 * triangle + k]];
+  return {p.x, p.y, p.z};
 }
 
 /// Signed volume by the divergence theorem: positive when closed and seen counter-clockwise from outside.
