@@ -19,6 +19,8 @@ struct SurfaceSample {
   float response = 0.0F;  ///< echo per solid angle at unit range; see SurfaceModel
   float range_dx = 0.0F;  ///< metres per unit tangent
   float range_dy = 0.0F;
+
+  bool operator==(const SurfaceSample&) const = default;
 };
 
 /// Surfaces nearer than this along the axis of their view are not seen.

@@ -177,7 +177,8 @@ TEST_P(ClosedForm, T7_ShadowOfAWall) {
                          options());
   PingRequest request = gemini_request(900);
   request.settings.range.step_m = 0.025;
-  request.settings.sampling = Sampling::of_grid(3, 256, 4096);  // a row then spans less than a line at the end of the shadow
+  request.settings.sampling =
+      Sampling::of_grid(3, 256, 4096);  // a row then spans less than a line at the end of the shadow
   request.settings.aperture.vertical_beamwidth_rad = 60 * degree;
   request.T_world_sonar.position_m.z = 5;
   const EchoImage image = renderer.render_echo(request);
