@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -170,7 +171,7 @@ TEST(RaySampler, AnyNumberOfThreadsGivesTheSameSamples) {
     for (int repetition = 0; repetition < 5; ++repetition) {
       const auto samples = sampler.sample(over_the_bed(), grid, {}, far_m);
       for (std::size_t v = 0; v < grid.views.size(); ++v) {
-        ASSERT_TRUE(std::equal(samples[v], samples[v] + 100 * 150, expected[v])) << threads;
+        ASSERT_TRUE(std::equal(samples[v], samples[v] + std::ptrdiff_t{100} * 150, expected[v])) << threads;
       }
     }
   }
@@ -276,7 +277,7 @@ TEST(RaySampler, UselessVertexNormalsAreReplacedByTheTriangles) {
     RaySampler sampler(make_world({make_body("wall", mesh)}), workers);
     const auto samples = sampler.sample({}, grid, {}, far_m);
     for (std::size_t v = 0; v < grid.views.size(); ++v) {
-      EXPECT_TRUE(std::equal(samples[v], samples[v] + 32 * 32, expected[v])) << component;
+      EXPECT_TRUE(std::equal(samples[v], samples[v] + std::ptrdiff_t{32} * 32, expected[v])) << component;
     }
   }
 }
