@@ -1,7 +1,9 @@
-// Which method finds the visible surfaces, and on how many threads a ping is made.
+// Which method finds the visible surfaces, on how many threads a ping is made, and what may be skipped.
 #pragma once
 
 #include <string_view>
+
+#include "renderer/skip_ledger.hpp"
 
 namespace sonard::render {
 
@@ -17,6 +19,7 @@ std::string_view name_of(Backend backend);
 struct RendererOptions {
   Backend backend = Backend::automatic;
   unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
+  SkipSwitches skip{};   ///< all rules are on by default
 };
 
 }  // namespace sonard::render

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "renderer/acoustics/receiver.hpp"
@@ -75,13 +76,30 @@ BinningOptions binning_options(const SonarSettings& settings) {
 }
 
 /// Spherical spreading and absorption, two ways, of every native line (docs/physics.md 2.1, equation 1).
-void apply_propagation(const SonarSettings& settings, EchoImage& image) {
-  std::vector<float> loss(static_cast<std::size_t>(image.lines));
-  for (std::size_t k = 0; k < loss.size(); ++k) {
-    const double range_m = (static_cast<double>(k) + 0.5) * settings.range.step_m;
-    loss[k] = static_cast<float>(std::pow(10.0, -settings.physical.absorption_db_per_m * range_m / 5) /
-                                 (range_m * range_m));
+struct PropagationLoss {
+  double step_m = 0.0;
+  double absorption_db_per_m = 0.0;
+  std::vector<float> of_line;
+
+  PropagationLoss() = default;
+  explicit PropagationLoss(const SonarSettings& settings)
+      : step_m(settings.range.step_m),
+        absorption_db_per_m(settings.physical.absorption_db_per_m),
+        of_line(static_cast<std::size_t>(settings.range.count)) {
+    for (std::size_t k = 0; k < of_line.size(); ++k) {
+      const double range_m = (static_cast<double>(k) + 0.5) * step_m;
+      of_line[k] =
+          static_cast<float>(std::pow(10.0, -absorption_db_per_m * range_m / 5) / (range_m * range_m));
+    }
   }
+  /// True: made from these settings.
+  bool fits(const SonarSettings& settings) const {
+    return step_m == settings.range.step_m && absorption_db_per_m == settings.physical.absorption_db_per_m &&
+           of_line.size() == static_cast<std::size_t>(settings.range.count);
+  }
+};
+
+void apply(const std::vector<float>& loss, EchoImage& image) {
   for (std::size_t beam = 0; beam < static_cast<std::size_t>(image.beams); ++beam) {
     float* line = &image.intensity[beam * loss.size()];
     for (std::size_t k = 0; k < loss.size(); ++k) {
@@ -89,6 +107,39 @@ void apply_propagation(const SonarSettings& settings, EchoImage& image) {
     }
   }
 }
+
+/// Without what only the receiver looks at.
+PaperModel echo_part(PaperModel model) {
+  const PaperModel any;
+  model.gain = any.gain;
+  model.speckle = any.speckle;
+  model.speckle_mean = any.speckle_mean;
+  model.speckle_sd = any.speckle_sd;
+  model.speckle_floor = any.speckle_floor;
+  return model;
+}
+
+/// Whether all that the mean echo depends on is the same in both.
+bool same_echo(const SonarSettings& a, const SonarSettings& b) {
+  if (a.transmit != b.transmit || a.model != b.model || a.range.count != b.range.count ||
+      a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
+    return false;
+  }
+  return a.model == Model::physical ? a.physical.absorption_db_per_m == b.physical.absorption_db_per_m
+                                    : echo_part(a.paper) == echo_part(b.paper);
+}
+
+/// The last mean echo of a stream, and what it was made of.
+struct KnownEcho {
+  EchoImage image;
+  SonarSettings settings;
+  Pose T_world_sonar;
+  std::uint64_t world_revision = 0;  ///< 0: there is none yet
+
+  bool fits(const SonarSettings& wanted, const Pose& T_world_sonar_wanted, std::uint64_t revision) const {
+    return world_revision == revision && T_world_sonar == T_world_sonar_wanted && same_echo(settings, wanted);
+  }
+};
 
 class Stopwatch {
  public:
@@ -131,17 +182,44 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
 }  // namespace
 
 struct SonarRenderer::Impl {
+  const SkipSwitches skip;
   WorkerPool workers;  // outlives the sampler, which uses it
   ChosenSampler chosen;
   std::unique_ptr<SliceSampler> slices;  // of the backend `ray`
   Receiver receiver;
   PingStatistics statistics;
+  std::map<std::string, Pose> T_world_body;
+  std::uint64_t world_revision = 1;       // counts the moves of bodies
+  std::map<int, KnownEcho> known_echoes;  // by stream
 
   Impl(const World& world, const RendererOptions& options)
-      : workers(options.threads), chosen(choose_sampler(world, options.backend, workers)) {
+      : skip(options.skip),
+        workers(options.threads),
+        chosen(choose_sampler(world, options.backend, workers)),
+        receiver(options.skip) {
+    for (const Body& body : world.bodies) {
+      T_world_body[body.name] = body.T_world_body;
+    }
     if (chosen.backend == Backend::ray) {
       slices = std::make_unique<SliceSampler>(world, workers);
     }
+  }
+
+  void render_echo(const PingRequest& request, const Pose& T_world_sonar, EchoImage& image) {
+    const SonarSettings& settings = request.settings;
+    image.beams = settings.aperture.beam_count();
+    image.lines = settings.range.count;
+    if (!settings.transmit) {
+      image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines),
+                             0.0F);
+      return;
+    }
+    image.intensity = look(request, T_world_sonar).echo;
+    Stopwatch watch;
+    if (settings.model == Model::physical) {
+      apply(loss_for(settings).of_line, image);
+    }
+    statistics.binning_s += watch.lap();
   }
 
   /// Finds what is visible and bins it; fills the statistics of both.
@@ -171,13 +249,25 @@ struct SonarRenderer::Impl {
   /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
   const SampleGrid& grid_for(const SonarSettings& settings) {
     const GridOptions options = grid_options(settings);
-    if (!grid_key || !same_grid(*grid_key, settings) || made_with != options) {
+    const bool same = grid_key && same_grid(*grid_key, settings) && made_with == options;
+    if (same && skip.on(SkipRule::unchanged_settings)) {
+      statistics.skipped.add(SkipRule::unchanged_settings);
+    } else {
       grid_key.reset();
       grid = make_sample_grid(settings.aperture, settings.sampling, options);
       grid_key = settings;
       made_with = options;
     }
     return grid;
+  }
+
+  const PropagationLoss& loss_for(const SonarSettings& settings) {
+    if (loss.fits(settings) && skip.on(SkipRule::unchanged_settings)) {
+      statistics.skipped.add(SkipRule::unchanged_settings);
+    } else {
+      loss = PropagationLoss(settings);
+    }
+    return loss;
   }
 
  private:
@@ -191,6 +281,7 @@ struct SonarRenderer::Impl {
   SampleGrid grid;
   std::optional<SonarSettings> grid_key;
   GridOptions made_with;
+  PropagationLoss loss;
 };
 
 SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
@@ -207,36 +298,45 @@ const std::string& SonarRenderer::backend_description() const {
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
   const Pose pose = checked(T_world_body);
+  const auto known = impl_->T_world_body.find(body_name);
+  if (known == impl_->T_world_body.end()) {
+    return false;
+  }
+  if (known->second == pose) {
+    return true;  // publishers repeat the poses of bodies that rest
+  }
+  known->second = pose;
+  ++impl_->world_revision;
   if (impl_->slices) {
     impl_->slices->set_body_pose(body_name, pose);
   }
   return impl_->chosen.sampler->set_body_pose(body_name, pose);
 }
 
-EchoImage SonarRenderer::render_echo(const PingRequest& request) {
-  const SonarSettings& settings = request.settings;
-  check(settings);
+const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stream) {
+  check(request.settings);
   const Pose T_world_sonar = checked(request.T_world_sonar);
-  EchoImage image{settings.aperture.beam_count(), settings.range.count, {}};
   impl_->statistics = {};
-  if (!settings.transmit) {
-    image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
-    return image;
+  KnownEcho& known = impl_->known_echoes[stream];
+  if (impl_->skip.on(SkipRule::unchanged_scene) &&
+      known.fits(request.settings, T_world_sonar, impl_->world_revision)) {
+    impl_->statistics.skipped.add(SkipRule::unchanged_scene);
+    return known.image;
   }
-  image.intensity = impl_->look(request, T_world_sonar).echo;
-  Stopwatch watch;
-  if (settings.model == Model::physical) {
-    apply_propagation(settings, image);
-  }
-  impl_->statistics.binning_s += watch.lap();
-  return image;
+  known.world_revision = 0;  // until all of it is there
+  impl_->render_echo(request, T_world_sonar, known.image);
+  known.settings = request.settings;
+  known.T_world_sonar = T_world_sonar;
+  known.world_revision = impl_->world_revision;
+  return known.image;
 }
 
 PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
-  const EchoImage echo = render_echo(request);
+  const EchoImage& echo = render_echo(request, stream);
   Stopwatch watch;
   PingSamples samples = impl_->receiver.receive(echo, request, stream, impl_->workers);
   impl_->statistics.receiver_s = watch.lap();
+  impl_->statistics.skipped += impl_->receiver.skipped();
   return samples;
 }
 

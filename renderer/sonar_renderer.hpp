@@ -11,6 +11,7 @@
 #include "renderer/errors.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
+#include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
@@ -50,6 +51,7 @@ struct PingStatistics {
   double receiver_s = 0.0;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
+  SkipCounts skipped;                 ///< what was left out; stages that did not run have counted nothing
 };
 
 /// Renders pings of one world. Every call, construction and destruction included, comes from one thread,
@@ -71,9 +73,10 @@ class SonarRenderer {
   /// Moves a body of the world. @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
 
-  /// Mean echo only: no speckle, noise or gain.
+  /// Mean echo only: no speckle, noise or gain. The image stays valid until the next call for this stream; as
+  /// long as nothing that it depends on changes (SkipRule::unchanged_scene), the same one is handed out.
   /// @throws RequestError, RendererError
-  EchoImage render_echo(const PingRequest& request);
+  const EchoImage& render_echo(const PingRequest& request, int stream = 0);
 
   /// The whole chain. The result is the same bytes for the same history of requests of this stream; with
   /// speckle `frozen` or `per_ping` it depends on this request alone.

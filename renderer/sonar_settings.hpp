@@ -71,6 +71,8 @@ struct PaperModel {
   double speckle_sd = 0.15;
   double speckle_floor = 0.0;
 
+  bool operator==(const PaperModel&) const = default;
+
   /// What the authors' later public releases did: folded N(0.95, 0.30) with floor 0.03, and attenuation, here
   /// that of cool sea water at 720 kHz (0.2085 dB/m as a factor of amplitude).
   static PaperModel release_2018() {

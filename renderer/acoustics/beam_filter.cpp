@@ -42,6 +42,7 @@ void add_pairs(const float* __restrict middle, int offset, const float* weights,
 
 BeamFilter::BeamFilter(const std::vector<float>& kernel, int beams) : beams_(beams) {
   const std::size_t half = kernel.size() / 2;
+  copies_ = half == 0 && kernel[0] == 1.0F;
   weights_.assign(kernel.begin() + static_cast<std::ptrdiff_t>(half), kernel.end());
   const std::size_t passes = half / weights_per_pass + 1;
   weights_.resize(passes * weights_per_pass, 0.0F);

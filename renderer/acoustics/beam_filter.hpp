@@ -14,6 +14,10 @@ class BeamFilter {
   BeamFilter(const std::vector<float>& kernel, int beams);
 
   int beams() const { return beams_; }
+  /// True: beams do not share anything, so that apply() copies the middle of the row.
+  bool copies() const { return copies_; }
+  /// The numbers of a row that apply() copies where copies() is true.
+  const float* middle(const float* row) const { return row + reach_; }
   /// Numbers that a row must hold to be filtered to `beams()`. Beyond the kernel's own reach they are read
   /// with weight 0, so they need to be finite.
   int row_width() const { return beams_ + 2 * reach_; }
@@ -26,6 +30,7 @@ class BeamFilter {
  private:
   int beams_ = 0;
   int reach_ = 0;
+  bool copies_ = false;
   std::vector<float> weights_;  ///< c_0 ... c_reach, zero beyond the kernel
 };
 

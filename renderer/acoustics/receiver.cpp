@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "renderer/acoustics/beam_kernel.hpp"
 #include "renderer/acoustics/echo_block.hpp"
@@ -87,12 +88,13 @@ std::vector<float> noise_profile(const SonarSettings& settings) {
 /// native lines one by one.
 template <class Lines, class Ping>
 PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
-                          WorkerPool& workers) {
+                          WorkerPool& workers, SkipCounts& skipped) {
   PingSamples samples = make_samples(settings);
   const int looks_log2 = settings.range.compression_log2;
   const int lines_per_block = EchoBlock::most_lines >> looks_log2;
   const int blocks = (samples.lines + lines_per_block - 1) / lines_per_block;
   std::atomic<int> next{0};
+  std::mutex counting;
   workers.run(std::min(blocks, static_cast<int>(workers.size())), [&](int) {
     EchoBlock block(echo);
     Lines lines(ping, block);
@@ -109,6 +111,8 @@ PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSe
         output.end(line);
       }
     }
+    const std::lock_guard lock(counting);
+    skipped += lines.skipped();
   });
   return samples;
 }
@@ -185,6 +189,7 @@ struct PhysicalPing {
   const ReceiverTables& tables;
   SpeckleField& speckle;
   RandomKey speckle_key, noise_key;
+  const SkipSwitches& skip;
 };
 
 /// Mode `physical`, line by line.
@@ -194,9 +199,10 @@ class PhysicalLines {
       : ping_(ping),
         block_(block),
         beams_(ping.tables.filter.beams()),
+        copies_(ping.tables.filter.copies() && ping.skip.on(SkipRule::narrow_aperture)),
         white_(ping.tables.filter.row_width()),
-        speckle_(beams_),
-        noise_(beams_),
+        speckle_(copies_ ? ping.tables.filter.row_width() : beams_),
+        noise_(copies_ ? ping.tables.filter.row_width() : beams_),
         codes_(static_cast<std::size_t>(beams_)) {
     if (ping.tables.model.speckle == Speckle::off) {
       std::fill_n(speckle_.real(), beams_, 1.0F);  // the echo is a constant phasor
@@ -204,29 +210,34 @@ class PhysicalLines {
   }
 
   void add_native_line(int native, OutputLines& output) {
-    if (is_blanked(native)) {
+    const ReceiverTables& tables = ping_.tables;
+    // The device puts out exactly 0 in its near field.
+    const bool blanked = (native + 0.5) * tables.range.step_m < tables.model.near_field_blank_m;
+    if (blanked && skips(SkipRule::blanked_near_field)) {
       return;
     }
-    const ReceiverTables& tables = ping_.tables;
-    const float gain = tables.gain[static_cast<std::size_t>(native)];
+    const float gain = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(native)];
     const float strongest = block_.strongest(native);
-    if (!is_noiseless()) {
-      white_.draw(ping_.noise_key, native);
-      noise_.filter(tables.filter, white_);
-    }
-    if (!is_without_echo(strongest)) {
-      const Phasors phasors = speckle_of(native);
-      envelope_row(block_.line(native), tables.leak * strongest, phasors.real, phasors.imaginary,
-                   tables.noise, tables.profile.data(), noise_.real(), noise_.imaginary(), gain, beams_,
-                   codes_.data());
-    } else if (!is_noiseless()) {
-      noise_envelope_row(tables.noise, tables.profile.data(), noise_.real(), noise_.imaginary(), gain, beams_,
+    const bool silent = tables.noise == 0 && skips(SkipRule::no_noise);
+    const Phasors noise = silent ? silence() : draw(ping_.noise_key, native, noise_);
+    // No echo in any beam, and so no leak either: speckle would multiply 0. Later images get other random
+    // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
+    if (!(strongest > 0) && skips(SkipRule::lines_without_echo)) {
+      if (silent) {
+        return;
+      }
+      noise_envelope_row(tables.noise, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
                          codes_.data());
     } else {
-      return;
+      const Phasors phasors = speckle_of(native);
+      envelope_row(block_.line(native), tables.leak * strongest, phasors.real, phasors.imaginary,
+                   tables.noise, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
+                   codes_.data());
     }
     output.add(codes_.data());
   }
+
+  const SkipCounts& skipped() const { return skipped_; }
 
  private:
   struct Phasors {
@@ -234,56 +245,60 @@ class PhysicalLines {
     const float* imaginary;
   };
 
-  // What is not worked out, and why that changes nothing. Each rule is one predicate.
-
-  /// Near field that the device blanks: the output is 0 by definition. Changes the image by 0.
-  bool is_blanked(int native) const {
-    const ReceiverTables& tables = ping_.tables;
-    return (native + 0.5) * tables.range.step_m < tables.model.near_field_blank_m;
+  /// Counts too: to be asked only where the criterion of the rule is met.
+  bool skips(SkipRule rule) {
+    const bool on = ping_.skip.on(rule);
+    skipped_.add(rule, on ? 1 : 0);
+    return on;
   }
-  /// No noise asked for: its amplitude is 0. Changes the image by 0.
-  bool is_noiseless() const { return ping_.tables.noise == 0; }
-  /// No echo in any beam of the line, and so no leak either: speckle would multiply 0. Changes this image by
-  /// 0; later ones only in which random numbers they get, as the field makes up for what it missed
-  /// (SpeckleField).
-  static bool is_without_echo(float strongest) { return !(strongest > 0); }
-  /// Nothing has moved since the line was last evolved: its speckle is what it was. Changes the image by 0.
-  bool is_unmoved(int native) const { return ping_.speckle.is_current(native); }
+
+  /// What noise of amplitude 0 is drawn as: nothing ever writes to the row, so it is 0 throughout.
+  Phasors silence() const { return {noise_.real(), noise_.imaginary()}; }
 
   Phasors speckle_of(int native) {
     switch (ping_.tables.model.speckle) {
       case Speckle::off:
         break;
       case Speckle::per_ping:
-        draw_speckle(native);
-        break;
+        return draw(ping_.speckle_key, native, speckle_);
       case Speckle::frozen:
       case Speckle::ou:
-        if (!is_unmoved(native)) {
-          draw_speckle(native);
-          ping_.speckle.evolve(native, speckle_.real(), speckle_.imaginary());
+        if (!ping_.speckle.is_current(native) || !skips(SkipRule::unmoved_speckle)) {
+          const Phasors fresh = draw(ping_.speckle_key, native, speckle_);
+          ping_.speckle.evolve(native, fresh.real, fresh.imaginary);
         }
         return {ping_.speckle.real(native), ping_.speckle.imaginary(native)};
     }
     return {speckle_.real(), speckle_.imaginary()};
   }
 
-  void draw_speckle(int native) {
-    white_.draw(ping_.speckle_key, native);
-    speckle_.filter(ping_.tables.filter, white_);
+  /// CN(0, 1) of one line with the grain of the array, in `row` or a part of it.
+  Phasors draw(RandomKey key, int native, ComplexRow& row) {
+    const BeamFilter& filter = ping_.tables.filter;
+    if (copies_) {
+      skipped_.add(SkipRule::narrow_aperture);
+      row.draw(key, native);
+      return {filter.middle(row.real()), filter.middle(row.imaginary())};
+    }
+    white_.draw(key, native);
+    row.filter(filter, white_);
+    return {row.real(), row.imaginary()};
   }
 
   const PhysicalPing& ping_;
   const EchoBlock& block_;
   int beams_;
+  bool copies_;  ///< beams share nothing: rows are as they are drawn
   ComplexRow white_, speckle_, noise_;
   AlignedVector<float> codes_;
+  SkipCounts skipped_;
 };
 
 struct PaperPing {
   PaperModel model;
   RandomKey key;
   float codes = 0;  ///< per amplitude
+  const SkipSwitches& skip;
 };
 
 SONARD_SIMD_CLONES
@@ -314,6 +329,11 @@ class PaperLines {
 
   void add_native_line(int native, OutputLines& output) {
     const PaperModel& model = ping_.model;
+    if (!(model.speckle_floor > 0) && !(block_.strongest(native) > 0) &&
+        ping_.skip.on(SkipRule::lines_without_echo)) {
+      skipped_.add(SkipRule::lines_without_echo);
+      return;
+    }
     std::copy_n(block_.line(native), beams_, value_.data());
     if (model.speckle != PaperModel::Speckle::off) {
       random_.draw(ping_.key, native);
@@ -328,12 +348,15 @@ class PaperLines {
     output.add(value_.data());
   }
 
+  const SkipCounts& skipped() const { return skipped_; }
+
  private:
   const PaperPing& ping_;
   const EchoBlock& block_;
   int beams_;
   ComplexRow random_;
   AlignedVector<float> value_;
+  SkipCounts skipped_;
 };
 
 }  // namespace
@@ -341,24 +364,27 @@ class PaperLines {
 PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
                               WorkerPool& workers) {
   const SonarSettings& settings = request.settings;
+  skipped_ = {};
   const auto key = [&](RandomField field, std::uint64_t ping_number) {
     return make_random_key(request.seed, stream, field, ping_number);
   };
   if (settings.model == Model::paper) {
     const PaperPing ping{settings.paper, key(RandomField::paper_speckle, request.ping_number),
-                         codes_per_amplitude(settings)};
-    return receive_lines<PaperLines>(echo, ping, settings, workers);
+                         codes_per_amplitude(settings), skip_};
+    return receive_lines<PaperLines>(echo, ping, settings, workers, skipped_);
   }
   Stream& state = streams_[stream];
-  if (!state.tables.fits(settings)) {
+  if (state.tables.fits(settings) && skip_.on(SkipRule::unchanged_settings)) {
+    skipped_.add(SkipRule::unchanged_settings);
+  } else {
     state.tables = ReceiverTables(settings);
   }
   advance_speckle(request, state);
   // Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
   const std::uint64_t speckle_ping = state.kind == Speckle::frozen ? 0 : request.ping_number;
   const PhysicalPing ping{state.tables, state.speckle, key(RandomField::speckle, speckle_ping),
-                          key(RandomField::noise, request.ping_number)};
-  return receive_lines<PhysicalLines>(echo, ping, settings, workers);
+                          key(RandomField::noise, request.ping_number), skip_};
+  return receive_lines<PhysicalLines>(echo, ping, settings, workers, skipped_);
 }
 
 }  // namespace sonard::render

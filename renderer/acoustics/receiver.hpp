@@ -8,6 +8,7 @@
 #include "renderer/acoustics/beam_filter.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/pose.hpp"
+#include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
@@ -37,8 +38,13 @@ struct ReceiverTables {
 /// is a pure function of the request.
 class Receiver {
  public:
+  explicit Receiver(const SkipSwitches& skip = {}) : skip_(skip) {}
+
   /// @param echo mean echo intensity as EchoImage states it.
   PingSamples receive(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers);
+
+  /// What the last receive() left out.
+  const SkipCounts& skipped() const { return skipped_; }
 
  private:
   struct Stream {
@@ -53,6 +59,8 @@ class Receiver {
 
   static void advance_speckle(const PingRequest& request, Stream& state);
 
+  SkipSwitches skip_;
+  SkipCounts skipped_;
   std::map<int, Stream> streams_;
 };
 

@@ -1,0 +1,149 @@
+// Everything that is not worked out, and why the image may do without: named rules that can be switched off
+// and that count what they save (docs/skipping.md).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace sonard::render {
+
+enum class SkipRule : std::uint8_t {
+  nobody_listening,
+  unchanged_scene,
+  unchanged_settings,
+  culled_clusters,
+  empty_beams,
+  geometric_normals,
+  absent_normal_map,
+  flat_elevation,
+  lines_without_echo,
+  blanked_near_field,
+  no_noise,
+  unmoved_speckle,
+  narrow_aperture,
+};
+
+/// One line of the ledger. What a rule may change at most, in one ping with the rule on against the same ping
+/// with it off, is `bound`.
+struct SkipRuleEntry {
+  SkipRule rule;
+  std::string_view name;  ///< as the key `skip.off` of a configuration spells it
+  std::string_view criterion;
+  double bound;
+  std::string_view bound_unit;
+  std::string_view counts;  ///< what the counter counts
+};
+
+/// In the order of SkipRule.
+inline constexpr std::array skip_rules{
+    SkipRuleEntry{
+        SkipRule::nobody_listening, "nobody_listening",
+        "its ping was called off before its turn to be rendered: surface gone, reboot, new settings", 0,
+        "of the image's maximum", "pings"},
+    SkipRuleEntry{SkipRule::unchanged_scene, "unchanged_scene",
+                  "sonar, bodies and all settings that enter the echo are those of the stream's last ping", 0,
+                  "of the image's maximum", "pings"},
+    SkipRuleEntry{SkipRule::unchanged_settings, "unchanged_settings",
+                  "the settings that a table is made of are those it was last made of", 0,
+                  "of the image's maximum", "tables"},
+    SkipRuleEntry{SkipRule::culled_clusters, "culled_clusters",
+                  "the bounding sphere is beyond the range, the azimuths or the elevations of the fan", 1e-3,
+                  "of the image's maximum", "clusters"},
+    SkipRuleEntry{SkipRule::empty_beams, "empty_beams", "no triangle touches the azimuths of the beam", 0,
+                  "of the image's maximum", "beams"},
+    SkipRuleEntry{SkipRule::geometric_normals, "geometric_normals",
+                  "the part has no vertex normals, or all are within 1e-4 rad of their facet's", 1e-4,
+                  "of the image's maximum", "parts"},
+    SkipRuleEntry{SkipRule::absent_normal_map, "absent_normal_map",
+                  "the part has no normal map, or all of it is within 1e-3 rad of straight", 1e-3,
+                  "of the image's maximum", "parts"},
+    SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", 1e-6,
+                  "of the image's maximum", "pings"},
+    SkipRuleEntry{SkipRule::lines_without_echo, "lines_without_echo",
+                  "no beam has an echo in the line: before the first echo, between, beyond the last", 1,
+                  "output code", "lines"},
+    SkipRuleEntry{SkipRule::blanked_near_field, "blanked_near_field",
+                  "the line is nearer than `near_field_blank_m`, where the device puts out 0", 0,
+                  "output codes", "lines"},
+    SkipRuleEntry{SkipRule::no_noise, "no_noise", "`noise` is off: its amplitude is 0", 0, "output codes",
+                  "lines"},
+    SkipRuleEntry{SkipRule::unmoved_speckle, "unmoved_speckle",
+                  "the sonar has not moved since the speckle of the line was drawn", 0, "output codes",
+                  "lines"},
+    SkipRuleEntry{SkipRule::narrow_aperture, "narrow_aperture",
+                  "beams do not share elements: one beam only, or beams no wider than their spacing", 0,
+                  "output codes", "rows"},
+};
+
+inline constexpr std::size_t skip_rule_count = skip_rules.size();
+
+constexpr const SkipRuleEntry& entry_of(SkipRule rule) {
+  return skip_rules[static_cast<std::size_t>(rule)];
+}
+
+/// nullopt: no rule has that name.
+constexpr std::optional<SkipRule> skip_rule_named(std::string_view name) {
+  const auto* entry = std::find_if(skip_rules.begin(), skip_rules.end(),
+                                   [name](const SkipRuleEntry& rule) { return rule.name == name; });
+  return entry == skip_rules.end() ? std::nullopt : std::optional(entry->rule);
+}
+
+/// Which rules apply: all, but for those that were switched off.
+class SkipSwitches {
+ public:
+  constexpr bool on(SkipRule rule) const { return (off_ >> static_cast<unsigned>(rule) & 1U) == 0; }
+  constexpr SkipSwitches& turn_off(SkipRule rule) {
+    off_ |= std::uint32_t{1} << static_cast<unsigned>(rule);
+    return *this;
+  }
+  /// Nothing is skipped: every image is worked out in full.
+  static constexpr SkipSwitches none() {
+    SkipSwitches switches;
+    switches.off_ = (std::uint32_t{1} << skip_rule_count) - 1;
+    return switches;
+  }
+
+  constexpr bool operator==(const SkipSwitches&) const = default;
+
+ private:
+  static_assert(skip_rule_count < 32);
+  std::uint32_t off_ = 0;
+};
+
+/// How often each rule skipped something, in SkipRuleEntry::counts. A thread has its own; they are added up.
+class SkipCounts {
+ public:
+  constexpr void add(SkipRule rule, std::uint64_t count = 1) {
+    counts_[static_cast<std::size_t>(rule)] += count;
+  }
+  constexpr std::uint64_t of(SkipRule rule) const { return counts_[static_cast<std::size_t>(rule)]; }
+  constexpr SkipCounts& operator+=(const SkipCounts& other) {
+    for (std::size_t i = 0; i < skip_rule_count; ++i) {
+      counts_[i] += other.counts_[i];
+    }
+    return *this;
+  }
+  /// What was counted since `before`.
+  constexpr SkipCounts operator-(const SkipCounts& before) const {
+    SkipCounts since;
+    for (std::size_t i = 0; i < skip_rule_count; ++i) {
+      since.counts_[i] = counts_[i] - before.counts_[i];
+    }
+    return since;
+  }
+
+  constexpr bool operator==(const SkipCounts&) const = default;
+
+ private:
+  std::array<std::uint64_t, skip_rule_count> counts_{};
+};
+
+static_assert(std::all_of(skip_rules.begin(), skip_rules.end(), [](const SkipRuleEntry& entry) {
+  return &entry == &skip_rules[static_cast<std::size_t>(entry.rule)];
+}));
+
+}  // namespace sonard::render
