@@ -1,5 +1,6 @@
 #include "server/config/head_section.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
@@ -224,12 +225,28 @@ void read_link(YamlSection& section, LinkConfig& link) {
   section.section("from_surface", [&](YamlSection& inner) { read_faults(inner, link.from_surface); });
 }
 
-void apply_water(const HeadContext& context, GeminiHeadConfig& head) {
+/// One line for all heads: they share the water, and nearly the frequency.
+void warn_of_extrapolation(std::vector<ConfigWarning>& warnings) {
+  const bool said = std::any_of(warnings.begin(), warnings.end(),
+                                [](const ConfigWarning& warning) { return warning.key == "water"; });
+  if (!said) {
+    warnings.push_back(
+        {"water",
+         "the absorption is computed outside of what its formula was made for, -2 to 30 degrees and "
+         "30 to 35 ppt: it may be off by more than 10 % (absorption_db_per_km sets it)"});
+  }
+}
+
+void apply_water(const HeadContext& context, GeminiHeadConfig& head, std::vector<ConfigWarning>& warnings) {
   const WaterConfig& w = context.water;
-  const double absorption = context.absorption_db_per_m >= 0.0
-                                ? context.absorption_db_per_m
-                                : render::francois_garrison_absorption_db_per_m(
-                                      carrier_hz, {w.temperature_c, w.salinity_ppt, w.depth_m, w.ph});
+  const render::Water water{w.temperature_c, w.salinity_ppt, w.depth_m, w.ph};
+  double absorption = context.absorption_db_per_m;
+  if (absorption < 0.0) {
+    absorption = render::francois_garrison_absorption_db_per_m(carrier_hz, water);
+    if (!render::in_absorption_range(carrier_hz, water)) {
+      warn_of_extrapolation(warnings);
+    }
+  }
   head.acoustics.physical.absorption_db_per_m = absorption;
   // The device's own absorption setting matches the water unless the user says otherwise.
   head.acoustics.physical.tvg_absorption_db_per_m = absorption;
@@ -266,7 +283,7 @@ GeminiHeadConfig read_gemini_head(YamlSection& section, const HeadContext& conte
                                   std::vector<ConfigWarning>& warnings) {
   GeminiHeadConfig head;
   head.acoustics.sampling = context.sampling;
-  apply_water(context, head);
+  apply_water(context, head, warnings);
   read_identity(section, head);
   section.require("network", "a mapping with alternate_address and netmask");
   section.section("network", [&](YamlSection& inner) { read_network(inner, head, warnings); });
