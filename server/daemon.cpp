@@ -129,7 +129,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       sources_(make_sources(io_, config, clock_, poses_)),
       dumps_(make_dumps(config.heads)),
       renderer_(make_renderer, static_cast<int>(config.heads.size()), hooks()) {
-  const GeminiHeadServices services{io_, clock_, renderer_, poses_, world.water_surface_z_m};
+  const GeminiHeadServices services{io_, clock_, renderer_, poses_, world.water_surface_z_m, config.skip};
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     try {
       heads_.push_back(std::make_unique<GeminiHead>(config.heads[i], static_cast<int>(i), services));
@@ -253,7 +253,12 @@ int run_daemon(const DaemonConfig& config) {
       throw StartError("sampling", exit_config, fmt::format("head '{}': {}", head.name, error.what()));
     }
   }
-  const render::RendererOptions options{config.backend, 0};
+  const render::RendererOptions options{config.backend, 0, config.skip};
+  for (const render::SkipRuleEntry& entry : render::skip_rules) {
+    if (!config.skip.on(entry.rule)) {
+      spdlog::info("skip rule {} is off", entry.name);
+    }
+  }
   return serve(config, world, [&] { return make_world_renderer(world, options); });
 }
 

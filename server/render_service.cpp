@@ -1,5 +1,6 @@
 #include "server/render_service.hpp"
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -81,6 +82,20 @@ void RenderService::submit(RenderJob job, Done done) {
     impl_->queue.push_back({std::move(job), std::move(done)});
   }
   impl_->wake.notify_one();
+}
+
+bool RenderService::withdraw(int stream) {
+  std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: the callback owns things of others
+  const std::lock_guard lock(impl_->mutex);
+  const auto entry =
+      std::find_if(impl_->queue.begin(), impl_->queue.end(),
+                   [stream](const Impl::Entry& waiting) { return waiting.job.stream == stream; });
+  if (entry == impl_->queue.end()) {
+    return false;
+  }
+  forgotten = std::move(*entry);
+  impl_->queue.erase(entry);
+  return true;
 }
 
 void RenderService::stop() {

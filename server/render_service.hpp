@@ -80,6 +80,9 @@ class RenderService {
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
   /// @throws std::logic_error when the queue is full: somebody submits more than one job per stream
   void submit(RenderJob job, Done done);
+  /// Forgets the waiting job of a stream; its `done` is never called. @return false when none is waiting: it
+  /// has been begun, and is answered as always.
+  bool withdraw(int stream);
   /// Ends the render thread after the ping it is working on. Harmless when called again.
   void stop();
 

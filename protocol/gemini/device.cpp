@@ -407,6 +407,9 @@ std::vector<Outgoing> Device::take_outgoing() {
 std::optional<PingJob> Device::take_job() {
   return impl_->pinger().take_job();
 }
+std::optional<std::uint64_t> Device::called_off() const {
+  return impl_->pinger().called_off();
+}
 const DeviceCounters& Device::counters() const {
   return impl_->counters();
 }

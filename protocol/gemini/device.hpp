@@ -78,6 +78,9 @@ class Device {
   /// A ping to render. Each call empties it. Every job taken must be answered once, by on_image() or
   /// on_image_failed(): the next job waits for that, so at most one is outstanding.
   std::optional<PingJob> take_job();
+  /// The ping whose job is out though nobody wants its image any more: surface gone, reboot, new settings. It
+  /// must still be answered; on_image_failed() without rendering it will do. nullopt: there is none.
+  std::optional<std::uint64_t> called_off() const;
 
   const DeviceCounters& counters() const;
   /// The connected surface; 0 when none is.

@@ -50,6 +50,8 @@ class Pinger {
   void advance(TimePoint now, std::vector<SharedBytes>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<PingJob> take_job();
+  /// See Device::called_off().
+  std::optional<std::uint64_t> called_off() const { return acquisition_ ? std::nullopt : unanswered_; }
 
   /// Pinging is held back because the head is out of the water and was not told to ping all the same.
   bool stopped_by_air() const { return out_of_water_ && !pings_out_of_water_; }

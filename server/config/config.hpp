@@ -15,6 +15,7 @@
 #include "protocol/pose/pose_codec.hpp"
 #include "renderer/backend.hpp"
 #include "renderer/pose.hpp"
+#include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::server {
@@ -159,6 +160,7 @@ struct DaemonConfig {
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
   render::Backend backend = render::Backend::automatic;
+  render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;
   std::vector<GeminiHeadConfig> heads;  ///< at least one

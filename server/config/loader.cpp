@@ -130,6 +130,18 @@ void read_sampling(YamlSection& section, render::Sampling& sampling) {
   section.integer("rows", sampling.rows, 8, 4096);
 }
 
+void read_skip(YamlSection& section, render::SkipSwitches& skip) {
+  std::vector<std::string_view> names;
+  for (const render::SkipRuleEntry& entry : render::skip_rules) {
+    names.push_back(entry.name);
+  }
+  std::vector<render::SkipRule> off;
+  section.parsed_list("off", off, &render::skip_rule_named, fmt::format("one of {}", fmt::join(names, ", ")));
+  for (const render::SkipRule rule : off) {
+    skip.turn_off(rule);
+  }
+}
+
 void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWarning>& warnings) {
   HeadContext context;
   context.folder = config.file.parent_path();
@@ -145,6 +157,7 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
               {{"auto", render::Backend::automatic},
                {"raster", render::Backend::raster},
                {"ray", render::Backend::ray}});
+  root.section("skip", [&](YamlSection& section) { read_skip(section, config.skip); });
   root.section("water", [&](YamlSection& section) { read_water(section, context); });
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
   config.water = context.water;

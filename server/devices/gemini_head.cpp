@@ -65,6 +65,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void pump();
   void take_from_surface(TimePoint now);
   void advance_device(TimePoint now);
+  void drop_unheard_job(TimePoint now);
   void schedule();
 
   void send(TimePoint now, const std::vector<gemini::Outgoing>& outgoing);
@@ -195,6 +196,7 @@ void GeminiHead::Impl::on_rendered(std::uint64_t ping_number, RenderResult resul
     ++counters.pings_rendered;
     const render::PingStatistics& spent = result.statistics;
     counters.render_seconds += spent.visibility_s + spent.binning_s + spent.receiver_s;
+    counters.skipped += spent.skipped;
     device.on_image(now, {ping_number, std::move(result.samples.u8), std::move(result.samples.u16)});
   } else {
     log.render_error(result.error);
@@ -229,6 +231,7 @@ void GeminiHead::Impl::take_from_surface(TimePoint now) {
 }
 
 void GeminiHead::Impl::advance_device(TimePoint now) {
+  drop_unheard_job(now);  // a command has called it off, and the next ping waits for its answer
   device.set_out_of_water(out_of_water(now));
   device.advance(now);
   send(now, device.take_outgoing());
@@ -241,6 +244,17 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
     device.on_image_failed(now, job->ping_number);
     device.advance(now);
     send(now, device.take_outgoing());
+  }
+  drop_unheard_job(now);  // the surface has just timed out
+}
+
+// SkipRule::nobody_listening: a ping that is called off while other heads are being rendered is not.
+void GeminiHead::Impl::drop_unheard_job(TimePoint now) {
+  const std::optional<std::uint64_t> ping_number = device.called_off();
+  if (ping_number && services.skip.on(render::SkipRule::nobody_listening) &&
+      services.renderer.withdraw(stream)) {
+    counters.skipped.add(render::SkipRule::nobody_listening);
+    device.on_image_failed(now, *ping_number);
   }
 }
 

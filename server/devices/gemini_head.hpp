@@ -24,6 +24,7 @@ struct GeminiHeadServices {
   RenderService& renderer;
   const PoseHistory& poses;
   std::optional<double> water_surface_z_m;  ///< height above which a sonar is out of the water
+  render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
 };
 
 /// Joins the pure gemini::Device with a socket, a timer, the pose history and the render thread. It decides

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "protocol/gemini/device_counters.hpp"
+#include "renderer/skip_ledger.hpp"
 #include "server/devices/faulty_link.hpp"
 #include "server/devices/udp_endpoint.hpp"
 
@@ -19,6 +20,7 @@ struct GeminiHeadCounters {
   std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
   std::uint64_t pings_rendered = 0;
   double render_seconds = 0.0;  ///< all of them together
+  render::SkipCounts skipped;   ///< of all pings
 };
 
 }  // namespace sonard::server

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "server/config/addresses.hpp"
@@ -10,6 +11,17 @@ namespace sonard::server {
 namespace {
 
 constexpr std::size_t most_strangers = 8;
+
+// " rule=count" of every rule that has skipped something.
+std::string text_of(const render::SkipCounts& skipped) {
+  std::string text;
+  for (const render::SkipRuleEntry& entry : render::skip_rules) {
+    if (const std::uint64_t count = skipped.of(entry.rule); count > 0) {
+      text += fmt::format(" {}={}", entry.name, count);
+    }
+  }
+  return text;
+}
 
 // The part of a job that the client chose.
 bool same_settings(const gemini::PingJob& a, const gemini::PingJob& b) {
@@ -80,6 +92,7 @@ void GeminiHeadLog::rates(const GeminiHeadCounters& total, std::chrono::duration
                  total.device.lines_resent - before.device.lines_resent,
                  total.device.tails_resent - before.device.tails_resent);
   }
+  log_skipped(total.skipped - before.skipped);
   if (const std::uint64_t missed = total.pings_without_pose - before.pings_without_pose; missed > 0) {
     spdlog::warn("head={} {} pings not made: no pose, or only a stale one", head_, missed);
   }
@@ -120,8 +133,15 @@ void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
       "overflowed={}",
       head_, socket.sent, socket.received, total.not_allowed, socket.truncated, socket.kernel_dropped,
       socket.blocked, socket.send_failed, socket.overflowed);
+  log_skipped(total.skipped);
   log_faults("to_surface", total.to_surface);
   log_faults("from_surface", total.from_surface);
+}
+
+void GeminiHeadLog::log_skipped(const render::SkipCounts& skipped) const {
+  if (const std::string rules = text_of(skipped); !rules.empty()) {
+    spdlog::info("head={} skipped:{}", head_, rules);
+  }
 }
 
 void GeminiHeadLog::log_faults(const char* direction, const FaultyLinkCounters& link) const {

@@ -36,6 +36,7 @@ class GeminiHeadLog {
   void totals(const GeminiHeadCounters& total) const;
 
  private:
+  void log_skipped(const render::SkipCounts& skipped) const;
   void log_faults(const char* direction, const FaultyLinkCounters& link) const;
 
   std::string head_;
