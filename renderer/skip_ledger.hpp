@@ -33,50 +33,47 @@ struct SkipRuleEntry {
   SkipRule rule;
   std::string_view name;  ///< as the key `skip.off` of a configuration spells it
   std::string_view criterion;
-  double bound;
-  std::string_view bound_unit;
   std::string_view counts;  ///< what the counter counts
+  double bound;
+  std::string_view bound_unit = "of the image's maximum";
 };
 
 /// In the order of SkipRule.
 inline constexpr std::array skip_rules{
     SkipRuleEntry{
         SkipRule::nobody_listening, "nobody_listening",
-        "its ping was called off before its turn to be rendered: surface gone, reboot, new settings", 0,
-        "of the image's maximum", "pings"},
+        "the ping was called off before its turn to be rendered: surface gone, reboot, new settings", "pings",
+        0},
     SkipRuleEntry{SkipRule::unchanged_scene, "unchanged_scene",
-                  "sonar, bodies and all settings that enter the echo are those of the stream's last ping", 0,
-                  "of the image's maximum", "pings"},
+                  "sonar, bodies and all settings that enter the echo are those of the stream's last ping",
+                  "pings", 0},
     SkipRuleEntry{SkipRule::unchanged_settings, "unchanged_settings",
-                  "the settings that a table is made of are those it was last made of", 0,
-                  "of the image's maximum", "tables"},
+                  "the settings that a table is made of are those it was last made of", "tables", 0},
     SkipRuleEntry{SkipRule::culled_clusters, "culled_clusters",
-                  "the bounding sphere is beyond the range, the azimuths or the elevations of the fan", 1e-3,
-                  "of the image's maximum", "clusters"},
-    SkipRuleEntry{SkipRule::empty_beams, "empty_beams", "no triangle touches the azimuths of the beam", 0,
-                  "of the image's maximum", "beams"},
+                  "the bounding sphere is beyond the range, the azimuths or the elevations of the fan",
+                  "clusters", 1e-3},
+    SkipRuleEntry{SkipRule::empty_beams, "empty_beams", "nothing is seen in the beam", "beams", 0},
     SkipRuleEntry{SkipRule::geometric_normals, "geometric_normals",
-                  "the part has no vertex normals, or all are within 1e-4 rad of their facet's", 1e-4,
-                  "of the image's maximum", "parts"},
-    SkipRuleEntry{SkipRule::absent_normal_map, "absent_normal_map",
-                  "the part has no normal map, or all of it is within 1e-3 rad of straight", 1e-3,
-                  "of the image's maximum", "parts"},
-    SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", 1e-6,
-                  "of the image's maximum", "pings"},
+                  "the part has no vertex normals, or all are within 1e-4 rad of their facet's", "parts",
+                  1e-4},
+    SkipRuleEntry{SkipRule::absent_normal_map, "absent_normal_map", "the part has no normal map", "parts",
+                  1e-4},
+    SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", "pings",
+                  1e-6},
     SkipRuleEntry{SkipRule::lines_without_echo, "lines_without_echo",
-                  "no beam has an echo in the line: before the first echo, between, beyond the last", 1,
-                  "output code", "lines"},
+                  "no beam has an echo in the line: before the first echo, between, beyond the last", "lines",
+                  1, "output code"},
     SkipRuleEntry{SkipRule::blanked_near_field, "blanked_near_field",
-                  "the line is nearer than `near_field_blank_m`, where the device puts out 0", 0,
-                  "output codes", "lines"},
-    SkipRuleEntry{SkipRule::no_noise, "no_noise", "`noise` is off: its amplitude is 0", 0, "output codes",
-                  "lines"},
+                  "the line is nearer than `near_field_blank_m`, where the device puts out 0", "lines", 0,
+                  "output codes"},
+    SkipRuleEntry{SkipRule::no_noise, "no_noise", "`noise` is off: its amplitude is 0", "lines", 0,
+                  "output codes"},
     SkipRuleEntry{SkipRule::unmoved_speckle, "unmoved_speckle",
-                  "the sonar has not moved since the speckle of the line was drawn", 0, "output codes",
-                  "lines"},
+                  "the sonar has not moved since the speckle of the line was drawn", "lines", 0,
+                  "output codes"},
     SkipRuleEntry{SkipRule::narrow_aperture, "narrow_aperture",
-                  "beams do not share elements: one beam only, or beams no wider than their spacing", 0,
-                  "output codes", "rows"},
+                  "beams do not share elements: one beam only, or beams no wider than their spacing", "rows",
+                  0, "output codes"},
 };
 
 inline constexpr std::size_t skip_rule_count = skip_rules.size();

@@ -64,8 +64,9 @@ SurfaceModel surface_model(const SonarSettings& settings) {
   return surface;
 }
 
-BinningOptions binning_options(const SonarSettings& settings) {
+BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches& skip) {
   BinningOptions options;
+  options.skip = skip;
   options.footprint = settings.sampling.footprint;
   if (settings.model == Model::paper) {
     options.mean = true;
@@ -201,7 +202,7 @@ struct SonarRenderer::Impl {
       T_world_body[body.name] = body.T_world_body;
     }
     if (chosen.backend == Backend::ray) {
-      slices = std::make_unique<SliceSampler>(world, workers);
+      slices = std::make_unique<SliceSampler>(world, workers, skip);
     }
   }
 
@@ -233,13 +234,15 @@ struct SonarRenderer::Impl {
       const auto cells = slices->sample(T_world_sonar, settings.aperture, settings.range.step_m, max_range_m,
                                         surface, slice_accuracy(settings));
       statistics.visibility_s = watch.lap();
-      bins = bin_echoes(cells, settings.aperture, settings.range, binning_options(settings), workers);
+      statistics.skipped += slices->last_statistics().skipped;
+      bins = bin_echoes(cells, settings.aperture, settings.range, binning_options(settings, skip), workers);
     } else {
       const SampleGrid& samples = grid_for(settings);
       const auto views = chosen.sampler->sample(T_world_sonar, samples, surface, max_range_m);
       statistics.visibility_s = watch.lap();
-      bins = bin_echoes(samples, views, settings.range, binning_options(settings), workers);
+      bins = bin_echoes(samples, views, settings.range, binning_options(settings, skip), workers);
     }
+    statistics.skipped += bins.skipped;
     statistics.binning_s = watch.lap();
     statistics.samples = bins.samples;
     statistics.invalid_samples = bins.invalid_samples;

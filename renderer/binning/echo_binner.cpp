@@ -77,11 +77,12 @@ class BeamSums {
   bool mean_ = false;
 };
 
-/// Runs fill(beam, sums) for every beam, each in one job, and collects what it summed. A beam has one owner,
-/// so nothing depends on the number of threads.
-template <class SolidAngle, class Fill>
-BinningResult bin_beams(int beams, const RangeLines& range, bool mean, WorkerPool& workers,
-                        const SolidAngle& solid_angle, const Fill& fill) {
+/// Runs fill(beam, sums) for every beam that is not empty(beam), each in one job, and collects what it
+/// summed. A beam has one owner, so nothing depends on the number of threads.
+template <class Empty, class SolidAngle, class Fill>
+BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
+                        WorkerPool& workers, const Empty& empty, const SolidAngle& solid_angle,
+                        const Fill& fill) {
   BinningResult result;
   result.beams = beams;
   result.lines = range.count;
@@ -89,10 +90,15 @@ BinningResult bin_beams(int beams, const RangeLines& range, bool mean, WorkerPoo
   result.echo.resize(static_cast<std::size_t>(beams) * lines);
   std::atomic<std::uint64_t> samples{0};
   std::atomic<std::uint64_t> invalid{0};
+  std::atomic<std::uint64_t> empty_beams{0};
   workers.run(beams, [&](int beam) {
     thread_local BeamSums sums;
     const auto b = static_cast<std::size_t>(beam);
-    sums.reset(range, solid_angle(b), mean);
+    if (empty(b)) {
+      ++empty_beams;
+      return;
+    }
+    sums.reset(range, solid_angle(b), options.mean);
     fill(b, sums);
     sums.read(lines, &result.echo[b * lines]);
     samples += sums.samples;
@@ -100,6 +106,7 @@ BinningResult bin_beams(int beams, const RangeLines& range, bool mean, WorkerPoo
   });
   result.samples = samples;
   result.invalid_samples = invalid;
+  result.skipped.add(SkipRule::empty_beams, empty_beams);
   return result;
 }
 
@@ -148,7 +155,7 @@ BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const Surface
     }
   };
   return bin_beams(
-      grid.beam_count(), range, options.mean, workers,
+      grid.beam_count(), range, options, workers, [](std::size_t) { return false; },
       [&](std::size_t beam) { return solid_angle_of(grid, beam); }, fill);
 }
 
@@ -170,7 +177,13 @@ BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Apert
   const auto solid_angle = [&](std::size_t beam) {
     return height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]);
   };
-  return bin_beams(beams, range, options.mean, workers, solid_angle, fill);
+  const auto empty = [&](std::size_t beam) {
+    return options.skip.on(SkipRule::empty_beams) &&
+           std::all_of(cells.begin() + static_cast<std::ptrdiff_t>(begins[beam]),
+                       cells.begin() + static_cast<std::ptrdiff_t>(begins[beam + 1]),
+                       [](const SliceCell* cell) { return cell->patches.empty(); });
+  };
+  return bin_beams(beams, range, options, workers, empty, solid_angle, fill);
 }
 
 }  // namespace sonard::render

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler.hpp"
@@ -16,6 +17,7 @@ struct BinningOptions {
   bool mean = false;              ///< divide by the solid angle that fell into the line (mode `paper`)
   bool footprint = true;          ///< false: a sample is a point in range
   bool legacy_bin_index = false;  ///< docs/physics.md 1.2, A4; only with footprint = false
+  SkipSwitches skip{};            ///< for SkipRule::empty_beams, of slices
 };
 
 struct BinningResult {
@@ -27,6 +29,7 @@ struct BinningResult {
   std::vector<float> echo;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
+  SkipCounts skipped;
 };
 
 /// Sums of a fixed grid. `views` is what Sampler::sample() returned for `grid`. Sums are exact

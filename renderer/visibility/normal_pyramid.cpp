@@ -61,6 +61,13 @@ std::vector<glm::vec3> halved(const std::vector<glm::vec3>& normals, int width, 
 
 }  // namespace
 
+NormalPyramid NormalPyramid::straight() {
+  NormalPyramid pyramid;
+  pyramid.levels.push_back({1, 1, 0});
+  pyramid.texels.push_back({0, 0, static_cast<std::int16_t>(texel_scale), 0});
+  return pyramid;
+}
+
 NormalPyramid::NormalPyramid(const NormalMap& map) {
   std::vector<glm::vec3> normals;
   normals.reserve(map.rgb.size() / 3);

@@ -31,12 +31,15 @@ struct NormalPyramid {
   std::vector<Texel> texels;  ///< level after level, row 0 at v = 0
 
   explicit NormalPyramid(const NormalMap& map);
+  /// Of a surface without bumps; no map of 8 bits can say that exactly.
+  static NormalPyramid straight();
 
   /// Mean normal around `uv` (repeated beyond [0, 1]) over 2^level texels, linear between texels and between
   /// levels. `level` is held to what there is.
   glm::vec3 mean_normal(const glm::vec2& uv, float level) const;
 
  private:
+  NormalPyramid() = default;
   glm::vec3 bilinear(const Level& level, const glm::vec2& uv) const;
 };
 

@@ -80,7 +80,9 @@ std::uint64_t FanTriangles::clusters_culled() const {
   return culled;
 }
 
-void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers) {
+void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers,
+                        bool cull) {
+  cull_ = cull;
   part_starts_.assign(1, 0);
   for (const PlacedPart& part : parts) {
     part_starts_.push_back(part_starts_.back() + static_cast<std::uint32_t>(part.clusters->clusters.size()));
@@ -112,7 +114,9 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     }
     const PlacedPart& part = parts[part_number];
     const MeshClusters::Cluster& cluster = part.clusters->clusters[c - part_starts_[part_number]];
-    if (outside(fan, part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m, cluster.radius_m)) {
+    const bool out =
+        outside(fan, part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m, cluster.radius_m);
+    if (out && cull_) {
       ++share.culled;
       continue;
     }
@@ -134,7 +138,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
                                  {at.z[i], at.z[j], at.z[k]},
                                  static_cast<std::uint32_t>(part_number),
                                  part.clusters->mesh_triangle[t],
-                                 high_t - low_t > thin_ratio * (high - low),
+                                 !out && high_t - low_t > thin_ratio * (high - low),
                                  low,
                                  high};
       add(triangle, {at.azimuth[i], at.azimuth[j], at.azimuth[k]}, fan, share);

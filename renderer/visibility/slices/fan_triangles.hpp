@@ -38,7 +38,8 @@ struct FanTriangle {
 class FanTriangles {
  public:
   /// Lists are the same for any number of threads.
-  void find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers);
+  /// @param cull false: no cluster is dropped, all their triangles are looked at.
+  void find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers, bool cull = true);
 
   /// In the order of the world, which decides between surfaces in the same place.
   std::span<const FanTriangle* const> of_beam(int beam) const {
@@ -71,6 +72,7 @@ class FanTriangles {
   std::vector<const FanTriangle*> listed_;
   std::vector<std::size_t> first_of_beam_;
   std::size_t cluster_count_ = 0;
+  bool cull_ = true;
 };
 
 }  // namespace sonard::render

@@ -20,9 +20,9 @@ constexpr float mapped_lines = 2.0F;
 
 }  // namespace
 
-ElevationPattern::ElevationPattern(const Aperture& aperture)
+ElevationPattern::ElevationPattern(const Aperture& aperture, bool tabled_if_flat)
     : tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))) {
-  if (aperture.elevation == Aperture::Elevation::top_hat) {
+  if (aperture.elevation == Aperture::Elevation::top_hat && !tabled_if_flat) {
     return;
   }
   for (int i = 0; i <= pattern_steps; ++i) {
@@ -158,7 +158,8 @@ bool SlicePatcher::all_even(const Request& request) const {
 
 bool SlicePatcher::is_mapped(const Request& request, const VisiblePiece& piece) {
   const std::int32_t triangle = request.segments.triangle[static_cast<std::size_t>(piece.segment)];
-  return request.parts[request.cutter.triangle(triangle).part].normal_map != nullptr;
+  const NormalPyramid* map = request.parts[request.cutter.triangle(triangle).part].normal_map.get();
+  return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
 /// Divides the pieces whose echo is not even in range. Half of a piece's elevation holds about half of its

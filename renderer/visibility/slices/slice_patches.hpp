@@ -20,7 +20,7 @@ namespace sonard::render {
 struct PartSurface {
   std::shared_ptr<const TriangleMesh> mesh;
   std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
-  bool vertex_normals = false;
+  bool vertex_normals = false;                      ///< whether shading interpolates them
   float lambert_mu = 0.0F;
   float reflectance = 0.0F;
   glm::mat3 R_part_sonar{1.0F};  ///< for this ping
@@ -34,7 +34,8 @@ using SideProfile = std::array<float, side_probes>;
 /// One-way elevation pattern as a function of t, tabled.
 class ElevationPattern {
  public:
-  explicit ElevationPattern(const Aperture& aperture);
+  /// @param tabled_if_flat a pattern that is 1 everywhere too (SkipRule::flat_elevation switched off)
+  explicit ElevationPattern(const Aperture& aperture, bool tabled_if_flat = false);
   bool flat() const { return weight_.empty(); }
   float at(float t) const;
 

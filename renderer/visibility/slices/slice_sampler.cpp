@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "renderer/simd.hpp"
+#include "renderer/visibility/slices/slice_shading.hpp"
 
 namespace sonard::render {
 
@@ -47,7 +48,8 @@ struct SliceSampler::Scratch {
   SlicePatcher patcher;
 };
 
-SliceSampler::SliceSampler(const World& world, WorkerPool& workers) : workers_(workers) {
+SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip)
+    : workers_(workers), skip_(skip) {
   std::map<const TriangleMesh*, std::shared_ptr<const MeshClusters>> clusters;  // meshes are shared by parts
   std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
   for (const Body& body : world.bodies) {
@@ -59,14 +61,19 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers) : workers_(w
       }
       PartSurface surface;
       surface.mesh = part.mesh;
-      surface.vertex_normals = !part.mesh->normals.empty();
+      surface.vertex_normals = !(skip.on(SkipRule::geometric_normals) && has_plain_facets(*part.mesh));
+      skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
       surface.lambert_mu = static_cast<float>(part.material.lambert_mu);
       surface.reflectance = static_cast<float>(part.material.reflectance);
-      if (part.normal_map && surface.vertex_normals && !part.mesh->tangents.empty() &&
-          !part.mesh->texcoords.empty()) {
+      const bool can_be_mapped =
+          !part.mesh->normals.empty() && !part.mesh->tangents.empty() && !part.mesh->texcoords.empty();
+      if (!part.normal_map && skip.on(SkipRule::absent_normal_map)) {
+        skipped_parts_.add(SkipRule::absent_normal_map);
+      } else if (can_be_mapped) {
         auto& pyramid = pyramids[part.normal_map.get()];
         if (!pyramid) {
-          pyramid = std::make_shared<const NormalPyramid>(*part.normal_map);
+          pyramid = std::make_shared<const NormalPyramid>(part.normal_map ? NormalPyramid(*part.normal_map)
+                                                                          : NormalPyramid::straight());
         }
         surface.normal_map = pyramid;
         any_mapped_ = true;
@@ -133,14 +140,14 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
                                                    const SliceAccuracy& accuracy) {
   place_parts(T_world_sonar);
   const Setting setting{Fan(aperture, max_range_m),
-                        ElevationPattern(aperture),
+                        ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)),
                         surface,
                         accuracy,
                         triangles_,
                         surfaces_,
                         any_mapped_,
                         static_cast<float>(line_m)};
-  triangles_.find(placed_, setting.fan, workers_);
+  triangles_.find(placed_, setting.fan, workers_, skip_.on(SkipRule::culled_clusters));
   lay_first_slices(setting);
   std::vector<std::size_t> fresh = order_;
   statistics_ = {};
@@ -155,6 +162,9 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   }
   statistics_.clusters = triangles_.clusters_tested();
   statistics_.clusters_culled = triangles_.clusters_culled();
+  statistics_.skipped = skipped_parts_;
+  statistics_.skipped.add(SkipRule::culled_clusters, statistics_.clusters_culled);
+  statistics_.skipped.add(SkipRule::flat_elevation, setting.pattern.flat() ? 1 : 0);
   return cells;
 }
 

@@ -12,6 +12,7 @@
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
+#include "renderer/skip_ledger.hpp"
 #include "renderer/visibility/slices/fan_triangles.hpp"
 #include "renderer/visibility/slices/slice_patches.hpp"
 #include "renderer/worker_pool.hpp"
@@ -44,6 +45,7 @@ struct SliceStatistics {
   std::uint64_t patches = 0;
   std::uint64_t clusters = 0;
   std::uint64_t clusters_culled = 0;
+  SkipCounts skipped;
 };
 
 /// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
@@ -51,7 +53,7 @@ struct SliceStatistics {
 /// (docs/accuracy.md). One thread uses it; it shares its work with the pool's.
 class SliceSampler {
  public:
-  SliceSampler(const World& world, WorkerPool& workers);
+  SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});
 
   /// Cells from port to starboard; they stay valid until the next call. The same for any number of threads.
   /// @param line_m length of a range line: what matters less than that in range is not followed.
@@ -80,6 +82,8 @@ class SliceSampler {
   std::size_t new_cell();
 
   WorkerPool& workers_;
+  SkipSwitches skip_;
+  SkipCounts skipped_parts_;  ///< of every ping: what is left out of shading
   std::vector<Pose> T_world_body_;
   std::map<std::string, std::size_t> body_number_;
   std::vector<Part> parts_;

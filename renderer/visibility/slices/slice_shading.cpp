@@ -93,6 +93,22 @@ glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, co
 
 }  // namespace
 
+bool has_plain_facets(const TriangleMesh& mesh) {
+  constexpr float plain_rad = 1e-4F;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.normals.empty(); i += 3) {
+    const std::uint32_t* corner = &mesh.indices[i];
+    const glm::vec3 edge_b = mesh.positions[corner[1]] - mesh.positions[corner[0]];
+    const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
+    const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(glm::length(glm::cross(facet, mesh.normals[corner[k]])) < plain_rad)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const PiecePlace& place,
                     float geometric) {
   const auto cosine = static_cast<float>(std::cos(place.slice.azimuth_rad));
@@ -100,7 +116,9 @@ float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const 
   const SurfacePoint surface(triangle, {place.h_m * cosine, place.h_m * sine, place.z_m});
   const glm::vec2 weights = surface.weights(surface.p - surface.corner);
   const std::uint32_t* corner = &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3];
-  const glm::vec3 vertex_normal = interpolate(part.mesh->normals, corner, weights);
+  const glm::vec3 vertex_normal = part.mesh->normals.empty()
+                                      ? part.R_part_sonar * glm::normalize(surface.normal)
+                                      : interpolate(part.mesh->normals, corner, weights);
   const glm::vec3 d = part.R_part_sonar * glm::normalize(surface.p);
   float product;
   if (part.normal_map) {

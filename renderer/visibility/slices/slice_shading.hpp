@@ -17,6 +17,10 @@ struct PiecePlace {
 float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const PiecePlace& place,
                     float geometric);
 
+/// Whether all vertex normals are those of their facets, to 1e-4 rad, as where there are none: then there is
+/// nothing to interpolate.
+bool has_plain_facets(const TriangleMesh& mesh);
+
 /// SurfaceSample::response of a surface seen under `cosine` at a range.
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m);
 

@@ -1,0 +1,212 @@
+// Rules of exact slices and their binning: each on against off, in worlds where it has much to skip and in
+// worlds where it has nothing.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/gl/skipping/skipping_worlds.hpp"
+
+namespace sonard::render {
+namespace {
+
+using namespace test;
+
+RendererOptions on_ray() {
+  return {Backend::ray, 0};
+}
+
+struct Comparison {
+  std::uint64_t skipped = 0;      ///< with the rule on
+  double worst_of_maximum = 0.0;  ///< largest difference of a bin, over the largest bin
+};
+
+/// One ping with the rule on, and with it off.
+Comparison compare(SkipRule rule, const World& world, const PingRequest& request) {
+  EXPECT_EQ(entry_of(rule).bound_unit, "of the image's maximum");
+  RendererOptions off_options = on_ray();
+  off_options.skip.turn_off(rule);
+  SonarRenderer renderer(world, on_ray());
+  SonarRenderer off(world, off_options);
+  const EchoImage& image = renderer.render_echo(request);
+  const EchoImage& full = off.render_echo(request);
+  EXPECT_EQ(off.last_statistics().skipped.of(rule), 0u);
+  EXPECT_EQ(image.intensity.size(), full.intensity.size());
+  const float largest = *std::max_element(full.intensity.begin(), full.intensity.end());
+  EXPECT_GT(largest, 0.0F) << "there is something to hear";
+  Comparison result;
+  result.skipped = renderer.last_statistics().skipped.of(rule);
+  for (std::size_t i = 0; i < image.intensity.size(); ++i) {
+    result.worst_of_maximum = std::max(
+        result.worst_of_maximum,
+        static_cast<double>(std::abs(image.intensity[i] - full.intensity[i])) / static_cast<double>(largest));
+  }
+  EXPECT_LE(result.worst_of_maximum, entry_of(rule).bound);
+  return result;
+}
+
+/// A ball whose facets are flat; with vertex normals they are those of the facets.
+TriangleMesh faceted_ball(bool with_normals) {
+  const TriangleMesh smooth = make_sphere(0.5F, 16);
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i + 2 < smooth.indices.size(); i += 3) {
+    const glm::vec3 a = smooth.positions[smooth.indices[i]];
+    const glm::vec3 b = smooth.positions[smooth.indices[i + 1]];
+    const glm::vec3 c = smooth.positions[smooth.indices[i + 2]];
+    const glm::vec3 across = glm::cross(b - a, c - a);
+    for (const glm::vec3& corner : {a, b, c}) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(corner);
+      if (with_normals) {
+        mesh.normals.push_back(glm::normalize(across));
+      }
+    }
+  }
+  return mesh;
+}
+
+World ball_alone(TriangleMesh mesh) {
+  Body ball = make_body("ball", std::move(mesh));
+  ball.T_world_body.position_m = {8, 1, 0.5};
+  return make_world({ball});
+}
+
+/// A bed that could carry a normal map, finely divided, as one that does is.
+World mappable_bed(bool mapped) {
+  TriangleMesh mesh;
+  constexpr std::uint32_t cells = 40;
+  for (std::uint32_t i = 0; i <= cells; ++i) {
+    for (std::uint32_t j = 0; j <= cells; ++j) {
+      const auto x = static_cast<float>(i) / cells;
+      const auto y = static_cast<float>(j) / cells;
+      mesh.positions.emplace_back(2 + 18 * x, 40 * y - 20, 0);
+      mesh.normals.emplace_back(0, 0, 1);
+      mesh.texcoords.emplace_back(x, y);
+      mesh.tangents.emplace_back(1, 0, 0, 1);
+    }
+  }
+  for (std::uint32_t i = 0; i < cells; ++i) {
+    for (std::uint32_t j = 0; j < cells; ++j) {
+      const std::uint32_t at = i * (cells + 1) + j;
+      const std::uint32_t beyond = at + cells + 1;
+      mesh.indices.insert(mesh.indices.end(), {at, beyond, at + 1, at + 1, beyond, beyond + 1});
+    }
+  }
+  World world = make_world({make_body("bed", std::move(mesh), 0.3)});
+  if (mapped) {
+    NormalMap map{2, 1, {200, 128, 220, 60, 128, 220}};
+    world.bodies[0].parts[0].normal_map = std::make_shared<const NormalMap>(std::move(map));
+  }
+  return world;
+}
+
+// Balls all around, above and beyond the range; the one ahead is heard.
+TEST(SliceRules, ClustersOutsideTheFanAreCulled) {
+  World world = bed_and_ball();
+  int outside = 0;
+  for (const glm::dvec3& place : {glm::dvec3(-8, 0, 3), glm::dvec3(0, 9, 3), glm::dvec3(6, 0, 9),
+                                  glm::dvec3(5, 0, -9), glm::dvec3(18, 1, -6), glm::dvec3(-5, -5, 0)}) {
+    Body ball = make_body("ball outside " + std::to_string(outside++), make_sphere(0.5F, 16));
+    ball.T_world_body.position_m = place;
+    world.bodies.push_back(ball);
+  }
+  PingRequest request = small_request();
+  EXPECT_GE(compare(SkipRule::culled_clusters, world, request).skipped, 6u);
+  request.settings.range.count = 100;  // up to 4 m: the ball is beyond too
+  request.T_world_sonar.position_m.z = 2;
+  EXPECT_GE(compare(SkipRule::culled_clusters, world, request).skipped, 7u);
+  // Nothing to cull: all of it is in sight.
+  EXPECT_EQ(compare(SkipRule::culled_clusters, ball_alone(make_sphere(0.5F, 16)), small_request()).skipped,
+            0u);
+}
+
+// A scanning sonar looks at one sector only.
+TEST(SliceRules, NarrowFanLooksAtItsSectorOnly) {
+  World world = bed_and_ball();
+  for (int i = 0; i < 20; ++i) {
+    Body ball = make_body("ball " + std::to_string(i), make_sphere(0.3F, 16));
+    ball.T_world_body.position_m = {6, 0.8 * i + 1.5, 0.5};
+    world.bodies.push_back(ball);
+  }
+  PingRequest request = small_request();
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(1, 0.05);
+  EXPECT_GE(compare(SkipRule::culled_clusters, world, request).skipped, 20u);
+}
+
+// The ball is 8.4 m away and 1 m wide: 6.8 degrees, no more than five of 64 beams that are 1.875 degrees
+// wide.
+TEST(SliceRules, BeamsThatSeeNothingAreNotSummed) {
+  const Comparison ball = compare(SkipRule::empty_beams, ball_alone(make_sphere(0.5F, 16)), small_request());
+  EXPECT_GE(ball.skipped, 64u - 5u);
+  EXPECT_LT(ball.skipped, 64u);
+  EXPECT_EQ(compare(SkipRule::empty_beams, bed_and_ball(), small_request()).skipped, 0u);
+}
+
+TEST(SliceRules, BeamsThatSeeNothingAreNotSummedInThePaperEither) {
+  PingRequest request = small_request();
+  request.settings.model = Model::paper;
+  EXPECT_GE(compare(SkipRule::empty_beams, ball_alone(make_sphere(0.5F, 16)), request).skipped, 64u - 5u);
+}
+
+TEST(SliceRules, FacetsThatAreHeardFlatAreNotInterpolated) {
+  for (const Model model : {Model::physical, Model::paper}) {
+    PingRequest request = small_request();
+    request.settings.model = model;
+    EXPECT_EQ(compare(SkipRule::geometric_normals, ball_alone(faceted_ball(false)), request).skipped, 1u);
+    EXPECT_EQ(compare(SkipRule::geometric_normals, ball_alone(faceted_ball(true)), request).skipped, 1u);
+    const Comparison smooth =
+        compare(SkipRule::geometric_normals, ball_alone(make_sphere(0.5F, 16)), request);
+    EXPECT_EQ(smooth.skipped, 0u);
+    EXPECT_EQ(smooth.worst_of_maximum, 0.0);
+  }
+}
+
+// Facets that are shaded flat though their normals are not would be another image: the criterion is needed.
+TEST(SliceRules, SmoothNormalsAreHeard) {
+  SonarRenderer smooth(ball_alone(make_sphere(0.5F, 16)), on_ray());
+  SonarRenderer flat(ball_alone(faceted_ball(true)), on_ray());
+  const std::vector<float> a = smooth.render_echo(small_request()).intensity;
+  const std::vector<float> b = flat.render_echo(small_request()).intensity;
+  const float largest = *std::max_element(a.begin(), a.end());
+  float worst = 0.0F;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    worst = std::max(worst, std::abs(a[i] - b[i]));
+  }
+  EXPECT_GT(worst, 10 * static_cast<float>(entry_of(SkipRule::geometric_normals).bound) * largest);
+}
+
+TEST(SliceRules, PartsWithoutANormalMapAreNotMapped) {
+  EXPECT_EQ(compare(SkipRule::absent_normal_map, mappable_bed(false), small_request()).skipped, 1u);
+  const Comparison mapped = compare(SkipRule::absent_normal_map, mappable_bed(true), small_request());
+  EXPECT_EQ(mapped.skipped, 0u);
+  EXPECT_EQ(mapped.worst_of_maximum, 0.0);
+}
+
+TEST(SliceRules, ElevationPatternThatIsFlatIsNotTabled) {
+  PingRequest request = small_request();
+  EXPECT_EQ(compare(SkipRule::flat_elevation, bed_and_ball(), request).skipped, 1u);
+  request.settings.aperture.elevation = Aperture::Elevation::sinc;
+  EXPECT_EQ(compare(SkipRule::flat_elevation, bed_and_ball(), request).skipped, 0u);
+}
+
+TEST(SliceRules, NothingSkippedAtAllTheImageIsTheSame) {
+  RendererOptions none = on_ray();
+  none.skip = SkipSwitches::none();
+  SonarRenderer renderer(bed_and_ball(), on_ray());
+  SonarRenderer full(bed_and_ball(), none);
+  const std::vector<float> a = renderer.render_echo(small_request()).intensity;
+  for (int ping = 0; ping < 2; ++ping) {
+    const std::vector<float>& b = full.render_echo(small_request()).intensity;
+    EXPECT_EQ(full.last_statistics().skipped, SkipCounts{});
+    const float largest = *std::max_element(b.begin(), b.end());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_NEAR(a[i], b[i], 1e-3F * largest) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sonard::render
