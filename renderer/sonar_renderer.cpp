@@ -172,11 +172,11 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   const int slices = settings.model == Model::paper ? 2 : 1;
   switch (settings.sampling.preset) {
     case Sampling::Preset::fast:
-      return {slices, 4, 2.5e-2F, 0.1F, 0.05F};
+      return {slices, 16, 2e-2F, 0.2F, 0.05F};
     case Sampling::Preset::reference:
-      return {8, 16, 1e-6F, 0.005F, 0.001F};
+      return {8, 64, 1e-4F, 0.005F, 0.001F};
     default:
-      return {slices, 64, 1e-3F, 0.04F, 0.01F};
+      return {slices, 64, 2.5e-3F, 0.04F, 0.01F};
   }
 }
 

@@ -44,6 +44,9 @@ void check_aperture(const Aperture& aperture) {
   if (edges.front() - edges.back() > 2 * std::numbers::pi + 1e-9) {
     throw RequestError("aperture: the fan is wider than a full turn");
   }
+  if (edges.front() > std::numbers::pi + 1e-9 || edges.back() < -std::numbers::pi - 1e-9) {
+    throw RequestError("aperture: a beam lies across the backward azimuth; turn the sonar instead");
+  }
   const double limit = aperture.elevation_limit_rad();
   if (!(limit > 0) || !(limit < std::numbers::pi / 2 * 0.97)) {
     throw RequestError("aperture: vertical beamwidth out of range");

@@ -28,7 +28,8 @@ struct Aperture {
 };
 
 /// @throws RequestError when there are no beams, when their edges are not finite or not falling, when the fan
-/// is wider than a full turn, or when its elevations do not end clear of the vertical.
+/// is wider than a full turn or a beam lies across the backward azimuth, or when its elevations do not end
+/// clear of the vertical.
 void check_aperture(const Aperture& aperture);
 
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.

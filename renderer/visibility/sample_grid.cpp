@@ -14,6 +14,7 @@ namespace {
 constexpr double widest_view_rad =
     std::numbers::pi / 3;                       // beyond, pixels grow too unequal (docs/physics.md 1.3)
 constexpr double widest_single_view_rad = 2.8;  // planar projection ends below pi
+constexpr double most_samples = 0x1p27;         // 2 GiB of them
 
 void check(const Sampling& sampling) {
   if (sampling.views < 1 || sampling.columns_per_view < 1 || sampling.rows < 1 || sampling.views > 64 ||
@@ -31,6 +32,10 @@ std::vector<SubView> make_views(const Aperture& aperture, const Sampling& sampli
     count = std::max(count, static_cast<int>(std::ceil(width / widest_view_rad - 1e-9)));
   } else if (width / count > widest_single_view_rad) {
     throw RequestError("sampling: one planar view cannot span the fan; raise views");
+  }
+  const double samples = 1.0 * count * sampling.columns_per_view * sampling.rows;
+  if (samples > most_samples) {
+    throw RequestError("sampling: more than 2^27 samples; lower views, columns or rows");
   }
   std::vector<SubView> views(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {

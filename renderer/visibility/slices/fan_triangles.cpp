@@ -139,8 +139,8 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
                                  static_cast<std::uint32_t>(part_number),
                                  part.clusters->mesh_triangle[t],
                                  !out && high_t - low_t > thin_ratio * (high - low),
-                                 low,
-                                 high};
+                                 high - low > half_turn ? -half_turn : low,
+                                 high - low > half_turn ? half_turn : high};
       add(triangle, {at.azimuth[i], at.azimuth[j], at.azimuth[k]}, fan, share);
     }
   }

@@ -30,7 +30,8 @@ struct FanTriangle {
   std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
   /// Much taller than wide, as seen from the sonar: the leg of a frame, a pole. A slice beside it misses it.
   bool thin = false;
-  float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;  ///< of the thin
+  /// Between which it lies; -pi to pi where it may hold the sonar's vertical axis.
+  float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;
 };
 
 /// Culls and transforms, first clusters against fan and range, then triangle by triangle; what is kept is

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "renderer/simd.hpp"
 
@@ -15,15 +16,16 @@ constexpr float shortest = 1e-9F;          // of a segment, in t; what is shorte
 
 }  // namespace
 
-void Segments::reserve(std::size_t size) {
-  for (auto* array : {&low, &high, &w_at_0, &w_slope, &low_drift, &high_drift}) {
-    array->resize(std::max(size, array->size()));
+void SliceCutter::load(std::span<const FanTriangle* const> triangles, double low_rad, double high_rad,
+                       bool two_sided) {
+  const auto low = static_cast<float>(low_rad) - azimuth_error_rad;
+  const auto high = static_cast<float>(high_rad) + azimuth_error_rad;
+  triangles_.clear();
+  for (const FanTriangle* t : triangles) {
+    if (t->high_azimuth_rad >= low && t->low_azimuth_rad <= high) {
+      triangles_.push_back(t);
+    }
   }
-  triangle.resize(std::max(size, triangle.size()));
-}
-
-void SliceCutter::load(std::span<const FanTriangle* const> triangles, bool two_sided) {
-  triangles_.assign(triangles.begin(), triangles.end());
   if (!two_sided) {
     drop_back_faces();
   }
@@ -45,8 +47,7 @@ void SliceCutter::load(std::span<const FanTriangle* const> triangles, bool two_s
       x_[k][i] = y_[k][i] = z_[k][i] = 0.0F;  // cut by no slice
     }
   }
-  for (auto* array :
-       {&normal_x_, &normal_y_, &normal_z_, &low_, &high_, &w_at_0_, &w_slope_, &low_drift_, &high_drift_}) {
+  for (auto* array : {&normal_x_, &normal_y_, &normal_z_}) {
     array->resize(padded_);
   }
   fate_.resize(padded_);
@@ -90,52 +91,66 @@ void SliceCutter::drop_back_faces() {
   std::erase_if(triangles_, seen_from_behind);
 }
 
+/// Thin triangles of one part that touch in azimuth make one thing: the facets of a pole are not missed one
+/// by one.
 void SliceCutter::list_thin() {
   thin_.clear();
   for (const FanTriangle* t : triangles_) {
     if (t->thin) {
-      thin_.push_back(t);
+      thin_.push_back({t->part, t->low_azimuth_rad, t->high_azimuth_rad});
     }
   }
+  std::sort(thin_.begin(), thin_.end(), [](const ThinThing& a, const ThinThing& b) {
+    return std::tie(a.part, a.low_azimuth_rad) < std::tie(b.part, b.low_azimuth_rad);
+  });
+  std::size_t things = 0;
+  for (const ThinThing& thing : thin_) {
+    if (things > 0 && thin_[things - 1].part == thing.part &&
+        thing.low_azimuth_rad <= thin_[things - 1].high_azimuth_rad) {
+      thin_[things - 1].high_azimuth_rad =
+          std::max(thin_[things - 1].high_azimuth_rad, thing.high_azimuth_rad);
+    } else {
+      thin_[things++] = thing;
+    }
+  }
+  thin_.resize(things);
 }
 
-bool SliceCutter::misses_thin_triangle(const Slice& slice) const {
+bool SliceCutter::misses_thin_thing(const Slice& slice) const {
   const auto azimuth = static_cast<float>(slice.azimuth_rad);
   const float half = 0.5F * slice.width_rad;
-  return std::any_of(thin_.begin(), thin_.end(), [&](const FanTriangle* t) {
-    const float low = t->low_azimuth_rad - azimuth;
-    const float high = t->high_azimuth_rad - azimuth;
-    return (low > 0 && low < half) || (high < 0 && high > -half);
+  return std::any_of(thin_.begin(), thin_.end(), [&](const ThinThing& thing) {
+    const float port = thing.high_azimuth_rad - azimuth;
+    const float starboard = thing.low_azimuth_rad - azimuth;
+    return (starboard > 0 && port < half) || (port < 0 && starboard > -half);
   });
 }
 
 void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
   const auto cosine = static_cast<float>(std::cos(slice.azimuth_rad));
   const auto sine = static_cast<float>(std::sin(slice.azimuth_rad));
-  cut_all(cosine, sine, slice.width_rad, tan_limit);
-  segments.reserve(padded_ + 1);
-  std::size_t n = 0;
+  for (auto* array : {&segments.low, &segments.high, &segments.w_at_0, &segments.w_slope, &segments.low_drift,
+                      &segments.high_drift}) {
+    array->resize(padded_);
+  }
+  segments.kept.resize(padded_ + 1);
+  cut_all(cosine, sine, slice.width_rad, tan_limit, segments);
+  std::size_t count = 0;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     if (fate_[i] == partly_behind) {
-      clip_behind(cosine, sine, tan_limit, static_cast<int>(i));
+      clip_behind(cosine, sine, tan_limit, i, segments);
     }
-    segments.low[n] = low_[i];
-    segments.high[n] = high_[i];
-    segments.w_at_0[n] = w_at_0_[i];
-    segments.w_slope[n] = w_slope_[i];
-    segments.low_drift[n] = low_drift_[i];
-    segments.high_drift[n] = high_drift_[i];
-    segments.triangle[n] = static_cast<std::int32_t>(i);
-    n += fate_[i] == kept ? 1 : 0;
+    segments.kept[count] = static_cast<std::int32_t>(i);
+    count += fate_[i] == kept ? 1 : 0;
   }
-  segments.count = static_cast<int>(n);
+  segments.kept.resize(count);
 }
 
 /// With s the distance of a corner from the plane of the slice, an edge from i to j meets it where
 /// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes the signs of numerator
 /// and denominator and nothing else, so that two triangles find the same point on their common edge.
 SONARD_SIMD_CLONES
-void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_limit) {
+void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_limit, Segments& segments) {
   const float* __restrict x0 = x_[0].data();
   const float* __restrict x1 = x_[1].data();
   const float* __restrict x2 = x_[2].data();
@@ -145,12 +160,12 @@ void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_l
   const float* __restrict z0 = z_[0].data();
   const float* __restrict z1 = z_[1].data();
   const float* __restrict z2 = z_[2].data();
-  float* __restrict low = low_.data();
-  float* __restrict high = high_.data();
-  float* __restrict at_0 = w_at_0_.data();
-  float* __restrict slope = w_slope_.data();
-  float* __restrict low_drift = low_drift_.data();
-  float* __restrict high_drift = high_drift_.data();
+  float* __restrict low = segments.low.data();
+  float* __restrict high = segments.high.data();
+  float* __restrict at_0 = segments.w_at_0.data();
+  float* __restrict slope = segments.w_slope.data();
+  float* __restrict low_drift = segments.low_drift.data();
+  float* __restrict high_drift = segments.high_drift.data();
   std::int32_t* __restrict fate = fate_.data();
   const std::size_t count = padded_;
   for (std::size_t i = 0; i < count; ++i) {
@@ -195,8 +210,7 @@ void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_l
 
 /// The same for a triangle of which the plane of the slice cuts a part behind the vertical axis, in doubles
 /// and one at a time: such triangles are few.
-void SliceCutter::clip_behind(float cosine, float sine, float tan_limit, int index) {
-  const auto i = static_cast<std::size_t>(index);
+void SliceCutter::clip_behind(float cosine, float sine, float tan_limit, std::size_t i, Segments& segments) {
   double s[3], h[3], z[3];
   for (int k = 0; k < 3; ++k) {
     const double x = static_cast<double>(x_[k][i]), y = static_cast<double>(y_[k][i]);
@@ -232,11 +246,11 @@ void SliceCutter::clip_behind(float cosine, float sine, float tan_limit, int ind
     return;
   }
   const double steepness = (1 / end_h[1 - lower] - 1 / end_h[lower]) / (b - a);
-  low_[i] = static_cast<float>(a);
-  high_[i] = static_cast<float>(b);
-  w_slope_[i] = static_cast<float>(steepness);
-  w_at_0_[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
-  low_drift_[i] = high_drift_[i] = 0.0F;
+  segments.low[i] = static_cast<float>(a);
+  segments.high[i] = static_cast<float>(b);
+  segments.w_slope[i] = static_cast<float>(steepness);
+  segments.w_at_0[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
+  segments.low_drift[i] = segments.high_drift[i] = 0.0F;
   fate_[i] = kept;
 }
 

@@ -43,6 +43,7 @@ float ElevationPattern::at(float t) const {
 
 void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = request.pieces;
+  follow_crossings(request);
   lay_out(request);
   measure(request);
   for (int round = 0; round < most_rounds && divide_uneven(request); ++round) {
@@ -56,6 +57,37 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
     patches[begin + i] = {
         range_low_[i],  range_high_[i], smear_low_[i], smear_high_[i], response_[i] * solid_angle_[i],
         solid_angle_[i]};
+  }
+}
+
+/// Where two surfaces cross, their pieces end along the line in which their planes meet. Its direction e
+/// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
+void SlicePatcher::follow_crossings(const Request& request) {
+  const auto cosine = static_cast<float>(std::cos(request.slice.azimuth_rad));
+  const auto sine = static_cast<float>(std::sin(request.slice.azimuth_rad));
+  const auto normal = [&](const VisiblePiece& piece) {
+    const auto t = static_cast<std::size_t>(piece.segment);
+    return glm::vec3(request.cutter.normal_x()[t], request.cutter.normal_y()[t],
+                     request.cutter.normal_z()[t]);
+  };
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (!std::isnan(pieces_[i].high_drift)) {
+      continue;
+    }
+    float drift = 0.0F;
+    if (i + 1 < pieces_.size()) {
+      const glm::vec3 e = glm::cross(normal(pieces_[i]), normal(pieces_[i + 1]));
+      const float along = e.x * cosine + e.y * sine;
+      const float across = e.y * cosine - e.x * sine;
+      // Over the wedge it moves no farther than the longer piece reaches.
+      const float reach =
+          std::max(pieces_[i].high - pieces_[i].low, pieces_[i + 1].high - pieces_[i + 1].low) /
+          request.slice.width_rad;
+      drift = (e.z - pieces_[i].high * along) / across;
+      drift = std::isfinite(drift) ? std::clamp(drift, -reach, reach) : 0.0F;
+      pieces_[i + 1].low_drift = drift;
+    }
+    pieces_[i].high_drift = drift;
   }
 }
 
@@ -76,16 +108,15 @@ void SlicePatcher::lay_out(const Request& request) {
   const float* nz = request.cutter.normal_z();
   for (std::size_t i = 0; i < count; ++i) {
     const auto segment = static_cast<std::size_t>(pieces_[i].segment);
-    const std::int32_t triangle = request.segments.triangle[segment];
     low_[i] = pieces_[i].low;
     high_[i] = pieces_[i].high;
     low_drift_[i] = pieces_[i].low_drift;
     high_drift_[i] = pieces_[i].high_drift;
     w_at_0_[i] = request.segments.w_at_0[segment];
     w_slope_[i] = request.segments.w_slope[segment];
-    normal_h_[i] = nx[triangle] * cosine + ny[triangle] * sine;
-    normal_s_[i] = ny[triangle] * cosine - nx[triangle] * sine;
-    normal_z_[i] = nz[triangle];
+    normal_h_[i] = nx[segment] * cosine + ny[segment] * sine;
+    normal_s_[i] = ny[segment] * cosine - nx[segment] * sine;
+    normal_z_[i] = nz[segment];
   }
 }
 
@@ -157,8 +188,7 @@ bool SlicePatcher::all_even(const Request& request) const {
 }
 
 bool SlicePatcher::is_mapped(const Request& request, const VisiblePiece& piece) {
-  const std::int32_t triangle = request.segments.triangle[static_cast<std::size_t>(piece.segment)];
-  const NormalPyramid* map = request.parts[request.cutter.triangle(triangle).part].normal_map.get();
+  const NormalPyramid* map = request.parts[request.cutter.triangle(piece.segment).part].normal_map.get();
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
@@ -211,8 +241,7 @@ bool SlicePatcher::divide_uneven(const Request& request) {
 void SlicePatcher::shade(const Request& request) {
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const VisiblePiece& piece = pieces_[i];
-    const auto segment = static_cast<std::size_t>(piece.segment);
-    const FanTriangle& triangle = request.cutter.triangle(request.segments.triangle[segment]);
+    const FanTriangle& triangle = request.cutter.triangle(piece.segment);
     const PartSurface& part = request.parts[triangle.part];
     const float t = 0.5F * (piece.low + piece.high);
     float cosine = cosine_[i];
@@ -241,7 +270,7 @@ void SlicePatcher::find_probes(float tan_limit, float offset_rad) {
   std::int32_t* __restrict first = first_probe_.data();
   std::int32_t* __restrict last = last_probe_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    // The first probe at or above t, counted from half a step below the limit; truncation is floor where it
+    // The first probe at or above t; probes lie in the middle of their steps. Truncation is floor where it
     // counts.
     const float from = (low[i] + low_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
     const float to = (high[i] + high_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;

@@ -28,7 +28,7 @@ struct PartSurface {
 
 /// What is expected at one side of a wedge if its surfaces go on as in its middle: 1 / horizontal distance at
 /// evenly spaced t, 0 where nothing is seen. Neighbours compare theirs.
-inline constexpr int side_probes = 128;
+inline constexpr int side_probes = 256;
 using SideProfile = std::array<float, side_probes>;
 
 /// One-way elevation pattern as a function of t, tabled.
@@ -55,7 +55,6 @@ class SlicePatcher {
     const std::vector<PartSurface>& parts;
     const SurfaceModel& surface;
     const ElevationPattern& pattern;
-    float tan_limit;
     /// Within a piece the echo is taken as even in range. Pieces are divided until that displaces it by no
     /// more than this many lines.
     float evenness;
@@ -70,6 +69,7 @@ class SlicePatcher {
   void profile(float tan_limit, float offset_rad, SideProfile& out);
 
  private:
+  void follow_crossings(const Request& request);
   void lay_out(const Request& request);
   void measure(const Request& request);
   bool divide_uneven(const Request& request);

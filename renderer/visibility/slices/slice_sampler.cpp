@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "renderer/simd.hpp"
+#include "renderer/visibility/slices/slice_sampler_impl.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
 
 namespace sonard::render {
@@ -12,7 +12,6 @@ namespace sonard::render {
 namespace {
 
 constexpr double widest_first_slice_rad = std::numbers::pi / 180;
-constexpr int divisions_at_once = 4;
 constexpr double most_sag_lines = 0.06;  // at `change` 1 %
 
 /// How wide a first slice may be around an azimuth. Along a wall across the axis the range is d / cos psi and
@@ -27,26 +26,6 @@ double widest_first_slice(double azimuth_rad, double line_m, double max_range_m,
 }
 
 }  // namespace
-
-/// What stays the same during one ping.
-struct SliceSampler::Setting {
-  Fan fan;
-  ElevationPattern pattern;
-  const SurfaceModel& surface;
-  const SliceAccuracy& accuracy;
-  const FanTriangles& triangles;
-  const std::vector<PartSurface>& parts;
-  bool any_mapped;
-  float line_m;
-};
-
-/// Memory of one thread.
-struct SliceSampler::Scratch {
-  SliceCutter cutter;
-  Segments segments;
-  SliceSweep sweep;
-  SlicePatcher patcher;
-};
 
 SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip)
     : workers_(workers), skip_(skip) {
@@ -106,10 +85,13 @@ void SliceSampler::place_parts(const Pose& T_world_sonar) {
   }
 }
 
-std::size_t SliceSampler::new_cell() {
+std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
   if (cells_used_ == cells_.size()) {
     cells_.push_back(std::make_unique<SliceCell>());
   }
+  SliceCell& cell = *cells_[cells_used_];
+  cell.slice = slice;
+  cell.beam = beam;
   return cells_used_++;
 }
 
@@ -125,11 +107,7 @@ void SliceSampler::lay_first_slices(const Setting& setting) {
     const int count =
         std::max(setting.accuracy.slices_per_beam, static_cast<int>(std::ceil(width / widest - 1e-9)));
     for (int k = 0; k < count; ++k) {
-      order_.push_back(new_cell());
-      SliceCell& cell = *cells_[order_.back()];
-      cell.slice = {port - width * (k + 0.5) / count, static_cast<float>(width / count)};
-      cell.beam = beam;
-      cell.divisions = 1;
+      order_.push_back(new_cell({port - width * (k + 0.5) / count, static_cast<float>(width / count)}, beam));
     }
   }
 }
@@ -143,7 +121,6 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
                         ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)),
                         surface,
                         accuracy,
-                        triangles_,
                         surfaces_,
                         any_mapped_,
                         static_cast<float>(line_m)};
@@ -168,7 +145,7 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   return cells;
 }
 
-/// Fills the cells `fresh`, which are in order; all of one beam in one job.
+/// Fills the cells `fresh`, which run from port to starboard; all of one beam in one job.
 void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& fresh) {
   std::vector<std::size_t> begins;  // of each beam's run in `fresh`
   for (std::size_t i = 0; i < fresh.size(); ++i) {
@@ -180,7 +157,12 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
   workers_.run(static_cast<int>(begins.size()) - 1, [&](int job) {
     thread_local Scratch scratch;
     const auto j = static_cast<std::size_t>(job);
-    scratch.cutter.load(triangles_.of_beam(cells_[fresh[begins[j]]]->beam), setting.surface.two_sided);
+    const SliceCell& first = *cells_[fresh[begins[j]]];
+    const SliceCell& last = *cells_[fresh[begins[j + 1] - 1]];
+    scratch.cutter.load(triangles_.of_beam(first.beam),
+                        last.slice.azimuth_rad - 0.5 * static_cast<double>(last.slice.width_rad),
+                        first.slice.azimuth_rad + 0.5 * static_cast<double>(first.slice.width_rad),
+                        setting.surface.two_sided);
     for (std::size_t i = begins[j]; i < begins[j + 1]; ++i) {
       see_cell(setting, scratch, *cells_[fresh[i]]);
     }
@@ -188,98 +170,16 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
 }
 
 void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell) {
-  const float tan_limit = setting.fan.tan_limit();
-  scratch.cutter.cut(cell.slice, tan_limit, scratch.segments);
-  const std::vector<VisiblePiece>& pieces = scratch.sweep.run(scratch.segments, tan_limit);
-  const SlicePatcher::Request request{cell.slice,         scratch.segments, pieces,
-                                      scratch.cutter,     setting.parts,    setting.surface,
-                                      setting.pattern,    tan_limit,        setting.accuracy.evenness,
-                                      setting.any_mapped, setting.line_m};
+  scratch.see(cell.slice, setting.fan.tan_limit());
   cell.patches.clear();
-  scratch.patcher.make(request, cell.patches);
-  cell.misses_something = scratch.cutter.misses_thin_triangle(cell.slice);
-  scratch.patcher.profile(tan_limit, 0.5F * cell.slice.width_rad, cell.port);
-  scratch.patcher.profile(tan_limit, -0.5F * cell.slice.width_rad, cell.starboard);
-}
-
-namespace {
-
-/// Elevations at which two neighbours expect ranges more than `line_m` apart on the border between them.
-SONARD_SIMD_CLONES
-int disagreements(const SideProfile& a, const SideProfile& b, const SideProfile& secant, float line_m,
-                  float furthest_m) {
-  int count = 0;
-  for (std::size_t i = 0; i < side_probes; ++i) {
-    // Ranges are secant / w: compared without dividing, and without those that are out of range in both.
-    const float difference = secant[i] * (a[i] > b[i] ? a[i] - b[i] : b[i] - a[i]);
-    const float nearer = a[i] > b[i] ? a[i] : b[i];
-    const bool heard = secant[i] < furthest_m * nearer;
-    count += (difference > line_m * a[i] * b[i]) & heard ? 1 : 0;
+  scratch.patcher.make(scratch.request(setting, cell.slice), cell.patches);
+  if (setting.accuracy.most_divisions == 1) {
+    return;
   }
-  return count;
-}
-
-SideProfile secants(float tan_limit) {
-  SideProfile out;
-  for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = tan_limit * (2 * (static_cast<float>(i) + 0.5F) / side_probes - 1);
-    out[i] = std::sqrt(1 + t * t);
-  }
-  return out;
-}
-
-}  // namespace
-
-/// Divides the slices on both sides of every border at which they disagree too much. @return whether there
-/// were any; `fresh` are the new ones.
-bool SliceSampler::refine(const Setting& setting, std::vector<std::size_t>& fresh) {
-  const SideProfile secant = secants(setting.fan.tan_limit());
-  std::vector<std::uint8_t> divide(order_.size(), 0);
-  const auto too_coarse = [&](const SliceCell& cell, float share) {
-    const double beam = setting.fan.edge_rad(cell.beam) - setting.fan.edge_rad(cell.beam + 1);
-    const float width = cell.slice.width_rad / static_cast<float>(beam);
-    return cell.divisions < setting.accuracy.most_divisions &&
-           share * width * width > setting.accuracy.disagreement;
-  };
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    const SliceCell& cell = *cells_[order_[i]];
-    if (cell.misses_something && cell.divisions < setting.accuracy.most_divisions) {
-      divide[i] = 1;
-    }
-    if (i + 1 == order_.size()) {
-      break;
-    }
-    const SliceCell& next = *cells_[order_[i + 1]];
-    const float share = static_cast<float>(disagreements(cell.starboard, next.port, secant, setting.line_m,
-                                                         setting.fan.max_range_m())) /
-                        side_probes;
-    divide[i] |= too_coarse(cell, share) ? 1 : 0;
-    divide[i + 1] |= too_coarse(next, share) ? 1 : 0;
-  }
-  fresh.clear();
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    if (divide[i] == 0) {
-      order.push_back(order_[i]);
-      continue;
-    }
-    const Slice whole = cells_[order_[i]]->slice;
-    const int beam = cells_[order_[i]]->beam;
-    const int divisions = cells_[order_[i]]->divisions * divisions_at_once;
-    const double width = static_cast<double>(whole.width_rad);
-    for (int k = 0; k < divisions_at_once; ++k) {
-      const std::size_t at = k == 0 ? order_[i] : new_cell();
-      SliceCell& cell = *cells_[at];
-      cell.slice = {whole.azimuth_rad + width * (0.5 - (k + 0.5) / divisions_at_once),
-                    whole.width_rad / divisions_at_once};
-      cell.beam = beam;
-      cell.divisions = divisions;
-      order.push_back(at);
-      fresh.push_back(at);
-    }
-  }
-  order_.swap(order);
-  return !fresh.empty();
+  cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
+  const float side = 0.5F * cell.slice.width_rad;
+  scratch.patcher.profile(setting.fan.tan_limit(), side, cell.port);
+  scratch.patcher.profile(setting.fan.tan_limit(), -side, cell.starboard);
 }
 
 }  // namespace sonard::render

@@ -22,10 +22,10 @@ namespace sonard::render {
 /// How closely slices follow the world.
 struct SliceAccuracy {
   int slices_per_beam = 1;  ///< to begin with; wide and oblique beams get more
-  int most_divisions = 64;  ///< of a first slice, a power of four
-  /// Neighbouring slices are divided while (share of elevations at which they disagree) * (width / beam
-  /// width)^2 exceeds this: the share of bins that are wrong times the square of how wrong they are.
-  float disagreement = 1e-3F;
+  int most_divisions = 64;  ///< no slice is narrower than a beam divided by this; 1: the first slices stay
+  /// Where neighbouring slices disagree they are divided, until (share of elevations at which they disagree)
+  /// * (width / beam width) is below this: the share of a beam's echo that is in doubt.
+  float disagreement = 2.5e-3F;
   float evenness = 0.04F;  ///< see SlicePatcher::Request
   float change = 0.01F;    ///< share by which a wall's echo may change within a first slice, RMS
 };
@@ -34,10 +34,9 @@ struct SliceAccuracy {
 struct SliceCell {
   Slice slice;
   int beam = 0;
-  int divisions = 1;  ///< of the first slice of this place
-  bool misses_something = false;
   std::vector<EchoPatch> patches;
-  SideProfile port, starboard;
+  SideProfile port, starboard;    ///< what is expected at its sides
+  bool misses_something = false;  ///< a thin thing lies beside the slice and inside its wedge
 };
 
 struct SliceStatistics {
@@ -78,8 +77,11 @@ class SliceSampler {
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
   static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
+  std::size_t new_cell(const Slice& slice, int beam);
+
+  // slice_refinement.cpp
+  std::vector<std::uint8_t> choose_to_divide(const Setting& setting) const;
   bool refine(const Setting& setting, std::vector<std::size_t>& fresh);
-  std::size_t new_cell();
 
   WorkerPool& workers_;
   SkipSwitches skip_;

@@ -37,7 +37,7 @@ const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float
     const float end = std::min(segments.high[static_cast<std::size_t>(current_)], limit_);
     const float start = next_start();
     if (crossing_ < start && crossing_ < end) {
-      emit(crossing_, 0.0F);
+      emit(crossing_, std::numeric_limits<float>::quiet_NaN());
       std::swap(current_, waiting_[crosser_]);
       find_next_crossing();
     } else if (start < end) {
@@ -54,10 +54,14 @@ float SliceSweep::next_start() const {
                                : never;
 }
 
+float SliceSweep::start_after_next() const {
+  return next_ + 1 < order_.size() ? segments_->low[static_cast<std::size_t>(order_[next_ + 1])] : never;
+}
+
 /// A counting sort into as many buckets as there are segments, then insertion: linear where segments are
 /// spread over the fan, as the triangles of a surface are.
 void SliceSweep::sort_by_low_end() {
-  const auto count = static_cast<std::size_t>(segments_->count);
+  const std::size_t count = segments_->kept.size();
   const std::vector<float>& low = segments_->low;
   const std::size_t buckets = std::clamp<std::size_t>(count, 16, 65536);
   const float scale = static_cast<float>(buckets) / (2 * limit_);
@@ -65,7 +69,8 @@ void SliceSweep::sort_by_low_end() {
   order_.resize(count);
   bucket_begin_.assign(buckets + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
-    const float place = std::clamp((low[i] + limit_) * scale, 0.0F, static_cast<float>(buckets - 1));
+    const float start = low[static_cast<std::size_t>(segments_->kept[i])];
+    const float place = std::clamp((start + limit_) * scale, 0.0F, static_cast<float>(buckets - 1));
     bucket_[i] = static_cast<std::uint32_t>(place);
     ++bucket_begin_[bucket_[i] + 1];
   }
@@ -73,7 +78,7 @@ void SliceSweep::sort_by_low_end() {
     bucket_begin_[b + 1] += bucket_begin_[b];
   }
   for (std::size_t i = 0; i < count; ++i) {
-    order_[bucket_begin_[bucket_[i]]++] = static_cast<std::int32_t>(i);
+    order_[bucket_begin_[bucket_[i]]++] = segments_->kept[i];
   }
   for (std::size_t i = 1; i < count; ++i) {
     const std::int32_t segment = order_[i];
@@ -110,9 +115,7 @@ void SliceSweep::meet(int segment) {
   const float start = std::max(-limit_, segments_->low[s]);
   float at = never;
   const bool cross = crosses(segment, current_, start, at);
-  const bool in_front = cross ? segments_->w(segment, start) > segments_->w(current_, start)
-                              : is_nearer(segment, current_, start);
-  if (in_front) {
+  if (is_seen_first(segment, current_, start)) {
     emit(start, segments_->low_drift[s]);
     if (cross || segments_->high[c] > segments_->high[s]) {
       waiting_.push_back(current_);
@@ -134,6 +137,12 @@ void SliceSweep::step_to_end_of_current() {
   const bool cut_by_limit = segments_->high[c] >= limit_;
   emit(std::min(segments_->high[c], limit_), cut_by_limit ? 0.0F : segments_->high_drift[c]);
   t_ = std::max(t_, std::min(segments_->high[c], limit_));
+  if (waiting_.empty() && next_start() <= t_ && start_after_next() > t_) {
+    // The next facet of one surface, with nothing behind it: by far the most common case.
+    current_ = order_[next_++];
+    crossing_ = never;
+    return;
+  }
   take_nearest_waiting();
 }
 
@@ -149,7 +158,7 @@ void SliceSweep::take_nearest_waiting() {
       continue;
     }
     waiting_[kept] = segment;
-    if (kept > 0 && is_nearer(segment, waiting_[best], t_)) {
+    if (kept > 0 && is_seen_first(segment, waiting_[best], t_)) {
       best = kept;
     }
     ++kept;
@@ -165,8 +174,13 @@ void SliceSweep::take_nearest_waiting() {
   }
 }
 
-/// Compared in the middle of what both span: ends are shared by neighbours.
-bool SliceSweep::is_nearer(int a, int b, float from) const {
+/// Which of two is seen at and after `from`: compared in the middle of what both span, since ends are shared
+/// by neighbours, but where they cross at `from` itself.
+bool SliceSweep::is_seen_first(int a, int b, float from) const {
+  float at = never;
+  if (crosses(a, b, from, at)) {
+    return segments_->w(a, from) > segments_->w(b, from);
+  }
   const float until =
       std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
   const float middle = 0.5F * (from + until);

@@ -10,9 +10,11 @@ namespace sonard::render {
 
 /// Part of a segment that the sonar sees, between two elevations.
 struct VisiblePiece {
-  float low, high;              ///< t at the ends; low < high
-  float low_drift, high_drift;  ///< dt / d azimuth of the ends
-  std::int32_t segment;
+  float low, high;  ///< t at the ends; low < high
+  /// dt / d azimuth of the ends; not a number where the piece ends because another one crosses it, which is
+  /// then its neighbour in the list.
+  float low_drift, high_drift;
+  std::int32_t segment;  ///< index into Segments, and of its triangle
 };
 
 /// Finds the nearest segment at every elevation, without sampling elevations: pieces end exactly where a
@@ -30,10 +32,11 @@ class SliceSweep {
   void meet(int segment);
   void take_nearest_waiting();
   void emit(float until, float drift);
-  bool is_nearer(int a, int b, float from) const;
+  bool is_seen_first(int a, int b, float from) const;
   bool crosses(int a, int b, float from, float& at) const;
   void find_next_crossing();
   float next_start() const;
+  float start_after_next() const;
 
   const Segments* segments_ = nullptr;
   float limit_ = 0.0F;
