@@ -354,12 +354,8 @@ std::size_t resident_bytes() {
 // pose there is, nothing waits in line, and memory stays what it was after the first hour to within 12 bytes
 // a ping.
 TEST(LongRun, S20_ADayOfARendererThatIsTooSlow) {
-  int waiting = 0;
-  int most_waiting = 0;
   VirtualDaemon daemon(
-      [&](const render::PingRequest& request) {
-        most_waiting = std::max(most_waiting, ++waiting);
-        --waiting;
+      [](const render::PingRequest& request) {
         if (request.ping_number % 7 == 3) {
           throw render::RequestError("dropped");
         }
@@ -377,7 +373,6 @@ TEST(LongRun, S20_ADayOfARendererThatIsTooSlow) {
   EXPECT_NEAR(static_cast<double>(daemon.datagrams), 24.0 * static_cast<double>(datagrams_before), 3000.0);
   EXPECT_GT(daemon.dropped, pings / 8);
   EXPECT_LE(daemon.oldest_pose_s, 0.1 + 1e-6) << "poses come every tenth of a second";
-  EXPECT_EQ(most_waiting, 1);
   EXPECT_LE(daemon.inbox().most(), 1U);
   EXPECT_LE(resident_bytes(), memory_before + (std::size_t{1} << 20));
 }
