@@ -7,6 +7,7 @@
 
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/binning/echo_binner.hpp"
+#include "renderer/visibility/grid_choice.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
 #include "renderer/visibility/slices/slice_sampler.hpp"
@@ -215,19 +216,27 @@ struct SonarRenderer::Impl {
                              0.0F);
       return;
     }
-    image.intensity = look(request, T_world_sonar).echo;
+    static const std::vector<float> no_loss;
+    const std::vector<float>& line_weight =
+        settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
+    image.intensity = look(request, T_world_sonar, line_weight).echo;
     Stopwatch watch;
     if (settings.model == Model::physical) {
-      apply(loss_for(settings).of_line, image);
+      apply(line_weight, image);
     }
     statistics.binning_s += watch.lap();
   }
 
   /// Finds what is visible and bins it; fills the statistics of both.
-  BinningResult look(const PingRequest& request, const Pose& T_world_sonar) {
+  /// @param line_weight what the lines are yet to be multiplied with; empty: 1.
+  BinningResult look(const PingRequest& request, const Pose& T_world_sonar,
+                     const std::vector<float>& line_weight) {
     const SonarSettings& settings = request.settings;
     const double max_range_m = settings.range.max_range_m() * range_margin;
     const SurfaceModel surface = surface_model(settings);
+    if (!slices && !needs_grid(settings)) {
+      return look_until_close(T_world_sonar, settings, line_weight);
+    }
     BinningResult bins;
     Stopwatch watch;
     if (slices && !needs_grid(settings)) {
@@ -247,6 +256,49 @@ struct SonarRenderer::Impl {
     statistics.samples = bins.samples;
     statistics.invalid_samples = bins.invalid_samples;
     return bins;
+  }
+
+  /// Samples finer and finer until the error is what the preset wants. What it begins with and all that
+  /// follows depend on the request alone, so the image does.
+  BinningResult look_until_close(const Pose& T_world_sonar, const SonarSettings& settings,
+                                 const std::vector<float>& line_weight) {
+    constexpr int most_looks = 3;
+    const BinningOptions options = binning_options(settings, skip);
+    const double max_range_m = settings.range.max_range_m() * range_margin;
+    GridLadder& grids = ladder_for(settings.aperture);
+    int step = grids.first_step(settings.sampling.preset);
+    for (int looks = 1;; ++looks) {
+      Stopwatch watch;
+      const SampleGrid& samples = grids.grid(step);
+      const auto views = chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), max_range_m);
+      statistics.visibility_s += watch.lap();
+      BinningResult bins = bin_echoes(samples, views, settings.range, options, workers);
+      statistics.samples += bins.samples;
+      int next = step;
+      if (looks < most_looks && step < grids.last_step()) {
+        const SampleGrid& coarse = grids.grid(step - 2);
+        const ThinnedSamples thinned(samples, views, coarse);
+        const BinningResult coarse_bins =
+            bin_echoes(coarse, thinned.views(), settings.range, options, workers);
+        next = next_step(grids, step, estimate_error(bins, coarse_bins, line_weight),
+                         target_error(settings.sampling.preset));
+      }
+      statistics.binning_s += watch.lap();
+      if (next == step) {
+        statistics.invalid_samples = bins.invalid_samples;
+        return bins;
+      }
+      step = next;
+    }
+  }
+
+  GridLadder& ladder_for(const Aperture& aperture) {
+    if (ladder && ladder->fits(aperture) && skip.on(SkipRule::unchanged_settings)) {
+      statistics.skipped.add(SkipRule::unchanged_settings);
+    } else {
+      ladder.emplace(aperture);
+    }
+    return *ladder;
   }
 
   /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
@@ -281,6 +333,7 @@ struct SonarRenderer::Impl {
            a.sampling.columns_per_view == b.sampling.columns_per_view && a.sampling.rows == b.sampling.rows;
   }
 
+  std::optional<GridLadder> ladder;  // of the last aperture that left its grid to the preset
   SampleGrid grid;
   std::optional<SonarSettings> grid_key;
   GridOptions made_with;

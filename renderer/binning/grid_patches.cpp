@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/binning/range_plane.hpp"
+
 namespace sonard::render {
 
 namespace {
@@ -13,35 +15,11 @@ struct Cell {
   float slope;  ///< dy/dx of its upper and lower side
 };
 
-/// Range and its derivatives by the tangents.
-struct RangePlane {
-  float range, dx, dy;
-};
-
-/// From the centre of the pixel at (x, y) to that of the cell. On a plane the inverse depth is affine in x
-/// and y, so the range at the cell's centre follows exactly from the pixel's range and its derivatives.
-void move_to_cell(const Cell& cell, float x, float y, RangePlane& plane) {
-  const float qq = 1 + x * x + y * y;
-  // Relative slopes of the inverse depth, from equation (2) of docs/physics.md 2.3.
-  const float slope_x = x / qq - plane.dx / plane.range;
-  const float slope_y = y / qq - plane.dy / plane.range;
-  const float inverse_depth = 1 + slope_x * cell.x_offset + slope_y * cell.y_offset;
-  if (inverse_depth < 0.5F) {
-    return;  // the plane turns away within the pixel: keep the pixel's own values
-  }
-  const float cx = x + cell.x_offset;
-  const float cy = y + cell.y_offset;
-  const float cell_qq = 1 + cx * cx + cy * cy;
-  plane.range *= std::sqrt(cell_qq / qq) / inverse_depth;
-  plane.dx = plane.range * (cx / cell_qq - slope_x / inverse_depth);
-  plane.dy = plane.range * (cy / cell_qq - slope_y / inverse_depth);
-}
-
 /// The echo of `cell` of the pixel at tangents (x, y): two independent even spreads, along its two sides.
 EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& cell, float weight) {
   RangePlane plane{sample.range_m, sample.range_dx, sample.range_dy};
   if (cell.x_offset != 0 || cell.y_offset != 0) {
-    move_to_cell(cell, x, y, plane);
+    plane.move(x, y, cell.x_offset, cell.y_offset);
   }
   const float across = std::abs(plane.dx + cell.slope * plane.dy) * cell.width;
   const float along = std::abs(plane.dy) * cell.height;
