@@ -160,24 +160,16 @@ class Stopwatch {
 
 namespace {
 
-/// What the paper's variants ask for that only a grid of pixels has.
-bool needs_grid(const SonarSettings& settings) {
-  const PaperModel& paper = settings.paper;
-  return settings.sampling.preset == Sampling::Preset::grid || !settings.sampling.footprint ||
-         (settings.model == Model::paper &&
-          (!paper.footprint || paper.legacy_bin_index || paper.legacy_columns || !paper.elevation_mask));
-}
-
 SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   // The paper's sigmoid makes more of small changes of incidence.
   const int slices = settings.model == Model::paper ? 2 : 1;
   switch (settings.sampling.preset) {
     case Sampling::Preset::fast:
-      return {slices, 16, 2e-2F, 0.2F, 0.05F};
+      return {slices, 16, 5e-2F, 0.2F, 0.05F};
     case Sampling::Preset::reference:
       return {8, 64, 1e-4F, 0.005F, 0.001F};
     default:
-      return {slices, 64, 2.5e-3F, 0.04F, 0.01F};
+      return {slices, 64, 2.5e-3F, 0.04F, 0.005F};
   }
 }
 

@@ -11,9 +11,12 @@ namespace {
 
 constexpr std::size_t vector_lines = 8;  // a step smeared over no more than these is added at once
 constexpr float least_smear = 1e-3F;     // lines; below, a step is sharp
-constexpr float least_spread = 1e-3F;    // lines; what is narrower is widened to this
+// Lines; what is narrower is widened to this. A position is rounded by 1e-4 of a line and more, which must not
+// matter against a spread.
+constexpr float least_spread = 0.02F;
+constexpr float same_place = 1e-3F;      // lines, within which one patch goes on where the last ended
 constexpr float widest_smear = 512.0F;   // lines; surfaces seen edge-on carry no energy
-constexpr double total_units = 0x1p40;   // of `largest`; a patch narrowed to least_spread stays below 2^53
+constexpr double total_units = 0x1p40;   // of `largest`; a patch of least_spread stays below 2^51
 constexpr double round_to_integer = 0x1.8p52;  // adding and subtracting it rounds a double below 2^51
 
 /// Integral from -infinity to y of a step that rises from 0 at 0 to 1 at `smear`.
@@ -65,7 +68,8 @@ void RangeProfile::add(float position_a, float smear_a, float position_b, float 
   const double density =
       (static_cast<double>(amount) * units_ / static_cast<double>(spread) + round_to_integer) -
       round_to_integer;
-  if (open_density_ != 0.0 && std::abs(open_position_ - position_a) < least_spread) {
+  if (open_density_ != 0.0 && std::abs(open_position_ - position_a) < same_place &&
+      std::abs(open_smear_ - smear_a) < same_place + 0.01F * smear_a) {
     step(position_a, smear_a, density + open_density_);
   } else {
     finish();

@@ -152,6 +152,13 @@ class GridBuilder {
 
 }  // namespace
 
+bool needs_grid(const SonarSettings& settings) {
+  const PaperModel& paper = settings.paper;
+  return settings.sampling.preset == Sampling::Preset::grid || !settings.sampling.footprint ||
+         (settings.model == Model::paper &&
+          (!paper.footprint || paper.legacy_bin_index || paper.legacy_columns || !paper.elevation_mask));
+}
+
 GridOptions grid_options(const SonarSettings& settings) {
   GridOptions options;
   if (settings.model == Model::paper) {

@@ -59,6 +59,10 @@ struct GridOptions {
   bool operator==(const GridOptions&) const = default;
 };
 
+/// Whether only a grid of pixels gives what is asked for: a fixed grid, samples without footprints, or one of
+/// the paper's variants of these.
+bool needs_grid(const SonarSettings& settings);
+
 /// What the model of `settings` asks for.
 GridOptions grid_options(const SonarSettings& settings);
 

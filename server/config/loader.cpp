@@ -125,9 +125,22 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
 }
 
 void read_sampling(YamlSection& section, render::Sampling& sampling) {
+  using Preset = render::Sampling::Preset;
+  section.choice("preset", sampling.preset,
+                 {{"fast", Preset::fast},
+                  {"default", Preset::normal},
+                  {"reference", Preset::reference},
+                  {"grid", Preset::grid}});
   section.integer("views", sampling.views, 1, 32);
   section.integer("columns_per_view", sampling.columns_per_view, 8, 4096);
   section.integer("rows", sampling.rows, 8, 4096);
+  if (sampling.preset != Preset::grid) {
+    for (const char* key : {"views", "columns_per_view", "rows"}) {
+      if (section.has(key)) {
+        section.report(key, "a preset chooses its samples by itself (expected only with `preset: grid`)");
+      }
+    }
+  }
 }
 
 void read_skip(YamlSection& section, render::SkipSwitches& skip) {

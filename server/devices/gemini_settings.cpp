@@ -35,7 +35,9 @@ render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const render
 
 void check_sampling_of(const render::SonarSettings& acoustics) {
   const render::SonarSettings settings = to_sonar_settings(gemini::PingJob{}, acoustics);
-  render::make_sample_grid(settings.aperture, settings.sampling, render::grid_options(settings));
+  if (render::needs_grid(settings)) {
+    render::make_sample_grid(settings.aperture, settings.sampling, render::grid_options(settings));
+  }
 }
 
 }  // namespace sonard::server

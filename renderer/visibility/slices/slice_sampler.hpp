@@ -27,7 +27,7 @@ struct SliceAccuracy {
   /// * (width / beam width) is below this: the share of a beam's echo that is in doubt.
   float disagreement = 2.5e-3F;
   float evenness = 0.04F;  ///< see SlicePatcher::Request
-  float change = 0.01F;    ///< share by which a wall's echo may change within a first slice, RMS
+  float change = 0.005F;   ///< share by which a wall's echo may change within a first slice, RMS
 };
 
 /// A wedge of the fan and what is seen in it.

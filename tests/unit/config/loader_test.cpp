@@ -350,11 +350,26 @@ TEST_F(Loader, knows_that_a_socket_on_all_addresses_overlaps_every_other) {
 }
 
 TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
-  std::string text = minimal_config + "sampling: {views: 0}\nwater: {ph: 15}\nbogus: 1\n";
+  std::string text = minimal_config + "sampling: {preset: grid, views: 0}\nwater: {ph: 15}\nbogus: 1\n";
   text.replace(text.find("513"), 3, "1");
   EXPECT_THAT(complaints(text),
-              ElementsAre(HasSubstr(":7:15: heads[0].sonar_id"), HasSubstr(":11:19: sampling.views"),
+              ElementsAre(HasSubstr(":7:15: heads[0].sonar_id"), HasSubstr(":11:33: sampling.views"),
                           HasSubstr(":12:13: water.ph"), HasSubstr(":13:1: bogus")));
+}
+
+TEST_F(Loader, reads_the_error_that_is_aimed_at) {
+  const auto preset = [&](const std::string& section) {
+    return load(minimal_config + section).config.heads[0].acoustics.sampling.preset;
+  };
+  using Preset = render::Sampling::Preset;
+  EXPECT_EQ(preset(""), Preset::normal);
+  EXPECT_EQ(preset("sampling: {preset: fast}\n"), Preset::fast);
+  EXPECT_EQ(preset("sampling: {preset: reference}\n"), Preset::reference);
+  EXPECT_EQ(preset("sampling: {preset: grid, rows: 64}\n"), Preset::grid);
+  EXPECT_THAT(complaints(minimal_config + "sampling: {rows: 64}\n"),
+              ElementsAre(AllOf(HasSubstr("sampling.rows"), HasSubstr("preset: grid"))));
+  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: fine}\n"),
+              ElementsAre(AllOf(HasSubstr("sampling.preset"), HasSubstr("reference"))));
 }
 
 TEST_F(Loader, points_at_malformed_yaml) {
