@@ -1,0 +1,139 @@
+// sonard_side_by_side SCENE FILE.png: one scene by both backends and the oracle, and what they differ by.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "clients/sonarview/fan_image.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "tests/bench/image_error.hpp"
+#include "tests/bench/reference.hpp"
+#include "tests/scenes/scenes.hpp"
+
+namespace sonard::bench {
+namespace {
+
+constexpr double shown_db = 60;           // from the strongest bin down to black
+constexpr double shown_difference = 0.2;  // of the truth, at full colour
+constexpr double heard = 1e-2;            // of its beam's maximum: what errors are taken over
+constexpr int radius_px = 460;
+
+client::FanShape shape_of(const test::Scene& scene) {
+  const std::vector<double>& edges = scene.settings.aperture.beam_edges_rad;
+  client::FanShape shape;
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    shape.bearings_rad.push_back(-0.5 *
+                                 (edges[b] + edges[b + 1]));  // the fan of the picture counts to starboard
+  }
+  shape.lines = scene.settings.range.count;
+  shape.line_step_m = scene.settings.range.step_m;
+  return shape;
+}
+
+/// Spreading taken out and in decibels, as a sonar with TVG would show it. One row per line.
+cv::Mat levels(const render::EchoImage& image, double strongest) {
+  cv::Mat polar(image.lines, image.beams, CV_8UC1);
+  for (int k = 0; k < image.lines; ++k) {
+    for (int b = 0; b < image.beams; ++b) {
+      const double value = static_cast<double>(image.at(b, k)) * std::pow(k + 0.5, 3) / strongest;
+      const double db = 10 * std::log10(std::max(value, 1e-12));
+      polar.at<unsigned char>(k, b) = cv::saturate_cast<unsigned char>(255 * (1 + db / shown_db));
+    }
+  }
+  return polar;
+}
+
+double strongest_level(const render::EchoImage& image) {
+  double strongest = 0;
+  for (int k = 0; k < image.lines; ++k) {
+    for (int b = 0; b < image.beams; ++b) {
+      strongest = std::max(strongest, static_cast<double>(image.at(b, k)) * std::pow(k + 0.5, 3));
+    }
+  }
+  return strongest;
+}
+
+/// |image / truth - 1| where the truth is above `heard` of its beam's maximum.
+cv::Mat differences(const render::EchoImage& image, const render::EchoImage& truth) {
+  cv::Mat polar = cv::Mat::zeros(image.lines, image.beams, CV_8UC1);
+  for (int b = 0; b < image.beams; ++b) {
+    float most = 0;
+    for (int k = 0; k < image.lines; ++k) {
+      most = std::max(most, truth.at(b, k));
+    }
+    for (int k = 0; k < image.lines; ++k) {
+      const double expected = static_cast<double>(truth.at(b, k));
+      if (expected > heard * static_cast<double>(most)) {
+        const double error = std::abs(static_cast<double>(image.at(b, k)) / expected - 1);
+        polar.at<unsigned char>(k, b) = cv::saturate_cast<unsigned char>(255 * error / shown_difference);
+      }
+    }
+  }
+  return polar;
+}
+
+render::EchoImage render_with(const test::Scene& scene, render::Backend backend) {
+  render::RendererOptions options;
+  options.backend = backend;
+  render::SonarRenderer renderer(scene.world, options);
+  return renderer.render_echo(scene.request());
+}
+
+void draw(const std::string& name, const std::string& references, const std::string& file) {
+  const test::Scene scene = test::make_scene(name);
+  const std::optional<Reference> reference = find_reference(scene, references);
+  if (!reference) {
+    throw std::runtime_error(name + ": there is no reference image");
+  }
+  const render::EchoImage& truth = reference->image;
+  const render::EchoImage ray = render_with(scene, render::Backend::ray);
+  const render::EchoImage raster = render_with(scene, render::Backend::raster);
+  const client::FanImage fan(shape_of(scene), {radius_px, true});
+  const double strongest = strongest_level(truth);
+  const auto caption = [&](const char* backend, const render::EchoImage& image) {
+    const ImageError error = compare_images(image, truth).value();
+    return fmt::format(
+        "|{} - oracle| / oracle, white: {:.0f} %. RMS {:.2f} %, without the worst 1 %: {:.2f} %", backend,
+        100 * shown_difference, 100 * error.bin_rms, 100 * error.bin_rms_trim);
+  };
+  std::vector<cv::Mat> rows(3);
+  cv::hconcat(fan.draw(levels(ray, strongest), "backend ray, preset default"),
+              fan.draw(levels(raster, strongest), "backend raster, preset default"), rows[0]);
+  cv::hconcat(fan.draw(differences(ray, truth), caption("ray", ray)),
+              fan.draw(differences(raster, truth), caption("raster", raster)), rows[1]);
+  cv::hconcat(fan.draw(levels(truth, strongest), fmt::format("oracle, {:.0f} dB, r^3 taken out", shown_db)),
+              fan.draw(differences(raster, ray), "|raster - ray| / ray"), rows[2]);
+  cv::Mat all;
+  cv::vconcat(rows, all);
+  if (!cv::imwrite(file, all)) {
+    throw std::runtime_error(file + ": cannot be written");
+  }
+}
+
+}  // namespace
+}  // namespace sonard::bench
+
+int main(int argc, char** argv) {
+  std::string scene;
+  std::string file;
+  std::string references = SONARD_SOURCE_DIR "/tests/data/oracle";
+  CLI::App app("Draws a scene by both backends and the oracle, and what they differ by.");
+  app.add_option("scene", scene, "Name of a scene with a reference image")->required();
+  app.add_option("file", file, "PNG to write")->required();
+  app.add_option("--references", references, "Folder of the oracle's images")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    sonard::bench::draw(scene, references, file);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sonard_side_by_side: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
