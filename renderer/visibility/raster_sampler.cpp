@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <list>
 #include <map>
 #include <numeric>
 #include <span>
@@ -274,6 +275,14 @@ ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state)
   return target;
 }
 
+/// The targets of all views of one grid.
+struct GridTargets {
+  std::vector<SubView> views;
+  std::vector<ViewTarget> targets;
+};
+// One ping may look at the world with this many grids in turn; making targets takes as long as drawing.
+constexpr std::size_t most_grids = 3;
+
 bool same_views(const std::vector<SubView>& a, const std::vector<SubView>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SubView& x, const SubView& y) {
     return x.azimuth_rad == y.azimuth_rad && x.tan_half_width == y.tan_half_width &&
@@ -293,8 +302,7 @@ struct RasterSampler::Impl {
   std::string description;
   osg::ref_ptr<osg::Group> scene;
   std::map<std::string, BodyNode> bodies;
-  std::vector<SubView> views;
-  std::vector<ViewTarget> targets;
+  std::list<GridTargets> grids;  // the last used first
   float max_range_m = 0.0F;
   int max_texture_px = 0;
 
@@ -319,12 +327,14 @@ struct RasterSampler::Impl {
 
   ~Impl() {
     if (context->makeCurrent()) {
-      for (ViewTarget& target : targets) {
-        target.scene_view->releaseAllGLObjects();
+      for (GridTargets& grid : grids) {
+        for (ViewTarget& target : grid.targets) {
+          target.scene_view->releaseAllGLObjects();
+        }
       }
       scene->releaseGLObjects(context->getState());
     }
-    targets.clear();
+    grids.clear();
     context->close();
   }
 
@@ -366,8 +376,12 @@ struct RasterSampler::Impl {
     state.setMode(GL_CULL_FACE, surface.two_sided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
   }
 
+  /// Puts the targets of these views in front.
   void set_views(const std::vector<SubView>& wanted) {
-    if (same_views(views, wanted)) {
+    const auto known = std::find_if(grids.begin(), grids.end(),
+                                    [&](const GridTargets& grid) { return same_views(grid.views, wanted); });
+    if (known != grids.end()) {
+      grids.splice(grids.begin(), grids, known);
       return;
     }
     for (const SubView& view : wanted) {
@@ -376,18 +390,25 @@ struct RasterSampler::Impl {
                            " pixels");
       }
     }
-    for (ViewTarget& target : targets) {
+    if (grids.size() == most_grids) {
+      release_last();
+    }
+    GridTargets& grid = grids.emplace_front();
+    for (const SubView& view : wanted) {
+      grid.targets.push_back(make_target(view, scene, context->getState()));
+    }
+    grid.views = wanted;
+  }
+
+  void release_last() {
+    for (ViewTarget& target : grids.back().targets) {
       target.scene_view->getCamera()->releaseGLObjects(context->getState());
       target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
     }
-    targets.clear();
-    for (const SubView& view : wanted) {
-      targets.push_back(make_target(view, scene, context->getState()));
-    }
-    views = wanted;
+    grids.pop_back();
   }
 
-  void draw() {
+  void draw(std::vector<ViewTarget>& targets) const {
     for (ViewTarget& target : targets) {
       target.scene_view->cull();
       target.scene_view->draw();
@@ -418,10 +439,11 @@ std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sona
   for (auto& [name, body] : impl_->bodies) {
     body.transform->setMatrix(to_osg(T_sonar_world * body.T_world_body));
   }
-  impl_->draw();
+  std::vector<ViewTarget>& targets = impl_->grids.front().targets;
+  impl_->draw(targets);
   static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
   std::vector<const SurfaceSample*> samples;
-  for (const ViewTarget& target : impl_->targets) {
+  for (const ViewTarget& target : targets) {
     samples.push_back(target.samples.data());
   }
   return samples;
