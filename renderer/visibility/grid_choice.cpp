@@ -19,7 +19,7 @@ constexpr int most_columns_per_beam = 32;
 // the number of samples, and is about a third of the distance to the image of a quarter of the samples.
 constexpr double order = 0.6;
 constexpr double error_of_distance = 1.0 / 3.0;
-constexpr int longest_stride = 4;  // one odd bin shall not cost more than 16 times the samples
+constexpr double longest_stride = 4;  // one odd bin shall not cost more than 16 times the samples
 
 constexpr double heard = 1e-2;  // of the beam's maximum: what errors are taken over
 
@@ -93,7 +93,7 @@ ThinnedSamples::ThinnedSamples(const SampleGrid& fine, const std::vector<const S
       const SurfaceSample* row = samples[v] + 2 * static_cast<std::ptrdiff_t>(j) * from.columns;
       const auto y = static_cast<float>(-from.tan_half_height + (2 * j + 0.5) * from.pixel_height());
       for (int i = 0; i < to.columns; ++i) {
-        SurfaceSample sample = row[2 * i];
+        SurfaceSample sample = row[2 * static_cast<std::ptrdiff_t>(i)];
         if (sample.range_m > 0) {
           const auto x = static_cast<float>(-from.tan_half_width + (2 * i + 0.5) * from.pixel_width());
           RangePlane plane{sample.range_m, sample.range_dx, sample.range_dy};
@@ -130,7 +130,7 @@ double estimate_error(const BinningResult& image, const BinningResult& thinned,
     }
     for (std::size_t k = 0; k < lines; ++k) {
       if (echo(k) > static_cast<float>(heard) * strongest) {
-        const double off = static_cast<double>(thinned.echo[begin + k] / image.echo[begin + k] - 1);
+        const auto off = static_cast<double>(thinned.echo[begin + k] / image.echo[begin + k] - 1);
         squares += off * off;
         bins += 1;
       }
@@ -143,8 +143,8 @@ int next_step(const GridLadder& ladder, int step, double error, double target) {
   if (error <= target) {
     return step;
   }
-  const int more = static_cast<int>(std::ceil(std::log2(error / target) / order));
-  return std::min(step + std::min(more, longest_stride), ladder.last_step());
+  const double more = std::min(std::ceil(std::log2(error / target) / order), longest_stride);
+  return std::min(step + static_cast<int>(more), ladder.last_step());
 }
 
 }  // namespace sonard::render

@@ -55,6 +55,7 @@ TEST(GridLadder, GoesFinerOnlyWhileTheErrorIsTooLarge) {
   EXPECT_EQ(next_step(ladder, 2, 0.05, 0.05), 2);
   EXPECT_EQ(next_step(ladder, 2, 0.051, 0.05), 3);
   EXPECT_GT(next_step(ladder, 2, 0.2, 0.05), 3);
+  EXPECT_EQ(next_step(ladder, 2, INFINITY, 0.05), 6) << "one odd bin, at most 16 times the samples";
   EXPECT_EQ(next_step(ladder, ladder.last_step(), 0.9, 0.05), ladder.last_step());
 }
 
