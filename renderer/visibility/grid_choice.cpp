@@ -10,15 +10,16 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double most_samples = 0x1p25;      // half a GiB of them
-constexpr int most_columns_per_view = 8192;  // every OpenGL 4.5 can draw 16384
+constexpr double most_samples = 0x1p25;  // half a GiB of them
+constexpr int most_pixels = 8192;        // of a view in each direction; every OpenGL 4.5 can draw 16384
 constexpr double widest_view_rad = std::numbers::pi / 3;
 constexpr int most_columns_per_beam = 32;
 
 // Measured on the scenes of the benchmark (docs/accuracy.md): the error falls with about the 0.6th power of
-// the number of samples, and is about a third of the distance to the image of a quarter of the samples.
+// the number of samples, and is hardly ever more than this share of the distance to the image of a quarter of
+// the samples.
 constexpr double order = 0.6;
-constexpr double error_of_distance = 1.0 / 3.0;
+constexpr double error_of_distance = 0.4;
 constexpr double longest_stride = 4;  // one odd bin shall not cost more than 16 times the samples
 
 constexpr double heard = 1e-2;  // of the beam's maximum: what errors are taken over
@@ -27,8 +28,10 @@ int columns_per_beam(int step) {
   return 1 << ((step + 1) / 2);
 }
 
-int rows(int step) {
-  return 128 << (step / 2);
+/// At the coarsest: a row for every 0.16 degrees of elevation.
+int least_rows(const Aperture& aperture) {
+  constexpr double row_rad = std::numbers::pi / 9 / 128;
+  return std::max(16, static_cast<int>(std::lround(2 * aperture.elevation_limit_rad() / row_rad)));
 }
 
 /// Of every view, at one column a beam.
@@ -43,10 +46,10 @@ GridLadder::GridLadder(const Aperture& aperture) : aperture_(aperture) {
   const double width_rad = aperture.beam_edges_rad.front() - aperture.beam_edges_rad.back();
   const int columns = most_columns_per_beam * aperture.beam_count();
   views_ = std::max(static_cast<int>(std::ceil(width_rad / widest_view_rad - 1e-9)),
-                    (columns + most_columns_per_view - 1) / most_columns_per_view);
+                    (columns + most_pixels - 1) / most_pixels);
   while (last_step_ + 1 < step_count) {
     const Sampling finer = sampling(last_step_ + 1);
-    if (1.0 * finer.views * finer.columns_per_view * finer.rows > most_samples) {
+    if (1.0 * finer.views * finer.columns_per_view * finer.rows > most_samples || finer.rows > most_pixels) {
       break;
     }
     ++last_step_;
@@ -54,7 +57,8 @@ GridLadder::GridLadder(const Aperture& aperture) : aperture_(aperture) {
 }
 
 Sampling GridLadder::sampling(int step) const {
-  return Sampling::of_grid(views_, columns_of_view(aperture_, views_) * columns_per_beam(step), rows(step));
+  return Sampling::of_grid(views_, columns_of_view(aperture_, views_) * columns_per_beam(step),
+                           least_rows(aperture_) << (step / 2));
 }
 
 int GridLadder::first_step(Sampling::Preset preset) const {
