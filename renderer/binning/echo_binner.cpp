@@ -20,7 +20,7 @@ class BeamSums {
  public:
   /// @param solid_angle of the beam; responses are at most 1: mu <= 1/pi, sigmoid <= 1.
   void reset(const RangeLines& range, double solid_angle, bool mean) {
-    lines_per_m_ = static_cast<float>(1.0 / range.step_m);
+    lines_per_m_ = 1.0 / range.step_m;
     solid_angle_ = static_cast<float>(solid_angle);
     mean_ = mean;
     const auto lines = static_cast<std::size_t>(range.count);
@@ -31,9 +31,11 @@ class BeamSums {
   }
 
   void add(const EchoPatch& patch) {
-    const float a = patch.range_a_m * lines_per_m_, b = patch.range_b_m * lines_per_m_;
-    const float smear_a = patch.smear_a_m * lines_per_m_, smear_b = patch.smear_b_m * lines_per_m_;
-    if (!std::isfinite(a + b + smear_a + smear_b + patch.echo + patch.weight)) {
+    const auto lines_per_m = static_cast<float>(lines_per_m_);
+    const double a = static_cast<double>(patch.range_a_m) * lines_per_m_;
+    const double b = static_cast<double>(patch.range_b_m) * lines_per_m_;
+    const float smear_a = patch.smear_a_m * lines_per_m, smear_b = patch.smear_b_m * lines_per_m;
+    if (!std::isfinite(a + b + static_cast<double>(smear_a + smear_b + patch.echo + patch.weight))) {
       ++invalid;
       return;
     }
@@ -72,7 +74,7 @@ class BeamSums {
  private:
   RangeProfile echo_, weight_;
   std::vector<float> weights_;
-  float lines_per_m_ = 1.0F;
+  double lines_per_m_ = 1.0;
   float solid_angle_ = 1.0F;
   bool mean_ = false;
 };

@@ -9,14 +9,11 @@ namespace sonard::render {
 
 namespace {
 
-constexpr std::size_t vector_lines = 8;  // a step smeared over no more than these is added at once
-constexpr float least_smear = 1e-3F;     // lines; below, a step is sharp
-// Lines; what is narrower is widened to this. A position is rounded by 1e-4 of a line and more, which must not
-// matter against a spread.
-constexpr float least_spread = 0.02F;
-constexpr float same_place = 1e-3F;      // lines, within which one patch goes on where the last ended
-constexpr float widest_smear = 512.0F;   // lines; surfaces seen edge-on carry no energy
-constexpr double total_units = 0x1p40;   // of `largest`; a patch of least_spread stays below 2^51
+constexpr std::size_t vector_lines = 8;        // a step smeared over no more than these is added at once
+constexpr float least_smear = 1e-3F;           // lines; below, a step is sharp
+constexpr double least_spread = 1e-3;          // lines; what is narrower is widened to this
+constexpr float widest_smear = 512.0F;         // lines; surfaces seen edge-on carry no energy
+constexpr double total_units = 0x1p40;         // of `largest`; a patch of least_spread stays below 2^51
 constexpr double round_to_integer = 0x1.8p52;  // adding and subtracting it rounds a double below 2^51
 
 /// Integral from -infinity to y of a step that rises from 0 at 0 to 1 at `smear`.
@@ -58,18 +55,24 @@ void RangeProfile::reset(std::size_t lines, double largest) {
   open_density_ = 0.0;
 }
 
-void RangeProfile::add(float position_a, float smear_a, float position_b, float smear_b, float amount) {
-  float spread = position_b - position_a;
+void RangeProfile::add(double position_a, float smear_a, double position_b, float smear_b, float amount) {
+  // Two ends become one step where they are the same. The patch then begins where the last one ended, before
+  // its spread is taken: moving an end afterwards would change the amount.
+  const bool joined = open_density_ != 0.0 && std::abs(open_position_ - position_a) < least_spread &&
+                      std::abs(open_smear_ - smear_a) < least_smear * (1 + smear_a);
+  if (joined) {
+    position_a = open_position_;
+    smear_a = open_smear_;
+  }
+  double spread = position_b - position_a;
   if (std::abs(spread) < least_spread) {
     spread = std::copysign(least_spread, spread);
     position_b = position_a + spread;
   }
   // Negative where the far end comes first: the two steps then change places by themselves.
   const double density =
-      (static_cast<double>(amount) * units_ / static_cast<double>(spread) + round_to_integer) -
-      round_to_integer;
-  if (open_density_ != 0.0 && std::abs(open_position_ - position_a) < same_place &&
-      std::abs(open_smear_ - smear_a) < same_place + 0.01F * smear_a) {
+      (static_cast<double>(amount) * units_ / spread + round_to_integer) - round_to_integer;
+  if (joined) {
     step(position_a, smear_a, density + open_density_);
   } else {
     finish();
@@ -87,33 +90,37 @@ void RangeProfile::finish() {
   }
 }
 
-void RangeProfile::step(float position, float smear, double density) {
+void RangeProfile::step(double position, float smear, double density) {
   if (!(density != 0.0)) {
     return;
   }
   const float wide = std::clamp(smear, least_smear, widest_smear);
-  const float from = position - 0.5F * wide;
-  if (!(from < static_cast<float>(lines_))) {
+  const double from = position - 0.5 * static_cast<double>(wide);
+  if (!(from < static_cast<double>(lines_))) {
     return;
   }
-  if (from + wide <= 0) {
+  if (from + static_cast<double>(wide) <= 0) {
     difference_[0] += density;
   } else if (from >= 0 && wide < static_cast<float>(vector_lines) - 1) {
     const auto first = static_cast<std::size_t>(from);
-    add_short_step(from - static_cast<float>(first), wide, density, &difference_[first]);
+    add_short_step(static_cast<float>(from - static_cast<double>(first)), wide, density, &difference_[first]);
   } else {
     step_slow(from, wide, density);
   }
 }
 
-void RangeProfile::step_slow(float from, float smear, double density) {
+void RangeProfile::step_slow(double from, float smear, double density) {
   const float half_over_smear = 0.5F / smear;
-  const auto first = static_cast<std::size_t>(std::max(0.0F, from));
-  const auto end = static_cast<std::size_t>(std::min(static_cast<float>(lines_), std::ceil(from + smear)));
-  float before = integral_of_step(static_cast<float>(first) - from, smear, half_over_smear);
+  const auto first = static_cast<std::size_t>(std::max(0.0, from));
+  const auto end = static_cast<std::size_t>(
+      std::min(static_cast<double>(lines_), std::ceil(from + static_cast<double>(smear))));
+  const auto integral_to = [&](std::size_t k) {
+    return integral_of_step(static_cast<float>(static_cast<double>(k) - from), smear, half_over_smear);
+  };
+  float before = integral_to(first);
   double last = 0.0;
   for (std::size_t k = first; k < end; ++k) {
-    const float after = integral_of_step(static_cast<float>(k + 1) - from, smear, half_over_smear);
+    const float after = integral_to(k + 1);
     const double sum = std::nearbyint(density * static_cast<double>(after - before));
     difference_[k] += sum - last;
     last = sum;

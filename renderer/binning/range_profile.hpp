@@ -17,7 +17,7 @@ class RangeProfile {
 
   /// Adds `amount` spread evenly between two positions in range lines, of which each runs evenly over its
   /// smear (EchoPatch). Positions may lie outside the lines: what falls there is dropped.
-  void add(float position_a, float smear_a, float position_b, float smear_b, float amount);
+  void add(double position_a, float smear_a, double position_b, float smear_b, float amount);
   /// Adds `amount` to the one line it falls into.
   void add_point(double position, float amount);
   /// Adds what the last add() has kept back: an end that the next patch might have continued.
@@ -27,14 +27,15 @@ class RangeProfile {
   void read(float* lines) const;
 
  private:
-  void step(float position, float smear, double density);
-  void step_slow(float from, float smear, double density);
+  void step(double position, float smear, double density);
+  void step_slow(double from, float smear, double density);
 
   std::size_t lines_ = 0;
   std::vector<double> difference_;
   double units_ = 1.0;  ///< per unit of the amounts
   // The far end of the last patch. Where the next one begins at the same place the two make one step.
-  float open_position_ = 0.0F, open_smear_ = 0.0F;
+  double open_position_ = 0.0;
+  float open_smear_ = 0.0F;
   double open_density_ = 0.0;
 };
 

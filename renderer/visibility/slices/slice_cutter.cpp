@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t widest_vector = 16;  // arrays end on a multiple, so that no loop has a rest
 constexpr float nearest_m = 1e-4F;         // what is nearer to the vertical axis is cut off
-constexpr float shortest = 1e-9F;          // of a segment, in t; what is shorter is seen edge-on
+// Of a segment, in radians of elevation: a shorter one says nothing of the slope of its surface.
+constexpr float shortest_rad = 1e-6F;
 
 }  // namespace
 
@@ -122,7 +123,9 @@ bool SliceCutter::misses_thin_thing(const Slice& slice) const {
   return std::any_of(thin_.begin(), thin_.end(), [&](const ThinThing& thing) {
     const float port = thing.high_azimuth_rad - azimuth;
     const float starboard = thing.low_azimuth_rad - azimuth;
-    return (starboard > 0 && port < half) || (port < 0 && starboard > -half);
+    // Whether a slice next door hits it is not asked: what reaches into the wedge is to be hit there.
+    // Azimuths are only known so well; a slice along the very edge of a thing may miss it too.
+    return (starboard > -azimuth_error_rad && starboard < half) || (port < azimuth_error_rad && port > -half);
   });
 }
 
@@ -167,6 +170,7 @@ void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_l
   float* __restrict low_drift = segments.low_drift.data();
   float* __restrict high_drift = segments.high_drift.data();
   std::int32_t* __restrict fate = fate_.data();
+  constexpr float w_nearest = 1.0F / nearest_m;
   const std::size_t count = padded_;
   for (std::size_t i = 0; i < count; ++i) {
     const float s0 = y0[i] * cosine - x0[i] * sine, h0 = x0[i] * cosine + y0[i] * sine;
@@ -202,9 +206,10 @@ void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_l
     low_drift[i] = p_low ? mp : mq;
     high_drift[i] = p_low ? mq : mp;
     const std::int32_t cut = side0 * side1 + side2 * side0 < 2 ? 1 : 0;
-    const std::int32_t seen = ((b - a > shortest) & (b > -tan_limit) & (a < tan_limit)) ? kept : none;
+    const std::int32_t seen =
+        ((b - a > shortest_rad * (1 + a * a)) & (b > -tan_limit) & (a < tan_limit)) ? kept : none;
     const std::int32_t not_in_front = ((wp <= 0) & (wq <= 0)) ? none : partly_behind;
-    fate[i] = cut * (((wp > 0) & (wq > 0)) ? seen : not_in_front);
+    fate[i] = cut * (((wp > 0) & (wq > 0) & (wp < w_nearest) & (wq < w_nearest)) ? seen : not_in_front);
   }
 }
 
@@ -241,7 +246,7 @@ void SliceCutter::clip_behind(float cosine, float sine, float tan_limit, std::si
   const double t0 = end_z[0] / end_h[0], t1 = end_z[1] / end_h[1];
   const int lower = t0 < t1 ? 0 : 1;
   const double a = std::min(t0, t1), b = std::max(t0, t1);
-  if (!(b - a > static_cast<double>(shortest)) || b < -static_cast<double>(tan_limit) ||
+  if (!(b - a > static_cast<double>(shortest_rad) * (1 + a * a)) || b < -static_cast<double>(tan_limit) ||
       a > static_cast<double>(tan_limit)) {
     return;
   }

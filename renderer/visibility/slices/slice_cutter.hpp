@@ -44,8 +44,8 @@ class SliceCutter {
   /// shared by two triangles is cut at the same point, to the bit.
   void cut(const Slice& slice, float tan_limit, Segments& segments);
 
-  /// Whether something narrow and tall, the leg of a frame or a pole, lies wholly between the middle of a
-  /// slice and the side of its wedge: the slice misses all of it.
+  /// Whether something narrow and tall, the leg of a frame or a pole, reaches into the wedge of a slice but
+  /// not to its middle: the slice misses all of it.
   bool misses_thin_thing(const Slice& slice) const;
 
   const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }

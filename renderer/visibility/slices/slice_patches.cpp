@@ -172,6 +172,7 @@ void SlicePatcher::measure(const Request& request) {
 SONARD_SIMD_CLONES
 bool SlicePatcher::all_even(const Request& request) const {
   const float allowed = request.evenness * request.line_m;
+  const float furthest = request.max_range_m;
   const auto count = pieces_.size();
   const float* __restrict low = range_low_.data();
   const float* __restrict mid = range_mid_.data();
@@ -182,7 +183,9 @@ bool SlicePatcher::all_even(const Request& request) const {
     const float upper = high[i] - mid[i] < 0 ? mid[i] - high[i] : high[i] - mid[i];
     const float difference = upper < lower ? lower - upper : upper - lower;
     const bool turns = (mid[i] - low[i]) * (high[i] - mid[i]) < 0;
-    uneven += (turns ? lower + upper : difference) > allowed ? 1 : 0;
+    const float nearest =
+        low[i] < high[i] ? (low[i] < mid[i] ? low[i] : mid[i]) : (high[i] < mid[i] ? high[i] : mid[i]);
+    uneven += (((turns ? lower + upper : difference) > allowed) & (nearest < furthest)) ? 1 : 0;
   }
   return uneven == 0;
 }
@@ -208,11 +211,12 @@ bool SlicePatcher::divide_uneven(const Request& request) {
     const bool turns = lower * upper < 0;
     int parts = 1;
     const float displaced = turns ? sum : std::abs(std::abs(upper) - std::abs(lower));
-    if (displaced > request.evenness * request.line_m) {
+    const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
+    if (in_range && displaced > request.evenness * request.line_m) {
       // The displacement falls with the square of the length.
       parts = turns ? 4 : 1 + static_cast<int>(std::sqrt(displaced / (request.evenness * request.line_m)));
     }
-    if (sum > mapped_lines * request.line_m && is_mapped(request, pieces_[i])) {
+    if (in_range && sum > mapped_lines * request.line_m && is_mapped(request, pieces_[i])) {
       parts = std::max(parts, 1 + static_cast<int>(sum / (mapped_lines * request.line_m)));
     }
     const VisiblePiece& whole = pieces_[i];

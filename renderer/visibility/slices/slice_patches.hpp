@@ -60,6 +60,7 @@ class SlicePatcher {
     float evenness;
     bool any_mapped;  ///< whether any of the parts has a normal map
     float line_m;
+    float max_range_m;  ///< what is wholly beyond is left as it is
   };
 
   /// @param patches is appended to.

@@ -45,7 +45,8 @@ struct SliceSampler::Scratch {
             setting.pattern,
             setting.accuracy.evenness,
             setting.any_mapped,
-            setting.line_m};
+            setting.line_m,
+            setting.fan.max_range_m()};
   }
 };
 
