@@ -1,15 +1,14 @@
 #include "tests/bench/plane_quadrature.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "tests/support/kink_quadrature.hpp"
+
 namespace sonard::bench {
 
 namespace {
-
-constexpr int nodes = 32;
 
 /// Adds the azimuths in (from, to) at which n.(cos psi, sin psi, 0) is `horizontal`.
 void add_azimuths(const test::PlaneTruth& plane, double horizontal, double from, double to,
@@ -42,31 +41,14 @@ void add_kinks(const test::PlaneTruth& plane, double r, double from, double to, 
   }
 }
 
-/// Midpoint rule in a variable that stands still at both ends: roots that start there become smooth.
-template <class Density>
-double integrate(const Density& density, double from, double to) {
-  double sum = 0;
-  for (int i = 0; i < nodes; ++i) {
-    const double t = (i + 0.5) / nodes;
-    const double share = t * t * t * (10 + t * (6 * t - 15));
-    const double slope = 30 * t * t * (1 - t) * (1 - t);
-    sum += density(from + (to - from) * share) * slope;
-  }
-  return sum * (to - from) / nodes;
-}
-
 }  // namespace
 
 double plane_beam_echo(const test::PlaneTruth& plane, double psi_from, double psi_to, double r1, double r2) {
-  std::vector<double> edges{psi_from, psi_to};
-  add_kinks(plane, r1, psi_from, psi_to, edges);
-  add_kinks(plane, r2, psi_from, psi_to, edges);
-  std::sort(edges.begin(), edges.end());
-  double sum = 0;
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    sum += integrate([&](double psi) { return plane.density(psi, r1, r2); }, edges[i], edges[i + 1]);
-  }
-  return sum;
+  std::vector<double> kinks;
+  add_kinks(plane, r1, psi_from, psi_to, kinks);
+  add_kinks(plane, r2, psi_from, psi_to, kinks);
+  return test::kinked_integral([&](double psi) { return plane.density(psi, r1, r2); }, psi_from, psi_to,
+                               kinks);
 }
 
 }  // namespace sonard::bench

@@ -1,0 +1,125 @@
+#include "tests/gl/accuracy/accuracy_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "tests/bench/image_error.hpp"
+#include "tests/gl/accuracy/known_misses.hpp"
+
+namespace sonard::test {
+
+namespace {
+
+/// In bins, of one beam; NaN of a silent one.
+double centroid(const render::EchoImage& image, int beam) {
+  double moment = 0, total = 0;
+  for (int k = 0; k < image.lines; ++k) {
+    const auto echo = static_cast<double>(image.at(beam, k));
+    moment += k * echo;
+    total += echo;
+  }
+  return moment / total;
+}
+
+}  // namespace
+
+AccuracyLimits targets_of(render::Sampling::Preset preset) {
+  if (preset == render::Sampling::Preset::fast) {
+    return {.bin_rms = 0.05,
+            .beam_total = 0.005,
+            .first_echo_bins = 1,
+            .centroid_bins = 0.25,
+            .bearing_beams = 1,
+            .bearing_centroid = 0.25,
+            .hole_fraction = 0.001,
+            .shadow_bins = 2,
+            .shadow_beams = 1,
+            .pipes_detected = 0.95};
+  }
+  return {.bin_rms = 0.01,
+          .beam_total = 0.001,
+          .first_echo_bins = 0.5,
+          .centroid_bins = 0.05,
+          .bearing_beams = 0.5,
+          .bearing_centroid = 0.05,
+          .hole_fraction = 0,
+          .shadow_bins = 1,
+          .shadow_beams = 0.5,
+          .pipes_detected = 1};
+}
+
+ImageAccuracy measure(const render::EchoImage& image, const render::EchoImage& truth) {
+  const auto error = bench::compare_images(image, truth).value();
+  ImageAccuracy found{.bin_rms = error.bin_rms,
+                      .beam_total = error.beam_total_worst,
+                      .first_echo_bins = error.first_echo_bins,
+                      .centroid_bins = 0,
+                      .hole_fraction = error.hole_fraction};
+  for (int beam = 0; beam < truth.beams; ++beam) {
+    const double expected = centroid(truth, beam);
+    if (!std::isnan(expected)) {
+      const double off = std::abs(centroid(image, beam) - expected);
+      found.centroid_bins = off <= found.centroid_bins ? found.centroid_bins : off;  // NaN is kept
+    }
+  }
+  return found;
+}
+
+std::string name_of(const AccuracyCase& one) {
+  return std::string(render::name_of(one.backend)) +
+         (one.preset == render::Sampling::Preset::fast ? "_fast" : "_default");
+}
+
+AccuracyLimits AccuracyTest::limits() const {
+  const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  return with_known_misses(targets(), test.substr(0, test.find('/')), GetParam());
+}
+
+void AccuracyTest::SetUp() {
+  if (GetParam().backend == render::Backend::raster) {
+    require_raster();
+  }
+}
+
+render::EchoImage AccuracyTest::render(const Scene& scene) const {
+  render::SonarRenderer renderer(scene.world, options());
+  render::PingRequest request = scene.request();
+  request.settings.sampling = {.preset = GetParam().preset};
+  return renderer.render_echo(request);
+}
+
+void AccuracyTest::expect_bins(const AccuracyLimits& limits, const ImageAccuracy& found,
+                               const std::string& what) {
+  std::printf("%s: bins %.5f, holes %.6f\n", what.c_str(), found.bin_rms, found.hole_fraction);
+  EXPECT_LE(found.bin_rms, limits.bin_rms) << what;
+  EXPECT_LE(found.hole_fraction, limits.hole_fraction) << what;
+}
+
+void AccuracyTest::expect_beams(const AccuracyLimits& limits, const ImageAccuracy& found,
+                                const std::string& what) {
+  std::printf("%s: worst beam: total %.5f, first echo %.3f bins, centroid %.4f bins\n", what.c_str(),
+              found.beam_total, found.first_echo_bins, found.centroid_bins);
+  EXPECT_LE(found.beam_total, limits.beam_total) << what;
+  EXPECT_LE(found.first_echo_bins, limits.first_echo_bins) << what;
+  EXPECT_LE(found.centroid_bins, limits.centroid_bins) << what;
+}
+
+void AccuracyTest::expect_within(const AccuracyLimits& limits, const ImageAccuracy& found,
+                                 const std::string& what) {
+  expect_bins(limits, found, what);
+  expect_beams(limits, found, what);
+}
+
+Scene forward_looking_scene(std::vector<render::Body> bodies, const render::RangeLines& range) {
+  Scene scene;
+  scene.world = make_world(std::move(bodies));
+  scene.settings.aperture.beam_edges_rad = render::equal_angle_edges(256, 2 * std::numbers::pi / 3);
+  scene.settings.range = range;
+  scene.settings.physical.absorption_db_per_m = 0;
+  return scene;
+}
+
+}  // namespace sonard::test

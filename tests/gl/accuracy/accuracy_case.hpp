@@ -1,0 +1,84 @@
+// What every preset promises (docs/accuracy.md) and how an image is held to it.
+#pragma once
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "renderer/sonar_renderer.hpp"
+#include "tests/scenes/scenes.hpp"
+#include "tests/support/backend_test.hpp"
+
+namespace sonard::test {
+
+/// Largest errors that a preset may make (docs/physics.md 6). "Bins" are range lines.
+struct AccuracyLimits {
+  double bin_rms;           ///< pooled over all bins above 1e-2 of their beam's maximum
+  double beam_total;        ///< relative, worst beam
+  double first_echo_bins;   ///< worst beam
+  double centroid_bins;     ///< of the echo in range, worst beam
+  double bearing_beams;     ///< of the strongest beam
+  double bearing_centroid;  ///< of the echo across beams, beams
+  double hole_fraction;     ///< of the same bins as bin_rms
+  double shadow_bins, shadow_beams;
+  double pipes_detected;  ///< least share
+};
+
+AccuracyLimits targets_of(render::Sampling::Preset preset);
+
+/// An image against its truth: what of AccuracyLimits can be told of any image.
+struct ImageAccuracy {
+  double bin_rms = 0, beam_total = 0, first_echo_bins = 0, centroid_bins = 0, hole_fraction = 0;
+};
+
+ImageAccuracy measure(const render::EchoImage& image, const render::EchoImage& truth);
+
+struct AccuracyCase {
+  render::Backend backend;
+  render::Sampling::Preset preset;
+};
+
+/// Prints as `ray_default`: also the name in the list of tests.
+std::string name_of(const AccuracyCase& one);
+
+class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
+ protected:
+  void SetUp() override;
+
+  AccuracyLimits targets() const { return targets_of(GetParam().preset); }
+  /// What is asserted: the targets, but for known misses (known_misses.hpp).
+  AccuracyLimits limits() const;
+
+  render::RendererOptions options() const { return {GetParam().backend, 0}; }
+  /// The scene's image at the preset.
+  render::EchoImage render(const Scene& scene) const;
+
+  /// Prints the errors under `what` and asserts the limits: of bins, of whole beams, or both.
+  static void expect_bins(const AccuracyLimits& limits, const ImageAccuracy& found, const std::string& what);
+  static void expect_beams(const AccuracyLimits& limits, const ImageAccuracy& found, const std::string& what);
+  static void expect_within(const AccuracyLimits& limits, const ImageAccuracy& found,
+                            const std::string& what);
+};
+
+inline auto ray_cases() {
+  using Preset = render::Sampling::Preset;
+  return ::testing::Values(AccuracyCase{render::Backend::ray, Preset::fast},
+                           AccuracyCase{render::Backend::ray, Preset::normal});
+}
+inline auto all_cases() {
+  using Preset = render::Sampling::Preset;
+  return ::testing::Values(AccuracyCase{render::Backend::ray, Preset::fast},
+                           AccuracyCase{render::Backend::ray, Preset::normal},
+                           AccuracyCase{render::Backend::raster, Preset::fast},
+                           AccuracyCase{render::Backend::raster, Preset::normal});
+}
+inline std::string case_name(const ::testing::TestParamInfo<AccuracyCase>& info) {
+  return name_of(info.param);
+}
+
+/// What the targets are stated for: 256 beams over 120 x 20 degrees, 1000 lines of 20 mm unless others are
+/// asked for, no absorption, mu = 1.
+Scene forward_looking_scene(std::vector<render::Body> bodies,
+                            const render::RangeLines& range = {1000, 0.02, 0, false});
+
+}  // namespace sonard::test

@@ -1,0 +1,45 @@
+// Images that closed forms say a sonar must hear (docs/physics.md 3.2).
+#pragma once
+
+#include <functional>
+
+#include "renderer/sonar_renderer.hpp"
+#include "tests/support/closed_forms.hpp"
+
+namespace sonard::test {
+
+/// Echo between two azimuths (the smaller first) from ranges [r1, r2), for mu = 1 and no absorption.
+using BeamEcho = std::function<double(double psi_from, double psi_to, double r1, double r2)>;
+
+/// `echo` for every bin of the ping. Called from several threads.
+render::EchoImage truth_image(const render::SonarSettings& settings, const BeamEcho& echo);
+
+/// T4, beam by beam: a sphere wholly inside the fan. Summed over beams it is sphere_echo().
+struct SphereTruth {
+  double radius_m;
+  double horizontal_m, azimuth_rad, height_m;  ///< of the centre, sonar frame
+
+  double beam(double psi_from, double psi_to, double r1, double r2) const;
+
+ private:
+  double density(double psi, double r1, double r2) const;
+  double limb_squared() const;
+};
+
+/// T5, cylinder_density() over the width of a beam; the axis stands at `azimuth_rad`.
+struct CylinderTruth {
+  double radius_m, axis_m, azimuth_rad, elevation_limit_rad;
+
+  double beam(double psi_from, double psi_to, double r1, double r2) const;
+};
+
+/// T7, ShadowTruth over the width of a beam, the wall only to port of an azimuth; to starboard there is the
+/// bed alone. A wall higher than the sonar makes the corner of T8.
+struct WallEndTruth {
+  ShadowTruth wall;
+  double end_rad;  ///< inside (-pi/2, pi/2); -pi/2 for a wall without end
+
+  double beam(double psi_from, double psi_to, double r1, double r2) const;
+};
+
+}  // namespace sonard::test
