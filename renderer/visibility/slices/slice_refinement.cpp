@@ -18,9 +18,10 @@ float disagreement(const SideProfile& a, const SideProfile& b, const SideProfile
                    float furthest_m) {
   std::int32_t count = 0;
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float difference = secant[i] * (a[i] > b[i] ? a[i] - b[i] : b[i] - a[i]);
-    const float nearer = a[i] > b[i] ? a[i] : b[i];
-    count += ((difference > line_m * a[i] * b[i]) & (secant[i] < furthest_m * nearer)) ? 1 : 0;
+    const float w_a = a[i], w_b = b[i], scale = secant[i];
+    const float nearer = w_a > w_b ? w_a : w_b;
+    const float difference = scale * (w_a > w_b ? w_a - w_b : w_b - w_a);
+    count += ((difference > line_m * w_a * w_b) & (scale < furthest_m * nearer)) ? 1 : 0;
   }
   return static_cast<float>(count) / side_probes;
 }
