@@ -19,10 +19,8 @@ struct Miss {
 
 constexpr Miss misses[] = {
     // A slice takes a surface as flat over its width, and presets choose widths by the error of a whole
-    // image: a beam
-    // that hears little of a surface, or sees it at a grazing angle, comes out worse. A wall at 10 m fills a
-    // dozen lines
-    // of a beam, so its half-filled first and last lines count.
+    // image: a beam that hears little of a surface, or sees it at a grazing angle, comes out worse. A wall at
+    // 10 m fills a dozen lines of a beam, so its half-filled first and last lines count.
     {"T1_ObliqueSlope", ray, fast, &Limits::beam_total, 0.08},
     {"T1_ObliqueSlope", ray, normal, &Limits::beam_total, 0.0035},
     {"T14_WallAndOneTwiceAsFar", ray, normal, &Limits::bin_rms, 0.017},
@@ -36,8 +34,7 @@ constexpr Miss misses[] = {
     {"Ripple100k", ray, normal, &Limits::beam_total, 0.0018},
     {"Ripple100k", ray, normal, &Limits::centroid_bins, 0.23},
     // Upright silhouettes converge with first order in azimuth: the beams at the limb hear a sliver of the
-    // body, and
-    // all of it lies within one or two slices.
+    // body, and all of it lies within one or two slices.
     {"T4_Sphere", ray, fast, &Limits::bin_rms, 0.2},
     {"T4_Sphere", ray, fast, &Limits::beam_total, 0.08},
     {"T4_Sphere", ray, fast, &Limits::centroid_bins, 0.5},
@@ -51,8 +48,7 @@ constexpr Miss misses[] = {
     {"T5_UprightCylinder", ray, normal, &Limits::centroid_bins, 0.25},
     {"B3Cluster", ray, fast, &Limits::centroid_bins, 0.45},
     // The beam that holds an edge: how much of it lies to either side is known to the width of the narrowest
-    // slice, and
-    // with two surfaces metres apart that moves its centroid by bins.
+    // slice, and with two surfaces metres apart that moves its centroid by bins.
     {"T6_TwoHalfPlanes", ray, fast, &Limits::bin_rms, 0.08},
     {"T6_TwoHalfPlanes", ray, fast, &Limits::beam_total, 0.025},
     {"T6_TwoHalfPlanes", ray, fast, &Limits::centroid_bins, 6.5},
