@@ -61,6 +61,7 @@ poses:
   extrapolation_limit_ms: 300
   stale: {stale}
 sampling:
+  preset: grid
   views: 3
   columns_per_view: 64
   rows: 32
