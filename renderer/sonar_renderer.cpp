@@ -21,8 +21,11 @@ constexpr int most_native_lines = 65535;  // a Gemini's line count is 16 bits wi
 constexpr int most_beams = 4096;
 constexpr double shortest_line_m = 1e-6;
 constexpr double longest_range_m = 1e5;
-// Surfaces a little beyond the last line are still sampled, so that footprints which cross it are complete.
-constexpr double range_margin = 1.05;
+
+/// Surfaces a little beyond the last line are still sampled, so that footprints which cross it are complete.
+double sampled_range_m(const SonarSettings& settings) {
+  return settings.range.max_range_m() * 1.05;
+}
 
 void check(const SonarSettings& settings) {
   check_aperture(settings.aperture);
@@ -156,10 +159,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace
-
-namespace {
-
 SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   // The paper's sigmoid makes more of small changes of incidence.
   const int slices = settings.model == Model::paper ? 2 : 1;
@@ -199,8 +198,7 @@ struct SonarRenderer::Impl {
     }
   }
 
-  void render_echo(const PingRequest& request, const Pose& T_world_sonar, EchoImage& image) {
-    const SonarSettings& settings = request.settings;
+  void render_echo(const SonarSettings& settings, const Pose& T_world_sonar, EchoImage& image) {
     image.beams = settings.aperture.beam_count();
     image.lines = settings.range.count;
     if (!settings.transmit) {
@@ -211,7 +209,7 @@ struct SonarRenderer::Impl {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
-    image.intensity = look(request, T_world_sonar, line_weight).echo;
+    image.intensity = look(settings, T_world_sonar, line_weight).echo;
     Stopwatch watch;
     if (settings.model == Model::physical) {
       apply(line_weight, image);
@@ -221,28 +219,39 @@ struct SonarRenderer::Impl {
 
   /// Finds what is visible and bins it; fills the statistics of both.
   /// @param line_weight what the lines are yet to be multiplied with; empty: 1.
-  BinningResult look(const PingRequest& request, const Pose& T_world_sonar,
+  BinningResult look(const SonarSettings& settings, const Pose& T_world_sonar,
                      const std::vector<float>& line_weight) {
-    const SonarSettings& settings = request.settings;
-    const double max_range_m = settings.range.max_range_m() * range_margin;
-    const SurfaceModel surface = surface_model(settings);
-    if (!slices && !needs_grid(settings)) {
-      return look_until_close(T_world_sonar, settings, line_weight);
+    if (needs_grid(settings)) {
+      return look_with_grid(T_world_sonar, settings);
     }
-    BinningResult bins;
+    return slices ? look_in_slices(T_world_sonar, settings)
+                  : look_until_close(T_world_sonar, settings, line_weight);
+  }
+
+  BinningResult look_with_grid(const Pose& T_world_sonar, const SonarSettings& settings) {
     Stopwatch watch;
-    if (slices && !needs_grid(settings)) {
-      const auto cells = slices->sample(T_world_sonar, settings.aperture, settings.range.step_m, max_range_m,
-                                        surface, slice_accuracy(settings));
-      statistics.visibility_s = watch.lap();
-      statistics.skipped += slices->last_statistics().skipped;
-      bins = bin_echoes(cells, settings.aperture, settings.range, binning_options(settings, skip), workers);
-    } else {
-      const SampleGrid& samples = grid_for(settings);
-      const auto views = chosen.sampler->sample(T_world_sonar, samples, surface, max_range_m);
-      statistics.visibility_s = watch.lap();
-      bins = bin_echoes(samples, views, settings.range, binning_options(settings, skip), workers);
-    }
+    const SampleGrid& samples = grid_for(settings);
+    const auto views =
+        chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), sampled_range_m(settings));
+    statistics.visibility_s = watch.lap();
+    return counted(bin_echoes(samples, views, settings.range, binning_options(settings, skip), workers),
+                   watch);
+  }
+
+  BinningResult look_in_slices(const Pose& T_world_sonar, const SonarSettings& settings) {
+    Stopwatch watch;
+    const auto cells =
+        slices->sample(T_world_sonar, settings.aperture, settings.range.step_m, sampled_range_m(settings),
+                       surface_model(settings), slice_accuracy(settings));
+    statistics.visibility_s = watch.lap();
+    statistics.skipped += slices->skipped();
+    return counted(
+        bin_echoes(cells, settings.aperture, settings.range, binning_options(settings, skip), workers),
+        watch);
+  }
+
+  /// Adds what binning has counted and taken to the statistics.
+  BinningResult counted(BinningResult bins, Stopwatch& watch) {
     statistics.skipped += bins.skipped;
     statistics.binning_s = watch.lap();
     statistics.samples = bins.samples;
@@ -256,13 +265,13 @@ struct SonarRenderer::Impl {
                                  const std::vector<float>& line_weight) {
     constexpr int most_looks = 3;
     const BinningOptions options = binning_options(settings, skip);
-    const double max_range_m = settings.range.max_range_m() * range_margin;
     GridLadder& grids = ladder_for(settings.aperture);
     int step = grids.first_step(settings.sampling.preset);
     for (int looks = 1;; ++looks) {
       Stopwatch watch;
       const SampleGrid& samples = grids.grid(step);
-      const auto views = chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), max_range_m);
+      const auto views =
+          chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), sampled_range_m(settings));
       statistics.visibility_s += watch.lap();
       BinningResult bins = bin_echoes(samples, views, settings.range, options, workers);
       statistics.samples += bins.samples;
@@ -372,7 +381,7 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
     return known.image;
   }
   known.world_revision = 0;  // until all of it is there
-  impl_->render_echo(request, T_world_sonar, known.image);
+  impl_->render_echo(request.settings, T_world_sonar, known.image);
   known.settings = request.settings;
   known.T_world_sonar = T_world_sonar;
   known.world_revision = impl_->world_revision;

@@ -41,6 +41,8 @@ struct TriangleMesh {
   std::vector<std::uint32_t> indices;  ///< three per triangle, counter-clockwise seen from outside
 
   std::size_t triangle_count() const { return indices.size() / 3; }
+  /// Whether it has all that a normal map needs: normals, tangents and texture coordinates.
+  bool can_be_mapped() const { return !normals.empty() && !tangents.empty() && !texcoords.empty(); }
 };
 
 /// A tangent-space normal map, 8-bit RGB, row 0 at texture coordinate v = 0, repeated beyond [0, 1].

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double most_samples = 0x1p25;  // half a GiB of them
 constexpr int most_pixels = 8192;        // of a view in each direction; every OpenGL 4.5 can draw 16384
-constexpr double widest_view_rad = std::numbers::pi / 3;
 constexpr int most_columns_per_beam = 32;
 
 // Measured on the scenes of the benchmark (docs/accuracy.md): the error falls with about the 0.6th power of

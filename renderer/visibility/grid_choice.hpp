@@ -26,7 +26,8 @@ class GridLadder {
   const SampleGrid& grid(int step);
   Sampling sampling(int step) const;
 
-  /// The finest: 32 columns a beam and 2048 rows over 20 degrees, or fewer where that were more than 2^25 samples.
+  /// The finest: 32 columns a beam and 2048 rows over 20 degrees, or fewer where that were more than 2^25
+  /// samples.
   int last_step() const { return last_step_; }
   /// Where a preset begins.
   int first_step(Sampling::Preset preset) const;

@@ -126,4 +126,12 @@ glm::vec3 NormalPyramid::mean_normal(const glm::vec2& uv, float level) const {
   return part > 0.0F ? glm::mix(fine, bilinear(levels[low + 1], inside), part) : fine;
 }
 
+glm::vec3 from_tangent_frame(const glm::vec3& m, const glm::vec3& vertex_normal, const glm::vec4& tangent) {
+  const glm::vec3 n = glm::normalize(vertex_normal);
+  const glm::vec3 along(tangent);
+  const glm::vec3 t = glm::normalize(along - n * glm::dot(n, along));
+  const glm::vec3 b = glm::cross(n, t) * tangent.w;
+  return t * m.x + b * m.y + n * m.z;
+}
+
 }  // namespace sonard::render

@@ -9,6 +9,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "renderer/scene/world.hpp"
 
@@ -42,5 +43,9 @@ struct NormalPyramid {
   NormalPyramid() = default;
   glm::vec3 bilinear(const Level& level, const glm::vec2& uv) const;
 };
+
+/// A mapped normal `m` in the coordinates of the part. `vertex_normal` needs no unit length; `tangent` is as
+/// in TriangleMesh, interpolated. The length of `m` is kept.
+glm::vec3 from_tangent_frame(const glm::vec3& m, const glm::vec3& vertex_normal, const glm::vec4& tangent);
 
 }  // namespace sonard::render

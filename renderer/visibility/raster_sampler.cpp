@@ -212,8 +212,7 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
     node->addChild(chunk);
   });
   osg::StateSet* state = node->getOrCreateStateSet();
-  const bool mapped = part.normal_map && !part.mesh->tangents.empty() && !part.mesh->normals.empty() &&
-                      !part.mesh->texcoords.empty();
+  const bool mapped = part.normal_map && part.mesh->can_be_mapped();
   const Shading shading = mapped                       ? normal_mapped
                           : part.mesh->normals.empty() ? geometric_normal
                                                        : vertex_normals;

@@ -31,8 +31,7 @@ SurfaceShader::SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalP
       map_(std::move(map)),
       reflectance_(static_cast<float>(part.material.reflectance)),
       lambert_mu_(static_cast<float>(part.material.lambert_mu)) {
-  const bool mapped =
-      map_ && !mesh_->tangents.empty() && !mesh_->normals.empty() && !mesh_->texcoords.empty();
+  const bool mapped = map_ && mesh_->can_be_mapped();
   normals_ = mapped ? Normals::of_map : mesh_->normals.empty() ? Normals::of_triangles : Normals::of_vertices;
 }
 
@@ -81,16 +80,12 @@ glm::vec3 SurfaceShader::mapped_normal(const RayPacket& rays, const RayHits& hit
   const std::uint32_t* corner = &mesh_->indices[std::size_t{hits.triangle[lane]} * 3];
   const float u = hits.u[lane];
   const float v = hits.v[lane];
-  const glm::vec3 n = glm::normalize(vertex_normal(hits.triangle[lane], u, v));
-  const glm::vec4 along =
+  const glm::vec4 tangent =
       interpolate(mesh_->tangents[corner[0]], mesh_->tangents[corner[1]], mesh_->tangents[corner[2]], u, v);
   const glm::vec2 uv = interpolate(mesh_->texcoords[corner[0]], mesh_->texcoords[corner[1]],
                                    mesh_->texcoords[corner[2]], u, v);
-  const glm::vec3 tangent(along);
-  const glm::vec3 t = glm::normalize(tangent - n * glm::dot(n, tangent));
-  const glm::vec3 b = glm::cross(n, t) * along.w;
-  const glm::vec3 m = map_->mean_normal(uv, map_level(rays, hits, lane));
-  return t * m.x + b * m.y + n * m.z;
+  return from_tangent_frame(map_->mean_normal(uv, map_level(rays, hits, lane)),
+                            vertex_normal(hits.triangle[lane], u, v), tangent);
 }
 
 /// Replaces the geometric normals of the lanes that hit this part.
@@ -155,18 +150,11 @@ SONARD_SIMD_CLONES void SurfaceShader::shade(const RayPacket& rays, const RayHit
 /// From cos phi to the paper's sigmoid.
 void SurfaceShader::apply_paper(const RayPacket& rays, const RayHits& hits, std::uint32_t part,
                                 const SurfaceModel& model, SurfacePacket& surfaces) const {
-  const auto slope = static_cast<float>(model.sigmoid_slope);
-  const auto centre = static_cast<float>(model.sigmoid_centre);
-  const auto attenuation = static_cast<float>(-2.0 * model.attenuation_per_m);
   for (std::size_t i = 0; i < packet_size; ++i) {
-    if (hits.part[i] != part) {
-      continue;
+    if (hits.part[i] == part) {
+      const float range_m = hits.depth[i] * glm::length(glm::vec3(rays.x[i], rays.y[i], rays.z[i]));
+      surfaces.response[i] = paper_response(model, reflectance_, surfaces.response[i], range_m);
     }
-    float echo = reflectance_ * surfaces.response[i];
-    if (attenuation != 0.0F) {
-      echo *= std::exp(attenuation * hits.depth[i] * glm::length(glm::vec3(rays.x[i], rays.y[i], rays.z[i])));
-    }
-    surfaces.response[i] = 1.0F / (1.0F + std::exp(slope * (centre - (echo > 1.0F ? 1.0F : echo))));
   }
 }
 

@@ -11,8 +11,6 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double widest_view_rad =
-    std::numbers::pi / 3;                       // beyond, pixels grow too unequal (docs/physics.md 1.3)
 constexpr double widest_single_view_rad = 2.8;  // planar projection ends below pi
 constexpr double most_samples = 0x1p27;         // 2 GiB of them
 

@@ -1,11 +1,15 @@
 // Where the fan is sampled: side-by-side planar views, and which part of which pixel belongs to which beam.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
+
+/// Beyond, pixels of one planar view grow too unequal (docs/physics.md 1.3).
+inline constexpr double widest_view_rad = std::numbers::pi / 3;
 
 /// One planar view. A ray of the view is q(x, y) = axis + x * starboard + y * up with tangents x and y;
 /// the axis lies in the sonar's xy plane at azimuth `azimuth_rad`. Pixel (column c, row j) is centred at

@@ -1,6 +1,7 @@
 // The face every visibility method shows to the rest of the renderer.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,6 +37,18 @@ struct SurfaceModel {
   double attenuation_per_m = 0.0;
   bool two_sided = true;
 };
+
+/// SurfaceSample::response of mode `paper`, for a surface of this reflectance seen under cos phi = `cosine`.
+/// What is not a number stays so.
+inline float paper_response(const SurfaceModel& model, float reflectance, float cosine, float range_m) {
+  float echo = reflectance * cosine;
+  if (model.attenuation_per_m != 0.0) {
+    echo *= std::exp(static_cast<float>(-2.0 * model.attenuation_per_m) * range_m);
+  }
+  const auto slope = static_cast<float>(model.sigmoid_slope);
+  const auto centre = static_cast<float>(model.sigmoid_centre);
+  return 1.0F / (1.0F + std::exp(slope * (centre - (echo > 1.0F ? 1.0F : echo))));
+}
 
 /// Finds the first surface along every pixel of a grid. One thread uses a sampler.
 /// To add a method, implement this and construct it in SonarRenderer.

@@ -26,7 +26,7 @@ inline float fast_azimuth(float y, float x) {
   return y < 0 ? -angle : angle;
 }
 
-/// Made once per configuration.
+/// Made for one ping.
 class Fan {
  public:
   Fan(const Aperture& aperture, double max_range_m);

@@ -47,7 +47,6 @@ class FanTriangles {
     const auto b = static_cast<std::size_t>(beam);
     return {listed_.data() + first_of_beam_[b], first_of_beam_[b + 1] - first_of_beam_[b]};
   }
-  std::uint64_t clusters_tested() const { return cluster_count_; }
   std::uint64_t clusters_culled() const;
 
  private:

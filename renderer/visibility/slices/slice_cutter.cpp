@@ -130,18 +130,16 @@ bool SliceCutter::misses_thin_thing(const Slice& slice) const {
 }
 
 void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
-  const auto cosine = static_cast<float>(std::cos(slice.azimuth_rad));
-  const auto sine = static_cast<float>(std::sin(slice.azimuth_rad));
   for (auto* array : {&segments.low, &segments.high, &segments.w_at_0, &segments.w_slope, &segments.low_drift,
                       &segments.high_drift}) {
     array->resize(padded_);
   }
   segments.kept.resize(padded_ + 1);
-  cut_all(cosine, sine, slice.width_rad, tan_limit, segments);
+  cut_all(slice, tan_limit, segments);
   std::size_t count = 0;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     if (fate_[i] == partly_behind) {
-      clip_behind(cosine, sine, tan_limit, i, segments);
+      clip_behind(slice, tan_limit, i, segments);
     }
     segments.kept[count] = static_cast<std::int32_t>(i);
     count += fate_[i] == kept ? 1 : 0;
@@ -153,7 +151,8 @@ void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
 /// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes the signs of numerator
 /// and denominator and nothing else, so that two triangles find the same point on their common edge.
 SONARD_SIMD_CLONES
-void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_limit, Segments& segments) {
+void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segments) {
+  const float cosine = slice.cosine, sine = slice.sine, width_rad = slice.width_rad;
   const float* __restrict x0 = x_[0].data();
   const float* __restrict x1 = x_[1].data();
   const float* __restrict x2 = x_[2].data();
@@ -215,12 +214,13 @@ void SliceCutter::cut_all(float cosine, float sine, float width_rad, float tan_l
 
 /// The same for a triangle of which the plane of the slice cuts a part behind the vertical axis, in doubles
 /// and one at a time: such triangles are few.
-void SliceCutter::clip_behind(float cosine, float sine, float tan_limit, std::size_t i, Segments& segments) {
+void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments) {
+  const auto cosine = static_cast<double>(slice.cosine), sine = static_cast<double>(slice.sine);
   double s[3], h[3], z[3];
   for (int k = 0; k < 3; ++k) {
     const double x = static_cast<double>(x_[k][i]), y = static_cast<double>(y_[k][i]);
-    s[k] = y * static_cast<double>(cosine) - x * static_cast<double>(sine);
-    h[k] = x * static_cast<double>(cosine) + y * static_cast<double>(sine);
+    s[k] = y * cosine - x * sine;
+    h[k] = x * cosine + y * sine;
     z[k] = static_cast<double>(z_[k][i]);
   }
   double end_h[2] = {0, 0}, end_z[2] = {0, 0};

@@ -1,6 +1,7 @@
 // Cuts the triangles of one beam with half planes of constant azimuth.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,7 +15,15 @@ namespace sonard::render {
 /// elevation, t = z / h; along any straight line of it 1 / h is affine in t.
 struct Slice {
   double azimuth_rad = 0.0;
-  float width_rad = 0.0F;  ///< of the wedge
+  float width_rad = 0.0F;            ///< of the wedge
+  float cosine = 1.0F, sine = 0.0F;  ///< of the azimuth
+
+  Slice() = default;
+  Slice(double azimuth, float width)
+      : azimuth_rad(azimuth),
+        width_rad(width),
+        cosine(static_cast<float>(std::cos(azimuth))),
+        sine(static_cast<float>(std::sin(azimuth))) {}
 };
 
 /// What a slice cuts out of triangles: a straight segment each, in arrays as long as the list of triangles,
@@ -58,8 +67,8 @@ class SliceCutter {
   void load_normals();
   void drop_back_faces();
   void list_thin();
-  void cut_all(float cosine, float sine, float width_rad, float tan_limit, Segments& segments);
-  void clip_behind(float cosine, float sine, float tan_limit, std::size_t i, Segments& segments);
+  void cut_all(const Slice& slice, float tan_limit, Segments& segments);
+  void clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments);
 
   std::vector<const FanTriangle*> triangles_;
   std::size_t padded_ = 0;

@@ -63,8 +63,7 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
 /// Where two surfaces cross, their pieces end along the line in which their planes meet. Its direction e
 /// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
 void SlicePatcher::follow_crossings(const Request& request) {
-  const auto cosine = static_cast<float>(std::cos(request.slice.azimuth_rad));
-  const auto sine = static_cast<float>(std::sin(request.slice.azimuth_rad));
+  const float cosine = request.slice.cosine, sine = request.slice.sine;
   const auto normal = [&](const VisiblePiece& piece) {
     const auto t = static_cast<std::size_t>(piece.segment);
     return glm::vec3(request.cutter.normal_x()[t], request.cutter.normal_y()[t],
@@ -101,8 +100,7 @@ void SlicePatcher::lay_out(const Request& request) {
   }
   first_probe_.resize(count);
   last_probe_.resize(count);
-  const auto cosine = static_cast<float>(std::cos(request.slice.azimuth_rad));
-  const auto sine = static_cast<float>(std::sin(request.slice.azimuth_rad));
+  const float cosine = request.slice.cosine, sine = request.slice.sine;
   const float* nx = request.cutter.normal_x();
   const float* ny = request.cutter.normal_y();
   const float* nz = request.cutter.normal_z();

@@ -44,11 +44,9 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSw
       skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
       surface.lambert_mu = static_cast<float>(part.material.lambert_mu);
       surface.reflectance = static_cast<float>(part.material.reflectance);
-      const bool can_be_mapped =
-          !part.mesh->normals.empty() && !part.mesh->tangents.empty() && !part.mesh->texcoords.empty();
       if (!part.normal_map && skip.on(SkipRule::absent_normal_map)) {
         skipped_parts_.add(SkipRule::absent_normal_map);
-      } else if (can_be_mapped) {
+      } else if (part.mesh->can_be_mapped()) {
         auto& pyramid = pyramids[part.normal_map.get()];
         if (!pyramid) {
           pyramid = std::make_shared<const NormalPyramid>(part.normal_map ? NormalPyramid(*part.normal_map)
@@ -127,21 +125,16 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   triangles_.find(placed_, setting.fan, workers_, skip_.on(SkipRule::culled_clusters));
   lay_first_slices(setting);
   std::vector<std::size_t> fresh = order_;
-  statistics_ = {};
   do {
     see(setting, fresh);
-    statistics_.slices += fresh.size();
   } while (refine(setting, fresh));
   std::vector<const SliceCell*> cells;
   for (const std::size_t i : order_) {
     cells.push_back(cells_[i].get());
-    statistics_.patches += cells.back()->patches.size();
   }
-  statistics_.clusters = triangles_.clusters_tested();
-  statistics_.clusters_culled = triangles_.clusters_culled();
-  statistics_.skipped = skipped_parts_;
-  statistics_.skipped.add(SkipRule::culled_clusters, statistics_.clusters_culled);
-  statistics_.skipped.add(SkipRule::flat_elevation, setting.pattern.flat() ? 1 : 0);
+  skipped_ = skipped_parts_;
+  skipped_.add(SkipRule::culled_clusters, triangles_.clusters_culled());
+  skipped_.add(SkipRule::flat_elevation, setting.pattern.flat() ? 1 : 0);
   return cells;
 }
 

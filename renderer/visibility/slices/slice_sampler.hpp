@@ -39,14 +39,6 @@ struct SliceCell {
   bool misses_something = false;  ///< a thin thing lies beside the slice and inside its wedge
 };
 
-struct SliceStatistics {
-  std::uint64_t slices = 0;
-  std::uint64_t patches = 0;
-  std::uint64_t clusters = 0;
-  std::uint64_t clusters_culled = 0;
-  SkipCounts skipped;
-};
-
 /// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
 /// the width of slices makes errors, and these of second order but at silhouettes that run along the slices
 /// (docs/accuracy.md). One thread uses it; it shares its work with the pool's.
@@ -63,7 +55,8 @@ class SliceSampler {
   /// @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
 
-  const SliceStatistics& last_statistics() const { return statistics_; }
+  /// Of the last call.
+  const SkipCounts& skipped() const { return skipped_; }
 
  private:
   struct Part {
@@ -96,7 +89,7 @@ class SliceSampler {
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;
   std::vector<std::size_t> order_;  ///< cells from port to starboard
-  SliceStatistics statistics_;
+  SkipCounts skipped_;
 };
 
 }  // namespace sonard::render

@@ -75,20 +75,15 @@ MapFootprint footprint_on_map(const PartSurface& part, const SurfacePoint& surfa
 /// Mean of the mapped normals over the footprint, not of unit length: see NormalPyramid.
 glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, const std::uint32_t* corner,
                         const glm::vec2& weights, const glm::vec3& vertex_normal, const PiecePlace& place) {
-  const glm::vec4 along = interpolate(part.mesh->tangents, corner, weights);
   const glm::vec2 uv = interpolate(part.mesh->texcoords, corner, weights);
-  const glm::vec3 n = glm::normalize(vertex_normal);
-  const glm::vec3 tangent(along);
-  const glm::vec3 t = glm::normalize(tangent - n * glm::dot(n, tangent));
-  const glm::vec3 b = glm::cross(n, t) * along.w;
   const MapFootprint footprint = footprint_on_map(part, surface, corner, place);
   glm::vec3 m(0.0F);
   for (int k = 0; k < footprint.taps; ++k) {
     const float share = (static_cast<float>(k) + 0.5F) / static_cast<float>(footprint.taps) - 0.5F;
     m += part.normal_map->mean_normal(uv + footprint.uv_step * share, footprint.level);
   }
-  m /= static_cast<float>(footprint.taps);
-  return t * m.x + b * m.y + n * m.z;
+  return from_tangent_frame(m / static_cast<float>(footprint.taps), vertex_normal,
+                            interpolate(part.mesh->tangents, corner, weights));
 }
 
 }  // namespace
@@ -111,9 +106,8 @@ bool has_plain_facets(const TriangleMesh& mesh) {
 
 float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const PiecePlace& place,
                     float geometric) {
-  const auto cosine = static_cast<float>(std::cos(place.slice.azimuth_rad));
-  const auto sine = static_cast<float>(std::sin(place.slice.azimuth_rad));
-  const SurfacePoint surface(triangle, {place.h_m * cosine, place.h_m * sine, place.z_m});
+  const SurfacePoint surface(triangle,
+                             {place.h_m * place.slice.cosine, place.h_m * place.slice.sine, place.z_m});
   const glm::vec2 weights = surface.weights(surface.p - surface.corner);
   const std::uint32_t* corner = &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3];
   const glm::vec3 vertex_normal = part.mesh->normals.empty()
@@ -130,14 +124,8 @@ float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const 
 }
 
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m) {
-  if (model.model == Model::physical) {
-    return part.lambert_mu * cosine;
-  }
-  const auto attenuation = static_cast<float>(2 * model.attenuation_per_m);
-  const float echo =
-      std::min(1.0F, part.reflectance * cosine * (attenuation > 0 ? std::exp(-attenuation * range_m) : 1.0F));
-  return 1.0F / (1.0F + std::exp(static_cast<float>(model.sigmoid_slope) *
-                                 (static_cast<float>(model.sigmoid_centre) - echo)));
+  return model.model == Model::physical ? part.lambert_mu * cosine
+                                        : paper_response(model, part.reflectance, cosine, range_m);
 }
 
 }  // namespace sonard::render
