@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "renderer/binning/grid_patches.hpp"
 #include "renderer/binning/range_profile.hpp"
@@ -18,13 +19,14 @@ constexpr float least_share = 0x1p-32F;
 /// One beam's accumulators, and the memory of one thread.
 class BeamSums {
  public:
-  /// @param solid_angle of the beam; responses are at most 1: mu <= 1/pi, sigmoid <= 1.
-  void reset(const RangeLines& range, double solid_angle, bool mean) {
+  /// @param solid_angle of the beam.
+  /// @param most_echo that will be added.
+  void reset(const RangeLines& range, double solid_angle, double most_echo, bool mean) {
     lines_per_m_ = 1.0 / range.step_m;
     solid_angle_ = static_cast<float>(solid_angle);
     mean_ = mean;
     const auto lines = static_cast<std::size_t>(range.count);
-    echo_.reset(lines, solid_angle);
+    echo_.reset(lines, most_echo);
     weight_.reset(mean ? lines : 0, solid_angle);
     samples = 0;
     invalid = 0;
@@ -35,14 +37,16 @@ class BeamSums {
     const double a = static_cast<double>(patch.range_a_m) * lines_per_m_;
     const double b = static_cast<double>(patch.range_b_m) * lines_per_m_;
     const float smear_a = patch.smear_a_m * lines_per_m, smear_b = patch.smear_b_m * lines_per_m;
-    if (!std::isfinite(a + b + static_cast<double>(smear_a + smear_b + patch.echo + patch.weight))) {
+    if (!std::isfinite(a + b +
+                       static_cast<double>(smear_a + smear_b + patch.echo + patch.weight + patch.echo_tilt +
+                                           patch.weight_tilt))) {
       ++invalid;
       return;
     }
     ++samples;
-    echo_.add(a, smear_a, b, smear_b, patch.echo);
+    echo_.add(a, smear_a, b, smear_b, patch.echo, patch.echo_tilt);
     if (mean_) {
-      weight_.add(a, smear_a, b, smear_b, patch.weight);
+      weight_.add(a, smear_a, b, smear_b, patch.weight, patch.weight_tilt);
     }
   }
 
@@ -79,13 +83,20 @@ class BeamSums {
   bool mean_ = false;
 };
 
+/// What a beam may hold at most.
+struct BeamContent {
+  double solid_angle;
+  double echo;
+};
+
 /// Runs fill(beam, sums) for every beam that is not empty(beam), each in one job, and collects what it
 /// summed. A beam has one owner, so nothing depends on the number of threads.
-template <class Empty, class SolidAngle, class Fill>
+template <class Empty, class Content, class Fill>
 BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
-                        WorkerPool& workers, const Empty& empty, const SolidAngle& solid_angle,
-                        const Fill& fill) {
+                        WorkerPool& workers, std::vector<float> memory, const Empty& empty,
+                        const Content& content, const Fill& fill) {
   BinningResult result;
+  result.echo = std::move(memory);
   result.beams = beams;
   result.lines = range.count;
   const auto lines = static_cast<std::size_t>(range.count);
@@ -98,9 +109,11 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
     const auto b = static_cast<std::size_t>(beam);
     if (empty(b)) {
       ++empty_beams;
+      std::fill_n(&result.echo[b * lines], lines, 0.0F);
       return;
     }
-    sums.reset(range, solid_angle(b), options.mean);
+    const BeamContent most = content(b);
+    sums.reset(range, most.solid_angle, most.echo, options.mean);
     fill(b, sums);
     sums.read(lines, &result.echo[b * lines]);
     samples += sums.samples;
@@ -140,7 +153,8 @@ double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
 }  // namespace
 
 BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers) {
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory) {
   const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
   const auto fill = [&](std::size_t beam, BeamSums& sums) {
     for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
@@ -157,12 +171,17 @@ BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const Surface
     }
   };
   return bin_beams(
-      grid.beam_count(), range, options, workers, [](std::size_t) { return false; },
-      [&](std::size_t beam) { return solid_angle_of(grid, beam); }, fill);
+      grid.beam_count(), range, options, workers, std::move(memory), [](std::size_t) { return false; },
+      [&](std::size_t beam) {
+        const double solid_angle = solid_angle_of(grid, beam);
+        return BeamContent{solid_angle, solid_angle};  // responses are at most 1: mu <= 1/pi, sigmoid <= 1
+      },
+      fill);
 }
 
 BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Aperture& aperture,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers) {
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory) {
   const int beams = aperture.beam_count();
   std::vector<std::size_t> begins(static_cast<std::size_t>(beams) + 1, cells.size());
   for (std::size_t i = cells.size(); i-- > 0;) {
@@ -176,8 +195,15 @@ BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Apert
     }
   };
   const double height = 2 * std::sin(aperture.elevation_limit_rad());
-  const auto solid_angle = [&](std::size_t beam) {
-    return height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]);
+  // What the slices of a beam hold in fact: the echo of a bed at grazing incidence keeps its digits.
+  const auto content = [&](std::size_t beam) {
+    double echo = 0.0;
+    for (std::size_t i = begins[beam]; i < begins[beam + 1]; ++i) {
+      for (const EchoPatch& patch : cells[i]->patches) {
+        echo += std::isfinite(patch.echo) ? static_cast<double>(patch.echo) : 0.0;
+      }
+    }
+    return BeamContent{height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]), echo};
   };
   const auto empty = [&](std::size_t beam) {
     return options.skip.on(SkipRule::empty_beams) &&
@@ -185,7 +211,7 @@ BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Apert
                        cells.begin() + static_cast<std::ptrdiff_t>(begins[beam + 1]),
                        [](const SliceCell* cell) { return cell->patches.empty(); });
   };
-  return bin_beams(beams, range, options, workers, empty, solid_angle, fill);
+  return bin_beams(beams, range, options, workers, std::move(memory), empty, content, fill);
 }
 
 }  // namespace sonard::render

@@ -34,11 +34,15 @@ struct BinningResult {
 
 /// Sums of a fixed grid. `views` is what Sampler::sample() returned for `grid`. Sums are exact
 /// (RangeProfile), so the result is the same for any number of threads.
+/// @param memory for BinningResult::echo, whatever it holds: a megabyte need not be found anew for every
+/// ping.
 BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers);
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory = {});
 
 /// The same for slices, which always have footprints. `cells` run from port to starboard.
 BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Aperture& aperture,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers);
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory = {});
 
 }  // namespace sonard::render

@@ -30,7 +30,9 @@ EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& ce
           smear,
           smear,
           weight * sample.response,
-          weight};
+          weight,
+          0.0F,
+          0.0F};
 }
 
 }  // namespace

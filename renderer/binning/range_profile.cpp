@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "renderer/simd.hpp"
 
@@ -9,53 +10,61 @@ namespace sonard::render {
 
 namespace {
 
-constexpr std::size_t vector_lines = 8;        // a step smeared over no more than these is added at once
+constexpr int vector_lines = 8;                // a smeared step is added so many lines at a time
 constexpr float least_smear = 1e-3F;           // lines; below, a step is sharp
 constexpr double least_spread = 1e-3;          // lines; what is narrower is widened to this
 constexpr float widest_smear = 512.0F;         // lines; surfaces seen edge-on carry no energy
 constexpr double total_units = 0x1p40;         // of `largest`; a patch of least_spread stays below 2^51
 constexpr double round_to_integer = 0x1.8p52;  // adding and subtracting it rounds a double below 2^51
 
-/// Integral from -infinity to y of a step that rises from 0 at 0 to 1 at `smear`.
-inline float integral_of_step(float y, float smear, float half_over_smear) {
-  const float rising = y < 0 ? 0.0F : (y < smear ? y : smear);
-  const float above = y > smear ? y - smear : 0.0F;
-  return rising * rising * half_over_smear + above;
+inline double rounded(double value) {
+  return (value + round_to_integer) - round_to_integer;
 }
 
-/// Adds a smeared step to eight lines and the ninth difference. `from` is where it begins, relative to the
-/// first.
+/// Adds what a smeared step makes of eight differences. The step begins `from` lines after the first of them;
+/// before that one, it has none. Written as one vector: left to itself, the compiler makes several of it.
 SONARD_SIMD_CLONES
-void add_short_step(float from, float smear, double density, double* difference) {
-  const float half_over_smear = 0.5F / smear;
-  float integral[vector_lines + 1];
-  double sum[vector_lines + 1];
-  for (std::size_t k = 0; k <= vector_lines; ++k) {
-    integral[k] = integral_of_step(static_cast<float>(k) - from, smear, half_over_smear);
-  }
-  sum[0] = 0.0;
-  for (std::size_t k = 0; k < vector_lines; ++k) {
-    const bool whole = static_cast<float>(k) >= from + smear;
-    const double part =
-        (density * static_cast<double>(integral[k + 1] - integral[k]) + round_to_integer) - round_to_integer;
-    sum[k + 1] = whole ? density : part;
-  }
-  for (std::size_t k = 0; k < vector_lines; ++k) {
-    difference[k] += sum[k + 1] - sum[k];
-  }
-  difference[vector_lines] += density - sum[vector_lines];
+void add_smeared_step(double from, double smear, double density, double* difference) {
+  using Lines = double __attribute__((vector_size(vector_lines * sizeof(double))));
+  const Lines none{};
+  const Lines whole = none + density;
+  const Lines to = none + smear;
+  const double half_over_smear = 0.5 / smear;
+  // Integral from -infinity to y of a step that rises from 0 at 0 to 1 at `smear`.
+  const auto integrate = [&](const Lines& y, Lines& integral) {
+    const Lines begun = y > none ? y : none;
+    const Lines rising = begun < to ? begun : to;
+    integral = rising * rising * half_over_smear + (begun - rising);
+  };
+  const Lines y = Lines{0, 1, 2, 3, 4, 5, 6, 7} - from;
+  Lines before, here, after;
+  integrate(y - 1, before);
+  integrate(y, here);
+  integrate(y + 1, after);
+  const Lines last = (density * (here - before) + round_to_integer) - round_to_integer;
+  const Lines sum = (density * (after - here) + round_to_integer) - round_to_integer;
+  Lines changed;
+  std::memcpy(&changed, difference, sizeof changed);
+  // Lines beyond the step hold all of it, free of rounding.
+  changed += (y >= to ? whole : sum) - (y - 1 >= to ? whole : last);
+  std::memcpy(difference, &changed, sizeof changed);
 }
 
 }  // namespace
 
 void RangeProfile::reset(std::size_t lines, double largest) {
   lines_ = lines;
-  difference_.assign(lines + vector_lines + 1, 0.0);
+  difference_.assign(lines + static_cast<std::size_t>(vector_lines), 0.0);
+  if (is_bent_ || bend_.size() != lines) {
+    bend_.assign(lines, 0.0);
+    is_bent_ = false;
+  }
   units_ = largest > 0 ? std::exp2(std::floor(std::log2(total_units / largest))) : 1.0;
   open_density_ = 0.0;
 }
 
-void RangeProfile::add(double position_a, float smear_a, double position_b, float smear_b, float amount) {
+void RangeProfile::add(double position_a, float smear_a, double position_b, float smear_b, float amount,
+                       float relative_tilt) {
   // Two ends become one step where they are the same. The patch then begins where the last one ended, before
   // its spread is taken: moving an end afterwards would change the amount.
   const bool joined = open_density_ != 0.0 && std::abs(open_position_ - position_a) < least_spread &&
@@ -70,8 +79,10 @@ void RangeProfile::add(double position_a, float smear_a, double position_b, floa
     position_b = position_a + spread;
   }
   // Negative where the far end comes first: the two steps then change places by themselves.
-  const double density =
-      (static_cast<double>(amount) * units_ / spread + round_to_integer) - round_to_integer;
+  const double mean = static_cast<double>(amount) * units_ / spread;
+  const bool tilted = relative_tilt != 0.0F && position_a >= 0 && position_b >= 0;
+  const double change = tilted ? mean * static_cast<double>(relative_tilt) : 0.0;
+  const double density = rounded(mean - change);
   if (joined) {
     step(position_a, smear_a, density + open_density_);
   } else {
@@ -81,6 +92,34 @@ void RangeProfile::add(double position_a, float smear_a, double position_b, floa
   open_position_ = position_b;
   open_smear_ = smear_b;
   open_density_ = -density;
+  if (tilted) {
+    open_density_ -= tilt(position_a, position_b, rounded(2 * change / spread));
+  }
+}
+
+/// Lets the density rise from one position to the other.
+/// @return by how much, a whole number as everything that is added.
+double RangeProfile::tilt(double from, double to, double slope) {
+  is_bent_ = true;
+  return bend(from, slope) + bend(to, -slope) + slope * (std::floor(to) - std::floor(from));
+}
+
+/// From here on the density rises.
+/// @return what the n-th line after that of the position has beside slope * n.
+double RangeProfile::bend(double position, double slope) {
+  const double line = std::floor(position);
+  const double left = line + 1 - position;
+  const double in_line = rounded(slope * (0.5 * left * left));
+  const double in_next = rounded(slope * (left + 0.5));
+  const auto add = [&](double at, double amount) {
+    if (at < static_cast<double>(lines_)) {
+      bend_[static_cast<std::size_t>(at)] += amount;
+    }
+  };
+  add(line, in_line);
+  add(line + 1, in_next - 2 * in_line);
+  add(line + 2, slope - in_next + in_line);
+  return in_next - slope;
 }
 
 void RangeProfile::finish() {
@@ -94,34 +133,42 @@ void RangeProfile::step(double position, float smear, double density) {
   if (!(density != 0.0)) {
     return;
   }
-  const float wide = std::clamp(smear, least_smear, widest_smear);
-  const double from = position - 0.5 * static_cast<double>(wide);
+  const auto wide = static_cast<double>(std::clamp(smear, least_smear, widest_smear));
+  const double from = position - 0.5 * wide;
   if (!(from < static_cast<double>(lines_))) {
     return;
   }
-  if (from + static_cast<double>(wide) <= 0) {
+  if (from + wide <= 0) {
     difference_[0] += density;
-  } else if (from >= 0 && wide < static_cast<float>(vector_lines) - 1) {
-    const auto first = static_cast<std::size_t>(from);
-    add_short_step(static_cast<float>(from - static_cast<double>(first)), wide, density, &difference_[first]);
-  } else {
-    step_slow(from, wide, density);
+    return;
   }
+  if (from < 0) {
+    step_from_before(from, wide, density);
+    return;
+  }
+  auto line = static_cast<std::size_t>(from);
+  double offset = from - static_cast<double>(line);
+  do {
+    add_smeared_step(offset, wide, density, &difference_[line]);
+    line += static_cast<std::size_t>(vector_lines);
+    offset -= vector_lines;
+  } while (offset + wide > -1 && line < lines_);
 }
 
-void RangeProfile::step_slow(double from, float smear, double density) {
-  const float half_over_smear = 0.5F / smear;
-  const auto first = static_cast<std::size_t>(std::max(0.0, from));
-  const auto end = static_cast<std::size_t>(
-      std::min(static_cast<double>(lines_), std::ceil(from + static_cast<double>(smear))));
+/// A step that begins before the first line and ends after its beginning.
+void RangeProfile::step_from_before(double from, double smear, double density) {
+  // Integral from -infinity to the beginning of line k.
   const auto integral_to = [&](std::size_t k) {
-    return integral_of_step(static_cast<float>(static_cast<double>(k) - from), smear, half_over_smear);
+    const double y = static_cast<double>(k) - from;
+    const double rising = std::clamp(y, 0.0, smear);
+    return 0.5 * rising * rising / smear + std::max(0.0, y - smear);
   };
-  float before = integral_to(first);
+  const auto end = static_cast<std::size_t>(std::min(static_cast<double>(lines_), std::ceil(from + smear)));
+  double before = integral_to(0);
   double last = 0.0;
-  for (std::size_t k = first; k < end; ++k) {
-    const float after = integral_to(k + 1);
-    const double sum = std::nearbyint(density * static_cast<double>(after - before));
+  for (std::size_t k = 0; k < end; ++k) {
+    const double after = integral_to(k + 1);
+    const double sum = rounded(density * (after - before));
     difference_[k] += sum - last;
     last = sum;
     before = after;
@@ -134,17 +181,28 @@ void RangeProfile::add_point(double position, float amount) {
     return;
   }
   const auto line = static_cast<std::size_t>(position);
-  const double units = std::nearbyint(static_cast<double>(amount) * units_);
+  const double units = rounded(static_cast<double>(amount) * units_);
   difference_[line] += units;
   difference_[line + 1] -= units;
 }
 
 void RangeProfile::read(float* lines) const {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < lines_; ++k) {
-    sum += difference_[k];
+  const double unit = 1.0 / units_;  // a power of two
+  const auto write = [&](std::size_t k, double sum) {
     // Ends that cross within a patch leave a little less than nothing where it is thinnest.
-    lines[k] = sum > 0 ? static_cast<float>(sum / units_) : 0.0F;
+    lines[k] = sum > 0 ? static_cast<float>(sum * unit) : 0.0F;
+  };
+  double sum = 0.0;
+  if (!is_bent_) {
+    for (std::size_t k = 0; k < lines_; ++k) {
+      write(k, sum += difference_[k]);
+    }
+    return;
+  }
+  double slope = 0.0;
+  for (std::size_t k = 0; k < lines_; ++k) {
+    slope += bend_[k];
+    write(k, sum += difference_[k] + slope);
   }
 }
 

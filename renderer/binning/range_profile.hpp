@@ -6,18 +6,21 @@
 
 namespace sonard::render {
 
-/// Sums amounts spread over range lines. What is kept is the difference from line to line, so that an amount
-/// spread over many lines costs no more than its two ends. Every number is a whole multiple of one unit, held
-/// in a double below 2^53: additions are exact, so the sum does not depend on their order, and where
-/// everything that begins has ended it is exactly 0 (docs/physics.md 4.2). One thread uses it.
+/// Sums amounts spread over range lines. What is kept is the difference from line to line, and for amounts
+/// that rise or fall along the range its change, so that an amount spread over many lines costs no more than
+/// its two ends. Every number is a whole multiple of one unit, held in a double below 2^53: additions are
+/// exact, so the sum does not depend on their order, and where everything that begins has ended it is exactly
+/// 0 (docs/physics.md 4.2). One thread uses it.
 class RangeProfile {
  public:
   /// @param largest total that may be added, >= 0, in the unit of the amounts.
   void reset(std::size_t lines, double largest);
 
-  /// Adds `amount` spread evenly between two positions in range lines, of which each runs evenly over its
-  /// smear (EchoPatch). Positions may lie outside the lines: what falls there is dropped.
-  void add(double position_a, float smear_a, double position_b, float smear_b, float amount);
+  /// Adds `amount` spread between two positions in range lines, of which each runs evenly over its smear, and
+  /// tilted (EchoPatch). Positions may lie outside the lines: what falls there is dropped. An amount that
+  /// begins within a thousandth of a line of where the last one ended begins there, so that the two share a
+  /// step. The rise of a tilt is not smeared; it is for spreads above 0.02 lines and no less than the smears.
+  void add(double position_a, float smear_a, double position_b, float smear_b, float amount, float tilt);
   /// Adds `amount` to the one line it falls into.
   void add_point(double position, float amount);
   /// Adds what the last add() has kept back: an end that the next patch might have continued.
@@ -28,11 +31,15 @@ class RangeProfile {
 
  private:
   void step(double position, float smear, double density);
-  void step_slow(double from, float smear, double density);
+  void step_from_before(double from, double smear, double density);
+  double tilt(double from, double to, double slope);
+  double bend(double position, double slope);
 
   std::size_t lines_ = 0;
   std::vector<double> difference_;
-  double units_ = 1.0;  ///< per unit of the amounts
+  std::vector<double> bend_;  ///< second difference
+  bool is_bent_ = false;      ///< whether that has anything but zeros
+  double units_ = 1.0;        ///< per unit of the amounts
   // The far end of the last patch. Where the next one begins at the same place the two make one step.
   double open_position_ = 0.0;
   float open_smear_ = 0.0F;
