@@ -164,11 +164,11 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   const int slices = settings.model == Model::paper ? 2 : 1;
   switch (settings.sampling.preset) {
     case Sampling::Preset::fast:
-      return {slices, 16, 5e-2F, 0.2F, 0.05F};
+      return {slices, 16, 3e-2F, 0.035F, 0.2F, 0.05F};
     case Sampling::Preset::reference:
-      return {8, 64, 1e-4F, 0.005F, 0.001F};
+      return {8, 64, 1e-4F, 0.001F, 0.005F, 0.001F};
     default:
-      return {slices, 64, 2.5e-3F, 0.04F, 0.005F};
+      return {slices, 64, 1e-3F, 0.016F, 0.04F, 0.005F};
   }
 }
 
@@ -209,7 +209,7 @@ struct SonarRenderer::Impl {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
-    image.intensity = look(settings, T_world_sonar, line_weight).echo;
+    image.intensity = look(settings, T_world_sonar, line_weight, std::move(image.intensity)).echo;
     Stopwatch watch;
     if (settings.model == Model::physical) {
       apply(line_weight, image);
@@ -219,35 +219,39 @@ struct SonarRenderer::Impl {
 
   /// Finds what is visible and bins it; fills the statistics of both.
   /// @param line_weight what the lines are yet to be multiplied with; empty: 1.
+  /// @param memory for the result
   BinningResult look(const SonarSettings& settings, const Pose& T_world_sonar,
-                     const std::vector<float>& line_weight) {
+                     const std::vector<float>& line_weight, std::vector<float> memory) {
     if (needs_grid(settings)) {
-      return look_with_grid(T_world_sonar, settings);
+      return look_with_grid(T_world_sonar, settings, std::move(memory));
     }
-    return slices ? look_in_slices(T_world_sonar, settings)
+    return slices ? look_in_slices(T_world_sonar, settings, std::move(memory))
                   : look_until_close(T_world_sonar, settings, line_weight);
   }
 
-  BinningResult look_with_grid(const Pose& T_world_sonar, const SonarSettings& settings) {
+  BinningResult look_with_grid(const Pose& T_world_sonar, const SonarSettings& settings,
+                               std::vector<float> memory) {
     Stopwatch watch;
     const SampleGrid& samples = grid_for(settings);
     const auto views =
         chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), sampled_range_m(settings));
     statistics.visibility_s = watch.lap();
-    return counted(bin_echoes(samples, views, settings.range, binning_options(settings, skip), workers),
+    return counted(bin_echoes(samples, views, settings.range, binning_options(settings, skip), workers,
+                              std::move(memory)),
                    watch);
   }
 
-  BinningResult look_in_slices(const Pose& T_world_sonar, const SonarSettings& settings) {
+  BinningResult look_in_slices(const Pose& T_world_sonar, const SonarSettings& settings,
+                               std::vector<float> memory) {
     Stopwatch watch;
     const auto cells =
         slices->sample(T_world_sonar, settings.aperture, settings.range.step_m, sampled_range_m(settings),
                        surface_model(settings), slice_accuracy(settings));
     statistics.visibility_s = watch.lap();
     statistics.skipped += slices->skipped();
-    return counted(
-        bin_echoes(cells, settings.aperture, settings.range, binning_options(settings, skip), workers),
-        watch);
+    return counted(bin_echoes(cells, settings.aperture, settings.range, binning_options(settings, skip),
+                              workers, std::move(memory)),
+                   watch);
   }
 
   /// Adds what binning has counted and taken to the statistics.

@@ -14,7 +14,8 @@ namespace sonard::render {
 namespace {
 
 constexpr int share_count = 32;  // jobs; fixed, so that the order of triangles does not depend on the threads
-constexpr float thin_ratio = 3.0F;  // angular height over width
+constexpr float thin_ratio = 3.0F;      // angular height over width
+constexpr float least_upright = 2e-3F;  // in t; lower edges matter little
 constexpr auto half_turn = static_cast<float>(std::numbers::pi);
 
 /// Vertices of one cluster in the sonar frame.
@@ -44,6 +45,58 @@ void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Cor
     out.azimuth[static_cast<std::size_t>(i)] = fast_azimuth(py, px);
     out.horizontal_squared[static_cast<std::size_t>(i)] = horizontal_squared;
     out.tangent[static_cast<std::size_t>(i)] = pz / std::sqrt(horizontal_squared + 1e-30F);
+  }
+}
+
+/// What the corners of each triangle of a cluster say of it.
+struct Bounds {
+  std::array<float, MeshClusters::most_triangles> low_azimuth, high_azimuth;
+  std::array<std::int32_t, MeshClusters::most_triangles> in_elevation, thin, upright;
+};
+
+SONARD_SIMD_CLONES
+void bound(const MeshClusters& mesh, const MeshClusters::Cluster& cluster, const Corners& at, const Fan& fan,
+           Bounds& out) {
+  const float room_per_square = fan.tan_limit() * fan.tan_limit();
+  const float upright_rad = fan.upright_rad();
+  const std::uint8_t* __restrict c0 = &mesh.corners[0][cluster.first_triangle];
+  const std::uint8_t* __restrict c1 = &mesh.corners[1][cluster.first_triangle];
+  const std::uint8_t* __restrict c2 = &mesh.corners[2][cluster.first_triangle];
+  const float* __restrict azimuth = at.azimuth.data();
+  const float* __restrict horizontal_squared = at.horizontal_squared.data();
+  const float* __restrict height = at.z.data();
+  const float* __restrict tangent = at.tangent.data();
+  float* __restrict low_azimuth = out.low_azimuth.data();
+  float* __restrict high_azimuth = out.high_azimuth.data();
+  std::int32_t* __restrict in_elevation = out.in_elevation.data();
+  std::int32_t* __restrict thin = out.thin.data();
+  std::int32_t* __restrict upright = out.upright.data();
+  const auto least = [](float a, float b, float c) {
+    const float ab = a < b ? a : b;
+    return ab < c ? ab : c;
+  };
+  const auto most = [](float a, float b, float c) {
+    const float ab = a > b ? a : b;
+    return ab > c ? ab : c;
+  };
+  const auto count = static_cast<std::int32_t>(cluster.triangle_count);
+  for (std::int32_t t = 0; t < count; ++t) {
+    const std::int32_t i = c0[t], j = c1[t], k = c2[t];
+    // No point of the triangle is farther out than its farthest corner, so none has less room in elevation.
+    const float far = most(horizontal_squared[i], horizontal_squared[j], horizontal_squared[k]);
+    const float room = far * room_per_square;
+    const float bottom = least(height[i], height[j], height[k]);
+    const float top = most(height[i], height[j], height[k]);
+    in_elevation[t] = ((bottom > 0) & (bottom * bottom > room)) | ((top < 0) & (top * top > room)) ? 0 : 1;
+    const float low = least(azimuth[i], azimuth[j], azimuth[k]);
+    const float high = most(azimuth[i], azimuth[j], azimuth[k]);
+    low_azimuth[t] = low;
+    high_azimuth[t] = high;
+    const float tall = most(tangent[i], tangent[j], tangent[k]) - least(tangent[i], tangent[j], tangent[k]);
+    thin[t] = tall > thin_ratio * (high - low) ? 1 : 0;
+    const float aside = least(std::abs(azimuth[i] - azimuth[j]), std::abs(azimuth[j] - azimuth[k]),
+                              std::abs(azimuth[k] - azimuth[i]));
+    upright[t] = ((aside < upright_rad) & (tall > least_upright)) ? 1 : 0;
   }
 }
 
@@ -106,7 +159,7 @@ void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, Wo
 void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, std::size_t begin,
                            std::size_t end, Share& share) const {
   Corners at;
-  const float tan_limit_squared = fan.tan_limit() * fan.tan_limit();
+  Bounds bounds;
   std::size_t part_number = 0;
   for (std::size_t c = begin; c < end; ++c) {
     while (c >= part_starts_[part_number + 1]) {
@@ -121,36 +174,35 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
       continue;
     }
     transform(part, cluster, at);
-    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-      const auto [i, j, k] = part.clusters->corners[t];
-      const float far =
-          std::max({at.horizontal_squared[i], at.horizontal_squared[j], at.horizontal_squared[k]});
-      const auto [bottom, top] = std::minmax({at.z[i], at.z[j], at.z[k]});
-      // No point of the triangle is farther out than its farthest corner, so none has less room in elevation.
-      const float room = far * tan_limit_squared;
-      if ((bottom > 0 && bottom * bottom > room) || (top < 0 && top * top > room)) {
+    bound(*part.clusters, cluster, at, fan, bounds);
+    for (std::uint32_t n = 0; n < cluster.triangle_count; ++n) {
+      if (bounds.in_elevation[n] == 0) {
         continue;
       }
-      const auto [low_t, high_t] = std::minmax({at.tangent[i], at.tangent[j], at.tangent[k]});
-      const auto [low, high] = std::minmax({at.azimuth[i], at.azimuth[j], at.azimuth[k]});
-      const FanTriangle triangle{{at.x[i], at.x[j], at.x[k]},
-                                 {at.y[i], at.y[j], at.y[k]},
-                                 {at.z[i], at.z[j], at.z[k]},
-                                 static_cast<std::uint32_t>(part_number),
-                                 part.clusters->mesh_triangle[t],
-                                 !out && high_t - low_t > thin_ratio * (high - low),
-                                 high - low > half_turn ? -half_turn : low,
-                                 high - low > half_turn ? half_turn : high};
-      add(triangle, {at.azimuth[i], at.azimuth[j], at.azimuth[k]}, fan, share);
+      const std::uint32_t t = cluster.first_triangle + n;
+      const std::size_t i = part.clusters->corners[0][t];
+      const std::size_t j = part.clusters->corners[1][t];
+      const std::size_t k = part.clusters->corners[2][t];
+      const bool whole_turn = bounds.high_azimuth[n] - bounds.low_azimuth[n] > half_turn;
+      add({{at.x[i], at.x[j], at.x[k]},
+           {at.y[i], at.y[j], at.y[k]},
+           {at.z[i], at.z[j], at.z[k]},
+           static_cast<std::uint32_t>(part_number),
+           part.clusters->mesh_triangle[t],
+           !out && bounds.thin[n] != 0,
+           part.plain,
+           bounds.upright[n] != 0,
+           whole_turn ? -half_turn : bounds.low_azimuth[n],
+           whole_turn ? half_turn : bounds.high_azimuth[n]},
+          {at.azimuth[i], at.azimuth[j], at.azimuth[k]}, fan, share);
     }
   }
 }
 
 void FanTriangles::add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
                        Share& share) {
-  const auto [low, high] = std::minmax({azimuth[0], azimuth[1], azimuth[2]});
-  if (high - low <= half_turn) {
-    share.add(triangle, fan.beams_between(low, high));
+  if (triangle.high_azimuth_rad - triangle.low_azimuth_rad <= half_turn) {
+    share.add(triangle, fan.beams_between(triangle.low_azimuth_rad, triangle.high_azimuth_rad));
     return;
   }
   if (std::min({std::abs(azimuth[0]), std::abs(azimuth[1]), std::abs(azimuth[2])}) < half_turn / 2) {

@@ -57,7 +57,9 @@ std::vector<std::uint32_t> morton_order(const TriangleMesh& mesh) {
 
 MeshClusters::MeshClusters(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> order = morton_order(mesh);
-  corners.reserve(order.size());
+  for (auto& corner : corners) {
+    corner.reserve(order.size());
+  }
   mesh_triangle.reserve(order.size());
   std::vector<std::int32_t> local_of_vertex(mesh.positions.size(), not_in_cluster);
   for (std::size_t next = 0; next < order.size();) {
@@ -69,11 +71,10 @@ void MeshClusters::add_cluster(const TriangleMesh& mesh, const std::vector<std::
                                std::size_t& next, std::vector<std::int32_t>& local_of_vertex) {
   Cluster cluster;
   cluster.first_vertex = static_cast<std::uint32_t>(x.size());
-  cluster.first_triangle = static_cast<std::uint32_t>(corners.size());
+  cluster.first_triangle = static_cast<std::uint32_t>(mesh_triangle.size());
   std::vector<std::uint32_t> used;
   while (next < order.size() && cluster.triangle_count < most_triangles && used.size() + 3 <= most_vertices) {
     const std::uint32_t triangle = order[next++];
-    std::array<std::uint8_t, 3> local{};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.indices[std::size_t{triangle} * 3 + k];
       if (local_of_vertex[vertex] == not_in_cluster) {
@@ -83,9 +84,8 @@ void MeshClusters::add_cluster(const TriangleMesh& mesh, const std::vector<std::
         y.push_back(mesh.positions[vertex].y);
         z.push_back(mesh.positions[vertex].z);
       }
-      local[k] = static_cast<std::uint8_t>(local_of_vertex[vertex]);
+      corners[k].push_back(static_cast<std::uint8_t>(local_of_vertex[vertex]));
     }
-    corners.push_back(local);
     mesh_triangle.push_back(triangle);
     ++cluster.triangle_count;
   }

@@ -29,7 +29,7 @@ struct MeshClusters {
 
   std::vector<Cluster> clusters;
   std::vector<float> x, y, z;                        ///< vertices, cluster after cluster
-  std::vector<std::array<std::uint8_t, 3>> corners;  ///< of each triangle, within its cluster's vertices
+  std::array<std::vector<std::uint8_t>, 3> corners;  ///< of each triangle, within its cluster's vertices
   std::vector<std::uint32_t> mesh_triangle;          ///< its number in the mesh
 
   explicit MeshClusters(const TriangleMesh& mesh);

@@ -1,6 +1,7 @@
 #include "renderer/visibility/slices/slice_cutter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -14,11 +15,21 @@ constexpr std::size_t widest_vector = 16;  // arrays end on a multiple, so that 
 constexpr float nearest_m = 1e-4F;         // what is nearer to the vertical axis is cut off
 // Of a segment, in radians of elevation: a shorter one says nothing of the slope of its surface.
 constexpr float shortest_rad = 1e-6F;
+constexpr float sharp_turn_rad = 0.6F;
+constexpr double same_edge_rad = 2e-6;  // edges nearer to each other stand in one place
+
+/// Azimuth into which the normal of a triangle points that is turned away from the sonar.
+float facing(const FanTriangle& t) {
+  const glm::vec3 a(t.x[0], t.y[0], t.z[0]);
+  const glm::vec3 n =
+      glm::cross(glm::vec3(t.x[1], t.y[1], t.z[1]) - a, glm::vec3(t.x[2], t.y[2], t.z[2]) - a);
+  return glm::dot(n, a) < 0 ? std::atan2(-n.y, -n.x) : std::atan2(n.y, n.x);
+}
 
 }  // namespace
 
 void SliceCutter::load(std::span<const FanTriangle* const> triangles, double low_rad, double high_rad,
-                       bool two_sided) {
+                       const Fan& fan, bool two_sided) {
   const auto low = static_cast<float>(low_rad) - azimuth_error_rad;
   const auto high = static_cast<float>(high_rad) + azimuth_error_rad;
   triangles_.clear();
@@ -27,6 +38,7 @@ void SliceCutter::load(std::span<const FanTriangle* const> triangles, double low
       triangles_.push_back(t);
     }
   }
+  list_upright_edges(low_rad, high_rad, fan);
   if (!two_sided) {
     drop_back_faces();
   }
@@ -115,6 +127,99 @@ void SliceCutter::list_thin() {
     }
   }
   thin_.resize(things);
+}
+
+void SliceCutter::list_upright_edges(double low_rad, double high_rad, const Fan& fan) {
+  edge_parts_.clear();
+  for (const FanTriangle* t : triangles_) {
+    if (t->upright) {
+      add_edge_parts(*t, low_rad, high_rad, fan);
+    }
+  }
+  std::sort(edge_parts_.begin(), edge_parts_.end(),
+            [](const EdgePart& a, const EdgePart& b) { return a.azimuth_rad < b.azimuth_rad; });
+}
+
+void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad,
+                                 const Fan& fan) {
+  const auto tan_limit = static_cast<double>(fan.tan_limit());
+  const auto upright_rad = static_cast<double>(fan.upright_rad());
+  double azimuth[3], t[3];
+  for (int k = 0; k < 3; ++k) {
+    const double x = static_cast<double>(triangle.x[k]), y = static_cast<double>(triangle.y[k]);
+    azimuth[k] = std::atan2(y, x);
+    t[k] = static_cast<double>(triangle.z[k]) / std::hypot(x, y);
+  }
+  const float facing_rad = facing(triangle);
+  const auto probe = [tan_limit](double at) {
+    const double place = (at / tan_limit + 1) * (0.5 * side_probes) + 0.5;
+    return static_cast<std::int32_t>(std::clamp(place, 0.0, static_cast<double>(side_probes)));
+  };
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3, opposite = (k + 2) % 3;
+    const double lean = azimuth[next] - azimuth[k], height = t[next] - t[k];
+    const double at = azimuth[k] + 0.5 * lean;
+    const std::int32_t first = probe(std::min(t[k], t[next])), last = probe(std::max(t[k], t[next]));
+    if (std::abs(lean) < upright_rad && at > low_rad && at < high_rad && first < last) {
+      // Where the edge, or its continuation, is as high as the third corner.
+      const double beside = azimuth[k] + lean * (t[opposite] - t[k]) / height;
+      edge_parts_.push_back({at, first, last, azimuth[opposite] > beside ? 1 : -1, facing_rad});
+    }
+  }
+}
+
+/// Of the parts [begin, end), which stand in one place.
+ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
+  std::array<std::int32_t, side_probes + 1> sides{};
+  std::array<float, side_probes + 1> turns{};
+  for (std::size_t i = begin; i < end; ++i) {
+    const EdgePart& part = edge_parts_[i];
+    const auto first = static_cast<std::size_t>(part.first_probe);
+    const auto last = static_cast<std::size_t>(part.last_probe);
+    sides[first] += part.side;
+    sides[last] -= part.side;
+    turns[first] += static_cast<float>(part.side) * part.facing_rad;
+    turns[last] -= static_cast<float>(part.side) * part.facing_rad;
+  }
+  ProbeSet probes;
+  std::int32_t side = 0;
+  float turn = 0.0F;
+  for (std::size_t k = 0; k < side_probes; ++k) {
+    side += sides[k];
+    turn += turns[k];
+    probes[k] = side != 0 || std::abs(turn) > sharp_turn_rad;
+  }
+  return probes;
+}
+
+void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const {
+  constexpr double margin = 1e-3;  // of the wedge
+  constexpr std::size_t most_edges = 4;
+  constexpr std::size_t least_probes = 12;  // lower edges do as well in even parts
+  const double reach = (0.5 - margin) * static_cast<double>(slice.width_rad);
+  edges.clear();
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < edge_parts_.size(); ++i) {
+    const double at = edge_parts_[begin].azimuth_rad;
+    if (i + 1 < edge_parts_.size() && edge_parts_[i + 1].azimuth_rad - at < same_edge_rad) {
+      continue;
+    }
+    if (std::abs(at - slice.azimuth_rad) < reach) {
+      const ProbeSet probes = probes_of_edge(begin, i + 1);
+      if (probes.count() >= least_probes) {
+        edges.push_back({at, probes});
+      }
+    }
+    begin = i + 1;
+  }
+  if (edges.size() > most_edges) {
+    std::nth_element(
+        edges.begin(), edges.begin() + most_edges, edges.end(),
+        [](const UprightEdge& a, const UprightEdge& b) { return a.probes.count() > b.probes.count(); });
+    edges.resize(most_edges);
+  }
+  std::sort(edges.begin(), edges.end(),
+            [](const UprightEdge& a, const UprightEdge& b) { return a.azimuth_rad > b.azimuth_rad; });
 }
 
 bool SliceCutter::misses_thin_thing(const Slice& slice) const {

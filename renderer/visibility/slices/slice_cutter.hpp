@@ -1,6 +1,7 @@
 // Cuts the triangles of one beam with half planes of constant azimuth.
 #pragma once
 
+#include <bitset>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -26,6 +27,17 @@ struct Slice {
         sine(static_cast<float>(std::sin(azimuth))) {}
 };
 
+/// Neighbouring slices are compared at so many t, evenly spaced over the elevation of the fan.
+inline constexpr int side_probes = 256;
+using ProbeSet = std::bitset<side_probes>;
+
+/// Where a surface ends along a slice or turns sharply: the end of a wall, the side of a post, the corner of
+/// a room.
+struct UprightEdge {
+  double azimuth_rad = 0.0;
+  ProbeSet probes;  ///< at which it does
+};
+
 /// What a slice cuts out of triangles: a straight segment each, in arrays as long as the list of triangles,
 /// because loops over them are vectorised. Only those named in `kept` exist.
 struct Segments {
@@ -47,7 +59,8 @@ class SliceCutter {
  public:
   /// @param low_rad, high_rad azimuths between which it will be cut; triangles elsewhere are left out.
   /// @param two_sided false: triangles seen from behind are left out.
-  void load(std::span<const FanTriangle* const> triangles, double low_rad, double high_rad, bool two_sided);
+  void load(std::span<const FanTriangle* const> triangles, double low_rad, double high_rad, const Fan& fan,
+            bool two_sided);
 
   /// Keeps the segments that reach between -tan_limit and tan_limit, in the order of the triangles. An edge
   /// shared by two triangles is cut at the same point, to the bit.
@@ -56,6 +69,9 @@ class SliceCutter {
   /// Whether something narrow and tall, the leg of a frame or a pole, reaches into the wedge of a slice but
   /// not to its middle: the slice misses all of it.
   bool misses_thin_thing(const Slice& slice) const;
+
+  /// Those well inside the wedge, from port to starboard, but for the lowest if they are many.
+  void find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const;
 
   const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }
   /// Unit normal in the sonar frame; its sign is that of the winding.
@@ -67,6 +83,9 @@ class SliceCutter {
   void load_normals();
   void drop_back_faces();
   void list_thin();
+  void list_upright_edges(double low_rad, double high_rad, const Fan& fan);
+  void add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad, const Fan& fan);
+  ProbeSet probes_of_edge(std::size_t begin, std::size_t end) const;
   void cut_all(const Slice& slice, float tan_limit, Segments& segments);
   void clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments);
 
@@ -79,6 +98,16 @@ class SliceCutter {
     float low_azimuth_rad, high_azimuth_rad;
   };
   std::vector<ThinThing> thin_;
+  /// An upright edge of one triangle.
+  struct EdgePart {
+    double azimuth_rad;
+    std::int32_t first_probe, last_probe;  ///< probes first <= i < last
+    /// 1 if the triangle lies to port of it, else -1: where a surface goes on to the other side the two
+    /// cancel out, where it ends or folds back they do not.
+    std::int32_t side;
+    float facing_rad;  ///< azimuth of the triangle's normal; where it goes on evenly, this cancels out too
+  };
+  std::vector<EdgePart> edge_parts_;  ///< by rising azimuth
   enum Fate : std::int32_t { none, kept, partly_behind };
   std::vector<std::int32_t> fate_;  // of each triangle in the slice that is being cut
 };

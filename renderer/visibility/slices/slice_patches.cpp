@@ -15,6 +15,8 @@ namespace {
 constexpr int pattern_steps = 1024;
 constexpr int most_divisions = 16;  // of a piece at once
 constexpr int most_rounds = 6;      // near a foot point the divided pieces are divided again
+constexpr std::int32_t probe_vector = 4;
+constexpr float most_tilt = 1.1F;  // of a piece; 1 where the range turns round at one end
 // Under a normal map pieces are no longer than this many lines, so that its bumps appear at their ranges.
 constexpr float mapped_lines = 2.0F;
 
@@ -44,19 +46,19 @@ float ElevationPattern::at(float t) const {
 void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = request.pieces;
   follow_crossings(request);
-  lay_out(request);
-  measure(request);
-  for (int round = 0; round < most_rounds && divide_uneven(request); ++round) {
+  int rounds = 0;
+  do {
     lay_out(request);
     measure(request);
-  }
+    find_tilts(request);
+  } while (rounds++ < most_rounds && divide_uneven(request));
   shade(request);
   const std::size_t begin = patches.size();
   patches.resize(begin + pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     patches[begin + i] = {
-        range_low_[i],  range_high_[i], smear_low_[i], smear_high_[i], response_[i] * solid_angle_[i],
-        solid_angle_[i]};
+        range_low_[i],   range_high_[i], smear_low_[i], smear_high_[i], response_[i] * solid_angle_[i],
+        solid_angle_[i], echo_tilt_[i],  range_tilt_[i]};
   }
 }
 
@@ -90,32 +92,59 @@ void SlicePatcher::follow_crossings(const Request& request) {
   }
 }
 
-/// Gathers what the pieces' segments and triangles say of them.
-void SlicePatcher::lay_out(const Request& request) {
-  const std::size_t count = pieces_.size();
-  for (auto* array : {&low_, &high_, &low_drift_, &high_drift_, &w_at_0_, &w_slope_, &w_by_azimuth_,
-                      &normal_h_, &normal_s_, &normal_z_, &range_low_, &range_mid_, &range_high_, &smear_low_,
-                      &smear_high_, &cosine_, &solid_angle_, &response_}) {
+/// Arrays never shrink: they may be longer than there are pieces.
+void SlicePatcher::grow(std::size_t count) {
+  for (auto* array :
+       {&low_,          &high_,       &low_drift_,   &high_drift_, &w_at_0_,      &w_slope_,
+        &w_by_azimuth_, &normal_h_,   &normal_s_,    &normal_z_,   &range_low_,   &range_mid_,
+        &range_high_,   &smear_low_,  &smear_high_,  &cosine_,     &solid_angle_, &response_,
+        &plain_,        &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_,   &displaced_}) {
     array->resize(count);
   }
   first_probe_.resize(count);
   last_probe_.resize(count);
+}
+
+/// Gathers what the pieces' segments and triangles say of them.
+void SlicePatcher::lay_out(const Request& request) {
+  const std::size_t count = pieces_.size();
+  if (count > low_.size()) {
+    grow(count + count / 2);
+  }
   const float cosine = request.slice.cosine, sine = request.slice.sine;
   const float* nx = request.cutter.normal_x();
   const float* ny = request.cutter.normal_y();
   const float* nz = request.cutter.normal_z();
+  const bool as_cosine = request.surface.model == Model::physical;
+  // An end that drifts out of the fan stops there.
+  const float drift_per_t = 2 / request.slice.width_rad;
+  const auto inside = [&](float drift, float t) {
+    const float most = (request.tan_limit - std::abs(t)) * drift_per_t;
+    return std::clamp(drift, -most, most);
+  };
   for (std::size_t i = 0; i < count; ++i) {
     const auto segment = static_cast<std::size_t>(pieces_[i].segment);
     low_[i] = pieces_[i].low;
     high_[i] = pieces_[i].high;
-    low_drift_[i] = pieces_[i].low_drift;
-    high_drift_[i] = pieces_[i].high_drift;
+    low_drift_[i] = inside(pieces_[i].low_drift, pieces_[i].low);
+    high_drift_[i] = inside(pieces_[i].high_drift, pieces_[i].high);
     w_at_0_[i] = request.segments.w_at_0[segment];
     w_slope_[i] = request.segments.w_slope[segment];
     normal_h_[i] = nx[segment] * cosine + ny[segment] * sine;
     normal_s_[i] = ny[segment] * cosine - nx[segment] * sine;
     normal_z_[i] = nz[segment];
+    plain_[i] = as_cosine && request.cutter.triangle(pieces_[i].segment).plain ? 1.0F : 0.0F;
   }
+}
+
+/// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
+/// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
+/// nearly edge-on that the range is far from straight.
+/// @param h, s components of the normal over n . d
+inline float bow_of_plane(float h, float s, float width) {
+  const float turn = s * width;
+  const float bow = (1.0F / 24) * (h * width * width + 2 * turn * turn);
+  return turn * turn < 2.5e-3F && bow < 1e-3F && bow > -1e-3F ? bow : 0.0F;
 }
 
 /// Ranges at both ends and in the middle, the smear of the ends, incidence and solid angle. On the plane n.p
@@ -143,47 +172,100 @@ void SlicePatcher::measure(const Request& request) {
   float* __restrict cos_phi = cosine_.data();
   float* __restrict solid_angle = solid_angle_.data();
   float* __restrict w_by_azimuth = w_by_azimuth_.data();
+  float* __restrict cosine_tilt = cosine_tilt_.data();
+  float* __restrict cosine_mid = cosine_mid_.data();
   for (std::size_t i = 0; i < count; ++i) {
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
     const float b = w_slope[i];
     const float w1 = w_at_0[i] + b * t1, w2 = w_at_0[i] + b * t2, wm = w_at_0[i] + b * tm;
     const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
     const float g1 = std::sqrt(q1), g2 = std::sqrt(q2), gm = std::sqrt(qm);
-    const float r1 = g1 / w1, r2 = g2 / w2;
-    const float n1 = normal_h[i] + normal_z[i] * t1, n2 = normal_h[i] + normal_z[i] * t2;
+    const float n1 = normal_h[i] + normal_z[i] * t1, n2 = normal_h[i] + normal_z[i] * t2,
+                nm = normal_h[i] + normal_z[i] * tm;
+    const float r1 = g1 / w1 * (1 + bow_of_plane(normal_h[i] / n1, normal_s[i] / n1, width));
+    const float r2 = g2 / w2 * (1 + bow_of_plane(normal_h[i] / n2, normal_s[i] / n2, width));
     const float by_azimuth1 = -r1 * normal_s[i] / n1, by_azimuth2 = -r2 * normal_s[i] / n2;
     const float by_t1 = r1 * (t1 / q1 - b / w1), by_t2 = r2 * (t2 / q2 - b / w2);
+    const float rm = gm / wm * (1 + bow_of_plane(normal_h[i] / nm, normal_s[i] / nm, width));
     range_low[i] = r1;
-    range_mid[i] = gm / wm;
+    range_mid[i] = rm;
     range_high[i] = r2;
     smear_low[i] = std::abs(by_azimuth1 + by_t1 * low_drift[i]) * width;
     smear_high[i] = std::abs(by_azimuth2 + by_t2 * high_drift[i]) * width;
-    const float nm = normal_h[i] + normal_z[i] * tm;
     // On a plane 1 / h changes with azimuth by n_s / D, wherever on it.
     w_by_azimuth[i] = wm * normal_s[i] / nm;
-    const float cosine = std::abs(nm) / gm;
+    const float c1 = std::abs(n1) / g1, c2 = std::abs(n2) / g2, cm = std::abs(nm) / gm;
+    const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
     cos_phi[i] = cosine < 1 ? cosine : 1.0F;
+    cosine_tilt[i] = 0.5F * (c2 - c1) / cosine;
+    cosine_mid[i] = cm;
     solid_angle[i] = (t2 / g2 - t1 / g1) * width;
   }
 }
 
+/// How the echo rises along the range, and what that leaves. The range is taken as quadratic in t, r = rm +
+/// half x + bow x^2 with x from -1 to 1. Per metre of it the echo goes as the solid angle, (1 + t^2)^(-3/2)
+/// dt, over dr: in first order it rises by the tilt (docs/physics.md 2.3).
 SONARD_SIMD_CLONES
-bool SlicePatcher::all_even(const Request& request) const {
-  const float allowed = request.evenness * request.line_m;
-  const float furthest = request.max_range_m;
+void SlicePatcher::find_tilts(const Request& request) {
   const auto count = pieces_.size();
-  const float* __restrict low = range_low_.data();
-  const float* __restrict mid = range_mid_.data();
-  const float* __restrict high = range_high_.data();
+  const float* __restrict low = low_.data();
+  const float* __restrict high = high_.data();
+  const float* __restrict range_low = range_low_.data();
+  const float* __restrict range_mid = range_mid_.data();
+  const float* __restrict range_high = range_high_.data();
+  float* __restrict smear_low = smear_low_.data();
+  float* __restrict smear_high = smear_high_.data();
+  const float* __restrict cosine_tilt = cosine_tilt_.data();
+  const float* __restrict plain = plain_.data();
+  float* __restrict range_tilt = range_tilt_.data();
+  float* __restrict displaced = displaced_.data();
+  const float* __restrict low_drift = low_drift_.data();
+  const float* __restrict high_drift = high_drift_.data();
+  const float width = request.slice.width_rad;
+  const float furthest = request.max_range_m;
+  // A tilt moves the middle of the echo by a third of this.
+  const float least_tilted_m = 0.5F * request.evenness * request.line_m;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
+    const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
+    const float r1 = range_low[i], rm = range_mid[i], r2 = range_high[i];
+    const float half = 0.5F * (r2 - r1), bow = 0.5F * (r1 + r2) - rm;
+    const float stretch = 0.5F * qm * std::sqrt(qm) * (1 / (q2 * std::sqrt(q2)) - 1 / (q1 * std::sqrt(q1)));
+    const float tilt = stretch - 2 * bow / half;
+    const float length = std::abs(half), steepness = std::abs(tilt);
+    // Ends whose smears differ by more than twice the spread cross within the wedge. They do where the piece
+    // shrinks to nothing, and its neighbour then makes up for it; but not where the range hardly changes
+    // along the piece, as on a wall.
+    const float shrinks = std::abs(high_drift[i] - low_drift[i]) * width / (t2 - t1);
+    const float smear = 0.5F * (smear_low[i] + smear_high[i]);
+    const float apart = 0.5F * (smear_high[i] - smear_low[i]);
+    const float most_apart = length * (2 + 1.5F * shrinks);
+    const float kept_apart = apart > most_apart ? most_apart : (apart < -most_apart ? -most_apart : apart);
+    smear_low[i] = smear - kept_apart;
+    smear_high[i] = smear + kept_apart;
+    const bool tilts = (steepness < most_tilt) & (smear < length);
+    const float with_cosine = std::abs(tilt + plain[i] * cosine_tilt[i]);
+    const float steeper = with_cosine > steepness ? with_cosine : steepness;
+    range_tilt[i] = (tilts & (steeper * length > least_tilted_m)) ? tilt : 0.0F;
+    // What a tilt leaves is of third order. Spread evenly, the echo lies two thirds of the bow too far
+    // towards its thin end; as all pieces of a surface do so to the same side, that counts nine times.
+    const float left = tilts & (plain[i] > 0) ? bow * bow / length : 6 * std::abs(bow);
+    // Where the range turns round inside, the halves overlap.
+    const float both = std::abs(rm - r1) + std::abs(r2 - rm);
+    const bool turns = (rm - r1) * (r2 - rm) < 0;
+    const float nearest = r1 < r2 ? (r1 < rm ? r1 : rm) : (r2 < rm ? r2 : rm);
+    displaced[i] = nearest < furthest ? (turns ? both : left) : 0.0F;
+  }
+}
+
+SONARD_SIMD_CLONES
+bool SlicePatcher::all_even(float allowed_m) const {
+  const auto count = pieces_.size();
+  const float* __restrict displaced = displaced_.data();
   std::int32_t uneven = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const float lower = mid[i] - low[i] < 0 ? low[i] - mid[i] : mid[i] - low[i];
-    const float upper = high[i] - mid[i] < 0 ? mid[i] - high[i] : high[i] - mid[i];
-    const float difference = upper < lower ? lower - upper : upper - lower;
-    const bool turns = (mid[i] - low[i]) * (high[i] - mid[i]) < 0;
-    const float nearest =
-        low[i] < high[i] ? (low[i] < mid[i] ? low[i] : mid[i]) : (high[i] < mid[i] ? high[i] : mid[i]);
-    uneven += (((turns ? lower + upper : difference) > allowed) & (nearest < furthest)) ? 1 : 0;
+    uneven += displaced[i] > allowed_m ? 1 : 0;
   }
   return uneven == 0;
 }
@@ -193,41 +275,48 @@ bool SlicePatcher::is_mapped(const Request& request, const VisiblePiece& piece) 
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
-/// Divides the pieces whose echo is not even in range. Half of a piece's elevation holds about half of its
-/// echo: the ranges of the halves tell how uneven it is.
+/// Into how many parts a piece is to be divided.
+int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
+  const float allowed_m = request.evenness * request.line_m;
+  const float span_m = std::abs(range_mid_[i] - range_low_[i]) + std::abs(range_high_[i] - range_mid_[i]);
+  float parts = 1.0F;
+  if (displaced_[i] > allowed_m) {
+    const bool turns = (range_mid_[i] - range_low_[i]) * (range_high_[i] - range_mid_[i]) < 0;
+    const bool tilts = plain_[i] > 0 && range_tilt_[i] != 0.0F;
+    // The displacement falls with the square of the length, and with the third power if the echo is tilted.
+    const float excess = displaced_[i] / allowed_m;
+    parts = turns ? 2.0F : 1.0F + std::floor(tilts ? std::cbrt(excess) : std::sqrt(excess));
+  }
+  const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
+  if (request.any_mapped && in_range && span_m > mapped_lines * request.line_m &&
+      is_mapped(request, pieces_[i])) {
+    parts = std::max(parts, 1.0F + std::floor(span_m / (mapped_lines * request.line_m)));
+  }
+  return static_cast<int>(std::min(parts, static_cast<float>(most_divisions)));
+}
+
+/// Divides the pieces whose echo runs otherwise in range than a patch can say.
 bool SlicePatcher::divide_uneven(const Request& request) {
-  if (!request.any_mapped && all_even(request)) {
+  if (!request.any_mapped && all_even(request.evenness * request.line_m)) {
     return false;
   }
   bool any = false;
   divided_.clear();
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const float lower = range_mid_[i] - range_low_[i];
-    const float upper = range_high_[i] - range_mid_[i];
-    const float sum = std::abs(lower) + std::abs(upper);
-    // Where the range turns round inside, the halves overlap.
-    const bool turns = lower * upper < 0;
-    int parts = 1;
-    const float displaced = turns ? sum : std::abs(std::abs(upper) - std::abs(lower));
-    const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
-    if (in_range && displaced > request.evenness * request.line_m) {
-      // The displacement falls with the square of the length.
-      parts = turns ? 4 : 1 + static_cast<int>(std::sqrt(displaced / (request.evenness * request.line_m)));
-    }
-    if (in_range && sum > mapped_lines * request.line_m && is_mapped(request, pieces_[i])) {
-      parts = std::max(parts, 1 + static_cast<int>(sum / (mapped_lines * request.line_m)));
-    }
+    const int parts = parts_of(request, i);
     const VisiblePiece& whole = pieces_[i];
     if (parts == 1) {
       divided_.push_back(whole);
       continue;
     }
     any = true;
-    parts = std::min(parts, most_divisions);
     VisiblePiece part = whole;
+    // A range that turns round inside does so where dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
+    const float turn = w_slope_[i] / w_at_0_[i];
+    const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
     for (int k = 1; k <= parts; ++k) {
       const float share = static_cast<float>(k) / static_cast<float>(parts);
-      part.high = k == parts ? whole.high : whole.low + (whole.high - whole.low) * share;
+      part.high = k == parts ? whole.high : at_turn ? turn : whole.low + (whole.high - whole.low) * share;
       part.high_drift = k == parts ? whole.high_drift : 0.0F;
       if (part.high > part.low) {
         divided_.push_back(part);
@@ -250,12 +339,21 @@ void SlicePatcher::shade(const Request& request) {
     if (part.vertex_normals || part.normal_map) {
       const float h = 1.0F / (w_at_0_[i] + w_slope_[i] * t);
       const PiecePlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
-      cosine = shaded_cosine(part, triangle, place, cosine);
+      // In the middle; that the mean differs from the middle is a matter of geometry.
+      const float middle = cosine_mid_[i];
+      cosine = middle > 0 ? shaded_cosine(part, triangle, place, middle) * (cosine / middle) : cosine;
     }
     response_[i] = surface_response(part, request.surface, cosine, range_mid_[i]);
+    const bool tilts = range_tilt_[i] != 0.0F;
     if (!request.pattern.flat()) {
-      solid_angle_[i] *= request.pattern.at(t);
+      const float weight = request.pattern.at(t);
+      solid_angle_[i] *= weight;
+      if (tilts && weight > 0) {
+        range_tilt_[i] += 0.5F * (request.pattern.at(piece.high) - request.pattern.at(piece.low)) / weight;
+      }
     }
+    echo_tilt_[i] = tilts ? std::clamp(range_tilt_[i] + plain_[i] * cosine_tilt_[i], -1.0F, 1.0F) : 0.0F;
+    range_tilt_[i] = std::clamp(range_tilt_[i], -1.0F, 1.0F);
   }
 }
 
@@ -282,15 +380,28 @@ void SlicePatcher::find_probes(float tan_limit, float offset_rad) {
 }
 
 void SlicePatcher::profile(float tan_limit, float offset_rad, SideProfile& out) {
-  out.fill(0.0F);
   const float step = 2 * tan_limit / side_probes;
   find_probes(tan_limit, offset_rad);
+  std::int32_t end = 0;  // of what is filled
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    for (std::int32_t k = first_probe_[i]; k < last_probe_[i]; ++k) {
-      const float t = -tan_limit + (static_cast<float>(k) + 0.5F) * step;
-      out[static_cast<std::size_t>(k)] = w_at_0_[i] + w_by_azimuth_[i] * offset_rad + w_slope_[i] * t;
+    const std::int32_t first = first_probe_[i], last = last_probe_[i];
+    for (; end < first; ++end) {
+      out[static_cast<std::size_t>(end)] = 0.0F;
     }
+    const float slope = w_slope_[i] * step;
+    const float w = w_at_0_[i] + w_by_azimuth_[i] * offset_rad +
+                    w_slope_[i] * (-tan_limit + (static_cast<float>(first) + 0.5F) * step);
+    // Most hold a probe or two. What is written too much the next piece writes again, or the end.
+    float* const at = &out[static_cast<std::size_t>(first)];
+    for (std::int32_t k = 0; k < probe_vector; ++k) {
+      at[k] = w + slope * static_cast<float>(k);
+    }
+    for (std::int32_t k = probe_vector; k < last - first; ++k) {
+      at[k] = w + slope * static_cast<float>(k);
+    }
+    end = std::max(end, last);
   }
+  std::fill(out.begin() + end, out.end(), 0.0F);
 }
 
 }  // namespace sonard::render

@@ -27,9 +27,8 @@ struct PartSurface {
 };
 
 /// What is expected at one side of a wedge if its surfaces go on as in its middle: 1 / horizontal distance at
-/// evenly spaced t, 0 where nothing is seen. Neighbours compare theirs.
-inline constexpr int side_probes = 256;
-using SideProfile = std::array<float, side_probes>;
+/// the probes, 0 where nothing is seen. Neighbours compare theirs.
+using SideProfile = std::array<float, side_probes + 4>;  ///< the last four are padding
 
 /// One-way elevation pattern as a function of t, tabled.
 class ElevationPattern {
@@ -55,8 +54,9 @@ class SlicePatcher {
     const std::vector<PartSurface>& parts;
     const SurfaceModel& surface;
     const ElevationPattern& pattern;
-    /// Within a piece the echo is taken as even in range. Pieces are divided until that displaces it by no
-    /// more than this many lines.
+    float tan_limit;  ///< of the fan's elevation
+    /// Within a piece the echo is taken as even in range, or as rising in a straight line. Pieces are divided
+    /// until that displaces it by no more than this many lines.
     float evenness;
     bool any_mapped;  ///< whether any of the parts has a normal map
     float line_m;
@@ -71,10 +71,13 @@ class SlicePatcher {
 
  private:
   void follow_crossings(const Request& request);
+  void grow(std::size_t count);
   void lay_out(const Request& request);
   void measure(const Request& request);
+  void find_tilts(const Request& request);
   bool divide_uneven(const Request& request);
-  bool all_even(const Request& request) const;
+  bool all_even(float allowed_m) const;
+  int parts_of(const Request& request, std::size_t i) const;
   void find_probes(float tan_limit, float offset_rad);
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
   void shade(const Request& request);
@@ -84,6 +87,12 @@ class SlicePatcher {
   std::vector<float> low_, high_, low_drift_, high_drift_;
   std::vector<float> w_at_0_, w_slope_, w_by_azimuth_, normal_h_, normal_s_, normal_z_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
+  std::vector<float> plain_;        ///< 1 where the response is the cosine to the facet, else 0
+  std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used
+  std::vector<float> cosine_tilt_;  ///< of cosine_, the mean of a piece
+  std::vector<float> cosine_mid_;   ///< in its middle
+  std::vector<float> echo_tilt_;    ///< of both
+  std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_;
   std::vector<std::int32_t> first_probe_, last_probe_;
 };

@@ -9,21 +9,65 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int divisions_at_once = 4;
+// An edge is closed in on, a bow falls with the square of the width.
+constexpr int divisions_at_edges = 4;
+constexpr int divisions_of_bows = 2;
+constexpr float bows_per_edge = 5.0F;  // what a bow displaces stays nearby, what an edge hides is gone
+constexpr std::size_t borders_per_job = 32;
 
-/// Share of the elevations at which two neighbours expect ranges more than a line apart on the border between
-/// them. Ranges are secant / w: compared without dividing, and without those out of range in both.
-SONARD_SIMD_CLONES
-float disagreement(const SideProfile& a, const SideProfile& b, const SideProfile& secant, float line_m,
-                   float furthest_m) {
-  std::int32_t count = 0;
-  for (std::size_t i = 0; i < side_probes; ++i) {
-    const float w_a = a[i], w_b = b[i], scale = secant[i];
-    const float nearer = w_a > w_b ? w_a : w_b;
-    const float difference = scale * (w_a > w_b ? w_a - w_b : w_b - w_a);
-    count += ((difference > line_m * w_a * w_b) & (scale < furthest_m * nearer)) ? 1 : 0;
+/// Compares neighbours. Ranges are secant / w: compared without dividing, and without those out of range in
+/// both.
+struct Comparison {
+  float line_m, bow_m, furthest_m;
+
+  SliceBorder operator()(const SliceCell& port, const SliceCell& starboard, const SideProfile& secant) const;
+
+ private:
+  /// @param port_side, starboard_side what the two expect on the border.
+  SliceBorder compare(const SliceCell& port, const SideProfile& port_side, const SideProfile& starboard_side,
+                      const SliceCell& starboard, const SideProfile& secant) const;
+};
+
+SliceBorder Comparison::operator()(const SliceCell& port, const SliceCell& starboard,
+                                   const SideProfile& secant) const {
+  if (port.edge_at_starboard.none()) {
+    return compare(port, port.starboard, starboard.port, starboard, secant);
   }
-  return static_cast<float>(count) / side_probes;
+  // Along the edge they have every reason to disagree.
+  SideProfile port_side = port.starboard, starboard_side = starboard.port;
+  for (std::size_t i = 0; i < side_probes; ++i) {
+    if (port.edge_at_starboard[i]) {
+      port_side[i] = starboard_side[i] = 0.0F;
+    }
+  }
+  return compare(port, port_side, starboard_side, starboard, secant);
+}
+
+SONARD_SIMD_CLONES
+SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_side,
+                                const SideProfile& starboard_side, const SliceCell& starboard,
+                                const SideProfile& secant) const {
+  const float* __restrict pp = port.port.data();
+  const float* __restrict ps = port_side.data();
+  const float* __restrict sp = starboard_side.data();
+  const float* __restrict ss = starboard.starboard.data();
+  // A bow over a chord of width b is b^2 / 8 of the curvature, here the change of slope over the mean width.
+  const float mean_width = 0.5F * (port.slice.width_rad + starboard.slice.width_rad);
+  const float per_port = mean_width / (8 * port.slice.width_rad);
+  const float per_starboard = mean_width / (8 * starboard.slice.width_rad);
+  std::int32_t apart = 0, bent = 0;
+  for (std::size_t i = 0; i < side_probes; ++i) {
+    const float w_a = ps[i], w_b = sp[i], scale = secant[i];
+    const float nearer = w_a > w_b ? w_a : w_b;
+    const float product = w_a * w_b;
+    const float difference = scale * (w_a > w_b ? w_a - w_b : w_b - w_a);
+    const float bow = scale * std::abs((pp[i] - w_a) * per_port - (w_b - ss[i]) * per_starboard);
+    const bool all_seen = (pp[i] > 0) & (product > 0) & (ss[i] > 0);
+    const bool in_range = scale < furthest_m * nearer;
+    apart += (in_range & (difference > line_m * product)) ? 1 : 0;
+    bent += (in_range & all_seen & (bow > bow_m * product)) ? 1 : 0;
+  }
+  return {static_cast<float>(apart) / side_probes, static_cast<float>(bent) / side_probes};
 }
 
 SideProfile secants(float tan_limit) {
@@ -37,31 +81,76 @@ SideProfile secants(float tan_limit) {
 
 }  // namespace
 
-/// Chooses the slices on both sides of every border at which they disagree too much, and those that miss
-/// something thin.
-std::vector<std::uint8_t> SliceSampler::choose_to_divide(const Setting& setting) const {
+/// Fills `borders_`. One between two slices that were compared before needs no second look.
+void SliceSampler::compare_neighbours(const Setting& setting) {
   const SideProfile secant = secants(setting.fan.tan_limit());
-  std::vector<std::uint8_t> divide(order_.size(), 0);
-  const auto consider = [&](std::size_t i, float share) {
-    const float width = setting.share_of_beam(*cells_[order_[i]]);
-    divide[i] |= share * width > setting.accuracy.disagreement ? 1 : 0;
-  };
+  borders_.resize(order_.size());
+  const std::size_t borders = order_.size() - 1;
+  workers_.run(static_cast<int>((borders + borders_per_job - 1) / borders_per_job), [&](int job) {
+    const std::size_t begin = static_cast<std::size_t>(job) * borders_per_job;
+    for (std::size_t i = begin; i < std::min(borders, begin + borders_per_job); ++i) {
+      const SliceCell& port = *cells_[order_[i]];
+      const SliceCell& starboard = *cells_[order_[i + 1]];
+      if (!port.fresh && !starboard.fresh) {
+        borders_[i] = {};
+        continue;
+      }
+      const float lines = std::max(1.0F, std::min(port.lines, starboard.lines));
+      const Comparison compare{setting.line_m, setting.accuracy.bow_lines * std::sqrt(lines) * setting.line_m,
+                               setting.fan.max_range_m()};
+      borders_[i] = compare(port, starboard, secant);
+    }
+  });
+}
+
+/// Into how many parts each slice is to be divided: those on both sides of every border at which they
+/// disagree too much, and those that miss something thin.
+std::vector<int> SliceSampler::choose_divisions(const Setting& setting) {
+  compare_neighbours(setting);
+  std::vector<int> divisions(order_.size(), 1);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    const SliceCell& cell = *cells_[order_[i]];
-    divide[i] |= cell.misses_something ? 1 : 0;
-    if (i + 1 < order_.size()) {
-      const float share = disagreement(cell.starboard, cells_[order_[i + 1]]->port, secant, setting.line_m,
-                                       setting.fan.max_range_m());
-      consider(i, share);
-      consider(i + 1, share);
+    SliceCell& cell = *cells_[order_[i]];
+    cell.fresh = false;
+    const float width = setting.share_of_beam(cell);
+    if (width * static_cast<float>(setting.accuracy.most_divisions) < 1.5F) {
+      continue;
+    }
+    const SliceBorder port = i > 0 ? borders_[i - 1] : SliceBorder{};
+    const SliceBorder starboard = i + 1 < order_.size() ? borders_[i] : SliceBorder{};
+    const float most = setting.accuracy.disagreement;
+    if (cell.misses_something || std::max(port.apart, starboard.apart) * width > most) {
+      divisions[i] = divisions_at_edges;
+    } else if (std::max(port.bent, starboard.bent) * width > bows_per_edge * most) {
+      divisions[i] = divisions_of_bows;
     }
   }
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    // A slice that is as narrow as slices get stays as it is.
-    const float width = setting.share_of_beam(*cells_[order_[i]]);
-    divide[i] &= width * static_cast<float>(setting.accuracy.most_divisions) > 1.5F ? 1 : 0;
+  return divisions;
+}
+
+/// Puts the parts of a slice into `order` and `fresh`: at upright edges if there are any, else evenly.
+void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
+                          std::vector<std::size_t>& fresh) {
+  const SliceCell& whole = *cells_[whole_number];  // stays where it is while cells are added
+  const double width = static_cast<double>(whole.slice.width_rad);
+  const double port_rad = whole.slice.azimuth_rad + 0.5 * width;
+  const bool at_edges = !whole.edges.empty();
+  if (at_edges) {
+    parts = static_cast<int>(whole.edges.size()) + 1;
   }
-  return divide;
+  double from = port_rad;
+  ProbeSet edge = whole.edge_at_port;
+  for (int k = 0; k < parts; ++k) {
+    const bool last = k + 1 == parts;
+    const auto next = static_cast<std::size_t>(k);
+    const double to = at_edges && !last ? whole.edges[next].azimuth_rad : port_rad - width * (k + 1) / parts;
+    fresh.push_back(new_cell({0.5 * (from + to), static_cast<float>(from - to)}, whole.beam));
+    order.push_back(fresh.back());
+    SliceCell& part = *cells_[fresh.back()];
+    part.edge_at_port = edge;
+    edge = last ? whole.edge_at_starboard : at_edges ? whole.edges[next].probes : ProbeSet();
+    part.edge_at_starboard = edge;
+    from = to;
+  }
 }
 
 /// @return whether anything was divided; `fresh` are the new cells.
@@ -70,20 +159,13 @@ bool SliceSampler::refine(const Setting& setting, std::vector<std::size_t>& fres
   if (setting.accuracy.most_divisions == 1) {
     return false;
   }
-  const std::vector<std::uint8_t> divide = choose_to_divide(setting);
+  const std::vector<int> divisions = choose_divisions(setting);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    if (divide[i] == 0) {
+    if (divisions[i] == 1) {
       order.push_back(order_[i]);
-      continue;
-    }
-    const Slice whole = cells_[order_[i]]->slice;
-    const int beam = cells_[order_[i]]->beam;
-    const double width = static_cast<double>(whole.width_rad);
-    for (int k = 0; k < divisions_at_once; ++k) {
-      const double azimuth_rad = whole.azimuth_rad + width * (0.5 - (k + 0.5) / divisions_at_once);
-      order.push_back(new_cell({azimuth_rad, whole.width_rad / divisions_at_once}, beam));
-      fresh.push_back(order.back());
+    } else {
+      divide(order_[i], divisions[i], order, fresh);
     }
   }
   order_.swap(order);

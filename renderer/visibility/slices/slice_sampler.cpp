@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/visibility/slices/coplanar_facets.hpp"
 #include "renderer/visibility/slices/slice_sampler_impl.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
 
@@ -25,42 +26,81 @@ double widest_first_slice(double azimuth_rad, double line_m, double max_range_m,
   return std::min({widest_first_slice_rad, for_echo, std::max(for_range, for_echo / 4)});
 }
 
+/// Over how many lines patches lie.
+float lines_of(const std::vector<EchoPatch>& patches, float line_m, float max_range_m) {
+  float nearest = max_range_m, furthest = 0.0F;
+  for (const EchoPatch& patch : patches) {
+    nearest = std::min({nearest, patch.range_a_m, patch.range_b_m});
+    furthest = std::max({furthest, patch.range_a_m, patch.range_b_m});
+  }
+  return std::max(0.0F, std::min(furthest, max_range_m) - nearest) / line_m;
+}
+
 }  // namespace
+
+/// What parts share: meshes and normal maps are prepared once, however many parts use them.
+struct SliceSampler::Prepared {
+  struct Shape {
+    std::shared_ptr<const TriangleMesh> mesh;
+    std::shared_ptr<const MeshClusters> clusters;
+    std::uint64_t merged_facets = 0;
+  };
+  std::map<std::pair<const TriangleMesh*, bool>, Shape> shapes;  ///< as it is (false) or merged (true)
+  std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
+
+  const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge) {
+    Shape& shape = shapes[{mesh.get(), merge}];
+    if (!shape.mesh) {
+      shape.mesh = merge ? std::make_shared<const TriangleMesh>(merge_coplanar_facets(*mesh)) : mesh;
+      shape.clusters = std::make_shared<const MeshClusters>(*shape.mesh);
+      shape.merged_facets = mesh->triangle_count() - shape.mesh->triangle_count();
+    }
+    return shape;
+  }
+  /// @param map null: one without bumps
+  std::shared_ptr<const NormalPyramid> pyramid(const NormalMap* map) {
+    auto& pyramid = pyramids[map];
+    if (!pyramid) {
+      pyramid = std::make_shared<const NormalPyramid>(map ? NormalPyramid(*map) : NormalPyramid::straight());
+    }
+    return pyramid;
+  }
+};
 
 SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip)
     : workers_(workers), skip_(skip) {
-  std::map<const TriangleMesh*, std::shared_ptr<const MeshClusters>> clusters;  // meshes are shared by parts
-  std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
+  Prepared prepared;
   for (const Body& body : world.bodies) {
     body_number_[body.name] = T_world_body_.size();
     for (const BodyPart& part : body.parts) {
-      auto& mesh_clusters = clusters[part.mesh.get()];
-      if (!mesh_clusters) {
-        mesh_clusters = std::make_shared<const MeshClusters>(*part.mesh);
-      }
-      PartSurface surface;
-      surface.mesh = part.mesh;
-      surface.vertex_normals = !(skip.on(SkipRule::geometric_normals) && has_plain_facets(*part.mesh));
-      skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
-      surface.lambert_mu = static_cast<float>(part.material.lambert_mu);
-      surface.reflectance = static_cast<float>(part.material.reflectance);
-      if (!part.normal_map && skip.on(SkipRule::absent_normal_map)) {
-        skipped_parts_.add(SkipRule::absent_normal_map);
-      } else if (part.mesh->can_be_mapped()) {
-        auto& pyramid = pyramids[part.normal_map.get()];
-        if (!pyramid) {
-          pyramid = std::make_shared<const NormalPyramid>(part.normal_map ? NormalPyramid(*part.normal_map)
-                                                                          : NormalPyramid::straight());
-        }
-        surface.normal_map = pyramid;
-        any_mapped_ = true;
-      }
-      parts_.push_back({T_world_body_.size(), part.T_body_part});
-      placed_.push_back({mesh_clusters, {}, {}});
-      surfaces_.push_back(std::move(surface));
+      add_part(part, prepared);
     }
     T_world_body_.push_back(body.T_world_body);
   }
+}
+
+/// Of the body that is added next.
+void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
+  PartSurface surface;
+  surface.lambert_mu = static_cast<float>(part.material.lambert_mu);
+  surface.reflectance = static_cast<float>(part.material.reflectance);
+  const bool plain_facets = has_plain_facets(*part.mesh);
+  surface.vertex_normals = !(skip_.on(SkipRule::geometric_normals) && plain_facets);
+  skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
+  if (!part.normal_map && skip_.on(SkipRule::absent_normal_map)) {
+    skipped_parts_.add(SkipRule::absent_normal_map);
+  } else if (part.mesh->can_be_mapped()) {
+    surface.normal_map = prepared.pyramid(part.normal_map.get());
+    any_mapped_ = true;
+  }
+  // Nothing but its plane is asked of a facet that is shaded by its own normal.
+  const bool merge = !surface.vertex_normals && !surface.normal_map && skip_.on(SkipRule::coplanar_facets);
+  const Prepared::Shape& shape = prepared.shape(part.mesh, merge);
+  skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
+  surface.mesh = shape.mesh;
+  parts_.push_back({T_world_body_.size(), part.T_body_part});
+  placed_.push_back({shape.clusters, {}, {}, plain_facets && !part.normal_map});
+  surfaces_.push_back(std::move(surface));
 }
 
 bool SliceSampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
@@ -90,6 +130,9 @@ std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
   SliceCell& cell = *cells_[cells_used_];
   cell.slice = slice;
   cell.beam = beam;
+  cell.fresh = true;
+  cell.edge_at_port.reset();
+  cell.edge_at_starboard.reset();
   return cells_used_++;
 }
 
@@ -155,7 +198,7 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
     scratch.cutter.load(triangles_.of_beam(first.beam),
                         last.slice.azimuth_rad - 0.5 * static_cast<double>(last.slice.width_rad),
                         first.slice.azimuth_rad + 0.5 * static_cast<double>(first.slice.width_rad),
-                        setting.surface.two_sided);
+                        setting.fan, setting.surface.two_sided);
     for (std::size_t i = begins[j]; i < begins[j + 1]; ++i) {
       see_cell(setting, scratch, *cells_[fresh[i]]);
     }
@@ -169,7 +212,9 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   if (setting.accuracy.most_divisions == 1) {
     return;
   }
+  cell.lines = lines_of(cell.patches, setting.line_m, setting.fan.max_range_m());
   cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
+  scratch.cutter.find_upright_edges(cell.slice, cell.edges);
   const float side = 0.5F * cell.slice.width_rad;
   scratch.patcher.profile(setting.fan.tan_limit(), side, cell.port);
   scratch.patcher.profile(setting.fan.tan_limit(), -side, cell.starboard);

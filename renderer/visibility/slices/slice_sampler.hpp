@@ -26,6 +26,9 @@ struct SliceAccuracy {
   /// Where neighbouring slices disagree they are divided, until (share of elevations at which they disagree)
   /// * (width / beam width) is below this: the share of a beam's echo that is in doubt.
   float disagreement = 2.5e-3F;
+  /// A slice that hears n range lines may be bent by this times sqrt(n) lines: what a bow displaces are the
+  /// first and last of them, the fewer there are the more it matters.
+  float bow_lines = 0.007F;
   float evenness = 0.04F;  ///< see SlicePatcher::Request
   float change = 0.005F;   ///< share by which a wall's echo may change within a first slice, RMS
 };
@@ -35,8 +38,18 @@ struct SliceCell {
   Slice slice;
   int beam = 0;
   std::vector<EchoPatch> patches;
-  SideProfile port, starboard;    ///< what is expected at its sides
-  bool misses_something = false;  ///< a thin thing lies beside the slice and inside its wedge
+  SideProfile port, starboard;               ///< what is expected at its sides
+  float lines = 0.0F;                        ///< over which its echo is spread
+  bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
+  bool fresh = true;                         ///< not yet compared with its neighbours
+  std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard
+  ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge for which the slice ends there
+};
+
+/// Shares of the elevations at which neighbouring slices do not agree.
+struct SliceBorder {
+  float apart = 0.0F;  ///< they expect ranges more than a line apart on the border
+  float bent = 0.0F;   ///< their surfaces are bent, so that a straight line across one of them is too far off
 };
 
 /// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
@@ -63,9 +76,11 @@ class SliceSampler {
     std::size_t body;
     Pose T_body_part;
   };
+  struct Prepared;
   struct Setting;
   struct Scratch;
 
+  void add_part(const BodyPart& part, Prepared& prepared);
   void place_parts(const Pose& T_world_sonar);
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
@@ -73,7 +88,10 @@ class SliceSampler {
   std::size_t new_cell(const Slice& slice, int beam);
 
   // slice_refinement.cpp
-  std::vector<std::uint8_t> choose_to_divide(const Setting& setting) const;
+  void compare_neighbours(const Setting& setting);
+  std::vector<int> choose_divisions(const Setting& setting);
+  void divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
+              std::vector<std::size_t>& fresh);
   bool refine(const Setting& setting, std::vector<std::size_t>& fresh);
 
   WorkerPool& workers_;
@@ -88,7 +106,8 @@ class SliceSampler {
   FanTriangles triangles_;
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;
-  std::vector<std::size_t> order_;  ///< cells from port to starboard
+  std::vector<std::size_t> order_;    ///< cells from port to starboard
+  std::vector<SliceBorder> borders_;  ///< between cells i and i + 1 of order_
   SkipCounts skipped_;
 };
 

@@ -43,6 +43,7 @@ struct SliceSampler::Scratch {
             setting.parts,
             setting.surface,
             setting.pattern,
+            setting.fan.tan_limit(),
             setting.accuracy.evenness,
             setting.any_mapped,
             setting.line_m,

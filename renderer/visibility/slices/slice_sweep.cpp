@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/simd.hpp"
+
 namespace sonard::render {
 
 namespace {
@@ -17,6 +19,7 @@ constexpr float touching = 1e-5F;
 
 const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float tan_limit) {
   segments_ = &segments;
+  count_ = segments.kept.size();
   limit_ = tan_limit;
   pieces_.clear();
   waiting_.clear();
@@ -28,7 +31,7 @@ const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float
   drift_ = 0.0F;
   while (t_ < limit_) {
     if (current_ == nothing) {
-      if (next_ == order_.size()) {
+      if (next_ == count_) {
         break;
       }
       step_to_next_start();
@@ -50,45 +53,69 @@ const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float
 }
 
 float SliceSweep::next_start() const {
-  return next_ < order_.size() ? std::max(-limit_, segments_->low[static_cast<std::size_t>(order_[next_])])
-                               : never;
+  return next_ < count_ ? std::max(-limit_, start_[next_]) : never;
 }
 
 float SliceSweep::start_after_next() const {
-  return next_ + 1 < order_.size() ? segments_->low[static_cast<std::size_t>(order_[next_ + 1])] : never;
+  return next_ + 1 < count_ ? start_[next_ + 1] : never;
 }
 
 /// A counting sort into as many buckets as there are segments, then insertion: linear where segments are
 /// spread over the fan, as the triangles of a surface are.
 void SliceSweep::sort_by_low_end() {
   const std::size_t count = segments_->kept.size();
-  const std::vector<float>& low = segments_->low;
-  const std::size_t buckets = std::clamp<std::size_t>(count, 16, 65536);
-  const float scale = static_cast<float>(buckets) / (2 * limit_);
-  bucket_.resize(count);
-  order_.resize(count);
-  bucket_begin_.assign(buckets + 1, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float start = low[static_cast<std::size_t>(segments_->kept[i])];
-    const float place = std::clamp((start + limit_) * scale, 0.0F, static_cast<float>(buckets - 1));
-    bucket_[i] = static_cast<std::uint32_t>(place);
-    ++bucket_begin_[bucket_[i] + 1];
+  const auto buckets = static_cast<std::int32_t>(std::clamp<std::size_t>(4 * count, 16, 65536));
+  for (auto* array : {&order_, &bucket_}) {
+    array->resize(std::max(array->size(), count));
   }
-  for (std::size_t b = 0; b < buckets; ++b) {
+  for (auto* array : {&start_, &unsorted_start_}) {
+    array->resize(std::max(array->size(), count));
+  }
+  find_buckets(buckets);
+  bucket_begin_.assign(static_cast<std::size_t>(buckets) + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    ++bucket_begin_[static_cast<std::size_t>(bucket_[i]) + 1];
+  }
+  for (std::size_t b = 0; b < static_cast<std::size_t>(buckets); ++b) {
     bucket_begin_[b + 1] += bucket_begin_[b];
   }
   for (std::size_t i = 0; i < count; ++i) {
-    order_[bucket_begin_[bucket_[i]]++] = segments_->kept[i];
+    const std::uint32_t at = bucket_begin_[static_cast<std::size_t>(bucket_[i])]++;
+    order_[at] = segments_->kept[i];
+    start_[at] = unsorted_start_[i];
   }
   for (std::size_t i = 1; i < count; ++i) {
+    const float start = start_[i];
+    if (start_[i - 1] <= start) {
+      continue;
+    }
     const std::int32_t segment = order_[i];
-    const float key = low[static_cast<std::size_t>(segment)];
     std::size_t at = i;
-    while (at > 0 && low[static_cast<std::size_t>(order_[at - 1])] > key) {
+    for (; at > 0 && start_[at - 1] > start; --at) {
       order_[at] = order_[at - 1];
-      --at;
+      start_[at] = start_[at - 1];
     }
     order_[at] = segment;
+    start_[at] = start;
+  }
+}
+
+SONARD_SIMD_CLONES
+void SliceSweep::find_buckets(std::int32_t buckets) {
+  const std::size_t count = segments_->kept.size();
+  const float* __restrict low = segments_->low.data();
+  const std::int32_t* __restrict kept = segments_->kept.data();
+  float* __restrict start = unsorted_start_.data();
+  std::int32_t* __restrict bucket = bucket_.data();
+  const float limit = limit_;
+  const float scale = static_cast<float>(buckets) / (2 * limit);
+  const float last = static_cast<float>(buckets - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float begin = low[kept[i]];
+    start[i] = begin;
+    const float place = (begin + limit) * scale;
+    const float above = place > 0 ? place : 0.0F;
+    bucket[i] = static_cast<std::int32_t>(above < last ? above : last);
   }
 }
 
@@ -148,7 +175,7 @@ void SliceSweep::step_to_end_of_current() {
 
 /// Makes the nearest of all that have begun and not ended the current one.
 void SliceSweep::take_nearest_waiting() {
-  while (next_ < order_.size() && next_start() <= t_) {
+  while (next_ < count_ && next_start() <= t_) {
     waiting_.push_back(order_[next_++]);
   }
   std::size_t kept = 0;

@@ -27,6 +27,7 @@ class SliceSweep {
 
  private:
   void sort_by_low_end();
+  void find_buckets(std::int32_t buckets);
   void step_to_next_start();
   void step_to_end_of_current();
   void meet(int segment);
@@ -40,8 +41,11 @@ class SliceSweep {
 
   const Segments* segments_ = nullptr;
   float limit_ = 0.0F;
-  std::vector<std::int32_t> order_;    ///< segments by rising low end
-  std::vector<std::uint32_t> bucket_;  ///< of the sort
+  std::size_t count_ = 0;            ///< of segments; arrays may be longer
+  std::vector<std::int32_t> order_;  ///< segments by rising low end
+  std::vector<float> start_;         ///< their low ends
+  std::vector<float> unsorted_start_;
+  std::vector<std::int32_t> bucket_;  ///< of the sort
   std::vector<std::uint32_t> bucket_begin_;
   std::size_t next_ = 0;               ///< in order_
   std::vector<std::int32_t> waiting_;  ///< begun, hidden by the current one, and possibly seen later
