@@ -250,7 +250,7 @@ void SlicePatcher::find_tilts(const Request& request) {
     range_tilt[i] = (tilts & (steeper * length > least_tilted_m)) ? tilt : 0.0F;
     // What a tilt leaves is of third order. Spread evenly, the echo lies two thirds of the bow too far
     // towards its thin end; as all pieces of a surface do so to the same side, that counts nine times.
-    const float left = tilts & (plain[i] > 0) ? bow * bow / length : 6 * std::abs(bow);
+    const float left = (tilts & (plain[i] > 0)) ? bow * bow / length : 6 * std::abs(bow);
     // Where the range turns round inside, the halves overlap.
     const float both = std::abs(rm - r1) + std::abs(r2 - rm);
     const bool turns = (rm - r1) * (r2 - rm) < 0;
