@@ -1,6 +1,7 @@
 // The fan of a sonar as the slices see it: beams found by azimuth, limits of elevation and range.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -40,9 +41,11 @@ class Fan {
   float centre_rad() const { return centre_rad_; }
   float half_width_rad() const { return half_width_rad_; }
 
-  /// An edge that changes its azimuth by less than this, a small part of a beam, runs along slices: from
+  /// An edge that changes its azimuth by less than this, at most a tenth of a beam, runs along slices: from
   /// inside a slice it cannot be told how much of the slice lies to either side of it.
-  float upright_rad() const { return 0.2F * half_width_rad_ / static_cast<float>(beam_count()); }
+  float upright_rad() const {
+    return std::min(1e-3F, 0.2F * half_width_rad_ / static_cast<float>(beam_count()));
+  }
 
   /// Beams that azimuths [low, high] of (-pi, pi] may touch; a few more at the ends of the range may be
   /// named. first > last: none.

@@ -249,8 +249,10 @@ void FanTriangles::make_room_for_lists(std::size_t beams) {
 
 void FanTriangles::list(Share& share) {
   for (std::size_t i = 0; i < share.triangles.size(); ++i) {
+    const FanTriangle& triangle = share.triangles[i];
     for (int b = share.beams[i].first; b <= share.beams[i].last; ++b) {
-      listed_[share.per_beam[static_cast<std::size_t>(b)]++] = &share.triangles[i];
+      listed_[share.per_beam[static_cast<std::size_t>(b)]++] = {&triangle, triangle.low_azimuth_rad,
+                                                                triangle.high_azimuth_rad};
     }
   }
 }

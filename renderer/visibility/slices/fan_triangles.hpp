@@ -37,6 +37,13 @@ struct FanTriangle {
   float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;
 };
 
+/// Entry of a beam's list, with its azimuths once more: what a slice does not touch is passed over without
+/// being looked up.
+struct ListedTriangle {
+  const FanTriangle* triangle;
+  float low_azimuth_rad, high_azimuth_rad;
+};
+
 /// Culls and transforms, first clusters against fan and range, then triangle by triangle; what is kept is
 /// listed for every beam its azimuths touch. A triangle too many costs time, never an error.
 class FanTriangles {
@@ -46,7 +53,7 @@ class FanTriangles {
   void find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers, bool cull = true);
 
   /// In the order of the world, which decides between surfaces in the same place.
-  std::span<const FanTriangle* const> of_beam(int beam) const {
+  std::span<const ListedTriangle> of_beam(int beam) const {
     const auto b = static_cast<std::size_t>(beam);
     return {listed_.data() + first_of_beam_[b], first_of_beam_[b + 1] - first_of_beam_[b]};
   }
@@ -72,7 +79,7 @@ class FanTriangles {
 
   std::vector<std::uint32_t> part_starts_;  ///< first cluster of each part, counting through all parts
   std::vector<Share> shares_;
-  std::vector<const FanTriangle*> listed_;
+  std::vector<ListedTriangle> listed_;
   std::vector<std::size_t> first_of_beam_;
   std::size_t cluster_count_ = 0;
   bool cull_ = true;

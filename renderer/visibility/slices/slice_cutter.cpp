@@ -28,14 +28,14 @@ float facing(const FanTriangle& t) {
 
 }  // namespace
 
-void SliceCutter::load(std::span<const FanTriangle* const> triangles, double low_rad, double high_rad,
+void SliceCutter::load(std::span<const ListedTriangle> triangles, double low_rad, double high_rad,
                        const Fan& fan, bool two_sided) {
   const auto low = static_cast<float>(low_rad) - azimuth_error_rad;
   const auto high = static_cast<float>(high_rad) + azimuth_error_rad;
   triangles_.clear();
-  for (const FanTriangle* t : triangles) {
-    if (t->high_azimuth_rad >= low && t->low_azimuth_rad <= high) {
-      triangles_.push_back(t);
+  for (const ListedTriangle& t : triangles) {
+    if (t.high_azimuth_rad >= low && t.low_azimuth_rad <= high) {
+      triangles_.push_back(t.triangle);
     }
   }
   list_upright_edges(low_rad, high_rad, fan);
@@ -140,30 +140,35 @@ void SliceCutter::list_upright_edges(double low_rad, double high_rad, const Fan&
             [](const EdgePart& a, const EdgePart& b) { return a.azimuth_rad < b.azimuth_rad; });
 }
 
+/// Azimuths are compared as tangents of their differences: most edges are no upright ones.
 void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad,
                                  const Fan& fan) {
-  const auto tan_limit = static_cast<double>(fan.tan_limit());
-  const auto upright_rad = static_cast<double>(fan.upright_rad());
-  double azimuth[3], t[3];
+  double x[3], y[3], t[3];
   for (int k = 0; k < 3; ++k) {
-    const double x = static_cast<double>(triangle.x[k]), y = static_cast<double>(triangle.y[k]);
-    azimuth[k] = std::atan2(y, x);
-    t[k] = static_cast<double>(triangle.z[k]) / std::hypot(x, y);
+    x[k] = static_cast<double>(triangle.x[k]);
+    y[k] = static_cast<double>(triangle.y[k]);
+    t[k] = static_cast<double>(triangle.z[k]) / std::sqrt(x[k] * x[k] + y[k] * y[k]);
   }
-  const float facing_rad = facing(triangle);
+  const auto tan_limit = static_cast<double>(fan.tan_limit());
   const auto probe = [tan_limit](double at) {
     const double place = (at / tan_limit + 1) * (0.5 * side_probes) + 0.5;
     return static_cast<std::int32_t>(std::clamp(place, 0.0, static_cast<double>(side_probes)));
   };
+  const auto turn = [&](int from, int to) {
+    return (x[from] * y[to] - y[from] * x[to]) / (x[from] * x[to] + y[from] * y[to]);
+  };
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3, opposite = (k + 2) % 3;
-    const double lean = azimuth[next] - azimuth[k], height = t[next] - t[k];
-    const double at = azimuth[k] + 0.5 * lean;
+    const double lean = turn(k, next);
     const std::int32_t first = probe(std::min(t[k], t[next])), last = probe(std::max(t[k], t[next]));
-    if (std::abs(lean) < upright_rad && at > low_rad && at < high_rad && first < last) {
+    if (!(std::abs(lean) < static_cast<double>(fan.upright_rad())) || first >= last) {
+      continue;
+    }
+    const double at = std::atan2(y[k], x[k]) + 0.5 * lean;
+    if (at > low_rad && at < high_rad) {
       // Where the edge, or its continuation, is as high as the third corner.
-      const double beside = azimuth[k] + lean * (t[opposite] - t[k]) / height;
-      edge_parts_.push_back({at, first, last, azimuth[opposite] > beside ? 1 : -1, facing_rad});
+      const double beside = lean * (t[opposite] - t[k]) / (t[next] - t[k]);
+      edge_parts_.push_back({at, first, last, turn(k, opposite) > beside ? 1 : -1, facing(triangle)});
     }
   }
 }
@@ -195,7 +200,7 @@ ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
 void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const {
   constexpr double margin = 1e-3;  // of the wedge
   constexpr std::size_t most_edges = 4;
-  constexpr std::size_t least_probes = 12;  // lower edges do as well in even parts
+  constexpr std::int32_t least_probes = 12;  // lower edges do as well in even parts
   const double reach = (0.5 - margin) * static_cast<double>(slice.width_rad);
   edges.clear();
   std::size_t begin = 0;
@@ -204,9 +209,13 @@ void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge
     if (i + 1 < edge_parts_.size() && edge_parts_[i + 1].azimuth_rad - at < same_edge_rad) {
       continue;
     }
-    if (std::abs(at - slice.azimuth_rad) < reach) {
+    std::int32_t most_probes = 0;
+    for (std::size_t k = begin; k <= i; ++k) {
+      most_probes += edge_parts_[k].last_probe - edge_parts_[k].first_probe;
+    }
+    if (most_probes >= least_probes && std::abs(at - slice.azimuth_rad) < reach) {
       const ProbeSet probes = probes_of_edge(begin, i + 1);
-      if (probes.count() >= least_probes) {
+      if (probes.count() >= static_cast<std::size_t>(least_probes)) {
         edges.push_back({at, probes});
       }
     }

@@ -59,7 +59,7 @@ class SliceCutter {
  public:
   /// @param low_rad, high_rad azimuths between which it will be cut; triangles elsewhere are left out.
   /// @param two_sided false: triangles seen from behind are left out.
-  void load(std::span<const FanTriangle* const> triangles, double low_rad, double high_rad, const Fan& fan,
+  void load(std::span<const ListedTriangle> triangles, double low_rad, double high_rad, const Fan& fan,
             bool two_sided);
 
   /// Keeps the segments that reach between -tan_limit and tan_limit, in the order of the triangles. An edge

@@ -118,9 +118,11 @@ std::vector<int> SliceSampler::choose_divisions(const Setting& setting) {
     const SliceBorder port = i > 0 ? borders_[i - 1] : SliceBorder{};
     const SliceBorder starboard = i + 1 < order_.size() ? borders_[i] : SliceBorder{};
     const float most = setting.accuracy.disagreement;
-    if (cell.misses_something || std::max(port.apart, starboard.apart) * width > most) {
+    const float apart = std::max(port.apart, starboard.apart) * width;
+    const float bent = std::max(port.bent, starboard.bent) * width;
+    if (cell.misses_something || apart > most) {
       divisions[i] = divisions_at_edges;
-    } else if (std::max(port.bent, starboard.bent) * width > bows_per_edge * most) {
+    } else if (bent > bows_per_edge * most) {
       divisions[i] = divisions_of_bows;
     }
   }

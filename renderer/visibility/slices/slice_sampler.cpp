@@ -181,11 +181,14 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   return cells;
 }
 
-/// Fills the cells `fresh`, which run from port to starboard; all of one beam in one job.
+/// Fills the cells `fresh`, which run from port to starboard; all of one beam in one job, unless the beams
+/// are so few that threads would be left without.
 void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& fresh) {
-  std::vector<std::size_t> begins;  // of each beam's run in `fresh`
+  constexpr std::size_t enough_jobs = 4;
+  const std::size_t longest = std::max<std::size_t>(1, fresh.size() / enough_jobs);
+  std::vector<std::size_t> begins;  // of each job in `fresh`
   for (std::size_t i = 0; i < fresh.size(); ++i) {
-    if (i == 0 || cells_[fresh[i]]->beam != cells_[fresh[i - 1]]->beam) {
+    if (i == 0 || cells_[fresh[i]]->beam != cells_[fresh[i - 1]]->beam || i - begins.back() >= longest) {
       begins.push_back(i);
     }
   }
