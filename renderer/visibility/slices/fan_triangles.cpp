@@ -15,7 +15,7 @@ namespace {
 
 constexpr int share_count = 32;  // jobs; fixed, so that the order of triangles does not depend on the threads
 constexpr float thin_ratio = 3.0F;      // angular height over width
-constexpr float least_upright = 2e-3F;  // in t; lower edges matter little
+constexpr float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges matter little
 constexpr auto half_turn = static_cast<float>(std::numbers::pi);
 
 /// Vertices of one cluster in the sonar frame.
@@ -79,6 +79,10 @@ void bound(const MeshClusters& mesh, const MeshClusters::Cluster& cluster, const
     const float ab = a > b ? a : b;
     return ab > c ? ab : c;
   };
+  const float upright_t = least_upright * fan.tan_limit();
+  const auto is_upright = [&](float lean, float rise) {
+    return (lean < upright_rad) & (lean > -upright_rad) & ((rise > upright_t) | (rise < -upright_t));
+  };
   const auto count = static_cast<std::int32_t>(cluster.triangle_count);
   for (std::int32_t t = 0; t < count; ++t) {
     const std::int32_t i = c0[t], j = c1[t], k = c2[t];
@@ -94,9 +98,10 @@ void bound(const MeshClusters& mesh, const MeshClusters::Cluster& cluster, const
     high_azimuth[t] = high;
     const float tall = most(tangent[i], tangent[j], tangent[k]) - least(tangent[i], tangent[j], tangent[k]);
     thin[t] = tall > thin_ratio * (high - low) ? 1 : 0;
-    const float aside = least(std::abs(azimuth[i] - azimuth[j]), std::abs(azimuth[j] - azimuth[k]),
-                              std::abs(azimuth[k] - azimuth[i]));
-    upright[t] = ((aside < upright_rad) & (tall > least_upright)) ? 1 : 0;
+    const bool upright_ij = is_upright(azimuth[i] - azimuth[j], tangent[i] - tangent[j]);
+    const bool upright_jk = is_upright(azimuth[j] - azimuth[k], tangent[j] - tangent[k]);
+    const bool upright_ki = is_upright(azimuth[k] - azimuth[i], tangent[k] - tangent[i]);
+    upright[t] = (upright_ij | upright_jk | upright_ki) ? 1 : 0;
   }
 }
 

@@ -161,7 +161,7 @@ void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, do
     const int next = (k + 1) % 3, opposite = (k + 2) % 3;
     const double lean = turn(k, next);
     const std::int32_t first = probe(std::min(t[k], t[next])), last = probe(std::max(t[k], t[next]));
-    if (!(std::abs(lean) < static_cast<double>(fan.upright_rad())) || first >= last) {
+    if (!(std::abs(lean) < static_cast<double>(fan.upright_rad())) || last - first < 2) {
       continue;
     }
     const double at = std::atan2(y[k], x[k]) + 0.5 * lean;
