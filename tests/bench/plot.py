@@ -87,10 +87,13 @@ def draw_growth(results, path):
                 axes.plot([p[0] for p in line], [p[1] for p in line], marker + "-", color=COLOURS[backend], ms=4,
                           lw=1, label=f"{backend} {preset}" if line else None)
         axes.set(xscale="log", yscale="log", xlabel=SIZES.get(what, what))
+        if what == "cores":  # too few for a logarithmic axis to label
+            axes.set(xscale="linear", xticks=[x for x, _ in sorted(members)])
         axes.grid(True, which="major", lw=0.3)
     panels[0, 0].set_ylabel("ms per ping")
-    panels[0, -1].legend(fontsize=7, frameon=False)
-    figure.tight_layout()
+    handles, labels = panels[0, -1].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=len(labels), fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0, 0.08, 1, 1))
     save(figure, path)
 
 
