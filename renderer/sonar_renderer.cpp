@@ -168,7 +168,7 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
     case Sampling::Preset::reference:
       return {8, 64, 1e-4F, 0.001F, 0.005F, 0.001F};
     default:
-      return {slices, 64, 1e-3F, 0.016F, 0.04F, 0.005F};
+      return {.slices_per_beam = slices};
   }
 }
 

@@ -19,16 +19,18 @@
 
 namespace sonard::render {
 
-/// How closely slices follow the world.
+/// How closely slices follow the world: as it stands, within 1 %.
 struct SliceAccuracy {
   int slices_per_beam = 1;  ///< to begin with; wide and oblique beams get more
-  int most_divisions = 64;  ///< no slice is narrower than a beam divided by this; 1: the first slices stay
+  /// No slice is narrower than a beam divided by this, unless it lies between upright edges; 1: the first
+  /// slices stay.
+  int most_divisions = 64;
   /// Where neighbouring slices disagree they are divided, until (share of elevations at which they disagree)
   /// * (width / beam width) is below this: the share of a beam's echo that is in doubt.
-  float disagreement = 2.5e-3F;
+  float disagreement = 1e-3F;
   /// A slice that hears n range lines may be bent by this times sqrt(n) lines: what a bow displaces are the
   /// first and last of them, the fewer there are the more it matters.
-  float bow_lines = 0.007F;
+  float bow_lines = 0.016F;
   float evenness = 0.04F;  ///< see SlicePatcher::Request
   float change = 0.005F;   ///< share by which a wall's echo may change within a first slice, RMS
 };
@@ -53,8 +55,8 @@ struct SliceBorder {
 };
 
 /// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
-/// the width of slices makes errors, and these of second order but at silhouettes that run along the slices
-/// (docs/accuracy.md). One thread uses it; it shares its work with the pool's.
+/// the width of slices makes errors, and these of second order but at round silhouettes that run along the
+/// slices (docs/accuracy.md). One thread uses it; it shares its work with the pool's.
 class SliceSampler {
  public:
   SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});
