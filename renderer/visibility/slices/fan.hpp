@@ -5,6 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
@@ -35,17 +38,14 @@ class Fan {
   int beam_count() const { return static_cast<int>(edges_rad_.size()) - 1; }
   double edge_rad(int i) const { return edges_rad_[static_cast<std::size_t>(i)]; }
   float max_range_m() const { return max_range_m_; }
-  float elevation_limit_rad() const { return elevation_limit_rad_; }
   float tan_limit() const { return tan_limit_; }
-  /// Middle and half width of the fan in azimuth.
-  float centre_rad() const { return centre_rad_; }
-  float half_width_rad() const { return half_width_rad_; }
+  /// Whether a sphere is wholly outside the range, the elevation limits or the azimuths. The fan may be said
+  /// to hold a little more than it does.
+  bool misses(const glm::vec3& centre_m, float radius_m) const;
 
   /// An edge that changes its azimuth by less than this, at most a tenth of a beam, runs along slices: from
   /// inside a slice it cannot be told how much of the slice lies to either side of it.
-  float upright_rad() const {
-    return std::min(1e-3F, 0.2F * half_width_rad_ / static_cast<float>(beam_count()));
-  }
+  float upright_rad() const { return std::min(1e-3F, 0.1F * width_rad_ / static_cast<float>(beam_count())); }
 
   /// Beams that azimuths [low, high] of (-pi, pi] may touch; a few more at the ends of the range may be
   /// named. first > last: none.
@@ -57,11 +57,11 @@ class Fan {
 
  private:
   std::vector<double> edges_rad_;
-  float elevation_limit_rad_;
+  float sin_limit_, cos_limit_;
   float tan_limit_;
   float max_range_m_;
-  float centre_rad_;
-  float half_width_rad_;
+  float width_rad_;
+  glm::vec2 beyond_port_, beyond_starboard_;  ///< horizontal unit vectors across the sides, out of the fan
   float buckets_per_rad_;
   std::vector<std::uint16_t> first_beam_, last_beam_;  ///< per bucket of azimuth, from port to starboard
 };

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <glm/geometric.hpp>
 
 #include "renderer/simd.hpp"
 
@@ -105,29 +104,6 @@ void bound(const MeshClusters& mesh, const MeshClusters::Cluster& cluster, const
   }
 }
 
-/// Whether a sphere is wholly outside the range, the elevation limits or the azimuths of the fan.
-bool outside(const Fan& fan, const glm::vec3& centre, float radius) {
-  constexpr float slack = 1e-3F;  // radians; more than all rounding here
-  const float horizontal = std::hypot(centre.x, centre.y);
-  const float distance = std::hypot(horizontal, centre.z);
-  if (distance - radius > fan.max_range_m()) {
-    return true;
-  }
-  if (distance <= radius * 1.01F) {
-    return false;  // the sonar is inside it
-  }
-  const float above = std::abs(std::atan2(centre.z, horizontal)) - fan.elevation_limit_rad();
-  if (above > slack && above > std::asin(radius / distance) + slack) {
-    return true;
-  }
-  if (horizontal <= radius * 1.01F) {
-    return false;
-  }
-  float aside = std::abs(std::atan2(centre.y, centre.x) - fan.centre_rad());
-  aside = std::min(aside, 2 * half_turn - aside) - fan.half_width_rad();
-  return aside > slack && aside > std::asin(radius / horizontal) + slack;
-}
-
 }  // namespace
 
 std::uint64_t FanTriangles::clusters_culled() const {
@@ -172,8 +148,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     }
     const PlacedPart& part = parts[part_number];
     const MeshClusters::Cluster& cluster = part.clusters->clusters[c - part_starts_[part_number]];
-    const bool out =
-        outside(fan, part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m, cluster.radius_m);
+    const bool out = fan.misses(part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m, cluster.radius_m);
     if (out && cull_) {
       ++share.culled;
       continue;
