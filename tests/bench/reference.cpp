@@ -2,7 +2,6 @@
 
 #include <yaml-cpp/yaml.h>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -10,9 +9,9 @@
 #include <regex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "tests/bench/plane_quadrature.hpp"
+#include "tests/support/beam_images.hpp"
 
 namespace sonard::bench {
 
@@ -67,30 +66,9 @@ render::EchoImage read_npy(const std::filesystem::path& file) {
 }
 
 render::EchoImage plane_image(const test::Scene& scene) {
-  const std::vector<double>& edges = scene.settings.aperture.beam_edges_rad;
-  const render::RangeLines& range = scene.settings.range;
-  render::EchoImage image{scene.settings.aperture.beam_count(), range.count, {}};
-  image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
-  std::atomic<int> next_beam{0};
-  const auto fill_beams = [&] {
-    for (int beam = next_beam++; beam < image.beams; beam = next_beam++) {
-      const auto b = static_cast<std::size_t>(beam);
-      for (int k = 0; k < image.lines; ++k) {
-        const double from_m = std::max(1e-9, k * range.step_m);
-        const double echo =
-            plane_beam_echo(*scene.plane, edges[b + 1], edges[b], from_m, (k + 1) * range.step_m);
-        image.intensity[b * static_cast<std::size_t>(image.lines) + static_cast<std::size_t>(k)] =
-            static_cast<float>(test::scene_lambert_mu * echo);
-      }
-    }
-  };
-  std::vector<std::jthread> helpers;
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) {
-    helpers.emplace_back(fill_beams);
-  }
-  fill_beams();
-  helpers.clear();  // joins: the image is complete
-  return image;
+  return test::image_of_beams(scene.settings, [&](double from, double to, double r1, double r2) {
+    return test::scene_lambert_mu * plane_beam_echo(*scene.plane, from, to, r1, r2);
+  });
 }
 
 std::optional<Reference> find_reference(const test::Scene& scene, const std::filesystem::path& folder) {

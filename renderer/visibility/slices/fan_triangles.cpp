@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-
 #include "renderer/simd.hpp"
 
 namespace sonard::render {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
@@ -35,6 +36,10 @@ struct FanTriangle {
   bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
   /// Between which it lies; -pi to pi where it may hold the sonar's vertical axis.
   float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;
+
+  glm::vec3 corner(std::size_t k) const { return {x[k], y[k], z[k]}; }
+  /// Across the triangle, as its winding says; its length is twice the area.
+  glm::vec3 across() const { return glm::cross(corner(1) - corner(0), corner(2) - corner(0)); }
 };
 
 /// Entry of a beam's list, with its azimuths once more: what a slice does not touch is passed over without

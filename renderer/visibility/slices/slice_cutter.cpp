@@ -20,10 +20,8 @@ constexpr double same_edge_rad = 2e-6;  // edges nearer to each other stand in o
 
 /// Azimuth into which the normal of a triangle points that is turned away from the sonar.
 float facing(const FanTriangle& t) {
-  const glm::vec3 a(t.x[0], t.y[0], t.z[0]);
-  const glm::vec3 n =
-      glm::cross(glm::vec3(t.x[1], t.y[1], t.z[1]) - a, glm::vec3(t.x[2], t.y[2], t.z[2]) - a);
-  return glm::dot(n, a) < 0 ? std::atan2(-n.y, -n.x) : std::atan2(n.y, n.x);
+  const glm::vec3 n = t.across();
+  return glm::dot(n, t.corner(0)) < 0 ? std::atan2(-n.y, -n.x) : std::atan2(n.y, n.x);
 }
 
 }  // namespace
@@ -95,12 +93,7 @@ void SliceCutter::load_normals() {
 }
 
 void SliceCutter::drop_back_faces() {
-  const auto seen_from_behind = [](const FanTriangle* t) {
-    const glm::vec3 a(t->x[0], t->y[0], t->z[0]);
-    const glm::vec3 b(t->x[1], t->y[1], t->z[1]);
-    const glm::vec3 c(t->x[2], t->y[2], t->z[2]);
-    return glm::dot(glm::cross(b - a, c - a), a) > 0;
-  };
+  const auto seen_from_behind = [](const FanTriangle* t) { return glm::dot(t->across(), t->corner(0)) > 0; };
   std::erase_if(triangles_, seen_from_behind);
 }
 

@@ -15,10 +15,19 @@ namespace {
 constexpr int pattern_steps = 1024;
 constexpr int most_divisions = 16;  // of a piece at once
 constexpr int most_rounds = 6;      // near a foot point the divided pieces are divided again
-constexpr std::int32_t probe_vector = 4;
-constexpr float most_tilt = 1.1F;  // of a piece; 1 where the range turns round at one end
+constexpr float most_tilt = 1.1F;   // of a piece; 1 where the range turns round at one end
 // Under a normal map pieces are no longer than this many lines, so that its bumps appear at their ranges.
 constexpr float mapped_lines = 2.0F;
+
+/// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
+/// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
+/// nearly edge-on that the range is far from straight.
+/// @param h, s components of the normal over n . d
+inline float bow_of_plane(float h, float s, float width) {
+  const float turn = s * width;
+  const float bow = (1.0F / 24) * (h * width * width + 2 * turn * turn);
+  return turn * turn < 2.5e-3F && bow < 1e-3F && bow > -1e-3F ? bow : 0.0F;
+}
 
 }  // namespace
 
@@ -135,16 +144,6 @@ void SlicePatcher::lay_out(const Request& request) {
     normal_z_[i] = nz[segment];
     plain_[i] = as_cosine && request.cutter.triangle(pieces_[i].segment).plain ? 1.0F : 0.0F;
   }
-}
-
-/// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
-/// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
-/// nearly edge-on that the range is far from straight.
-/// @param h, s components of the normal over n . d
-inline float bow_of_plane(float h, float s, float width) {
-  const float turn = s * width;
-  const float bow = (1.0F / 24) * (h * width * width + 2 * turn * turn);
-  return turn * turn < 2.5e-3F && bow < 1e-3F && bow > -1e-3F ? bow : 0.0F;
 }
 
 /// Ranges at both ends and in the middle, the smear of the ends, incidence and solid angle. On the plane n.p
@@ -393,10 +392,10 @@ void SlicePatcher::profile(float tan_limit, float offset_rad, SideProfile& out) 
                     w_slope_[i] * (-tan_limit + (static_cast<float>(first) + 0.5F) * step);
     // Most hold a probe or two. What is written too much the next piece writes again, or the end.
     float* const at = &out[static_cast<std::size_t>(first)];
-    for (std::int32_t k = 0; k < probe_vector; ++k) {
+    for (std::int32_t k = 0; k < probe_padding; ++k) {
       at[k] = w + slope * static_cast<float>(k);
     }
-    for (std::int32_t k = probe_vector; k < last - first; ++k) {
+    for (std::int32_t k = probe_padding; k < last - first; ++k) {
       at[k] = w + slope * static_cast<float>(k);
     }
     end = std::max(end, last);

@@ -28,7 +28,8 @@ struct PartSurface {
 
 /// What is expected at one side of a wedge if its surfaces go on as in its middle: 1 / horizontal distance at
 /// the probes, 0 where nothing is seen. Neighbours compare theirs.
-using SideProfile = std::array<float, side_probes + 4>;  ///< the last four are padding
+inline constexpr int probe_padding = 4;  ///< at the end; so many are written at once
+using SideProfile = std::array<float, side_probes + probe_padding>;
 
 /// One-way elevation pattern as a function of t, tabled.
 class ElevationPattern {

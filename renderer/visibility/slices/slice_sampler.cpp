@@ -51,9 +51,15 @@ struct SliceSampler::Prepared {
   const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge) {
     Shape& shape = shapes[{mesh.get(), merge}];
     if (!shape.mesh) {
-      shape.mesh = merge ? std::make_shared<const TriangleMesh>(merge_coplanar_facets(*mesh)) : mesh;
+      shape.mesh = mesh;
+      if (merge) {
+        TriangleMesh merged = merge_coplanar_facets(*mesh);
+        shape.merged_facets = mesh->triangle_count() - merged.triangle_count();
+        if (shape.merged_facets > 0) {  // else there is no need for a second one of the same
+          shape.mesh = std::make_shared<const TriangleMesh>(std::move(merged));
+        }
+      }
       shape.clusters = std::make_shared<const MeshClusters>(*shape.mesh);
-      shape.merged_facets = mesh->triangle_count() - shape.mesh->triangle_count();
     }
     return shape;
   }

@@ -16,10 +16,10 @@ struct SurfacePoint {
   glm::vec3 p;
 
   SurfacePoint(const FanTriangle& t, const glm::vec3& point)
-      : corner(t.x[0], t.y[0], t.z[0]),
-        edge_b(glm::vec3(t.x[1], t.y[1], t.z[1]) - corner),
-        edge_c(glm::vec3(t.x[2], t.y[2], t.z[2]) - corner),
-        normal(glm::cross(edge_b, edge_c)),
+      : corner(t.corner(0)),
+        edge_b(t.corner(1) - corner),
+        edge_c(t.corner(2) - corner),
+        normal(t.across()),
         p(point) {}
 
   /// Weights of the second and third corner of a point, or their change along a step in the plane.

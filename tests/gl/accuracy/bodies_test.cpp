@@ -44,9 +44,9 @@ TEST_P(SphereAccuracy, T4_Sphere) {
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
   const Scene scene = forward_looking_scene({sphere});
   const SphereTruth truth{0.5, 8, 20 * degree, 0};
-  const render::EchoImage expected =
-      truth_image(scene.settings,
-                  [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
+  const render::EchoImage expected = image_of_beams(
+      scene.settings,
+      [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
   double total = 0;
   for (const float echo : expected.intensity) {
     total += static_cast<double>(echo);
@@ -60,9 +60,9 @@ TEST_P(CylinderAccuracy, T5_UprightCylinder) {
   const Scene scene = forward_looking_scene({make_body(
       "column", make_column(axis_m * std::cos(azimuth), axis_m * std::sin(azimuth), radius_m, 2, 256, 64))});
   const CylinderTruth truth{radius_m, axis_m, azimuth, scene.settings.aperture.elevation_limit_rad()};
-  const render::EchoImage expected =
-      truth_image(scene.settings,
-                  [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
+  const render::EchoImage expected = image_of_beams(
+      scene.settings,
+      [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
   expect_within(limits(), measure(render(scene), expected), "cylinder");
 }
 

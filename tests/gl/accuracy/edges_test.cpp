@@ -34,7 +34,7 @@ TEST_P(EdgeAccuracy, T6_TwoHalfPlanes) {
     return bench::plane_beam_echo({12, 1, 0, 0, limit}, from, middle, r1, r2) +
            bench::plane_beam_echo({8, 1, 0, 0, limit}, middle, to, r1, r2);
   };
-  const render::EchoImage truth = truth_image(scene.settings, echo);
+  const render::EchoImage truth = image_of_beams(scene.settings, echo);
   const render::EchoImage image = render(scene);
   expect_within(limits(), measure(image, truth), "two walls");
   const double farthest = 8 / (std::cos(edges[edge_beam]) * std::cos(limit));
@@ -67,9 +67,9 @@ TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
   scene.settings.aperture.vertical_beamwidth_rad = 60 * degree;
   scene.T_world_sonar.position_m.z = 5;
   const WallEndTruth truth{{5, 1.5, 12, 30 * degree}, end};
-  const render::EchoImage expected =
-      truth_image(scene.settings,
-                  [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
+  const render::EchoImage expected = image_of_beams(
+      scene.settings,
+      [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
   const render::EchoImage image = render(scene);
   expect_within(limits(), measure(image, expected), "wall on a bed");
   // Along range: the end of the wall's echo (13.0 m on the axis) and of its shadow (17.857 m), in every beam
@@ -130,9 +130,9 @@ TEST_P(DihedralAccuracy, T8_DihedralHoldsTheSingleBounce) {
                              make_body("wall", make_quad({8, -60, -3}, {0, 120, 0}, {0, 0, 40}))});
   scene.settings.aperture.vertical_beamwidth_rad = 60 * degree;
   const WallEndTruth truth{{depth_m, 40, wall_m, 30 * degree}, -90 * degree};
-  const render::EchoImage expected =
-      truth_image(scene.settings,
-                  [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
+  const render::EchoImage expected = image_of_beams(
+      scene.settings,
+      [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
   const render::EchoImage image = render(scene);
   expect_within(limits(), measure(image, expected), "dihedral");
   const int line = static_cast<int>(std::hypot(wall_m, depth_m) / 0.02);
@@ -155,7 +155,7 @@ TEST_P(EdgeAccuracy, T8_TrihedralHoldsTheSingleBounce) {
     const double middle = std::clamp(corner, from, to);
     return front.beam(from, middle, r1, r2) + side.beam(90 * degree - to, 90 * degree - middle, r1, r2);
   };
-  const render::EchoImage expected = truth_image(scene.settings, echo);
+  const render::EchoImage expected = image_of_beams(scene.settings, echo);
   const render::EchoImage image = render(scene);
   expect_within(limits(), measure(image, expected), "trihedral");
   const auto& edges = scene.settings.aperture.beam_edges_rad;

@@ -1,10 +1,8 @@
 #include "tests/gl/accuracy/truth_image.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
-#include <thread>
 #include <vector>
 
 #include "tests/support/kink_quadrature.hpp"
@@ -23,31 +21,6 @@ void add_cosine(double cosine, double centre, std::vector<double>& kinks) {
 }
 
 }  // namespace
-
-render::EchoImage truth_image(const render::SonarSettings& settings, const BeamEcho& echo) {
-  const std::vector<double>& edges = settings.aperture.beam_edges_rad;
-  const render::RangeLines& range = settings.range;
-  render::EchoImage image{settings.aperture.beam_count(), range.count, {}};
-  image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
-  std::atomic<int> next_beam{0};
-  const auto fill_beams = [&] {
-    for (int beam = next_beam++; beam < image.beams; beam = next_beam++) {
-      const auto b = static_cast<std::size_t>(beam);
-      float* const values = &image.intensity[b * static_cast<std::size_t>(image.lines)];
-      for (int k = 0; k < image.lines; ++k) {
-        const double from_m = std::max(1e-9, k * range.step_m);
-        values[k] = static_cast<float>(echo(edges[b + 1], edges[b], from_m, (k + 1) * range.step_m));
-      }
-    }
-  };
-  std::vector<std::jthread> helpers;
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) {
-    helpers.emplace_back(fill_beams);
-  }
-  fill_beams();
-  helpers.clear();  // joins: the image is complete
-  return image;
-}
 
 double SphereTruth::limb_squared() const {
   return horizontal_m * horizontal_m + height_m * height_m - radius_m * radius_m;

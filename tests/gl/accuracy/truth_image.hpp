@@ -1,18 +1,11 @@
-// Images that closed forms say a sonar must hear (docs/physics.md 3.2).
+// Beams that closed forms say a sonar must hear (docs/physics.md 3.2), for mu = 1 and no absorption.
 #pragma once
 
-#include <functional>
-
 #include "renderer/sonar_renderer.hpp"
+#include "tests/support/beam_images.hpp"
 #include "tests/support/closed_forms.hpp"
 
 namespace sonard::test {
-
-/// Echo between two azimuths (the smaller first) from ranges [r1, r2), for mu = 1 and no absorption.
-using BeamEcho = std::function<double(double psi_from, double psi_to, double r1, double r2)>;
-
-/// `echo` for every bin of the ping. Called from several threads.
-render::EchoImage truth_image(const render::SonarSettings& settings, const BeamEcho& echo);
 
 /// T4, beam by beam: a sphere wholly inside the fan. Summed over beams it is sphere_echo().
 struct SphereTruth {

@@ -216,18 +216,6 @@ TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
   }
 }
 
-/// A strip of width `width_m` across the view 10 m ahead, its middle at azimuth or elevation `angle_rad`.
-World strip(double width_m, double angle_rad, bool upright) {
-  const auto w = static_cast<float>(width_m);
-  Body body = make_body("strip",
-                        upright ? make_quad({0, -w / 2, -5}, {0, w, 0}, {0, 0, 10})
-                                : make_quad({0, -5, -w / 2}, {0, 10, 0}, {0, 0, w}),
-                        full_mu);
-  const double aside = 10 * std::tan(angle_rad);
-  body.T_world_body.position_m = upright ? glm::dvec3(10, aside, 0) : glm::dvec3(10, 0, aside);
-  return make_world({body});
-}
-
 // docs/physics.md 4.1, equation 6: a strip s samples wide, s < 1, is met with probability s, one of a sample
 // always. Along the elevation slices miss nothing; across it they are a degree wide at most, and what is thin
 // and upright makes them divide.

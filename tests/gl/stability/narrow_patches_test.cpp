@@ -4,6 +4,7 @@
 #include <random>
 
 #include "tests/gl/stability/stability_test.hpp"
+#include "tests/scenes/shapes.hpp"
 
 namespace sonard::render {
 namespace {
@@ -125,18 +126,6 @@ TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
   EXPECT_LE(mean, 1.0F);
 }
 
-/// A strip of width `width_m` across the view 10 m ahead, its middle at azimuth or elevation `angle_rad`.
-World strip(double width_m, double angle_rad, bool upright) {
-  const auto w = static_cast<float>(width_m);
-  Body body = make_body("strip",
-                        upright ? make_quad({0, -w / 2, -5}, {0, w, 0}, {0, 0, 10})
-                                : make_quad({0, -5, -w / 2}, {0, 10, 0}, {0, 0, w}),
-                        full_mu);
-  const double aside = 10 * std::tan(angle_rad);
-  body.T_world_body.position_m = upright ? glm::dvec3(10, aside, 0) : glm::dvec3(10, 0, aside);
-  return make_world({body});
-}
-
 // What is thin and upright makes slices divide: none is missed, however it lies to their middles and borders.
 TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
   if (GetParam() != Way::ray_slices) {
@@ -153,23 +142,6 @@ TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
   }
 }
 
-/// Edges of 1 m, around the origin.
-TriangleMesh box_of_quads() {
-  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), corner(-0.5F, -0.5F, -0.5F);
-  TriangleMesh box;
-  for (const TriangleMesh& face :
-       {make_quad(corner, y, x), make_quad(corner, x, z), make_quad(corner, z, y),
-        make_quad(corner + x + y + z, -x, -y), make_quad(corner + x + y + z, -z, -x),
-        make_quad(corner + x + y + z, -y, -z)}) {
-    const auto first = static_cast<std::uint32_t>(box.positions.size());
-    box.positions.insert(box.positions.end(), face.positions.begin(), face.positions.end());
-    for (const std::uint32_t index : face.indices) {
-      box.indices.push_back(first + index);
-    }
-  }
-  return box;
-}
-
 // A face of a box whose range hardly changes along a slice, cut off by a steep edge: its whole echo lies
 // within a part of a line, whatever its ends do across the wedge. Held to a fine grid of rays, which knows no
 // slices.
@@ -177,7 +149,7 @@ TEST_P(NarrowPatches, S3_FacesAlongASliceStayInTheirLines) {
   if (GetParam() != Way::ray_slices) {
     return;
   }
-  Body box = make_body("box", box_of_quads());
+  Body box = make_body("box", make_block({0, 0, 0}, {1, 1, 1}, 0));
   box.T_world_body = {{8, 1, 0.5}, glm::angleAxis(0.6, glm::normalize(glm::dvec3(0.2, 0.1, 1)))};
   SonarRenderer renderer(
       make_world({make_body("bed", make_quad({2, -20, 0}, {18, 0, 0}, {0, 40, 0}), 0.3), box}), options());

@@ -129,6 +129,18 @@ inline double different_share(const render::EchoImage& a, const render::EchoImag
 /// Silhouettes may move by less than a sample: this share of the bins may differ (docs/physics.md 4.3, S21).
 inline constexpr double silhouette_share = 1e-3;
 
+/// A strip of width `width_m` across the view 10 m ahead, its middle at azimuth or elevation `angle_rad`.
+inline render::World strip(double width_m, double angle_rad, bool upright) {
+  const auto w = static_cast<float>(width_m);
+  render::Body body = make_body("strip",
+                                upright ? make_quad({0, -w / 2, -5}, {0, w, 0}, {0, 0, 10})
+                                        : make_quad({0, -5, -w / 2}, {0, 10, 0}, {0, 0, w}),
+                                full_mu);
+  const double aside = 10 * std::tan(angle_rad);
+  body.T_world_body.position_m = upright ? glm::dvec3(10, aside, 0) : glm::dvec3(10, 0, aside);
+  return make_world({body});
+}
+
 }  // namespace sonard::test
 
 #define SONARD_STABILITY_SUITE(name)                                                                       \
