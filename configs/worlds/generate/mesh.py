@@ -51,6 +51,12 @@ def _rounded(point):
     return tuple(round(c, 3) + 0.0 for c in point)
 
 
+def _texture(position, normal, tile_m):
+    """(u, v), 1 for each tile: east and north on a bed or floor, along and up on a wall."""
+    facing = max((2, 1, 0), key=lambda axis: abs(normal[axis]))
+    return [position[axis] / tile_m for axis in range(3) if axis != facing]
+
+
 class Mesh:
     """Positions, one unit normal each, and triangles."""
 
@@ -201,7 +207,7 @@ class Mesh:
         self.triangles += [tuple(base + k for k in t) for t in other.triangles]
 
     def ply(self, texture_tile_m=None):
-        """The mesh as a binary little-endian PLY file; with texture coordinates that repeat every tile in x and y."""
+        """The mesh as a binary little-endian PLY file; with texture coordinates where a tile's size is given."""
         uv = ("texture_u", "texture_v") if texture_tile_m else ()
         header = "\n".join([
             "ply", "format binary_little_endian 1.0",
@@ -213,7 +219,7 @@ class Mesh:
         for position, normal in zip(self.positions, self.normals):
             body += struct.pack("<6f", *position, *normal)
             if texture_tile_m:
-                body += struct.pack("<2f", position[0] / texture_tile_m, position[1] / texture_tile_m)
+                body += struct.pack("<2f", *_texture(position, normal, texture_tile_m))
         for triangle in self.triangles:
             body += struct.pack("<B3i", 3, *triangle)
         return bytes(body)

@@ -1,4 +1,5 @@
-"""Survey trajectories: a smooth closed loop on an arc around a target, the sonar's fan held on it.
+"""Trajectories, all closed loops: surveys on an arc around a target with the sonar's fan held on it, and for a head that turns
+step by step rests and slow moves between them.
 
 Poses are of the vehicle body (x forward, y left, z up) in the world frame (x east, y north, z up).
 """
@@ -36,9 +37,30 @@ def arc_survey(target, start_deg, sweep_deg, radius_m, closer_m, height_m, lower
     return rows
 
 
-def csv_text(rows):
+def out_and_back(start, end, rest_s, move_s, rate_hz=10):
+    """Rows (t, x, y, z, qx, qy, qz, qw), heading east: rest at `start`, ease over to `end`, rest there, ease back."""
+    rows = []
+    for k in range(2 * int((rest_s + move_s) * rate_hz) + 1):
+        t = k / rate_hz
+        away = min(max(t - rest_s, 0.0) / move_s, 1.0) - max(t - 2.0 * rest_s - move_s, 0.0) / move_s
+        share = 0.5 * (1.0 - math.cos(math.pi * away))
+        rows.append((t, *(a + (b - a) * share for a, b in zip(start, end)), *quaternion(0.0, 0.0, 0.0)))
+    return rows
+
+
+def turn_and_back(position, turn_deg, rest_s, turn_s, rate_hz=50):
+    """Rows as above: heading east at rest, a turn to port at a constant rate, rest, the same turn back."""
+    rows = []
+    for k in range(2 * int((rest_s + turn_s) * rate_hz) + 1):
+        t = k / rate_hz
+        share = min(max(t - rest_s, 0.0) / turn_s, 1.0) - max(t - 2.0 * rest_s - turn_s, 0.0) / turn_s
+        rows.append((t, *position, *quaternion(0.0, 0.0, math.radians(turn_deg * share))))
+    return rows
+
+
+def csv_text(rows, time_digits=1):
     lines = ["t,x,y,z,qx,qy,qz,qw"]
-    lines += [f"{r[0]:.1f}," + ",".join(f"{v:.3f}" for v in r[1:4]) + "," + ",".join(f"{v:.6f}" for v in r[4:]) for r in rows]
+    lines += [f"{r[0]:.{time_digits}f}," + ",".join(f"{v:.3f}" for v in r[1:4]) + "," + ",".join(f"{v:.6f}" for v in r[4:]) for r in rows]
     return "\n".join(lines) + "\n"
 
 
@@ -54,5 +76,9 @@ def trajectories():
                       lower_m=0.4, period_s=80.0)
     valve = arc_survey(target=(0.0, 0.0, -42.2), start_deg=-70.0, sweep_deg=-100.0, radius_m=13.5, closer_m=1.0, height_m=4.5,
                        lower_m=0.3, period_s=80.0)
+    tank = out_and_back(start=(-1.0, -0.5, -4.0), end=(2.0, 1.5, -4.0), rest_s=20.0, move_s=20.0)
+    grid = turn_and_back(position=(0.0, 0.0, -8.0), turn_deg=20.0, rest_s=10.0, turn_s=10.0)
+    oil_and_gas = out_and_back(start=(0.0, 0.0, -24.5), end=(7.0, 0.0, -24.5), rest_s=20.0, move_s=20.0)
     return {"docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
-            "ssiv_demo.tum": tum_text(valve).encode("ascii")}
+            "ssiv_demo.tum": tum_text(valve).encode("ascii"), "tank.csv": csv_text(tank).encode("ascii"),
+            "grid.csv": csv_text(grid, time_digits=2).encode("ascii"), "oil_and_gas.csv": csv_text(oil_and_gas).encode("ascii")}

@@ -1,19 +1,26 @@
-"""The two worlds: where everything lies. Each function returns {path below configs/worlds: bytes}."""
+"""The worlds: where everything lies. Each function returns {path below configs/worlds: bytes}."""
 
 import math
 
 from boulders import boulder
 from docking_station import rov_mesh, station_meshes, umbilical_mesh
+from grid import HALF, grid_mesh
 from mesh import Mesh, placed, yawed
 from noise import smoothstep, uniform
-from normal_map import TILE_M, sand_normal_map
+from normal_map import CONCRETE_TILE_M, SAND_TILE_M, concrete_normal_map, sand_normal_map
+from oil_and_gas import (HEADER, HEADER_OFFSETS, HEADER_RADIUS, HUBS, JACKET_FOOT, JUMPER_HUB, MANIFOLD, TREE, jacket_mesh, jumper_mesh,
+                         manifold_mesh, riser_clamp_mesh, riser_mesh, tree_mesh)
 from pipeline import Pipeline
 from sdf import World
 from seabed import Seabed
 from ssiv import BASE, PIPE_RADIUS, TIE_IN, ssiv_meshes
+from tank import DEPTH, TARGET_HEIGHT, tank_meshes
 
 # Boulder shapes, reused at several places and scales.
 BOULDER_SIZES = {"a": (1.9, 1.5, 1.2), "b": (1.2, 1.1, 0.9), "c": (0.9, 0.7, 0.6), "d": (2.6, 1.7, 1.3)}
+
+# Where the structures of oil_and_gas stand.
+MANIFOLD_AT, TREE_AT, JACKET_AT = (0.0, 4.0), (7.5, -2.4), (0.0, -13.5)
 
 
 def _boulder_files(folder):
@@ -23,6 +30,18 @@ def _boulder_files(folder):
 
 def _pose(x, y, z, yaw):
     return f"{x:.3f} {y:.3f} {z:.3f} 0 0 {yaw:.3f}"
+
+
+def _scour_boulders(seabed, boulders):
+    for _, shape, x, y, scale, _ in boulders:
+        seabed.scour((x, y), 0.55 * BOULDER_SIZES[shape][0] * scale, 0.10 * BOULDER_SIZES[shape][0] * scale)
+
+
+def _add_boulders(world, seabed, boulders):
+    for name, shape, x, y, scale, yaw in boulders:
+        z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale
+        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", "rock")], _pose(x, y, z, yaw), True,
+                    None if scale == 1.0 else f"{scale} {scale} {scale}")
 
 
 def _cobbles(seabed, seed, count, keep_out):
@@ -71,8 +90,7 @@ def docking_station():
         ("boulder_4", "c", -5.9, 4.6, 1.0, 0.2), ("boulder_5", "b", -8.8, -7.6, 1.1, 3.0), ("boulder_6", "c", 5.2, -7.4, 1.0, 0.9),
         ("boulder_7", "a", 10.8, -2.2, 0.9, 5.1), ("boulder_8", "c", 1.6, 8.1, 1.2, 4.0), ("boulder_9", "d", -13.5, 2.1, 0.8, 2.5),
         ("boulder_10", "b", 12.9, 9.4, 1.3, 0.7)]
-    for _, shape, x, y, scale, _ in boulders:
-        seabed.scour((x, y), 0.55 * BOULDER_SIZES[shape][0] * scale, 0.10 * BOULDER_SIZES[shape][0] * scale)
+    _scour_boulders(seabed, boulders)
 
     def keep_out(x, y):
         return abs(y - sway(x)) < 0.9 or (abs(x) < 3.2 and abs(y - 0.6) < 2.6)
@@ -102,10 +120,7 @@ def docking_station():
                                     ("equipment", f"{folder}/station_equipment.ply", "steel_fouled")],
                 pose=_pose(0.0, 0.6, level, 0.0), comment="4 x 3 x 2.5 m, entered from the west")
     world.model("umbilical", [("cable", f"{folder}/umbilical.ply", "rubber")])
-    for name, shape, x, y, scale, yaw in boulders:
-        z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale
-        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", "rock")], _pose(x, y, z, yaw), True,
-                    None if scale == 1.0 else f"{scale} {scale} {scale}")
+    _add_boulders(world, seabed, boulders)
     world.model("rov", [("vehicle", f"{folder}/rov.ply", "aluminium")], _pose(-6.2, 1.4, seabed.height(-6.2, 1.4) + 1.5, -0.1),
                 static=False, comment="Hovers before the station's entrance; moved by body poses")
     files["docking_station.sdf"] = world.text().encode("ascii")
@@ -144,8 +159,7 @@ def ssiv():
             seabed.scour((sx * 3.9, sy * 3.1), 0.7, 0.07)
     boulders = [("boulder_1", "b", -8.5, 5.2, 1.0, 0.3), ("boulder_2", "a", 9.5, 6.5, 0.9, 1.9), ("boulder_3", "c", 6.0, -6.2, 1.0, 4.4),
                 ("boulder_4", "c", -6.6, -7.1, 1.2, 2.7), ("boulder_5", "d", 2.5, 10.5, 0.8, 0.8)]
-    for _, shape, x, y, scale, _ in boulders:
-        seabed.scour((x, y), 0.55 * BOULDER_SIZES[shape][0] * scale, 0.10 * BOULDER_SIZES[shape][0] * scale)
+    _scour_boulders(seabed, boulders)
 
     def keep_out(x, y):
         return abs(y - sway(x)) < 0.9 or (abs(x) < 5.0 and abs(y) < 4.0)
@@ -160,7 +174,7 @@ def ssiv():
     files |= {f"{folder}/ssiv_{name}.ply": mesh.ply() for name, mesh in parts.items()}
     files |= {
         "textures/sand_normal.png": sand_normal_map(3),
-        f"{folder}/seabed.ply": seabed.mesh(30.0, 13.0, 0.28, 1.1).ply(TILE_M),
+        f"{folder}/seabed.ply": seabed.mesh(30.0, 13.0, 0.28, 1.1).ply(SAND_TILE_M),
         f"{folder}/cobbles.ply": _cobbles(seabed, 9, 70, keep_out).ply(),
         f"{folder}/pipe.ply": pipes.ply(),
         f"{folder}/anodes.ply": anodes.ply(),
@@ -175,9 +189,114 @@ def ssiv():
     world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", "steel_fouled"), ("piping", f"{folder}/ssiv_piping.ply", "steel_fouled"),
                          ("equipment", f"{folder}/ssiv_equipment.ply", "steel_fouled"), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
                 pose=_pose(0.0, 0.0, level, 0.0), comment="7.2 x 5 m at the base, 3.2 m high; covers are glass-fibre plastic")
-    for name, shape, x, y, scale, yaw in boulders:
-        z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale
-        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", "rock")], _pose(x, y, z, yaw), True,
-                    None if scale == 1.0 else f"{scale} {scale} {scale}")
+    _add_boulders(world, seabed, boulders)
     files["ssiv.sdf"] = world.text().encode("ascii")
+    return files
+
+
+def tank():
+    folder = "meshes/tank"
+    tiles = {"lining": CONCRETE_TILE_M}
+    files = {f"{folder}/{name}.ply": mesh.ply(tiles.get(name)) for name, mesh in tank_meshes().items()}
+    files["textures/concrete_normal.png"] = concrete_normal_map(17)
+    world = World("tank", "A concrete test tank, 14 x 10 m and 8 m deep, with a few things in it.")
+    world.model("tank", [("lining", f"{folder}/lining.ply", "concrete", "textures/concrete_normal.png")],
+                comment="Inner faces at x = -7 and 7, y = -5 and 5, z = -8")
+    world.model("water_surface", [("surface", f"{folder}/surface.ply", "air")])
+    world.model("ladder", [("ladder", f"{folder}/ladder.ply", "steel")])
+    world.model("pillar", [("pillar", f"{folder}/pillar.ply", "concrete")])
+    world.model("inlet", [("pipe", f"{folder}/inlet.ply", "steel")])
+    world.model("target", [("sphere", f"{folder}/target.ply", "steel")], _pose(0.5, -3.1, TARGET_HEIGHT - DEPTH, 0.0),
+                static=False, comment="A sphere of radius 0.25 m, moored; its origin is its centre")
+    files["tank.sdf"] = world.text().encode("ascii")
+    return files
+
+
+def grid():
+    folder = "meshes/grid"
+    seabed = Seabed(seed=7, depth_m=12.0, undulation_m=0.08, ripple_height_m=0.05, ripple_length_m=1.9, ripple_heading_rad=0.5)
+    seabed.flatten((0.0, 0.0), (HALF + 0.4, HALF + 0.4), -12.0, 3.0)
+    files = {
+        "textures/sand_normal.png": sand_normal_map(3),
+        f"{folder}/seabed.ply": seabed.mesh(25.0, 6.0, 0.5, 1.15).ply(SAND_TILE_M),
+        f"{folder}/grid.ply": grid_mesh().ply(),
+    }
+    world = World("grid", "A cage of bars on a sandy bed, 8 x 8 x 8 m, a bar every metre.")
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand", "textures/sand_normal.png")])
+    world.model("grid", [("bars", f"{folder}/grid.ply", "steel_fouled")], _pose(0.0, 0.0, -8.0, 0.0),
+                comment="Upright bars at whole metres on x = -4 and 4 and on y = -4 and 4; the gate is in the middle of x = 4")
+    files["grid.sdf"] = world.text().encode("ascii")
+    return files
+
+
+def _flowlines(seabed):
+    """Two pipes from each end of the manifold's headers down to the bed and away."""
+
+    def burial(x):
+        # Negative: the headers are higher than a pipe on the bed.
+        at_header = 0.5 * (1.0 - HEADER / HEADER_RADIUS)
+        keep = smoothstep(2.9, 9.0, abs(x))
+        return at_header * (1.0 - keep) + 0.2 * keep
+
+    lines = [Pipeline(seabed, lambda x, y=MANIFOLD_AT[1] + offset: y, start, end, 2.0 * HEADER_RADIUS, burial)
+             for offset in HEADER_OFFSETS for start, end in ((-24.0, -2.9), (2.9, 24.0))]
+    mesh = Mesh()
+    for line in lines:
+        mesh.merge(line.pipe_mesh())
+    return mesh
+
+
+def _risers_and_jumper(level):
+    """{part name: mesh} of what joins jacket, manifold and tree; in world coordinates."""
+    risers, clamps = Mesh(), Mesh()
+    for x, radius in zip(HUBS, (0.20, 0.14)):
+        foot = (x, JACKET_AT[1] + JACKET_FOOT[1] + 0.75)
+        hub = (MANIFOLD_AT[0] + x, MANIFOLD_AT[1] - MANIFOLD[1] - 0.25, level + HEADER)
+        risers.merge(riser_mesh(foot, hub, level, 1.0, radius))
+        clamps.merge(riser_clamp_mesh(foot, level, radius))
+    at_tree = (TREE_AT[0], TREE_AT[1] + TREE[1] + 0.25, level + HEADER)
+    at_manifold = (MANIFOLD_AT[0] + MANIFOLD[0] + 0.25, MANIFOLD_AT[1] + JUMPER_HUB, level + HEADER)
+    return {"risers": risers, "riser_clamps": clamps, "jumper": jumper_mesh(at_tree, at_manifold, level + 2.9, 0.13)}
+
+
+def oil_and_gas():
+    folder = "meshes/oil_and_gas"
+    seabed = Seabed(seed=53, depth_m=30.0, undulation_m=0.30, ripple_height_m=0.09, ripple_length_m=1.7,
+                    ripple_heading_rad=math.radians(35.0))
+    level = round(seabed.natural(*MANIFOLD_AT), 3)
+    for place, half_size in ((MANIFOLD_AT, (2.6, 1.9)), (TREE_AT, (1.3, 1.3)), (JACKET_AT, (7.0, 7.0))):
+        seabed.flatten(place, half_size, level, 3.0)
+    natural = seabed.natural
+
+    def natural_at_manifold(x, y):
+        keep = smoothstep(3.5, 8.0, math.dist((x, y), MANIFOLD_AT))
+        return level * (1.0 - keep) + natural(x, y) * keep
+
+    seabed.natural = natural_at_manifold
+
+    flowlines = _flowlines(seabed)
+    lines = _risers_and_jumper(level)
+    boulders = [("boulder_1", "a", 12.5, 0.6, 1.0, 0.5), ("boulder_2", "c", 4.2, -3.9, 1.0, 2.2), ("boulder_3", "b", -5.6, -1.5, 1.0, 4.1),
+                ("boulder_4", "d", -11.0, -4.2, 0.9, 1.0)]
+    _scour_boulders(seabed, boulders)
+    files = _boulder_files("meshes/boulders")
+    files |= {
+        "textures/sand_normal.png": sand_normal_map(3),
+        f"{folder}/seabed.ply": seabed.mesh(26.0, 10.4, 0.4, 1.12).ply(SAND_TILE_M),
+        f"{folder}/flowlines.ply": flowlines.ply(),
+        f"{folder}/jacket.ply": jacket_mesh(31.0).ply(),
+        f"{folder}/manifold.ply": manifold_mesh().ply(),
+        f"{folder}/tree.ply": tree_mesh().ply(),
+    }
+    files |= {f"{folder}/{name}.ply": mesh.ply() for name, mesh in lines.items()}
+    world = World("oil_and_gas", "A jacket with two risers, a manifold with flowlines, and a wellhead tree.")
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand", "textures/sand_normal.png")])
+    world.model("flowlines", [("pipes", f"{folder}/flowlines.ply", "concrete")])
+    world.model("jacket", [("structure", f"{folder}/jacket.ply", "steel_fouled")], _pose(*JACKET_AT, level, 0.0))
+    world.model("risers", [("pipes", f"{folder}/risers.ply", "steel"), ("clamps", f"{folder}/riser_clamps.ply", "steel_fouled")])
+    world.model("manifold", [("structure", f"{folder}/manifold.ply", "steel_fouled")], _pose(*MANIFOLD_AT, level, 0.0))
+    world.model("tree", [("structure", f"{folder}/tree.ply", "steel_fouled")], _pose(*TREE_AT, level, 0.0))
+    world.model("jumper", [("pipe", f"{folder}/jumper.ply", "steel")])
+    _add_boulders(world, seabed, boulders)
+    files["oil_and_gas.sdf"] = world.text().encode("ascii")
     return files
