@@ -29,6 +29,15 @@ TEST(ShippedConfigs, load_without_warnings) {
   EXPECT_GE(files, 4);
 }
 
+TEST(ShippedConfigs, trajectories_load) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(configs / "trajectories")) {
+    ++files;
+    EXPECT_GT(pose::load_trajectory(entry.path()).points().size(), 1U) << entry.path();
+  }
+  EXPECT_GE(files, 6);
+}
+
 void expect_demo_head(const DaemonConfig& config) {
   ASSERT_EQ(config.heads.size(), 1U);
   const GeminiHeadConfig& head = config.heads[0];

@@ -1,0 +1,32 @@
+// What ships in configs/worlds loads whole: nothing to warn of, nothing repaired or dropped.
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+namespace {
+
+TEST(ShippedWorlds, load_whole) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SONARD_SOURCE_DIR "/configs/worlds")) {
+    if (entry.path().extension() != ".sdf") {
+      continue;
+    }
+    SCOPED_TRACE(entry.path());
+    ++files;
+    const World world = load_world(entry.path(), {});
+    EXPECT_EQ(world.name, entry.path().stem().string());
+    EXPECT_EQ(world.water_surface_z_m, 0.0);
+    EXPECT_THAT(world.warnings, testing::IsEmpty());
+    const MeshDiagnostics& repaired = world.diagnostics;
+    EXPECT_EQ(repaired.degenerate_triangles + repaired.non_finite_triangles, 0U);
+    EXPECT_EQ(repaired.bad_normals + repaired.bad_texcoords, 0U);
+  }
+  EXPECT_GE(files, 5);
+}
+
+}  // namespace
+}  // namespace sonard::render
