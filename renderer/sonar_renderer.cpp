@@ -164,9 +164,9 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   const int slices = settings.model == Model::paper ? 2 : 1;
   switch (settings.sampling.preset) {
     case Sampling::Preset::fast:
-      return {slices, 16, 3e-2F, 0.035F, 0.2F, 0.05F};
+      return {slices, 25, 2.5e-2F, 3e-3F, 0.15F, 0.05F};
     case Sampling::Preset::reference:
-      return {8, 64, 1e-4F, 0.001F, 0.005F, 0.001F};
+      return {9, 125, 1e-4F, 5e-5F, 0.005F, 0.001F};
     default:
       return {.slices_per_beam = slices};
   }
@@ -245,7 +245,7 @@ struct SonarRenderer::Impl {
                                std::vector<float> memory) {
     Stopwatch watch;
     const auto cells =
-        slices->sample(T_world_sonar, settings.aperture, settings.range.step_m, sampled_range_m(settings),
+        slices->sample(T_world_sonar, settings.aperture, settings.range, sampled_range_m(settings),
                        surface_model(settings), slice_accuracy(settings));
     statistics.visibility_s = watch.lap();
     statistics.skipped += slices->skipped();

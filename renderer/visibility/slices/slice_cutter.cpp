@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::size_t widest_vector = 16;  // arrays end on a multiple, so that no loop has a rest
 constexpr float nearest_m = 1e-4F;         // what is nearer to the vertical axis is cut off
-// Of a segment, in radians of elevation: a shorter one says nothing of the slope of its surface.
-constexpr float shortest_rad = 1e-6F;
 constexpr float sharp_turn_rad = 0.6F;
 constexpr double same_edge_rad = 2e-6;  // edges nearer to each other stand in one place
 
@@ -238,7 +236,7 @@ bool SliceCutter::misses_thin_thing(const Slice& slice) const {
 
 void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
   for (auto* array : {&segments.low, &segments.high, &segments.w_at_0, &segments.w_slope, &segments.low_drift,
-                      &segments.high_drift}) {
+                      &segments.high_drift, &segments.low_reach, &segments.high_reach}) {
     array->resize(padded_);
   }
   segments.kept.resize(padded_ + 1);
@@ -259,7 +257,7 @@ void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
 /// and denominator and nothing else, so that two triangles find the same point on their common edge.
 SONARD_SIMD_CLONES
 void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segments) {
-  const float cosine = slice.cosine, sine = slice.sine, width_rad = slice.width_rad;
+  const float cosine = slice.cosine, sine = slice.sine;
   const float* __restrict x0 = x_[0].data();
   const float* __restrict x1 = x_[1].data();
   const float* __restrict x2 = x_[2].data();
@@ -275,6 +273,8 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
   float* __restrict slope = segments.w_slope.data();
   float* __restrict low_drift = segments.low_drift.data();
   float* __restrict high_drift = segments.high_drift.data();
+  float* __restrict low_reach = segments.low_reach.data();
+  float* __restrict high_reach = segments.high_reach.data();
   std::int32_t* __restrict fate = fate_.data();
   constexpr float w_nearest = 1.0F / nearest_m;
   const std::size_t count = padded_;
@@ -296,12 +296,10 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
     const float over_p = 1.0F / (hpi * spj - hpj * spi), over_q = 1.0F / (hqi * sqj - hqj * sqi);
     const float tp = (zpi * spj - zpj * spi) * over_p, wp = ep * over_p;
     const float tq = (zqi * sqj - zqj * sqi) * over_q, wq = eq * over_q;
-    // dt / d azimuth along the edge is (dz - t dh) / ds. An edge that ends inside the wedge moves no farther.
-    const float ap = ep < 0 ? -ep : ep, aq = eq < 0 ? -eq : eq;
-    const float up = width_rad / (wp < 0 ? -wp : wp), uq = width_rad / (wq < 0 ? -wq : wq);
-    const float dp = ((zpj - zpi) - tp * (hpj - hpi)) / (ap > up ? ap : up);
-    const float dq = ((zqj - zqi) - tq * (hqj - hqi)) / (aq > uq ? aq : uq);
-    const float mp = ep < 0 ? -dp : dp, mq = eq < 0 ? -dq : dq;
+    // dt / d azimuth along the edge is (dz - t dh) / ds; the azimuth over which it runs is w ds.
+    const float rp = (zpj - zpi) - tp * (hpj - hpi), rq = (zqj - zqi) - tq * (hqj - hqi);
+    const float mp = rp / ep, mq = rq / eq;
+    const float fp = rp * wp, fq = rq * wq;
     const bool p_low = tp < tq;
     const float a = p_low ? tp : tq, b = p_low ? tq : tp, wa = p_low ? wp : wq, wb = p_low ? wq : wp;
     const float steepness = (wb - wa) / (b - a);
@@ -311,6 +309,9 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
     at_0[i] = wa - steepness * a;
     low_drift[i] = p_low ? mp : mq;
     high_drift[i] = p_low ? mq : mp;
+    const float reach_a = p_low ? fp : fq, reach_b = p_low ? fq : fp;
+    low_reach[i] = reach_a < 0 ? -reach_a : reach_a;
+    high_reach[i] = reach_b < 0 ? -reach_b : reach_b;
     const std::int32_t cut = side0 * side1 + side2 * side0 < 2 ? 1 : 0;
     const std::int32_t seen =
         ((b - a > shortest_rad * (1 + a * a)) & (b > -tan_limit) & (a < tan_limit)) ? kept : none;
@@ -363,6 +364,7 @@ void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i
   segments.w_slope[i] = static_cast<float>(steepness);
   segments.w_at_0[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
   segments.low_drift[i] = segments.high_drift[i] = 0.0F;
+  segments.low_reach[i] = segments.high_reach[i] = 0.0F;
   fate_[i] = kept;
 }
 

@@ -38,16 +38,33 @@ struct UprightEdge {
   ProbeSet probes;  ///< at which it does
 };
 
+/// Of a segment, in radians of elevation: a shorter one says nothing of the slope of its surface, and is left
+/// out.
+inline constexpr float shortest_rad = 1e-6F;
+
+/// How the end of a piece moves beside the slice, as the edge runs of which it is a point.
+struct EdgeRun {
+  float drift = 0.0F;  ///< dt / d azimuth
+  float reach = 0.0F;  ///< the edge ends after so much of t: within a wedge it moves no farther
+
+  /// As a straight line over a wedge of the fan. An end at `t` that drifts out of the fan stops there.
+  float drift_within(float t, float width_rad, float tan_limit) const {
+    const float rest = (tan_limit - (t < 0 ? -t : t)) * 2;
+    const float most = (reach < rest ? reach : rest) / width_rad;
+    return drift > most ? most : (drift < -most ? -most : drift);
+  }
+};
+
 /// What a slice cuts out of triangles: a straight segment each, in arrays as long as the list of triangles,
 /// because loops over them are vectorised. Only those named in `kept` exist.
 struct Segments {
   std::vector<std::int32_t> kept;
-  std::vector<float> low, high;        ///< t at the two ends; low < high
-  std::vector<float> w_at_0, w_slope;  ///< 1 / h = w_at_0 + w_slope * t
-  /// dt / d azimuth of the ends, as the edges of the triangle run; what an edge moves within the wedge is
-  /// limited to its own length.
-  std::vector<float> low_drift, high_drift;
+  std::vector<float> low, high;                                     ///< t at the two ends; low < high
+  std::vector<float> w_at_0, w_slope;                               ///< 1 / h = w_at_0 + w_slope * t
+  std::vector<float> low_drift, high_drift, low_reach, high_reach;  ///< see EdgeRun
 
+  EdgeRun low_run(std::size_t segment) const { return {low_drift[segment], low_reach[segment]}; }
+  EdgeRun high_run(std::size_t segment) const { return {high_drift[segment], high_reach[segment]}; }
   float w(int segment, float t) const {
     const auto s = static_cast<std::size_t>(segment);
     return w_at_0[s] + w_slope[s] * t;

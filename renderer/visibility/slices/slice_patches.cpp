@@ -53,8 +53,7 @@ float ElevationPattern::at(float t) const {
 }
 
 void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
-  pieces_ = request.pieces;
-  follow_crossings(request);
+  pieces_ = &request.pieces;
   int rounds = 0;
   do {
     lay_out(request);
@@ -63,86 +62,46 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
   } while (rounds++ < most_rounds && divide_uneven(request));
   shade(request);
   const std::size_t begin = patches.size();
-  patches.resize(begin + pieces_.size());
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+  patches.resize(begin + pieces_->size());
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
     patches[begin + i] = {
         range_low_[i],   range_high_[i], smear_low_[i], smear_high_[i], response_[i] * solid_angle_[i],
         solid_angle_[i], echo_tilt_[i],  range_tilt_[i]};
   }
 }
 
-/// Where two surfaces cross, their pieces end along the line in which their planes meet. Its direction e
-/// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
-void SlicePatcher::follow_crossings(const Request& request) {
-  const float cosine = request.slice.cosine, sine = request.slice.sine;
-  const auto normal = [&](const VisiblePiece& piece) {
-    const auto t = static_cast<std::size_t>(piece.segment);
-    return glm::vec3(request.cutter.normal_x()[t], request.cutter.normal_y()[t],
-                     request.cutter.normal_z()[t]);
-  };
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (!std::isnan(pieces_[i].high_drift)) {
-      continue;
-    }
-    float drift = 0.0F;
-    if (i + 1 < pieces_.size()) {
-      const glm::vec3 e = glm::cross(normal(pieces_[i]), normal(pieces_[i + 1]));
-      const float along = e.x * cosine + e.y * sine;
-      const float across = e.y * cosine - e.x * sine;
-      // Over the wedge it moves no farther than the longer piece reaches.
-      const float reach =
-          std::max(pieces_[i].high - pieces_[i].low, pieces_[i + 1].high - pieces_[i + 1].low) /
-          request.slice.width_rad;
-      drift = (e.z - pieces_[i].high * along) / across;
-      drift = std::isfinite(drift) ? std::clamp(drift, -reach, reach) : 0.0F;
-      pieces_[i + 1].low_drift = drift;
-    }
-    pieces_[i].high_drift = drift;
-  }
-}
-
 /// Arrays never shrink: they may be longer than there are pieces.
 void SlicePatcher::grow(std::size_t count) {
   for (auto* array :
-       {&low_,          &high_,       &low_drift_,   &high_drift_, &w_at_0_,      &w_slope_,
-        &w_by_azimuth_, &normal_h_,   &normal_s_,    &normal_z_,   &range_low_,   &range_mid_,
-        &range_high_,   &smear_low_,  &smear_high_,  &cosine_,     &solid_angle_, &response_,
-        &plain_,        &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_,   &displaced_}) {
+       {&low_,         &high_,       &low_drift_, &high_drift_,  &low_reach_, &high_reach_, &w_at_0_,
+        &w_slope_,     &normal_h_,   &normal_s_,  &normal_z_,    &range_low_, &range_mid_,  &range_high_,
+        &smear_low_,   &smear_high_, &cosine_,    &solid_angle_, &response_,  &plain_,      &range_tilt_,
+        &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_}) {
     array->resize(count);
   }
-  first_probe_.resize(count);
-  last_probe_.resize(count);
 }
 
 /// Gathers what the pieces' segments and triangles say of them.
 void SlicePatcher::lay_out(const Request& request) {
-  const std::size_t count = pieces_.size();
+  const std::size_t count = pieces_->size();
   if (count > low_.size()) {
     grow(count + count / 2);
   }
-  const float cosine = request.slice.cosine, sine = request.slice.sine;
-  const float* nx = request.cutter.normal_x();
-  const float* ny = request.cutter.normal_y();
-  const float* nz = request.cutter.normal_z();
   const bool as_cosine = request.surface.model == Model::physical;
-  // An end that drifts out of the fan stops there.
-  const float drift_per_t = 2 / request.slice.width_rad;
-  const auto inside = [&](float drift, float t) {
-    const float most = (request.tan_limit - std::abs(t)) * drift_per_t;
-    return std::clamp(drift, -most, most);
-  };
   for (std::size_t i = 0; i < count; ++i) {
-    const auto segment = static_cast<std::size_t>(pieces_[i].segment);
-    low_[i] = pieces_[i].low;
-    high_[i] = pieces_[i].high;
-    low_drift_[i] = inside(pieces_[i].low_drift, pieces_[i].low);
-    high_drift_[i] = inside(pieces_[i].high_drift, pieces_[i].high);
-    w_at_0_[i] = request.segments.w_at_0[segment];
-    w_slope_[i] = request.segments.w_slope[segment];
-    normal_h_[i] = nx[segment] * cosine + ny[segment] * sine;
-    normal_s_[i] = ny[segment] * cosine - nx[segment] * sine;
-    normal_z_[i] = nz[segment];
-    plain_[i] = as_cosine && request.cutter.triangle(pieces_[i].segment).plain ? 1.0F : 0.0F;
+    const VisiblePiece& piece = (*pieces_)[i];
+    low_[i] = piece.low;
+    high_[i] = piece.high;
+    low_drift_[i] = piece.low_run.drift;
+    high_drift_[i] = piece.high_run.drift;
+    low_reach_[i] = piece.low_run.reach;
+    high_reach_[i] = piece.high_run.reach;
+    w_at_0_[i] = piece.w_at_0;
+    w_slope_[i] = piece.w_slope;
+    normal_h_[i] = piece.normal_h;
+    normal_s_[i] = piece.normal_s;
+    normal_z_[i] = piece.normal_z;
+    plain_[i] = as_cosine && piece.triangle->plain ? 1.0F : 0.0F;
   }
 }
 
@@ -153,11 +112,14 @@ void SlicePatcher::lay_out(const Request& request) {
 SONARD_SIMD_CLONES
 void SlicePatcher::measure(const Request& request) {
   const float width = request.slice.width_rad;
-  const auto count = pieces_.size();
+  const auto count = pieces_->size();
   const float* __restrict low = low_.data();
   const float* __restrict high = high_.data();
-  const float* __restrict low_drift = low_drift_.data();
-  const float* __restrict high_drift = high_drift_.data();
+  float* __restrict low_drift = low_drift_.data();
+  float* __restrict high_drift = high_drift_.data();
+  const float* __restrict low_reach = low_reach_.data();
+  const float* __restrict high_reach = high_reach_.data();
+  const float tan_limit = request.tan_limit;
   const float* __restrict w_at_0 = w_at_0_.data();
   const float* __restrict w_slope = w_slope_.data();
   const float* __restrict normal_h = normal_h_.data();
@@ -170,7 +132,6 @@ void SlicePatcher::measure(const Request& request) {
   float* __restrict range_mid = range_mid_.data();
   float* __restrict cos_phi = cosine_.data();
   float* __restrict solid_angle = solid_angle_.data();
-  float* __restrict w_by_azimuth = w_by_azimuth_.data();
   float* __restrict cosine_tilt = cosine_tilt_.data();
   float* __restrict cosine_mid = cosine_mid_.data();
   for (std::size_t i = 0; i < count; ++i) {
@@ -189,10 +150,12 @@ void SlicePatcher::measure(const Request& request) {
     range_low[i] = r1;
     range_mid[i] = rm;
     range_high[i] = r2;
-    smear_low[i] = std::abs(by_azimuth1 + by_t1 * low_drift[i]) * width;
-    smear_high[i] = std::abs(by_azimuth2 + by_t2 * high_drift[i]) * width;
-    // On a plane 1 / h changes with azimuth by n_s / D, wherever on it.
-    w_by_azimuth[i] = wm * normal_s[i] / nm;
+    const float low_moves = EdgeRun{low_drift[i], low_reach[i]}.drift_within(t1, width, tan_limit);
+    const float high_moves = EdgeRun{high_drift[i], high_reach[i]}.drift_within(t2, width, tan_limit);
+    low_drift[i] = low_moves;
+    high_drift[i] = high_moves;
+    smear_low[i] = std::abs(by_azimuth1 + by_t1 * low_moves) * width;
+    smear_high[i] = std::abs(by_azimuth2 + by_t2 * high_moves) * width;
     const float c1 = std::abs(n1) / g1, c2 = std::abs(n2) / g2, cm = std::abs(nm) / gm;
     const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
     cos_phi[i] = cosine < 1 ? cosine : 1.0F;
@@ -207,7 +170,7 @@ void SlicePatcher::measure(const Request& request) {
 /// dt, over dr: in first order it rises by the tilt (docs/physics.md 2.3).
 SONARD_SIMD_CLONES
 void SlicePatcher::find_tilts(const Request& request) {
-  const auto count = pieces_.size();
+  const auto count = pieces_->size();
   const float* __restrict low = low_.data();
   const float* __restrict high = high_.data();
   const float* __restrict range_low = range_low_.data();
@@ -260,7 +223,7 @@ void SlicePatcher::find_tilts(const Request& request) {
 
 SONARD_SIMD_CLONES
 bool SlicePatcher::all_even(float allowed_m) const {
-  const auto count = pieces_.size();
+  const auto count = pieces_->size();
   const float* __restrict displaced = displaced_.data();
   std::int32_t uneven = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -270,7 +233,7 @@ bool SlicePatcher::all_even(float allowed_m) const {
 }
 
 bool SlicePatcher::is_mapped(const Request& request, const VisiblePiece& piece) {
-  const NormalPyramid* map = request.parts[request.cutter.triangle(piece.segment).part].normal_map.get();
+  const NormalPyramid* map = request.parts[piece.triangle->part].normal_map.get();
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
@@ -288,7 +251,7 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
   }
   const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
   if (request.any_mapped && in_range && span_m > mapped_lines * request.line_m &&
-      is_mapped(request, pieces_[i])) {
+      is_mapped(request, (*pieces_)[i])) {
     parts = std::max(parts, 1.0F + std::floor(span_m / (mapped_lines * request.line_m)));
   }
   return static_cast<int>(std::min(parts, static_cast<float>(most_divisions)));
@@ -301,9 +264,9 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   }
   bool any = false;
   divided_.clear();
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
     const int parts = parts_of(request, i);
-    const VisiblePiece& whole = pieces_[i];
+    const VisiblePiece& whole = (*pieces_)[i];
     if (parts == 1) {
       divided_.push_back(whole);
       continue;
@@ -316,22 +279,23 @@ bool SlicePatcher::divide_uneven(const Request& request) {
     for (int k = 1; k <= parts; ++k) {
       const float share = static_cast<float>(k) / static_cast<float>(parts);
       part.high = k == parts ? whole.high : at_turn ? turn : whole.low + (whole.high - whole.low) * share;
-      part.high_drift = k == parts ? whole.high_drift : 0.0F;
+      part.high_run = k == parts ? whole.high_run : EdgeRun{};
       if (part.high > part.low) {
         divided_.push_back(part);
         part.low = part.high;
-        part.low_drift = part.high_drift;
+        part.low_run = part.high_run;
       }
     }
   }
-  pieces_.swap(divided_);
+  whole_.swap(divided_);
+  pieces_ = &whole_;
   return any;
 }
 
 void SlicePatcher::shade(const Request& request) {
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const VisiblePiece& piece = pieces_[i];
-    const FanTriangle& triangle = request.cutter.triangle(piece.segment);
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+    const VisiblePiece& piece = (*pieces_)[i];
+    const FanTriangle& triangle = *piece.triangle;
     const PartSurface& part = request.parts[triangle.part];
     const float t = 0.5F * (piece.low + piece.high);
     float cosine = cosine_[i];
@@ -354,53 +318,6 @@ void SlicePatcher::shade(const Request& request) {
     echo_tilt_[i] = tilts ? std::clamp(range_tilt_[i] + plain_[i] * cosine_tilt_[i], -1.0F, 1.0F) : 0.0F;
     range_tilt_[i] = std::clamp(range_tilt_[i], -1.0F, 1.0F);
   }
-}
-
-/// The probes of each piece, as they run if the piece goes on as it does in the middle.
-SONARD_SIMD_CLONES
-void SlicePatcher::find_probes(float tan_limit, float offset_rad) {
-  const auto count = pieces_.size();
-  const float probes_per_t = side_probes / (2 * tan_limit);
-  const auto end = static_cast<float>(side_probes);
-  const float* __restrict low = low_.data();
-  const float* __restrict high = high_.data();
-  const float* __restrict low_drift = low_drift_.data();
-  const float* __restrict high_drift = high_drift_.data();
-  std::int32_t* __restrict first = first_probe_.data();
-  std::int32_t* __restrict last = last_probe_.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    // The first probe at or above t; probes lie in the middle of their steps. Truncation is floor where it
-    // counts.
-    const float from = (low[i] + low_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
-    const float to = (high[i] + high_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
-    first[i] = static_cast<std::int32_t>(from < 0 ? 0.0F : (from > end ? end : from));
-    last[i] = static_cast<std::int32_t>(to < 0 ? 0.0F : (to > end ? end : to));
-  }
-}
-
-void SlicePatcher::profile(float tan_limit, float offset_rad, SideProfile& out) {
-  const float step = 2 * tan_limit / side_probes;
-  find_probes(tan_limit, offset_rad);
-  std::int32_t end = 0;  // of what is filled
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const std::int32_t first = first_probe_[i], last = last_probe_[i];
-    for (; end < first; ++end) {
-      out[static_cast<std::size_t>(end)] = 0.0F;
-    }
-    const float slope = w_slope_[i] * step;
-    const float w = w_at_0_[i] + w_by_azimuth_[i] * offset_rad +
-                    w_slope_[i] * (-tan_limit + (static_cast<float>(first) + 0.5F) * step);
-    // Most hold a probe or two. What is written too much the next piece writes again, or the end.
-    float* const at = &out[static_cast<std::size_t>(first)];
-    for (std::int32_t k = 0; k < probe_padding; ++k) {
-      at[k] = w + slope * static_cast<float>(k);
-    }
-    for (std::int32_t k = probe_padding; k < last - first; ++k) {
-      at[k] = w + slope * static_cast<float>(k);
-    }
-    end = std::max(end, last);
-  }
-  std::fill(out.begin() + end, out.end(), 0.0F);
 }
 
 }  // namespace sonard::render

@@ -1,4 +1,4 @@
-// Visible pieces of a slice -> echo patches, and what the slice says about its two sides.
+// Visible pieces of a slice -> echo patches.
 #pragma once
 
 #include <array>
@@ -26,11 +26,6 @@ struct PartSurface {
   glm::mat3 R_part_sonar{1.0F};  ///< for this ping
 };
 
-/// What is expected at one side of a wedge if its surfaces go on as in its middle: 1 / horizontal distance at
-/// the probes, 0 where nothing is seen. Neighbours compare theirs.
-inline constexpr int probe_padding = 4;  ///< at the end; so many are written at once
-using SideProfile = std::array<float, side_probes + probe_padding>;
-
 /// One-way elevation pattern as a function of t, tabled.
 class ElevationPattern {
  public:
@@ -49,9 +44,7 @@ class SlicePatcher {
  public:
   struct Request {
     const Slice& slice;
-    const Segments& segments;
     const std::vector<VisiblePiece>& pieces;
-    const SliceCutter& cutter;
     const std::vector<PartSurface>& parts;
     const SurfaceModel& surface;
     const ElevationPattern& pattern;
@@ -67,11 +60,7 @@ class SlicePatcher {
   /// @param patches is appended to.
   void make(const Request& request, std::vector<EchoPatch>& patches);
 
-  /// Of the slice that was made last: its profile `offset_rad` from the middle, positive to port.
-  void profile(float tan_limit, float offset_rad, SideProfile& out);
-
  private:
-  void follow_crossings(const Request& request);
   void grow(std::size_t count);
   void lay_out(const Request& request);
   void measure(const Request& request);
@@ -79,14 +68,14 @@ class SlicePatcher {
   bool divide_uneven(const Request& request);
   bool all_even(float allowed_m) const;
   int parts_of(const Request& request, std::size_t i) const;
-  void find_probes(float tan_limit, float offset_rad);
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
   void shade(const Request& request);
 
   /// Pieces after division, and what is known of each; arrays, because loops over them are vectorised.
-  std::vector<VisiblePiece> pieces_, divided_;
-  std::vector<float> low_, high_, low_drift_, high_drift_;
-  std::vector<float> w_at_0_, w_slope_, w_by_azimuth_, normal_h_, normal_s_, normal_z_;
+  const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
+  std::vector<VisiblePiece> whole_, divided_;
+  std::vector<float> low_, high_, low_drift_, high_drift_, low_reach_, high_reach_;
+  std::vector<float> w_at_0_, w_slope_, normal_h_, normal_s_, normal_z_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
   std::vector<float> plain_;        ///< 1 where the response is the cosine to the facet, else 0
   std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used
@@ -95,7 +84,6 @@ class SlicePatcher {
   std::vector<float> echo_tilt_;    ///< of both
   std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_;
-  std::vector<std::int32_t> first_probe_, last_probe_;
 };
 
 }  // namespace sonard::render

@@ -9,11 +9,14 @@ namespace sonard::render {
 
 namespace {
 
-// An edge is closed in on, a bow falls with the square of the width.
-constexpr int divisions_at_edges = 4;
-constexpr int divisions_of_bows = 2;
+// Odd, so that the part in the middle goes on with what the whole has seen. An edge is closed in on, a bow
+// falls with the square of the width.
+constexpr int parts_at_edges = 5;
+constexpr int parts_of_bows = 3;
 constexpr float bows_per_edge = 5.0F;  // what a bow displaces stays nearby, what an edge hides is gone
+constexpr float ends_per_edge = 1.0F;  // where the range ends, the smear of a slice is right in first order
 constexpr std::size_t borders_per_job = 32;
+constexpr float least_heard = 0.5F / side_probes;
 
 /// Compares neighbours. Ranges are secant / w: compared without dividing, and without those out of range in
 /// both.
@@ -31,10 +34,10 @@ struct Comparison {
 SliceBorder Comparison::operator()(const SliceCell& port, const SliceCell& starboard,
                                    const SideProfile& secant) const {
   if (port.edge_at_starboard.none()) {
-    return compare(port, port.starboard, starboard.port, starboard, secant);
+    return compare(port, port.sides.starboard, starboard.sides.port, starboard, secant);
   }
   // Along the edge they have every reason to disagree.
-  SideProfile port_side = port.starboard, starboard_side = starboard.port;
+  SideProfile port_side = port.sides.starboard, starboard_side = starboard.sides.port;
   for (std::size_t i = 0; i < side_probes; ++i) {
     if (port.edge_at_starboard[i]) {
       port_side[i] = starboard_side[i] = 0.0F;
@@ -47,10 +50,10 @@ SONARD_SIMD_CLONES
 SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_side,
                                 const SideProfile& starboard_side, const SliceCell& starboard,
                                 const SideProfile& secant) const {
-  const float* __restrict pp = port.port.data();
+  const float* __restrict pp = port.sides.port.data();
   const float* __restrict ps = port_side.data();
   const float* __restrict sp = starboard_side.data();
-  const float* __restrict ss = starboard.starboard.data();
+  const float* __restrict ss = starboard.sides.starboard.data();
   // A bow over a chord of width b is b^2 / 8 of the curvature, here the change of slope over the mean width.
   const float mean_width = 0.5F * (port.slice.width_rad + starboard.slice.width_rad);
   const float per_port = mean_width / (8 * port.slice.width_rad);
@@ -65,25 +68,16 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
     const bool all_seen = (pp[i] > 0) & (product > 0) & (ss[i] > 0);
     const bool in_range = scale < furthest_m * nearer;
     apart += (in_range & (difference > line_m * product)) ? 1 : 0;
-    bent += (in_range & all_seen & (bow > bow_m * product)) ? 1 : 0;
+    const float displaced = bow > difference ? bow : difference;
+    bent += (in_range & all_seen & (displaced > bow_m * product)) ? 1 : 0;
   }
   return {static_cast<float>(apart) / side_probes, static_cast<float>(bent) / side_probes};
-}
-
-SideProfile secants(float tan_limit) {
-  SideProfile out;
-  for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = tan_limit * (2 * (static_cast<float>(i) + 0.5F) / side_probes - 1);
-    out[i] = std::sqrt(1 + t * t);
-  }
-  return out;
 }
 
 }  // namespace
 
 /// Fills `borders_`. One between two slices that were compared before needs no second look.
 void SliceSampler::compare_neighbours(const Setting& setting) {
-  const SideProfile secant = secants(setting.fan.tan_limit());
   borders_.resize(order_.size());
   const std::size_t borders = order_.size() - 1;
   workers_.run(static_cast<int>((borders + borders_per_job - 1) / borders_per_job), [&](int job) {
@@ -95,19 +89,34 @@ void SliceSampler::compare_neighbours(const Setting& setting) {
         borders_[i] = {};
         continue;
       }
-      const float lines = std::max(1.0F, std::min(port.lines, starboard.lines));
-      const Comparison compare{setting.line_m, setting.accuracy.bow_lines * std::sqrt(lines) * setting.line_m,
-                               setting.fan.max_range_m()};
-      borders_[i] = compare(port, starboard, secant);
+      const float lines = std::max(1.0F, std::min(port.sides.lines, starboard.sides.lines));
+      const Comparison compare{setting.line_m, setting.accuracy.bow_lines * lines * setting.line_m,
+                               setting.side_view.max_range_m};
+      borders_[i] = compare(port, starboard, setting.side_view.secant);
     }
   });
 }
 
+/// At which share of its elevations each beam hears anything.
+std::vector<float> SliceSampler::heard_by_beams(const Setting& setting) const {
+  std::vector<float> heard(static_cast<std::size_t>(setting.fan.beam_count()), 0.0F);
+  for (const std::size_t i : order_) {
+    const SliceCell& cell = *cells_[i];
+    heard[static_cast<std::size_t>(cell.beam)] += setting.share_of_beam(cell) * cell.sides.heard;
+  }
+  for (float& share : heard) {
+    share = std::max(share, least_heard);
+  }
+  return heard;
+}
+
 /// Into how many parts each slice is to be divided: those on both sides of every border at which they
-/// disagree too much, and those that miss something thin.
-std::vector<int> SliceSampler::choose_divisions(const Setting& setting) {
+/// disagree too much, those that miss something thin, and those in which the range ends. All is measured by
+/// what the beam hears.
+std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   compare_neighbours(setting);
-  std::vector<int> divisions(order_.size(), 1);
+  const std::vector<float> heard = heard_by_beams(setting);
+  std::vector<int> parts(order_.size(), 1);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     SliceCell& cell = *cells_[order_[i]];
     cell.fresh = false;
@@ -117,16 +126,17 @@ std::vector<int> SliceSampler::choose_divisions(const Setting& setting) {
     }
     const SliceBorder port = i > 0 ? borders_[i - 1] : SliceBorder{};
     const SliceBorder starboard = i + 1 < order_.size() ? borders_[i] : SliceBorder{};
-    const float most = setting.accuracy.disagreement;
-    const float apart = std::max(port.apart, starboard.apart) * width;
-    const float bent = std::max(port.bent, starboard.bent) * width;
-    if (cell.misses_something || apart > most) {
-      divisions[i] = divisions_at_edges;
-    } else if (bent > bows_per_edge * most) {
-      divisions[i] = divisions_of_bows;
+    const float most = setting.accuracy.disagreement * heard[static_cast<std::size_t>(cell.beam)] / width;
+    const float bent = std::max(port.bent, starboard.bent);
+    const float ending =
+        cell.sides.one_sided * cell.sides.one_sided / std::max(cell.sides.heard, least_heard);
+    if (cell.misses_something || std::max(port.apart, starboard.apart) > most) {
+      parts[i] = parts_at_edges;
+    } else if (bent > bows_per_edge * most || ending > ends_per_edge * most) {
+      parts[i] = parts_of_bows;
     }
   }
-  return divisions;
+  return parts;
 }
 
 /// Puts the parts of a slice into `order` and `fresh`: at upright edges if there are any, else evenly.
@@ -151,6 +161,10 @@ void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::
     part.edge_at_port = edge;
     edge = last ? whole.edge_at_starboard : at_edges ? whole.edges[next].probes : ProbeSet();
     part.edge_at_starboard = edge;
+    if (!at_edges && 2 * k + 1 == parts) {
+      part.pieces.swap(cells_[whole_number]->pieces);
+      part.seen = true;
+    }
     from = to;
   }
 }
@@ -161,13 +175,13 @@ bool SliceSampler::refine(const Setting& setting, std::vector<std::size_t>& fres
   if (setting.accuracy.most_divisions == 1) {
     return false;
   }
-  const std::vector<int> divisions = choose_divisions(setting);
+  const std::vector<int> parts = choose_parts(setting);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    if (divisions[i] == 1) {
+    if (parts[i] == 1) {
       order.push_back(order_[i]);
     } else {
-      divide(order_[i], divisions[i], order, fresh);
+      divide(order_[i], parts[i], order, fresh);
     }
   }
   order_.swap(order);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/simd.hpp"
 #include "renderer/visibility/slices/coplanar_facets.hpp"
 #include "renderer/visibility/slices/slice_sampler_impl.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
@@ -24,16 +25,6 @@ double widest_first_slice(double azimuth_rad, double line_m, double max_range_m,
   const double sag_m = most_sag_lines * line_m * (change / 0.01);
   const double for_range = std::sqrt(8 * sag_m / (max_range_m * (1 + 2 * tangent * tangent)));
   return std::min({widest_first_slice_rad, for_echo, std::max(for_range, for_echo / 4)});
-}
-
-/// Over how many lines patches lie.
-float lines_of(const std::vector<EchoPatch>& patches, float line_m, float max_range_m) {
-  float nearest = max_range_m, furthest = 0.0F;
-  for (const EchoPatch& patch : patches) {
-    nearest = std::min({nearest, patch.range_a_m, patch.range_b_m});
-    furthest = std::max({furthest, patch.range_a_m, patch.range_b_m});
-  }
-  return std::max(0.0F, std::min(furthest, max_range_m) - nearest) / line_m;
 }
 
 }  // namespace
@@ -136,6 +127,7 @@ std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
   SliceCell& cell = *cells_[cells_used_];
   cell.slice = slice;
   cell.beam = beam;
+  cell.seen = false;
   cell.fresh = true;
   cell.edge_at_port.reset();
   cell.edge_at_starboard.reset();
@@ -160,23 +152,27 @@ void SliceSampler::lay_first_slices(const Setting& setting) {
 }
 
 std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, const Aperture& aperture,
-                                                   double line_m, double max_range_m,
+                                                   const RangeLines& range, double sampled_range_m,
                                                    const SurfaceModel& surface,
                                                    const SliceAccuracy& accuracy) {
   place_parts(T_world_sonar);
-  const Setting setting{Fan(aperture, max_range_m),
-                        ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)),
-                        surface,
-                        accuracy,
-                        surfaces_,
-                        any_mapped_,
-                        static_cast<float>(line_m)};
+  const Fan fan(aperture, sampled_range_m);
+  const Setting setting{
+      fan,
+      ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)),
+      surface,
+      accuracy,
+      surfaces_,
+      any_mapped_,
+      static_cast<float>(range.step_m),
+      SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))};
   triangles_.find(placed_, setting.fan, workers_, skip_.on(SkipRule::culled_clusters));
   lay_first_slices(setting);
   std::vector<std::size_t> fresh = order_;
   do {
     see(setting, fresh);
   } while (refine(setting, fresh));
+  make_patches(setting);
   std::vector<const SliceCell*> cells;
   for (const std::size_t i : order_) {
     cells.push_back(cells_[i].get());
@@ -215,18 +211,34 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
 }
 
 void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell) {
-  scratch.see(cell.slice, setting.fan.tan_limit());
-  cell.patches.clear();
-  scratch.patcher.make(scratch.request(setting, cell.slice), cell.patches);
+  if (!cell.seen) {
+    scratch.cutter.cut(cell.slice, setting.fan.tan_limit(), scratch.segments);
+    scratch.sweep.run(scratch.cutter, cell.slice, scratch.segments, setting.fan.tan_limit(), cell.pieces);
+    cell.seen = true;
+  }
   if (setting.accuracy.most_divisions == 1) {
     return;
   }
-  cell.lines = lines_of(cell.patches, setting.line_m, setting.fan.max_range_m());
   cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
   scratch.cutter.find_upright_edges(cell.slice, cell.edges);
-  const float side = 0.5F * cell.slice.width_rad;
-  scratch.patcher.profile(setting.fan.tan_limit(), side, cell.port);
-  scratch.patcher.profile(setting.fan.tan_limit(), -side, cell.starboard);
+  scratch.expectation.find(cell.pieces, cell.slice.width_rad, setting.side_view, cell.sides);
+}
+
+/// Of the slices that are left.
+void SliceSampler::make_patches(const Setting& setting) {
+  constexpr std::size_t cells_per_job = 4;
+  workers_.run(static_cast<int>((order_.size() + cells_per_job - 1) / cells_per_job), [&](int job) {
+    thread_local SlicePatcher patcher;
+    const std::size_t begin = static_cast<std::size_t>(job) * cells_per_job;
+    for (std::size_t i = begin; i < std::min(order_.size(), begin + cells_per_job); ++i) {
+      SliceCell& cell = *cells_[order_[i]];
+      cell.patches.clear();
+      patcher.make(
+          {cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern, setting.fan.tan_limit(),
+           setting.accuracy.evenness, setting.any_mapped, setting.line_m, setting.fan.max_range_m()},
+          cell.patches);
+    }
+  });
 }
 
 }  // namespace sonard::render

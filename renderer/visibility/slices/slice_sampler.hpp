@@ -15,6 +15,7 @@
 #include "renderer/skip_ledger.hpp"
 #include "renderer/visibility/slices/fan_triangles.hpp"
 #include "renderer/visibility/slices/slice_patches.hpp"
+#include "renderer/visibility/slices/slice_sides.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -24,14 +25,15 @@ struct SliceAccuracy {
   int slices_per_beam = 1;  ///< to begin with; wide and oblique beams get more
   /// No slice is narrower than a beam divided by this, unless it lies between upright edges; 1: the first
   /// slices stay.
-  int most_divisions = 64;
+  int most_divisions = 125;
   /// Where neighbouring slices disagree they are divided, until (share of elevations at which they disagree)
-  /// * (width / beam width) is below this: the share of a beam's echo that is in doubt.
-  float disagreement = 1e-3F;
-  /// A slice that hears n range lines may be bent by this times sqrt(n) lines: what a bow displaces are the
-  /// first and last of them, the fewer there are the more it matters.
-  float bow_lines = 0.016F;
-  float evenness = 0.04F;  ///< see SlicePatcher::Request
+  /// * (width / beam width) is below this times the share at which the beam hears anything: the part of a
+  /// beam's echo that is in doubt.
+  float disagreement = 1.8e-3F;
+  /// A slice that hears n range lines may be bent by this times n lines: what a bow displaces are the first
+  /// and last of them, the fewer there are the more it matters.
+  float bow_lines = 8e-4F;
+  float evenness = 0.03F;  ///< see SlicePatcher::Request
   float change = 0.005F;   ///< share by which a wall's echo may change within a first slice, RMS
 };
 
@@ -39,10 +41,11 @@ struct SliceAccuracy {
 struct SliceCell {
   Slice slice;
   int beam = 0;
+  std::vector<VisiblePiece> pieces;  ///< seen along its azimuth, whatever its width
   std::vector<EchoPatch> patches;
-  SideProfile port, starboard;               ///< what is expected at its sides
-  float lines = 0.0F;                        ///< over which its echo is spread
+  SliceSides sides;
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
+  bool seen = false;                         ///< its pieces are known
   bool fresh = true;                         ///< not yet compared with its neighbours
   std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard
   ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge for which the slice ends there
@@ -62,10 +65,10 @@ class SliceSampler {
   SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});
 
   /// Cells from port to starboard; they stay valid until the next call. The same for any number of threads.
-  /// @param line_m length of a range line: what matters less than that in range is not followed.
-  std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture, double line_m,
-                                       double max_range_m, const SurfaceModel& surface,
-                                       const SliceAccuracy& accuracy);
+  /// @param sampled_range_m at least that of the lines: how far surfaces are looked at.
+  std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture,
+                                       const RangeLines& range, double sampled_range_m,
+                                       const SurfaceModel& surface, const SliceAccuracy& accuracy);
 
   /// @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
@@ -87,11 +90,13 @@ class SliceSampler {
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
   static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
+  void make_patches(const Setting& setting);
   std::size_t new_cell(const Slice& slice, int beam);
 
   // slice_refinement.cpp
   void compare_neighbours(const Setting& setting);
-  std::vector<int> choose_divisions(const Setting& setting);
+  std::vector<float> heard_by_beams(const Setting& setting) const;
+  std::vector<int> choose_parts(const Setting& setting);
   void divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
               std::vector<std::size_t>& fresh);
   bool refine(const Setting& setting, std::vector<std::size_t>& fresh);

@@ -17,6 +17,7 @@ struct SliceSampler::Setting {
   const std::vector<PartSurface>& parts;
   bool any_mapped;
   float line_m;
+  SideView side_view;
 
   float share_of_beam(const SliceCell& cell) const {
     return cell.slice.width_rad / static_cast<float>(fan.edge_rad(cell.beam) - fan.edge_rad(cell.beam + 1));
@@ -28,27 +29,7 @@ struct SliceSampler::Scratch {
   SliceCutter cutter;  ///< holds the triangles of one beam
   Segments segments;
   SliceSweep sweep;
-  SlicePatcher patcher;
-  const std::vector<VisiblePiece>* pieces = nullptr;
-
-  void see(const Slice& slice, float tan_limit) {
-    cutter.cut(slice, tan_limit, segments);
-    pieces = &sweep.run(segments, tan_limit);
-  }
-  SlicePatcher::Request request(const Setting& setting, const Slice& slice) const {
-    return {slice,
-            segments,
-            *pieces,
-            cutter,
-            setting.parts,
-            setting.surface,
-            setting.pattern,
-            setting.fan.tan_limit(),
-            setting.accuracy.evenness,
-            setting.any_mapped,
-            setting.line_m,
-            setting.fan.max_range_m()};
-  }
+  SideExpectation expectation;
 };
 
 }  // namespace sonard::render

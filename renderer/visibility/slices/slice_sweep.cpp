@@ -15,20 +15,29 @@ constexpr int nothing = -1;
 // Relative difference of 1 / h below which two segments touch but do not cross; above the rounding of cuts.
 constexpr float touching = 1e-5F;
 
+constexpr float widest_gap_rad = 2 * shortest_rad;  // where segments were left out
+
 }  // namespace
 
-const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float tan_limit) {
+void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segments& segments, float tan_limit,
+                     std::vector<VisiblePiece>& pieces) {
+  cutter_ = &cutter;
   segments_ = &segments;
+  pieces_ = &pieces;
+  cosine_ = slice.cosine;
+  sine_ = slice.sine;
   count_ = segments.kept.size();
   limit_ = tan_limit;
-  pieces_.clear();
+  pieces.clear();
+  crossed_.clear();
+  short_.clear();
   waiting_.clear();
   sort_by_low_end();
   next_ = 0;
   current_ = nothing;
   crossing_ = never;
   t_ = -limit_;
-  drift_ = 0.0F;
+  run_ = {};
   while (t_ < limit_) {
     if (current_ == nothing) {
       if (next_ == count_) {
@@ -40,7 +49,11 @@ const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float
     const float end = std::min(segments.high[static_cast<std::size_t>(current_)], limit_);
     const float start = next_start();
     if (crossing_ < start && crossing_ < end) {
-      emit(crossing_, std::numeric_limits<float>::quiet_NaN());
+      const std::size_t before = pieces.size();
+      emit(crossing_, {});
+      if (pieces.size() > before) {
+        crossed_.push_back(before);
+      }
       std::swap(current_, waiting_[crosser_]);
       find_next_crossing();
     } else if (start < end) {
@@ -49,7 +62,46 @@ const std::vector<VisiblePiece>& SliceSweep::run(const Segments& segments, float
       step_to_end_of_current();
     }
   }
-  return pieces_;
+  follow_crossings();
+  close_gaps();
+}
+
+/// Takes out what is seen through a gap in a surface.
+void SliceSweep::close_gaps() {
+  for (std::size_t k = short_.size(); k-- > 0;) {
+    const std::size_t i = short_[k];
+    if (i == 0 || i + 1 >= pieces_->size()) {
+      continue;
+    }
+    const VisiblePiece& before = (*pieces_)[i - 1];
+    const VisiblePiece& piece = (*pieces_)[i];
+    const VisiblePiece& after = (*pieces_)[i + 1];
+    const float w = piece.w_at_0 + piece.w_slope * piece.low;
+    if (before.high == piece.low && piece.high == after.low &&
+        before.w_at_0 + before.w_slope * piece.low > w * (1 + touching) &&
+        after.w_at_0 + after.w_slope * piece.high > w * (1 + touching)) {
+      pieces_->erase(pieces_->begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+}
+
+/// Where two surfaces cross, their pieces end along the line in which their planes meet. Its direction e
+/// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
+void SliceSweep::follow_crossings() {
+  for (const std::size_t i : crossed_) {
+    if (i + 1 >= pieces_->size()) {
+      continue;
+    }
+    VisiblePiece& before = (*pieces_)[i];
+    VisiblePiece& after = (*pieces_)[i + 1];
+    const float e_h = before.normal_s * after.normal_z - before.normal_z * after.normal_s;
+    const float e_s = before.normal_z * after.normal_h - before.normal_h * after.normal_z;
+    const float e_z = before.normal_h * after.normal_s - before.normal_s * after.normal_h;
+    const float drift = (e_z - before.high * e_h) / e_s;
+    // It moves no farther than the longer piece reaches.
+    const float reach = std::max(before.high - before.low, after.high - after.low);
+    before.high_run = after.low_run = std::isfinite(drift) ? EdgeRun{drift, reach} : EdgeRun{};
+  }
 }
 
 float SliceSweep::next_start() const {
@@ -64,7 +116,7 @@ float SliceSweep::start_after_next() const {
 /// spread over the fan, as the triangles of a surface are.
 void SliceSweep::sort_by_low_end() {
   const std::size_t count = segments_->kept.size();
-  const auto buckets = static_cast<std::int32_t>(std::clamp<std::size_t>(4 * count, 16, 65536));
+  const auto buckets = static_cast<std::int32_t>(std::clamp<std::size_t>(2 * count, 16, 65536));
   for (auto* array : {&order_, &bucket_}) {
     array->resize(std::max(array->size(), count));
   }
@@ -119,19 +171,26 @@ void SliceSweep::find_buckets(std::int32_t buckets) {
   }
 }
 
-void SliceSweep::emit(float until, float drift) {
+void SliceSweep::emit(float until, const EdgeRun& run) {
   if (until > t_) {
-    pieces_.push_back({t_, until, drift_, drift, current_});
+    if (until - t_ < widest_gap_rad * (1 + t_ * t_)) {
+      short_.push_back(pieces_->size());
+    }
+    const auto s = static_cast<std::size_t>(current_);
+    const float nx = cutter_->normal_x()[s], ny = cutter_->normal_y()[s];
+    pieces_->push_back({t_, until, run_, run, segments_->w_at_0[s], segments_->w_slope[s],
+                        nx * cosine_ + ny * sine_, ny * cosine_ - nx * sine_, cutter_->normal_z()[s],
+                        &cutter_->triangle(current_)});
     t_ = until;
   }
-  drift_ = drift;
+  run_ = run;
 }
 
 /// Nothing is seen here: go on to where something begins.
 void SliceSweep::step_to_next_start() {
   t_ = next_start();
   const auto first = static_cast<std::size_t>(order_[next_]);
-  drift_ = segments_->low[first] > -limit_ ? segments_->low_drift[first] : 0.0F;
+  run_ = segments_->low[first] > -limit_ ? segments_->low_run(first) : EdgeRun{};
   take_nearest_waiting();
 }
 
@@ -143,7 +202,7 @@ void SliceSweep::meet(int segment) {
   float at = never;
   const bool cross = crosses(segment, current_, start, at);
   if (is_seen_first(segment, current_, start)) {
-    emit(start, segments_->low_drift[s]);
+    emit(start, segments_->low_run(s));
     if (cross || segments_->high[c] > segments_->high[s]) {
       waiting_.push_back(current_);
     }
@@ -162,8 +221,7 @@ void SliceSweep::meet(int segment) {
 void SliceSweep::step_to_end_of_current() {
   const auto c = static_cast<std::size_t>(current_);
   const bool cut_by_limit = segments_->high[c] >= limit_;
-  emit(std::min(segments_->high[c], limit_), cut_by_limit ? 0.0F : segments_->high_drift[c]);
-  t_ = std::max(t_, std::min(segments_->high[c], limit_));
+  emit(std::min(segments_->high[c], limit_), cut_by_limit ? EdgeRun{} : segments_->high_run(c));
   if (waiting_.empty() && next_start() <= t_ && start_after_next() > t_) {
     // The next facet of one surface, with nothing behind it: by far the most common case.
     current_ = order_[next_++];

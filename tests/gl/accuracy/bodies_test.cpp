@@ -40,7 +40,7 @@ render::TriangleMesh make_column(double x, double y, double radius_m, double hal
 }
 
 TEST_P(SphereAccuracy, T4_Sphere) {
-  render::Body sphere = make_body("sphere", make_sphere(0.5F, 256));  // facets within 0.04 mm of the sphere
+  render::Body sphere = make_body("sphere", make_sphere(0.5F, 512));  // facets within 0.01 mm of the sphere
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
   const Scene scene = forward_looking_scene({sphere});
   const SphereTruth truth{0.5, 8, 20 * degree, 0};
@@ -58,7 +58,7 @@ TEST_P(SphereAccuracy, T4_Sphere) {
 TEST_P(CylinderAccuracy, T5_UprightCylinder) {
   const double azimuth = -25 * degree, axis_m = 9, radius_m = 0.6;
   const Scene scene = forward_looking_scene({make_body(
-      "column", make_column(axis_m * std::cos(azimuth), axis_m * std::sin(azimuth), radius_m, 2, 256, 64))});
+      "column", make_column(axis_m * std::cos(azimuth), axis_m * std::sin(azimuth), radius_m, 2, 512, 64))});
   const CylinderTruth truth{radius_m, axis_m, azimuth, scene.settings.aperture.elevation_limit_rad()};
   const render::EchoImage expected = image_of_beams(
       scene.settings,

@@ -18,26 +18,10 @@ struct Miss {
 };
 
 constexpr Miss misses[] = {
-    // Presets choose widths of slices by the error of a whole image: a beam that hears a plane only just
-    // inside the range, over a few lines, comes out worse.
-    {"T1_ObliqueSlope", ray, fast, &Limits::beam_total, 0.048},
-    {"T1_ObliqueSlope", ray, normal, &Limits::beam_total, 0.0017},
-    {"T6_TwoHalfPlanes", ray, fast, &Limits::beam_total, 0.022},
-    {"T6_TwoHalfPlanes", ray, normal, &Limits::beam_total, 0.0058},
-    // A wall at 8 m fills ten lines of a beam, so its barely filled first one counts.
-    {"T6_TwoHalfPlanes", ray, normal, &Limits::bin_rms, 0.0148},
-    // Round silhouettes converge with first order in azimuth: the beams at the limb hear a sliver of the
-    // body, and all of it lies within one or two slices.
-    {"T4_Sphere", ray, fast, &Limits::bin_rms, 0.25},
-    {"T4_Sphere", ray, fast, &Limits::centroid_bins, 0.54},
-    {"T4_Sphere", ray, normal, &Limits::beam_total, 0.0024},
-    {"T5_UprightCylinder", ray, fast, &Limits::bin_rms, 0.14},
-    {"T5_UprightCylinder", ray, fast, &Limits::beam_total, 0.0155},
-    {"T5_UprightCylinder", ray, normal, &Limits::bin_rms, 0.03},
-    // A bed that shadows itself everywhere is all silhouettes.
-    {"Ripple100k", ray, fast, &Limits::centroid_bins, 0.46},
-    {"Ripple100k", ray, normal, &Limits::beam_total, 0.00135},
-    {"Ripple100k", ray, normal, &Limits::centroid_bins, 0.22},
+    // The limb of a body far away: it takes up so few of the beam's elevations that `fast` leaves it at that.
+    {"Flat100k", ray, fast, &Limits::centroid_bins, 0.34},
+    // A bed that shadows itself everywhere has a silhouette in every beam; it is two beams in 256.
+    {"Ripple100k", ray, normal, &Limits::centroid_bins, 0.122},
 };
 
 }  // namespace

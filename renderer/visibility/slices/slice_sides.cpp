@@ -1,0 +1,162 @@
+#include "renderer/visibility/slices/slice_sides.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+/// Shares and lines of SliceSides from its profiles. Ranges are positive, so that their bits are ordered as
+/// they are: GCC 12 vectorises extremes of integers only.
+SONARD_SIMD_CLONES
+void summarise(const SideView& view, SliceSides& sides) {
+  const float* __restrict port = sides.port.data();
+  const float* __restrict starboard = sides.starboard.data();
+  const float* __restrict secant = view.secant.data();
+  const float max_range_m = view.max_range_m;
+  std::int32_t heard_port = 0, heard_starboard = 0;
+  std::int32_t nearest = std::bit_cast<std::int32_t>(max_range_m), furthest = 0;
+  for (std::size_t i = 0; i < side_probes; ++i) {
+    const float range_p = secant[i] / port[i], range_s = secant[i] / starboard[i];
+    const bool in_p = secant[i] < max_range_m * port[i], in_s = secant[i] < max_range_m * starboard[i];
+    heard_port += in_p ? 1 : 0;
+    heard_starboard += in_s ? 1 : 0;
+    const auto low_p = std::bit_cast<std::int32_t>(in_p ? range_p : max_range_m);
+    const auto low_s = std::bit_cast<std::int32_t>(in_s ? range_s : max_range_m);
+    const auto high_p = std::bit_cast<std::int32_t>(in_p ? range_p : 0.0F);
+    const auto high_s = std::bit_cast<std::int32_t>(in_s ? range_s : 0.0F);
+    const std::int32_t low = low_p < low_s ? low_p : low_s;
+    const std::int32_t high = high_p > high_s ? high_p : high_s;
+    nearest = low < nearest ? low : nearest;
+    furthest = high > furthest ? high : furthest;
+  }
+  sides.heard = static_cast<float>(heard_port + heard_starboard) / (2 * side_probes);
+  sides.one_sided = static_cast<float>(std::abs(heard_port - heard_starboard)) / side_probes;
+  const float span_m = std::bit_cast<float>(furthest) - std::bit_cast<float>(nearest);
+  sides.lines = span_m > 0 ? span_m / view.line_m : 0.0F;
+}
+
+}  // namespace
+
+SideView::SideView(float tan_limit_, float max_range_m_, float line_m_)
+    : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant() {
+  for (std::size_t i = 0; i < side_probes; ++i) {
+    const float t = tan_limit * (2 * (static_cast<float>(i) + 0.5F) / side_probes - 1);
+    secant[i] = std::sqrt(1 + t * t);
+  }
+}
+
+void SideExpectation::find(const std::vector<VisiblePiece>& pieces, float width_rad, const SideView& view,
+                           SliceSides& sides) {
+  lay_out(pieces);
+  follow(width_rad, view.tan_limit);
+  profile(view.tan_limit, 0.5F * width_rad, sides.port);
+  profile(view.tan_limit, -0.5F * width_rad, sides.starboard);
+  summarise(view, sides);
+}
+
+void SideExpectation::lay_out(const std::vector<VisiblePiece>& pieces) {
+  count_ = pieces.size();
+  if (count_ > low_.size()) {
+    const std::size_t size = count_ + count_ / 2;
+    for (auto* array : {&low_, &high_, &low_drift_, &high_drift_, &low_reach_, &high_reach_, &w_at_0_,
+                        &w_slope_, &w_by_azimuth_, &normal_h_, &normal_s_, &normal_z_}) {
+      array->resize(size);
+    }
+    first_probe_.resize(size);
+    last_probe_.resize(size);
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    const VisiblePiece& piece = pieces[i];
+    low_[i] = piece.low;
+    high_[i] = piece.high;
+    low_drift_[i] = piece.low_run.drift;
+    high_drift_[i] = piece.high_run.drift;
+    low_reach_[i] = piece.low_run.reach;
+    high_reach_[i] = piece.high_run.reach;
+    w_at_0_[i] = piece.w_at_0;
+    w_slope_[i] = piece.w_slope;
+    normal_h_[i] = piece.normal_h;
+    normal_s_[i] = piece.normal_s;
+    normal_z_[i] = piece.normal_z;
+  }
+}
+
+/// How each piece goes on beside the slice.
+SONARD_SIMD_CLONES
+void SideExpectation::follow(float width_rad, float tan_limit) {
+  const auto count = count_;
+  const float* __restrict low = low_.data();
+  const float* __restrict high = high_.data();
+  float* __restrict low_drift = low_drift_.data();
+  float* __restrict high_drift = high_drift_.data();
+  const float* __restrict low_reach = low_reach_.data();
+  const float* __restrict high_reach = high_reach_.data();
+  const float* __restrict w_at_0 = w_at_0_.data();
+  const float* __restrict w_slope = w_slope_.data();
+  const float* __restrict normal_h = normal_h_.data();
+  const float* __restrict normal_s = normal_s_.data();
+  const float* __restrict normal_z = normal_z_.data();
+  float* __restrict w_by_azimuth = w_by_azimuth_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    low_drift[i] = EdgeRun{low_drift[i], low_reach[i]}.drift_within(low[i], width_rad, tan_limit);
+    high_drift[i] = EdgeRun{high_drift[i], high_reach[i]}.drift_within(high[i], width_rad, tan_limit);
+    // On a plane n . p = D, 1 / h = (n_h + n_z t) / D changes with azimuth by n_s / D, wherever on it.
+    const float t = 0.5F * (low[i] + high[i]);
+    w_by_azimuth[i] = (w_at_0[i] + w_slope[i] * t) * normal_s[i] / (normal_h[i] + normal_z[i] * t);
+  }
+}
+
+/// The probes of each piece, as they run if the piece goes on as it does in the middle.
+SONARD_SIMD_CLONES
+void SideExpectation::find_probes(float tan_limit, float offset_rad) {
+  const auto count = count_;
+  const float probes_per_t = side_probes / (2 * tan_limit);
+  const auto end = static_cast<float>(side_probes);
+  const float* __restrict low = low_.data();
+  const float* __restrict high = high_.data();
+  const float* __restrict low_drift = low_drift_.data();
+  const float* __restrict high_drift = high_drift_.data();
+  std::int32_t* __restrict first = first_probe_.data();
+  std::int32_t* __restrict last = last_probe_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    // The first probe at or above t; probes lie in the middle of their steps. Truncation is floor where it
+    // counts.
+    const float from = (low[i] + low_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
+    const float to = (high[i] + high_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
+    first[i] = static_cast<std::int32_t>(from < 0 ? 0.0F : (from > end ? end : from));
+    last[i] = static_cast<std::int32_t>(to < 0 ? 0.0F : (to > end ? end : to));
+  }
+}
+
+/// @param offset_rad from the middle of the slice, positive to port.
+void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& out) {
+  const float step = 2 * tan_limit / side_probes;
+  find_probes(tan_limit, offset_rad);
+  std::int32_t end = 0;  // of what is filled
+  for (std::size_t i = 0; i < count_; ++i) {
+    const std::int32_t first = first_probe_[i], last = last_probe_[i];
+    for (; end < first; ++end) {
+      out[static_cast<std::size_t>(end)] = 0.0F;
+    }
+    const float slope = w_slope_[i] * step;
+    const float w = w_at_0_[i] + w_by_azimuth_[i] * offset_rad +
+                    w_slope_[i] * (-tan_limit + (static_cast<float>(first) + 0.5F) * step);
+    // Most hold a probe or two. What is written too much the next piece writes again, or the end.
+    float* const at = &out[static_cast<std::size_t>(first)];
+    for (std::int32_t k = 0; k < probe_padding; ++k) {
+      at[k] = w + slope * static_cast<float>(k);
+    }
+    for (std::int32_t k = probe_padding; k < last - first; ++k) {
+      at[k] = w + slope * static_cast<float>(k);
+    }
+    end = std::max(end, last);
+  }
+  std::fill(out.begin() + end, out.end(), 0.0F);
+}
+
+}  // namespace sonard::render
