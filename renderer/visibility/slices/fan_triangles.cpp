@@ -46,60 +46,83 @@ void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Cor
   }
 }
 
+/// Whether all of a cluster lies to one side of the fan, by less than half a turn.
+SONARD_SIMD_CLONES
+bool lies_aside(const Fan& fan, std::uint32_t count, const Corners& at) {
+  const auto port = static_cast<float>(fan.edge_rad(0)) + azimuth_error_rad;
+  const auto starboard = static_cast<float>(fan.edge_rad(fan.beam_count())) - azimuth_error_rad;
+  const float* __restrict azimuth = at.azimuth.data();
+  std::int32_t to_port = 0, to_starboard = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float a = azimuth[i];
+    to_port += (a > port) & (a < port + half_turn) ? 1 : 0;
+    to_starboard += (a < starboard) & (a > starboard - half_turn) ? 1 : 0;
+  }
+  const auto all = static_cast<std::int32_t>(count);
+  return to_port == all || to_starboard == all;
+}
+
+/// One number of each corner of the triangles of a cluster.
+struct OfCorners {
+  std::array<float, MeshClusters::most_triangles> a, b, c;
+
+  void gather(const MeshClusters& mesh, const MeshClusters::Cluster& cluster,
+              const std::array<float, MeshClusters::most_vertices>& of_vertex) {
+    const std::uint8_t* const c0 = &mesh.corners[0][cluster.first_triangle];
+    const std::uint8_t* const c1 = &mesh.corners[1][cluster.first_triangle];
+    const std::uint8_t* const c2 = &mesh.corners[2][cluster.first_triangle];
+    for (std::size_t t = 0; t < cluster.triangle_count; ++t) {
+      a[t] = of_vertex[c0[t]];
+      b[t] = of_vertex[c1[t]];
+      c[t] = of_vertex[c2[t]];
+    }
+  }
+};
+
 /// What the corners of each triangle of a cluster say of it.
 struct Bounds {
+  OfCorners azimuth, horizontal_squared, height, tangent;
   std::array<float, MeshClusters::most_triangles> low_azimuth, high_azimuth;
   std::array<std::int32_t, MeshClusters::most_triangles> in_elevation, thin, upright;
 };
 
+inline float least(float a, float b, float c) {
+  const float ab = a < b ? a : b;
+  return ab < c ? ab : c;
+}
+inline float most(float a, float b, float c) {
+  const float ab = a > b ? a : b;
+  return ab > c ? ab : c;
+}
+
 SONARD_SIMD_CLONES
-void bound(const MeshClusters& mesh, const MeshClusters::Cluster& cluster, const Corners& at, const Fan& fan,
-           Bounds& out) {
+void bound(const Fan& fan, std::size_t count, Bounds& out) {
   const float room_per_square = fan.tan_limit() * fan.tan_limit();
   const float upright_rad = fan.upright_rad();
-  const std::uint8_t* __restrict c0 = &mesh.corners[0][cluster.first_triangle];
-  const std::uint8_t* __restrict c1 = &mesh.corners[1][cluster.first_triangle];
-  const std::uint8_t* __restrict c2 = &mesh.corners[2][cluster.first_triangle];
-  const float* __restrict azimuth = at.azimuth.data();
-  const float* __restrict horizontal_squared = at.horizontal_squared.data();
-  const float* __restrict height = at.z.data();
-  const float* __restrict tangent = at.tangent.data();
-  float* __restrict low_azimuth = out.low_azimuth.data();
-  float* __restrict high_azimuth = out.high_azimuth.data();
-  std::int32_t* __restrict in_elevation = out.in_elevation.data();
-  std::int32_t* __restrict thin = out.thin.data();
-  std::int32_t* __restrict upright = out.upright.data();
-  const auto least = [](float a, float b, float c) {
-    const float ab = a < b ? a : b;
-    return ab < c ? ab : c;
-  };
-  const auto most = [](float a, float b, float c) {
-    const float ab = a > b ? a : b;
-    return ab > c ? ab : c;
-  };
   const float upright_t = least_upright * fan.tan_limit();
   const auto is_upright = [&](float lean, float rise) {
     return (lean < upright_rad) & (lean > -upright_rad) & ((rise > upright_t) | (rise < -upright_t));
   };
-  const auto count = static_cast<std::int32_t>(cluster.triangle_count);
-  for (std::int32_t t = 0; t < count; ++t) {
-    const std::int32_t i = c0[t], j = c1[t], k = c2[t];
+  for (std::size_t t = 0; t < count; ++t) {
     // No point of the triangle is farther out than its farthest corner, so none has less room in elevation.
-    const float far = most(horizontal_squared[i], horizontal_squared[j], horizontal_squared[k]);
+    const float far =
+        most(out.horizontal_squared.a[t], out.horizontal_squared.b[t], out.horizontal_squared.c[t]);
     const float room = far * room_per_square;
-    const float bottom = least(height[i], height[j], height[k]);
-    const float top = most(height[i], height[j], height[k]);
-    in_elevation[t] = ((bottom > 0) & (bottom * bottom > room)) | ((top < 0) & (top * top > room)) ? 0 : 1;
-    const float low = least(azimuth[i], azimuth[j], azimuth[k]);
-    const float high = most(azimuth[i], azimuth[j], azimuth[k]);
-    low_azimuth[t] = low;
-    high_azimuth[t] = high;
-    const float tall = most(tangent[i], tangent[j], tangent[k]) - least(tangent[i], tangent[j], tangent[k]);
-    thin[t] = tall > thin_ratio * (high - low) ? 1 : 0;
-    const bool upright_ij = is_upright(azimuth[i] - azimuth[j], tangent[i] - tangent[j]);
-    const bool upright_jk = is_upright(azimuth[j] - azimuth[k], tangent[j] - tangent[k]);
-    const bool upright_ki = is_upright(azimuth[k] - azimuth[i], tangent[k] - tangent[i]);
-    upright[t] = (upright_ij | upright_jk | upright_ki) ? 1 : 0;
+    const float bottom = least(out.height.a[t], out.height.b[t], out.height.c[t]);
+    const float top = most(out.height.a[t], out.height.b[t], out.height.c[t]);
+    out.in_elevation[t] =
+        ((bottom > 0) & (bottom * bottom > room)) | ((top < 0) & (top * top > room)) ? 0 : 1;
+    const float azimuth_a = out.azimuth.a[t], azimuth_b = out.azimuth.b[t], azimuth_c = out.azimuth.c[t];
+    const float tangent_a = out.tangent.a[t], tangent_b = out.tangent.b[t], tangent_c = out.tangent.c[t];
+    const float low = least(azimuth_a, azimuth_b, azimuth_c), high = most(azimuth_a, azimuth_b, azimuth_c);
+    out.low_azimuth[t] = low;
+    out.high_azimuth[t] = high;
+    const float tall = most(tangent_a, tangent_b, tangent_c) - least(tangent_a, tangent_b, tangent_c);
+    out.thin[t] = tall > thin_ratio * (high - low) ? 1 : 0;
+    const bool upright_ab = is_upright(azimuth_a - azimuth_b, tangent_a - tangent_b);
+    const bool upright_bc = is_upright(azimuth_b - azimuth_c, tangent_b - tangent_c);
+    const bool upright_ca = is_upright(azimuth_c - azimuth_a, tangent_c - tangent_a);
+    out.upright[t] = (upright_ab | upright_bc | upright_ca) ? 1 : 0;
   }
 }
 
@@ -153,7 +176,15 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
       continue;
     }
     transform(part, cluster, at);
-    bound(*part.clusters, cluster, at, fan, bounds);
+    if (lies_aside(fan, cluster.vertex_count, at) && cull_) {
+      ++share.culled;
+      continue;
+    }
+    bounds.azimuth.gather(*part.clusters, cluster, at.azimuth);
+    bounds.horizontal_squared.gather(*part.clusters, cluster, at.horizontal_squared);
+    bounds.height.gather(*part.clusters, cluster, at.z);
+    bounds.tangent.gather(*part.clusters, cluster, at.tangent);
+    bound(fan, cluster.triangle_count, bounds);
     for (std::uint32_t n = 0; n < cluster.triangle_count; ++n) {
       if (bounds.in_elevation[n] == 0) {
         continue;
