@@ -29,7 +29,7 @@ struct SliceAccuracy {
   /// Where neighbouring slices disagree they are divided, until (share of elevations at which they disagree)
   /// * (width / beam width) is below this times the share at which the beam hears anything: the part of a
   /// beam's echo that is in doubt.
-  float disagreement = 1.8e-3F;
+  float disagreement = 1.5e-3F;
   /// A slice that hears n range lines may be bent by this times n lines: what a bow displaces are the first
   /// and last of them, the fewer there are the more it matters.
   float bow_lines = 8e-4F;
