@@ -92,13 +92,17 @@ struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
   enum class Speckle { off, frozen, per_ping, ou } speckle = Speckle::ou;
   double aperture_m = 0.1;  ///< array length; sets over which motion speckle stays the same (`ou`)
+  /// Where the response of the pulse in range first falls to 0: c / 2B of a chirp of bandwidth B
+  /// (docs/physics.md 2.7). 0: a pulse without length.
+  double range_cell_m = 0.0;
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
   double noise_level_db = -138.2;
   double tvg_log_coefficient = 30.0;        ///< X of X log10 r + 2 alpha r
   double tvg_absorption_db_per_m = 0.2085;  ///< one way; what the device believes the water to be
   double tvg_max_db = 75.0;                 ///< ceiling of the two terms together
-  /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it.
+  /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it. Full
+  /// scale of OutputScale::half_decibels is 80 dB.
   double gain_db = 60.0;
   // What recordings of Gemini-class heads show (docs/physics.md 2.16).
   double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
@@ -132,6 +136,12 @@ struct Sampling {
   bool operator==(const Sampling&) const = default;
 };
 
+/// What a sample says of the amplitude at the output.
+enum class OutputScale {
+  linear,         ///< in proportion, full scale at the highest code
+  half_decibels,  ///< of a DST head: 255 codes for 80 dB in steps of half a decibel, none above 191
+};
+
 struct SonarSettings {
   Aperture aperture;
   RangeLines range;
@@ -140,7 +150,8 @@ struct SonarSettings {
   PhysicalModel physical;
   Sampling sampling;
   bool transmit = true;      ///< false: the sonar only listens, there is no echo
-  bool sixteen_bit = false;  ///< output samples of 16 instead of 8 bits
+  bool sixteen_bit = false;  ///< output samples of 16 instead of 8 bits; of a linear scale only
+  OutputScale output_scale = OutputScale::linear;
 };
 
 }  // namespace sonard::render

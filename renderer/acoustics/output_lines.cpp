@@ -1,6 +1,7 @@
 #include "renderer/acoustics/output_lines.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "renderer/simd.hpp"
 
@@ -36,6 +37,17 @@ void quantise_row(const float* __restrict codes, int count, std::uint16_t* __res
   }
 }
 
+/// Codes of a DST head: v = floor(k 255 / 160) with k half decibels, at most 120 (docs/physics.md 2.16).
+void quantise_decibels(const float* amplitude, int count, std::uint8_t* out) {
+  constexpr float full_scale_db = 80.0F;
+  constexpr int highest = 120;
+  for (int b = 0; b < count; ++b) {
+    const float level_db = full_scale_db + 20 * std::log10(std::max(amplitude[b], 1e-6F));
+    const int half_decibels = std::clamp(static_cast<int>(std::lround(2 * level_db)), 0, highest);
+    out[b] = static_cast<std::uint8_t>(half_decibels * 255 / 160);
+  }
+}
+
 }  // namespace
 
 PingSamples make_samples(const SonarSettings& settings) {
@@ -48,13 +60,15 @@ PingSamples make_samples(const SonarSettings& settings) {
 }
 
 float codes_per_amplitude(const SonarSettings& settings) {
-  const float full_scale = settings.sixteen_bit ? 65535.0F : 255.0F;
+  const bool linear = settings.output_scale == OutputScale::linear;
+  const float full_scale = !linear ? 1.0F : settings.sixteen_bit ? 65535.0F : 255.0F;
   const int shares = settings.range.compression_peak ? 1 : 1 << settings.range.compression_log2;
   return full_scale / static_cast<float>(shares);
 }
 
 OutputLines::OutputLines(const SonarSettings& settings, PingSamples& samples)
     : samples_(samples),
+      scale_(settings.output_scale),
       peak_(settings.range.compression_peak),
       sum_(static_cast<std::size_t>(samples.beams)) {}
 
@@ -79,7 +93,9 @@ void OutputLines::end(int output_line) {
   }
   const auto beams = static_cast<std::size_t>(samples_.beams);
   const std::size_t at = static_cast<std::size_t>(output_line) * beams;
-  if (samples_.u16.empty()) {
+  if (scale_ == OutputScale::half_decibels) {
+    quantise_decibels(sum_.data(), samples_.beams, &samples_.u8[at]);
+  } else if (samples_.u16.empty()) {
     quantise_row(sum_.data(), samples_.beams, &samples_.u8[at]);
   } else {
     quantise_row(sum_.data(), samples_.beams, &samples_.u16[at]);

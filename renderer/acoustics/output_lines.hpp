@@ -9,8 +9,8 @@ namespace sonard::render {
 /// Buffers of the size and kind that `settings` ask for, all zero.
 PingSamples make_samples(const SonarSettings& settings);
 
-/// What amplitude 1 (full scale) is in codes of the output, shared among the native lines of a mean:
-/// amplitudes come to OutputLines multiplied with this.
+/// What amplitude 1 (full scale) is in codes of the output, or 1 where codes are decibels, shared among the
+/// native lines of a mean: amplitudes come to OutputLines multiplied with this.
 float codes_per_amplitude(const SonarSettings& settings);
 
 /// Joins native lines to output lines. Each thread has one of its own; they share the samples.
@@ -27,6 +27,7 @@ class OutputLines {
 
  private:
   PingSamples& samples_;
+  OutputScale scale_;
   bool peak_;
   bool empty_ = true;
   AlignedVector<float> sum_;

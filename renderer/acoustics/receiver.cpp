@@ -136,7 +136,9 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       range(settings.range),
       model(settings.physical),
       sixteen_bit(settings.sixteen_bit),
+      output_scale(settings.output_scale),
       filter(receive_kernel(aperture), aperture.beam_count()),
+      response(model.range_cell_m, range.step_m),
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)) {
   const float codes = codes_per_amplitude(settings);
@@ -153,7 +155,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
 
 bool ReceiverTables::fits(const SonarSettings& settings) const {
   return aperture == settings.aperture && range == settings.range && model == settings.physical &&
-         sixteen_bit == settings.sixteen_bit;
+         sixteen_bit == settings.sixteen_bit && output_scale == settings.output_scale;
 }
 
 void Receiver::advance_speckle(const PingRequest& request, Stream& state) {
@@ -380,11 +382,16 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
     state.tables = ReceiverTables(settings);
   }
   advance_speckle(request, state);
+  const EchoImage* heard = &echo;
+  if (state.tables.response.taps() > 0) {
+    state.tables.response.apply(echo, state.spread);
+    heard = &state.spread;
+  }
   // Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
   const std::uint64_t speckle_ping = state.kind == Speckle::frozen ? 0 : request.ping_number;
   const PhysicalPing ping{state.tables, state.speckle, key(RandomField::speckle, speckle_ping),
                           key(RandomField::noise, request.ping_number), skip_};
-  return receive_lines<PhysicalLines>(echo, ping, settings, workers, skipped_);
+  return receive_lines<PhysicalLines>(*heard, ping, settings, workers, skipped_);
 }
 
 }  // namespace sonard::render

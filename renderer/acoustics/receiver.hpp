@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "renderer/acoustics/beam_filter.hpp"
+#include "renderer/acoustics/range_response.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
@@ -20,8 +21,10 @@ struct ReceiverTables {
   RangeLines range;
   PhysicalModel model;
   bool sixteen_bit = false;
+  OutputScale output_scale = OutputScale::linear;
 
   BeamFilter filter;
+  RangeResponse response;
   std::vector<float> gain;     ///< per native line: amplitude to codes, TVG included
   std::vector<float> profile;  ///< per beam: noise amplitude relative to that away from broadside
   float noise = 0;             ///< amplitude before TVG; 0: off
@@ -49,6 +52,7 @@ class Receiver {
  private:
   struct Stream {
     ReceiverTables tables;
+    EchoImage spread;  ///< the echo behind the response of the pulse in range
     SpeckleField speckle;
     // What the field was made for; with another of these it is begun anew.
     PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;

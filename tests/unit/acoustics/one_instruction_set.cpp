@@ -8,6 +8,7 @@
 #include "renderer/acoustics/echo_block.cpp"
 #include "renderer/acoustics/output_lines.cpp"
 #include "renderer/acoustics/random.cpp"
+#include "renderer/acoustics/range_response.cpp"
 #include "renderer/acoustics/receiver.cpp"
 #include "renderer/acoustics/speckle_field.cpp"
 #include "renderer/sonar_settings.cpp"

@@ -21,6 +21,7 @@ std::vector<std::uint16_t> several_pings() {
     request.settings.aperture.beam_edges_rad.push_back(1 - 2.0 * i / beams);
   }
   request.settings.range = {lines, 0.02, 0, false};
+  request.settings.physical.range_cell_m = 0.03;
   request.settings.physical.noise_level_db = -100;
   request.settings.physical.side_lobe_floor_db = -25;
   request.settings.sixteen_bit = true;

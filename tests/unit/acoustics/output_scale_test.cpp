@@ -1,0 +1,81 @@
+// Samples in half decibels, as a DST head puts them out: v = floor(k 255 / 160) with k = round(2 L / dB), and
+// nothing above k = 120 (docs/physics.md 2.16). Full scale is 80 dB.
+#include <cmath>
+#include <cstdint>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "renderer/acoustics/receiver.hpp"
+#include "renderer/sonar_renderer.hpp"
+
+namespace sonard::render {
+namespace {
+
+/// One beam without noise, speckle or TVG: the sample is the level of the echo alone.
+PingRequest scanning_request(int lines) {
+  PingRequest request;
+  request.settings.aperture.beam_edges_rad = {0.026, -0.026};
+  request.settings.range = {lines, 0.05, 0, false};
+  request.settings.output_scale = OutputScale::half_decibels;
+  PhysicalModel& model = request.settings.physical;
+  model.speckle = PhysicalModel::Speckle::off;
+  model.noise = false;
+  model.tvg_log_coefficient = 0;
+  model.tvg_absorption_db_per_m = 0;
+  model.gain_db = 0;
+  model.near_field_blank_m = 0;
+  return request;
+}
+
+TEST(OutputScale, HalfDecibels) {
+  // Levels a tenth of a decibel apart, from below the scale to above its end.
+  std::vector<float> intensity;
+  for (int i = 0; i < 1000; ++i) {
+    intensity.push_back(static_cast<float>(std::pow(10.0, (i / 10.0 - 90.03) / 10)));
+  }
+  WorkerPool workers(1);
+  Receiver receiver;
+  const EchoImage echo{1, 1000, intensity};
+  const PingSamples samples = receiver.receive(echo, scanning_request(1000), 0, workers);
+  ASSERT_EQ(samples.u8.size(), 1000u);
+  std::set<int> codes;
+  for (int i = 0; i < 1000; ++i) {
+    const double level_db = 80 + i / 10.0 - 90.03;
+    const int k = std::clamp(static_cast<int>(std::floor(2 * level_db + 0.5)), 0, 120);
+    EXPECT_EQ(samples.u8[static_cast<std::size_t>(i)], k * 255 / 160) << level_db;
+    codes.insert(samples.u8[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_EQ(codes.size(), 121u);
+  EXPECT_EQ(*codes.rbegin(), 191);
+}
+
+TEST(OutputScale, SilenceIsZero) {
+  WorkerPool workers(1);
+  Receiver receiver;
+  const EchoImage echo{1, 50, std::vector<float>(50, 0.0F)};
+  for (const std::uint8_t sample : receiver.receive(echo, scanning_request(50), 0, workers).u8) {
+    EXPECT_EQ(sample, 0);
+  }
+}
+
+TEST(OutputScale, AMeanOfNativeLinesIsOneOfAmplitudes) {
+  PingRequest request = scanning_request(64);
+  request.settings.range.compression_log2 = 2;
+  WorkerPool workers(1);
+  Receiver receiver;
+  EchoImage echo{1, 64, std::vector<float>(64, 0.0F)};
+  echo.intensity[8] = 1e-4F;  // amplitude 0.01; with three lines of nothing 0.0025: 80 - 52.04 dB
+  const PingSamples samples = receiver.receive(echo, request, 0, workers);
+  EXPECT_EQ(samples.u8[2], 56 * 255 / 160);
+}
+
+TEST(OutputScale, SixteenBitsHaveNoSuchScale) {
+  SonarRenderer renderer(World{}, {Backend::ray, 1});
+  PingRequest request = scanning_request(10);
+  request.settings.sixteen_bit = true;
+  EXPECT_THROW(renderer.render_ping(request), RequestError);
+}
+
+}  // namespace
+}  // namespace sonard::render
