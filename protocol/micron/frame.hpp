@@ -15,6 +15,7 @@ namespace sonard::micron {
 using TimePoint = std::chrono::nanoseconds;
 
 inline constexpr std::uint8_t host_node = 0xFF;
+inline constexpr std::uint8_t broadcast_node = 0xFF;  ///< every head takes what is sent to it (2.3)
 inline constexpr std::uint8_t default_head_node = 2;
 inline constexpr std::uint8_t frame_start = 0x40;  ///< '@'
 inline constexpr std::uint8_t frame_end = 0x0A;    ///< line feed
