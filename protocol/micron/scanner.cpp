@@ -128,8 +128,7 @@ MicronJob Scanner::make_job(const Ping& ping) const {
   const bool mirrored = parameters.has(control_bits::invert) != config_.mounted_inverted;
   job.bearing_rad = (mirrored ? -1.0 : 1.0) * bearing_rad(sweep_.bearing());
   job.bins = effective_bins(parameters);
-  job.bin_time_s =
-      std::chrono::duration<double>(effective_ad_interval(parameters) * ad_interval_unit).count();
+  job.bin_time_s = bin_time_s(effective_ad_interval(parameters));
   job.sound_speed_mps = config_.water_sound_speed_mps;
   job.bin_length_m = job.bin_time_s * job.sound_speed_mps / 2.0;
   job.gain_db = gain_db(parameters.gain[0]);

@@ -29,6 +29,10 @@ constexpr double bearing_rad(int bearing) {
   return (wrapped(bearing) - bearing_ahead) * (2.0 * std::numbers::pi / units_per_turn);
 }
 
+/// Two-way time from one bin to the next.
+constexpr double bin_time_s(int ad_interval) {
+  return ad_interval * 640e-9;
+}
 /// Receiver level of a byte of a line, of AD span and of AD low, 0..80 dB.
 constexpr double level_db(int level) {
   return level * full_scale_db / 255.0;
