@@ -32,7 +32,6 @@ static_assert(layout_is_contiguous<Layout<SendData>>(13) && layout_is_contiguous
 enum class Form : std::uint8_t { full = 0x01, full_with_gain_block = 0x1D, gain = 0x1E, reverse = 0x0F };
 
 constexpr std::size_t form_offset = 13;
-constexpr std::size_t line_data_offset = 44;
 constexpr std::size_t line_count_excess = 31;  // by how much the total count exceeds that of the data
 constexpr std::size_t older_user_blocks_end = 174;
 constexpr std::size_t dst_duplex_offset = 146;

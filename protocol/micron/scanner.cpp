@@ -109,13 +109,14 @@ std::optional<TimePoint> Scanner::line_due() const {
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
   const LineTiming timing = line_timing(*parameters_, config_, 0);
-  Ping& ping = ping_.emplace();
+  Ping ping;
   ping.number = next_ping_number_++;
   ping.transmit_time = std::max(due, now - lateness_allowed);
   const nanoseconds line_after = timing.listen + config_.line_overhead;
   ping.line_due = config_.line_period ? ping.transmit_time + std::min(line_after, *config_.line_period)
                                       : std::max(ping.transmit_time + line_after, link_free_at_);
   job_ = make_job(ping);
+  ping_ = std::move(ping);
   ++counters_.pings_started;
 }
 
