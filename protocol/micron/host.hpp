@@ -64,8 +64,8 @@ class Host {
   /// Bytes from the head, cut as they happen to come. Bad ones are counted and dropped.
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
 
-  /// Scans with these parameters, at once or as soon as the head is known; replaces what was going on. Ends
-  /// after `lines` delivered lines; 0: goes on until stop().
+  /// Scans with these parameters (1..1500 bins, ad_interval >= 1), at once or as soon as the head is known;
+  /// replaces what was going on. Ends after `lines` delivered lines; 0: goes on until stop().
   void start(TimePoint now, const HeadCommand& parameters, std::uint64_t lines);
   /// Changes gain and window of a scan that goes on; nothing before start().
   void set_gain(const GainBlock& values);
