@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <tuple>
 #include <type_traits>
 #include <variant>
 
@@ -18,7 +16,7 @@ template <class... Messages>
 consteval bool layouts_are_contiguous(const std::variant<Messages...>*) {
   return ([] {
     if constexpr (HasLayout<Messages>) {
-      return layout_is_contiguous<Messages>();
+      return layout_is_contiguous<Layout<Messages>>(header_size);
     } else {
       return true;
     }
@@ -34,66 +32,7 @@ constexpr std::size_t max_serial_bytes = 255;
 constexpr std::size_t mdio_script_offset = 10;
 constexpr std::size_t max_mdio_words = (max_datagram_size - mdio_script_offset) / 2;
 
-// ---- Members on the wire, by type
-
-template <class Value>
-void read_value(ByteReader& reader, std::string_view name, Value& value) {
-  value = static_cast<Value>(reader.little_endian(WireSize<Value>::value, name));
-}
-
-template <class Element, std::size_t N>
-void read_value(ByteReader& reader, std::string_view name, std::array<Element, N>& values) {
-  for (Element& value : values) {
-    read_value(reader, name, value);
-  }
-}
-
-template <std::size_t N>
-void read_value(ByteReader& reader, std::string_view name, std::array<std::uint8_t, N>& values) {
-  std::ranges::copy(reader.bytes(N, name), values.begin());
-}
-
-template <class Inner>
-void read_value(ByteReader& reader, std::string_view name, std::optional<Inner>& value) {
-  read_value(reader, name, value.emplace());
-}
-
-void read_value(ByteReader& reader, std::string_view name, MacAddress& mac) {
-  read_value(reader, name, mac.octets);
-  std::ranges::reverse(mac.octets);
-}
-
-template <class Value>
-void write_value(ByteWriter& writer, const Value& value) {
-  writer.little_endian(static_cast<std::uint64_t>(value), WireSize<Value>::value);
-}
-
-template <class Element, std::size_t N>
-void write_value(ByteWriter& writer, const std::array<Element, N>& values) {
-  for (const Element& value : values) {
-    write_value(writer, value);
-  }
-}
-
-template <std::size_t N>
-void write_value(ByteWriter& writer, const std::array<std::uint8_t, N>& values) {
-  writer.bytes(values);
-}
-
-template <class Inner>
-void write_value(ByteWriter& writer, const std::optional<Inner>& value) {
-  if (value) {
-    write_value(writer, *value);
-  }
-}
-
-void write_value(ByteWriter& writer, const MacAddress& mac) {
-  auto octets = mac.octets;
-  std::ranges::reverse(octets);
-  writer.bytes(octets);
-}
-
-// ---- Header and layout tables
+// ---- Header
 
 struct TypedHeader {
   std::uint8_t type = 0;
@@ -120,59 +59,16 @@ void write_header(ByteWriter& writer, std::uint8_t type, const Header& header) {
   writer.u8(header.source);
 }
 
-/// A field is left alone only when it lies beyond the minimum and the datagram ends before it is whole.
-template <class Message>
-bool is_absent(const ByteReader& reader, std::size_t offset, std::size_t size) {
-  return offset >= Layout<Message>::minimum && reader.remaining() < size;
-}
-
-template <class Message, class Member>
-void read_field(ByteReader& reader, Message& message, const Field<Message, Member>& field) {
-  if (!is_absent<Message>(reader, field.offset, wire_size(field))) {
-    read_value(reader, field.name, message.*field.member);
-  }
-}
-
-/// Spare bytes at the end count for the length only as far as the minimum.
-template <class Message, std::size_t Size>
-void read_field(ByteReader& reader, Message&, const Spare<Size>& spare) {
-  const std::size_t end = std::min(spare.offset + Size, std::max(spare.offset, Layout<Message>::minimum));
-  const std::size_t insisted = end - spare.offset;
-  reader.skip(std::max(insisted, std::min(Size, reader.remaining())), "spare");
-}
-
-template <class Message>
-void read_fields(ByteReader& reader, Message& message) {
-  std::apply([&](const auto&... field) { (read_field(reader, message, field), ...); },
-             Layout<Message>::fields);
-}
-
-template <class Message, class Member>
-void write_field(ByteWriter& writer, const Message& message, const Field<Message, Member>& field) {
-  write_value(writer, message.*field.member);
-}
-
-template <class Message, std::size_t Size>
-void write_field(ByteWriter& writer, const Message&, const Spare<Size>&) {
-  writer.zeros(Size);
-}
-
-template <class Message>
-void write_fields(ByteWriter& writer, const Message& message) {
-  std::apply([&](const auto&... field) { (write_field(writer, message, field), ...); },
-             Layout<Message>::fields);
-}
-
 // ---- Bodies: by the table; an overload for one message says what no table can
 
 template <HasLayout Message>
 void read_body(ByteReader& reader, Message& message) {
-  read_fields(reader, message);
+  read_fields<Layout<Message>>(reader, message);
 }
 
 template <HasLayout Message>
 void write_body(ByteWriter& writer, const Message& message) {
-  write_fields(writer, message);
+  write_fields<Layout<Message>>(writer, message);
 }
 
 void read_body(ByteReader& reader, InfoBlockWrite& message) {
@@ -266,12 +162,12 @@ void write_body(ByteWriter& writer, const MdioCommands& message) {
 }
 
 void read_body(ByteReader& reader, PingLine& message) {
-  read_fields(reader, message);
+  read_fields<Layout<PingLine>>(reader, message);
   message.data = reader.bytes(4 * message.word_count(), "data");
 }
 
 void write_body(ByteWriter& writer, const PingLine& message) {
-  write_fields(writer, message);
+  write_fields<Layout<PingLine>>(writer, message);
   writer.bytes(message.data);
 }
 

@@ -4,82 +4,38 @@
 // codec.cpp.
 #pragma once
 
-#include <array>
-#include <concepts>
+#include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <string_view>
 #include <tuple>
-#include <type_traits>
 
+#include "protocol/common/layout.hpp"
 #include "protocol/gemini/messages.hpp"
+
+namespace sonard {
+
+template <>
+struct WireSize<gemini::MacAddress> : std::integral_constant<std::size_t, 6> {};
+
+}  // namespace sonard
 
 namespace sonard::gemini {
 
-/// One field: the type of the member is its type on the wire.
-template <class Owner, class Member>
-struct Field {
-  std::size_t offset;  ///< from the start of the datagram, header included
-  std::string_view name;
-  Member Owner::*member;
-};
-template <class Owner, class Member>
-Field(std::size_t, std::string_view, Member Owner::*) -> Field<Owner, Member>;
-
-/// Bytes without a meaning: written as zero, skipped when read.
-template <std::size_t Size>
-struct Spare {
-  std::size_t offset;
-};
-
-/// Bytes that a member of this type takes on the wire. An optional member may only come last.
-template <class Member>
-struct WireSize : std::integral_constant<std::size_t, sizeof(Member)> {
-  static_assert(std::integral<Member> || std::is_enum_v<Member>);
-};
-template <class Element, std::size_t N>
-struct WireSize<std::array<Element, N>> : std::integral_constant<std::size_t, N * WireSize<Element>::value> {
-};
-template <class Inner>
-struct WireSize<std::optional<Inner>> : WireSize<Inner> {};
-template <>
-struct WireSize<MacAddress> : std::integral_constant<std::size_t, 6> {};
-
-template <class Owner, class Member>
-constexpr std::size_t wire_size(const Field<Owner, Member>&) {
-  return WireSize<Member>::value;
-}
-template <std::size_t Size>
-constexpr std::size_t wire_size(const Spare<Size>&) {
-  return Size;
+inline void read_value(ByteReader& reader, std::string_view name, MacAddress& mac) {
+  sonard::read_value(reader, name, mac.octets);
+  std::ranges::reverse(mac.octets);
 }
 
-/// Layout of one message: `size` in bytes with everything present, `minimum` that a receiver insists on
-/// (fields beyond it keep their defaults when the datagram ends before them), and `fields` in order of
-/// offset.
+inline void write_value(ByteWriter& writer, const MacAddress& mac) {
+  auto octets = mac.octets;
+  std::ranges::reverse(octets);
+  writer.bytes(octets);
+}
+
+/// Layout of one message (see protocol/common/layout.hpp), offsets from the start of the datagram, header
+/// included.
 template <class Message>
 struct Layout;
-
-/// Most messages insist on all of their bytes.
-template <std::size_t Size>
-struct WholeLayout {
-  static constexpr std::size_t size = Size;
-  static constexpr std::size_t minimum = Size;
-};
-
-/// True when the fields follow each other without gap or overlap from the header to `size`.
-template <class Message>
-consteval bool layout_is_contiguous() {
-  std::size_t offset = header_size;
-  bool contiguous = true;
-  std::apply(
-      [&](const auto&... field) {
-        ((contiguous = contiguous && field.offset == offset, offset += wire_size(field)), ...);
-      },
-      Layout<Message>::fields);
-  return contiguous && offset == Layout<Message>::size && Layout<Message>::minimum <= Layout<Message>::size;
-}
 
 template <>
 struct Layout<StatusRequest> : WholeLayout<8> {

@@ -81,8 +81,10 @@ class Bench {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bench bench;
-  for (Script script{{data, size}, start_single, sonar_id}; !script.done();) {
-    bench.play(script.next());
+  for (Script script{{data, size}, start_single}; !script.done();) {
+    Event event = script.next();
+    sonard::fuzz::address_to_gemini(event, sonar_id);
+    bench.play(event);
   }
   return 0;
 }

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Writes the fuzzing seeds in corpus/gemini from the byte examples in tests/data/gemini.
+"""Writes the fuzzing seeds in corpus/ from the byte examples in tests/data/gemini and tests/data/micron.
 
-datagrams/  one example each, as it is
-device/     scripts for fuzz_gemini_device: what a surface sends to a head, with time between
-surface/    scripts for fuzz_gemini_surface: what a head sends to a surface
+gemini/datagrams/  one example each, as it is
+gemini/device/     scripts for fuzz_gemini_device: what a surface sends to a head, with time between
+gemini/surface/    scripts for fuzz_gemini_surface: what a head sends to a surface
+micron/frames/     one example each, and streams of some
+micron/device/     scripts for fuzz_micron_device: what a host sends to a head
+micron/host/       scripts for fuzz_micron_host: what a head sends to a host
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
 for another reason (inputs that once failed) are left alone.
@@ -12,16 +15,20 @@ import pathlib
 import struct
 
 HERE = pathlib.Path(__file__).resolve().parent
-EXAMPLES = HERE.parent / "data" / "gemini"
-CORPUS = HERE / "corpus" / "gemini"
+EXAMPLES = HERE.parent / "data"
+CORPUS = HERE / "corpus"
 
-# Kinds of events, as in the programs.
+# Kinds of events, as in the programs for the Gemini.
 FROM_A, FROM_B, TRIGGER, WATER, IMAGE, IMAGE_FAILED = range(6)
 FROM_HEAD, START_SINGLE, START_CONTINUOUS, STOP, PAUSE = 0, 4, 5, 6, 7
+# And for the Micron.
+BYTES, HOST_GONE, POWER_CYCLE, LOSE_STEP, LINE, LINE_FAILED = range(6)
+START_8_BIT, START_4_BIT, STOP_SCAN, GAIN, REVERSE = range(1, 6)
+AS_IS = 0x80
 
 
-def example(name):
-    return bytes.fromhex((EXAMPLES / f"{name}.hex").read_text())
+def example(name, device="gemini"):
+    return bytes.fromhex((EXAMPLES / device / f"{name}.hex").read_text())
 
 
 def event(kind, datagram=None, delay=2):
@@ -104,6 +111,46 @@ def surface_scripts():
         FROM_HEAD, example("diagnostic")) + event(FROM_HEAD, example("gpi_data"))
 
 
+def micron_frame(name, as_is=False, delay=2):
+    """A frame as it is, or its type and data, of which the program makes a frame again."""
+    frame = example(name, "micron")
+    return event(AS_IS | BYTES, frame, delay) if as_is else event(BYTES, frame[10:11] + frame[13:-1], delay)
+
+
+def micron_device_scripts():
+    up = event(PAUSE, delay=220)
+    line = event(LINE) + event(PAUSE, delay=30)
+    for driver in ("ros", "rock", "uxv", "gain_block"):
+        yield f"scan_{driver}", up + micron_frame(f"head_command_{driver}") + micron_frame("send_data") + event(
+            PAUSE, delay=100) + 2 * line
+    scan = up + micron_frame("head_command_ros", as_is=True) + micron_frame("send_data") + event(PAUSE, delay=60)
+    yield "connect", up + micron_frame("send_version", as_is=True) + micron_frame("send_bb_user") + micron_frame(
+        "send_fpga_version") + micron_frame("send_fpga_cal_data") + event(PAUSE, delay=110)
+    yield "gain_and_reverse", scan + line + micron_frame("gain") + micron_frame("reverse") + line
+    yield "new_parameters", scan + micron_frame("head_command_uxv") + event(LINE) + event(PAUSE, delay=100) + 2 * line
+    yield "reboot", scan + micron_frame("reboot") + event(LINE_FAILED) + up + micron_frame("send_data_with_time")
+    yield "faults", scan + event(LOSE_STEP) + line + event(POWER_CYCLE) + up + event(HOST_GONE)
+    yield "no_alives", micron_frame("stop_alives", delay=110) + up
+    cut = bytes.fromhex("40 30 30 30 43 0c 00 ff 02 07 10 80 02 0a")
+    yield "cut_reboot", up + event(AS_IS | BYTES, cut) + event(PAUSE, delay=35) + up
+    whole = example("head_command_uxv", "micron")
+    yield "split", up + event(AS_IS | BYTES, whole[:20]) + event(AS_IS | BYTES, whole[20:]) + micron_frame("send_data")
+
+
+def micron_host_scripts():
+    def meet(start):
+        return micron_frame("alive_5d", as_is=True) + micron_frame("version_data") + micron_frame(
+            "bb_user_data") + event(start) + micron_frame("alive_ca")
+
+    yield "scan", meet(START_8_BIT) + 3 * micron_frame("head_data", delay=20)
+    yield "scan_4_bit", meet(START_4_BIT) + 3 * micron_frame("head_data_4_bit", delay=20)
+    yield "timeouts", meet(START_8_BIT) + event(PAUSE, delay=250) + micron_frame("alive_8a")
+    yield "rebooted_head", meet(START_8_BIT) + micron_frame("alive_5d") + micron_frame("alive_ca")
+    yield "changes", meet(START_8_BIT) + event(GAIN) + event(REVERSE) + micron_frame("head_data") + event(STOP_SCAN)
+    yield "silent_head", event(START_8_BIT) + event(PAUSE, delay=250)
+    yield "small_talk", micron_frame("fpga_cal_data") + micron_frame("fpga_version_data") + micron_frame("aux_data")
+
+
 def write(folder, name, data):
     target = CORPUS / folder
     target.mkdir(parents=True, exist_ok=True)
@@ -111,12 +158,16 @@ def write(folder, name, data):
 
 
 def main():
-    for path in sorted(EXAMPLES.glob("*.hex")):
-        write("datagrams", path.stem, example(path.stem))
-    for name, script in device_scripts():
-        write("device", name, script)
-    for name, script in surface_scripts():
-        write("surface", name, script)
+    for device, folder in (("gemini", "gemini/datagrams"), ("micron", "micron/frames")):
+        for path in sorted((EXAMPLES / device).glob("*.hex")):
+            write(folder, path.stem, example(path.stem, device))
+    write("micron/frames", "stream", b"@\n@0008".join(
+        example(path.stem, "micron") for path in sorted((EXAMPLES / "micron").glob("*.hex"))
+        if path.stat().st_size < 100))
+    for folder, scripts in (("gemini/device", device_scripts()), ("gemini/surface", surface_scripts()),
+                            ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts())):
+        for name, script in scripts:
+            write(folder, name, script)
 
 
 if __name__ == "__main__":

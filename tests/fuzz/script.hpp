@@ -17,16 +17,17 @@ namespace sonard::fuzz {
 /// may cut short.
 struct Event {
   int kind = 0;
+  /// Bit 7 of the first byte: the datagram goes out as it is. Otherwise the program first makes it one that
+  /// the other end listens to, so that few mutations are wasted on what it would drop.
+  bool as_is = false;
   std::chrono::nanoseconds delay{};
   std::vector<std::uint8_t> datagram;  ///< a copy of exactly its length: sanitizers see a read beyond it
 };
 
 class Script {
  public:
-  /// Bit 7 of the first byte leaves the sonar ID in the header of the datagram alone; otherwise it becomes
-  /// `sonar_id`, so that few mutations are wasted on datagrams for somebody else.
-  Script(std::span<const std::uint8_t> input, int datagram_kinds, std::uint16_t sonar_id)
-      : reader_(input), datagram_kinds_(datagram_kinds), sonar_id_(sonar_id) {}
+  Script(std::span<const std::uint8_t> input, int datagram_kinds)
+      : reader_(input), datagram_kinds_(datagram_kinds) {}
 
   bool done() const { return reader_.remaining() == 0; }
 
@@ -35,15 +36,12 @@ class Script {
     const std::uint8_t time = reader_.remaining() > 0 ? reader_.u8("delay") : std::uint8_t{0};
     Event event;
     event.kind = first & 7;
+    event.as_is = (first & 0x80) != 0;
     event.delay = std::chrono::microseconds{100} * time * time;
     if (event.kind < datagram_kinds_ && reader_.remaining() >= 2) {
       const std::size_t length = std::min<std::size_t>(reader_.u16le("length"), reader_.remaining());
       const auto bytes = reader_.bytes(length, "datagram");
       event.datagram.assign(bytes.begin(), bytes.end());
-      if ((first & 0x80) == 0 && event.datagram.size() >= 4) {
-        event.datagram[2] = static_cast<std::uint8_t>(sonar_id_);
-        event.datagram[3] = static_cast<std::uint8_t>(sonar_id_ >> 8);
-      }
     }
     return event;
   }
@@ -51,7 +49,14 @@ class Script {
  private:
   ByteReader reader_;
   int datagram_kinds_;
-  std::uint16_t sonar_id_;
 };
+
+/// Puts the ID of a Gemini head into the header of a datagram.
+inline void address_to_gemini(Event& event, std::uint16_t sonar_id) {
+  if (!event.as_is && event.datagram.size() >= 4) {
+    event.datagram[2] = static_cast<std::uint8_t>(sonar_id);
+    event.datagram[3] = static_cast<std::uint8_t>(sonar_id >> 8);
+  }
+}
 
 }  // namespace sonard::fuzz

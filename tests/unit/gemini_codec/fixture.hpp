@@ -1,19 +1,18 @@
 // Datagrams from tests/data/gemini.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include "tests/support/hex_fixture.hpp"
 
 namespace sonard::gemini::testing {
 
-using Bytes = std::vector<std::uint8_t>;
+using sonard::testing::Bytes;
 
-/// The bytes of tests/data/gemini/`name`.hex. Throws std::runtime_error when there is no such file or it
-/// holds anything but hexadecimal bytes.
-Bytes load_fixture(const std::string& name);
+inline Bytes load_fixture(const std::string& name) {
+  return sonard::testing::load_hex_fixture("gemini", name);
+}
 
-/// Names of all fixtures, sorted.
-std::vector<std::string> fixture_names();
+inline std::vector<std::string> fixture_names() {
+  return sonard::testing::hex_fixture_names("gemini");
+}
 
 }  // namespace sonard::gemini::testing

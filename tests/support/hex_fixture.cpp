@@ -1,4 +1,4 @@
-#include "tests/unit/gemini_codec/fixture.hpp"
+#include "tests/support/hex_fixture.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -6,17 +6,17 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace sonard::gemini::testing {
+namespace sonard::testing {
 namespace {
 
-std::filesystem::path folder() {
-  return std::filesystem::path{SONARD_SOURCE_DIR} / "tests/data/gemini";
+std::filesystem::path path_of(const std::string& folder) {
+  return std::filesystem::path{SONARD_SOURCE_DIR} / "tests/data" / folder;
 }
 
 }  // namespace
 
-Bytes load_fixture(const std::string& name) {
-  std::ifstream file{folder() / (name + ".hex")};
+Bytes load_hex_fixture(const std::string& folder, const std::string& name) {
+  std::ifstream file{path_of(folder) / (name + ".hex")};
   Bytes bytes;
   for (std::string word; file >> word;) {
     std::uint8_t byte = 0;
@@ -32,9 +32,9 @@ Bytes load_fixture(const std::string& name) {
   return bytes;
 }
 
-std::vector<std::string> fixture_names() {
+std::vector<std::string> hex_fixture_names(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator{folder()}) {
+  for (const auto& entry : std::filesystem::directory_iterator{path_of(folder)}) {
     if (entry.path().extension() == ".hex") {
       names.push_back(entry.path().stem().string());
     }
@@ -43,4 +43,4 @@ std::vector<std::string> fixture_names() {
   return names;
 }
 
-}  // namespace sonard::gemini::testing
+}  // namespace sonard::testing

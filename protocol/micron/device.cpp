@@ -1,0 +1,369 @@
+#include "protocol/micron/device.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "protocol/micron/codec.hpp"
+#include "protocol/micron/scanner.hpp"
+
+namespace sonard::micron {
+namespace {
+
+void require(bool condition, const char* what) {
+  if (!condition) {
+    throw std::invalid_argument(std::string("micron device: ") + what);
+  }
+}
+
+const DeviceConfig& validated(const DeviceConfig& config) {
+  using std::chrono::nanoseconds;
+  using std::chrono::seconds;
+  constexpr nanoseconds zero{0};
+  require(config.node >= 1 && config.node < host_node, "node must be 1..254");
+  require(config.water_sound_speed_mps > 0.0, "water_sound_speed_mps must be positive");
+  require(config.power_up_bearing < units_per_turn, "power_up_bearing must be 0..6399");
+  require(config.boot_time >= zero && config.boot_time < seconds{1}, "boot_time must be less than 1 s");
+  require(config.centring_time >= seconds{2} && config.centring_time <= seconds{15},
+          "centring_time must be 2..15 s");
+  require(config.seek_speed_rad_s > 0.0, "seek_speed_rad_s must be positive");
+  require(config.alive_period > zero, "alive_period must be positive");
+  require(config.request_cap >= 1 && config.request_cap <= 100, "request_cap must be 1..100");
+  require(config.reconfiguration_time >= zero, "reconfiguration_time must not be negative");
+  require(config.reposition_limit >= zero, "reposition_limit must not be negative");
+  require(config.baud > 0, "baud must be positive");
+  require(config.line_overhead >= zero, "line_overhead must not be negative");
+  require(!config.line_period || *config.line_period >= zero, "line_period must not be negative");
+  return config;
+}
+
+}  // namespace
+
+std::string_view to_string(HeadState state) {
+  switch (state) {
+    case HeadState::booting:
+      return "booting";
+    case HeadState::centring:
+      return "centring";
+    case HeadState::without_parameters:
+      return "without_parameters";
+    case HeadState::ready:
+      return "ready";
+    case HeadState::scanning:
+      return "scanning";
+  }
+  return "unknown";
+}
+
+class Device::Impl {
+ public:
+  Impl(const DeviceConfig& config, TimePoint power_up)
+      : config_(validated(config)), scanner_(config_, counters_), input_(max_command_frame_size) {
+    boot(power_up);
+  }
+
+  void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
+  void on_host_gone() { input_.clear(); }
+  void power_cycle(TimePoint now);
+  void advance(TimePoint now);
+  std::optional<TimePoint> next_deadline() const;
+  std::vector<std::vector<std::uint8_t>> take_outgoing() { return std::exchange(outgoing_, {}); }
+
+  Scanner& scanner() { return scanner_; }
+  const DeviceCounters& counters() const { return counters_; }
+  HeadState state(TimePoint now) const;
+
+ private:
+  bool booting(TimePoint now) const { return now < boot_end_; }
+  void boot(TimePoint now);
+  void read_frames(TimePoint now);
+  bool take_frame(TimePoint now, const FrameBuffer::Frame& frame);
+  bool has_parameters();
+
+  // One for each command.
+  void handle(TimePoint, const SendVersion&);
+  void handle(TimePoint, const SendBBUser&);
+  void handle(TimePoint now, const Reboot&) { power_cycle(now); }
+  void handle(TimePoint, const StopAlives&) { alives_stopped_ = true; }
+  void handle(TimePoint, const SendFpgaVersion&) { send(FpgaVersionData{}); }
+  void handle(TimePoint, const SendFpgaCalData&) { send(FpgaCalData{}); }
+  void handle(TimePoint now, const SendData& command);
+  void handle(TimePoint now, const HeadCommand& command);
+  void handle(TimePoint now, const GainCommand& command);
+  void handle(TimePoint now, const ReverseCommand& command);
+  void handle(TimePoint, const Unknown&) {}  // take_frame has dropped it
+
+  void send(const Report& report) { outgoing_.push_back(encode(report, config_.node)); }
+  void send_alive(TimePoint now);
+  void send_due_alive(TimePoint now);
+  std::uint8_t head_info(TimePoint now) const;
+
+  const DeviceConfig config_;
+  DeviceCounters counters_;
+  Scanner scanner_;
+  FrameBuffer input_;
+
+  TimePoint boot_end_{};    ///< in the future while the head boots
+  TimePoint clock_zero_{};  ///< when the clock of the head was or would have been 0
+  TimePoint next_alive_{};
+  bool alives_stopped_ = false;
+  bool sent_config_ = false;
+  bool parameters_told_ = false;  ///< an alive has gone out since parameters came last (7.2)
+  std::vector<std::vector<std::uint8_t>> outgoing_;
+};
+
+void Device::Impl::boot(TimePoint now) {
+  boot_end_ = now + config_.boot_time;
+  clock_zero_ = now;
+  next_alive_ = boot_end_;
+  alives_stopped_ = false;
+  sent_config_ = false;
+  parameters_told_ = false;
+  scanner_.restart(now, boot_end_);
+}
+
+void Device::Impl::power_cycle(TimePoint now) {
+  ++counters_.boots;
+  boot(now);
+}
+
+// ---- Commands
+
+void Device::Impl::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
+  if (booting(now)) {
+    counters_.unheard_bytes += bytes.size();
+    return;
+  }
+  input_.append(now, bytes);
+  read_frames(now);
+}
+
+void Device::Impl::read_frames(TimePoint now) {
+  while (const auto frame = input_.front(now)) {
+    if (take_frame(now, *frame)) {
+      input_.pop();
+    } else {
+      input_.reject();
+    }
+    if (booting(now)) {
+      input_.clear();  // what came behind the order to reboot is not heard
+    }
+  }
+  counters_.dropped_bytes = input_.dropped();
+}
+
+/// False when the frame means nothing and may hide another. Lengths of a whole frame are right, so that it is
+/// done with, whatever is in it.
+bool Device::Impl::take_frame(TimePoint now, const FrameBuffer::Frame& frame) {
+  const FrameHeader header = frame_header(frame.bytes);
+  if (header.rx_node != config_.node && header.rx_node != broadcast_node) {
+    ++counters_.wrong_node;
+    return !frame.cut;
+  }
+  const auto command = decode_command(frame.bytes);
+  if (!command) {
+    ++counters_.bad_frames;
+    return !frame.cut;
+  }
+  if (std::holds_alternative<Unknown>(*command)) {
+    ++counters_.unknown_type;
+    return !frame.cut;
+  }
+  ++counters_.commands;
+  counters_.cut_frames += frame.cut ? 1 : 0;
+  std::visit([&](const auto& message) { handle(now, message); }, *command);
+  return true;
+}
+
+void Device::Impl::handle(TimePoint, const SendVersion&) {
+  VersionData version = config_.version;
+  version.node = config_.node;
+  send(version);
+}
+
+void Device::Impl::handle(TimePoint, const SendBBUser&) {
+  sent_config_ = true;
+  BBUserData blocks;
+  blocks.older_half_duplex = config_.half_duplex ? 1 : 0;
+  if (config_.older_user_blocks) {
+    blocks.kind = 0;
+    blocks.dst_half_duplex.reset();
+    send(blocks);
+    return;
+  }
+  blocks.dst_half_duplex = blocks.older_half_duplex;
+  send(blocks);
+  send(FpgaCalData{});  // unasked, in this order
+  send(FpgaVersionData{});
+}
+
+bool Device::Impl::has_parameters() {
+  if (scanner_.parameters()) {
+    return true;
+  }
+  ++counters_.not_ready;
+  return false;
+}
+
+void Device::Impl::handle(TimePoint now, const SendData& command) {
+  if (config_.clock_follows_host && command.time_ms != 0) {
+    clock_zero_ = now - std::chrono::milliseconds{command.time_ms};
+  }
+  if (has_parameters()) {
+    scanner_.request(now);
+  }
+}
+
+void Device::Impl::handle(TimePoint now, const HeadCommand& command) {
+  scanner_.configure(now, command);
+  sent_config_ = true;
+  parameters_told_ = false;
+  if (config_.alive_after_head_command && !alives_stopped_) {
+    send_alive(now);
+  }
+}
+
+void Device::Impl::handle(TimePoint, const GainCommand& command) {
+  if (has_parameters()) {
+    scanner_.set_gain(command.values);
+  }
+}
+
+void Device::Impl::handle(TimePoint, const ReverseCommand&) {
+  if (has_parameters()) {
+    scanner_.reverse();
+  }
+}
+
+// ---- Time
+
+HeadState Device::Impl::state(TimePoint now) const {
+  if (booting(now)) {
+    return HeadState::booting;
+  }
+  if (!scanner_.centred(now)) {
+    return HeadState::centring;
+  }
+  if (!scanner_.parameters()) {
+    return HeadState::without_parameters;
+  }
+  return scanner_.owed() > 0 ? HeadState::scanning : HeadState::ready;
+}
+
+std::uint8_t Device::Impl::head_info(TimePoint now) const {
+  using namespace head_info_bits;
+  const HeadState state_now = state(now);
+  const bool seeking = state_now == HeadState::centring;
+  const bool untold = !scanner_.parameters() || !parameters_told_;
+  unsigned info = motor_on | (seeking ? head_info_bits::centring | motoring : centred);
+  if (scanner_.turning(now)) {
+    info |= motoring;
+  }
+  if (scanner_.position(now) != bearing_ahead && (seeking || config_.direction_bit_kept)) {
+    info |= off_centre;
+  }
+  if (untold) {
+    info |= no_parameters;
+  } else if (state_now == HeadState::scanning) {
+    info |= scanning;
+  }
+  if (sent_config_) {
+    info |= sent_config;
+  }
+  return static_cast<std::uint8_t>(info);
+}
+
+void Device::Impl::send_alive(TimePoint now) {
+  Alive alive;
+  alive.head_info = head_info(now);
+  alive.needs_parameters = alive.has(head_info_bits::no_parameters) ? 0x80 : 0;
+  alive.time_ms = static_cast<std::uint32_t>((now - clock_zero_) / std::chrono::milliseconds{1});
+  alive.position = static_cast<std::uint16_t>(scanner_.position(now));
+  send(alive);
+  ++counters_.alives_sent;
+  parameters_told_ = scanner_.parameters().has_value();
+}
+
+void Device::Impl::send_due_alive(TimePoint now) {
+  if (now < next_alive_) {
+    return;
+  }
+  const bool quiet = alives_stopped_ || (!config_.alive_while_scanning && state(now) == HeadState::scanning);
+  if (!quiet) {
+    send_alive(now);
+  }
+  // Keeps the phase; what a late caller has missed is not made up for.
+  next_alive_ += config_.alive_period * ((now - next_alive_) / config_.alive_period + 1);
+}
+
+void Device::Impl::advance(TimePoint now) {
+  if (booting(now)) {
+    return;
+  }
+  read_frames(now);  // one that was cut may count by now
+  if (booting(now)) {
+    return;
+  }
+  send_due_alive(now);
+  scanner_.advance(now, outgoing_);
+}
+
+std::optional<TimePoint> Device::Impl::next_deadline() const {
+  TimePoint next = next_alive_;  // at the end of booting, too
+  for (const auto& due : {scanner_.next_deadline(), input_.next_deadline()}) {
+    next = std::min(next, due.value_or(next));
+  }
+  return std::max(next, boot_end_);
+}
+
+// ---- The door
+
+Device::Device(const DeviceConfig& config, TimePoint power_up)
+    : impl_(std::make_unique<Impl>(config, power_up)) {}
+Device::~Device() = default;
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+
+void Device::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
+  impl_->on_bytes(now, bytes);
+}
+void Device::on_host_gone() {
+  impl_->on_host_gone();
+}
+void Device::on_line(TimePoint now, const MicronLine& line) {
+  impl_->scanner().on_line(now, line);
+}
+void Device::on_line_failed(TimePoint now, std::uint64_t ping_number) {
+  impl_->scanner().on_line_failed(now, ping_number);
+}
+void Device::power_cycle(TimePoint now) {
+  impl_->power_cycle(now);
+}
+void Device::lose_step() {
+  impl_->scanner().lose_step();
+}
+void Device::advance(TimePoint now) {
+  impl_->advance(now);
+}
+std::optional<TimePoint> Device::next_deadline() const {
+  return impl_->next_deadline();
+}
+std::vector<std::vector<std::uint8_t>> Device::take_outgoing() {
+  return impl_->take_outgoing();
+}
+std::optional<MicronJob> Device::take_job() {
+  return impl_->scanner().take_job();
+}
+std::optional<std::uint64_t> Device::called_off() const {
+  return impl_->scanner().called_off();
+}
+const DeviceCounters& Device::counters() const {
+  return impl_->counters();
+}
+HeadState Device::state(TimePoint now) const {
+  return impl_->state(now);
+}
+
+}  // namespace sonard::micron

@@ -1,0 +1,40 @@
+// What goes between the head, which decides when and where to ping, and whoever renders.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "protocol/micron/frame.hpp"
+
+namespace sonard::micron {
+
+/// One ping to be rendered, in SI units. The server maps it to renderer settings.
+struct MicronJob {
+  /// Counts the jobs of a head: 0, 1, 2, ... The wire does not carry it.
+  std::uint64_t ping_number = 0;
+  TimePoint transmit_time{};  ///< when the pulse leaves; up to 50 ms before now where the caller is late
+  std::uint16_t bearing = 0;  ///< as the wire has it, 1/16 gradian
+  /// Axis of the beam about the head's vertical, 0 ahead, positive to starboard of the vehicle, in
+  /// [-pi, pi]. A head mounted boot down without the invert bit looks to the other side than it says.
+  double bearing_rad = 0.0;
+  int bins = 0;                  ///< 1..1500
+  double bin_time_s = 0.0;       ///< of the echo, between two bins: 640 ns and more
+  double bin_length_m = 0.0;     ///< bin_time_s * sound_speed_mps / 2; bin k holds [k, k + 1) of it
+  double sound_speed_mps = 0.0;  ///< true speed in the water
+  double gain_db = 0.0;          ///< initial gain, 0..80 dB (more for gain bytes above 210)
+  double ad_low_db = 0.0;        ///< window of 4-bit data; the head applies it, not the renderer
+  double ad_span_db = 0.0;
+  bool eight_bit = true;  ///< how the line will travel; the samples are 8-bit ones always
+  bool transmit = true;   ///< false: the head only listens, there are no echoes but there is noise
+
+  double range_m() const { return bins * bin_length_m; }
+};
+
+/// The rendered samples of a job: MicronJob::bins of them, from near to far, 0..255 = 0..80 dB of receiver
+/// output (docs/protocols/micron.md 6.3).
+struct MicronLine {
+  std::uint64_t ping_number = 0;
+  std::vector<std::uint8_t> samples;
+};
+
+}  // namespace sonard::micron

@@ -1,0 +1,45 @@
+// Where the transducer stands while it turns a long way: to the centre, or to a new sector.
+#pragma once
+
+#include "protocol/micron/frame.hpp"
+#include "protocol/micron/units.hpp"
+
+namespace sonard::micron {
+
+class Motor {
+ public:
+  explicit Motor(int bearing) : from_(bearing) {}
+
+  /// Turns the short way to `bearing`, evenly from `begin` to `end`.
+  void turn_to(int bearing, TimePoint begin, TimePoint end) {
+    from_ = position(begin);
+    way_ = shortest_turn(from_, bearing);
+    begin_ = begin;
+    end_ = end;
+  }
+  /// Stands at `bearing`: the way from line to line, of which nobody sees the middle.
+  void place(int bearing) {
+    from_ = bearing;
+    way_ = 0;
+  }
+
+  /// 0..6399.
+  int position(TimePoint now) const {
+    if (now >= end_) {
+      return wrapped(from_ + way_);
+    }
+    const double done = now <= begin_ ? 0.0
+                                      : static_cast<double>((now - begin_).count()) /
+                                            static_cast<double>((end_ - begin_).count());
+    return wrapped(from_ + static_cast<int>(way_ * done));
+  }
+  bool turning(TimePoint now) const { return way_ != 0 && now < end_; }
+
+ private:
+  int from_;
+  int way_ = 0;
+  TimePoint begin_{};
+  TimePoint end_{};
+};
+
+}  // namespace sonard::micron

@@ -1,0 +1,101 @@
+// When and where a head pings, and the lines it sends for it. Source: docs/protocols/micron.md 7.4, 8.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "protocol/micron/device_config.hpp"
+#include "protocol/micron/device_counters.hpp"
+#include "protocol/micron/line_timing.hpp"
+#include "protocol/micron/micron_job.hpp"
+#include "protocol/micron/motor.hpp"
+#include "protocol/micron/sweep.hpp"
+
+namespace sonard::micron {
+
+/// The part of a Device that turns and pings.
+///
+/// A ping is *owed* once it was asked for, *acquired* from its transmission on, when its job goes out, and
+/// ended when its line is sent, failed, or overtaken by new parameters; overtaken ones are still owed. There
+/// is one acquired ping at most: even in full duplex a line is complete before the next ping transmits.
+class Scanner {
+ public:
+  /// `config` and `counters` outlive the scanner.
+  Scanner(const DeviceConfig& config, DeviceCounters& counters);
+
+  /// Power or a reboot: forgets everything but the job that is still to be answered, and turns to the centre
+  /// from `begin` on.
+  void restart(TimePoint now, TimePoint begin);
+
+  void configure(TimePoint now, const HeadCommand& parameters);
+  /// These need parameters.
+  void set_gain(const GainBlock& values);
+  void reverse();
+  void request(TimePoint now);
+
+  void on_line(TimePoint now, const MicronLine& line);
+  void on_line_failed(TimePoint now, std::uint64_t ping_number);
+  void lose_step() { motor_error_ = true; }
+
+  /// Appends the frames due at `now` to `out`.
+  void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
+  std::optional<TimePoint> next_deadline() const;
+  std::optional<MicronJob> take_job();
+  /// See Device::called_off().
+  std::optional<std::uint64_t> called_off() const { return ping_ ? std::nullopt : unanswered_; }
+
+  const std::optional<HeadCommand>& parameters() const { return parameters_; }
+  int owed() const { return owed_; }
+  bool centred(TimePoint now) const { return now >= centred_at_; }
+  int position(TimePoint now) const { return motor_.position(now); }
+  bool turning(TimePoint now) const { return motor_.turning(now); }
+
+ private:
+  struct Ping {
+    std::uint64_t number = 0;
+    TimePoint transmit_time{};
+    TimePoint line_due{};               ///< not earlier than this the line leaves
+    std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
+  };
+
+  void settle(TimePoint now);
+  void take_up_position(TimePoint begin);
+  std::optional<TimePoint> ping_due() const;
+  std::optional<TimePoint> line_due() const;
+  void start_ping(TimePoint now, TimePoint due);
+  MicronJob make_job(const Ping& ping) const;
+  std::vector<std::uint8_t> make_line(const Ping& ping) const;
+  void send_line(std::vector<std::vector<std::uint8_t>>& out);
+  void end_ping();
+  void cancel_ping();
+  bool answered(TimePoint now, std::uint64_t ping_number);
+
+  const DeviceConfig& config_;
+  DeviceCounters& counters_;
+
+  // Where it looks.
+  Motor motor_;
+  Sweep sweep_;
+  TimePoint centred_at_{};
+  bool placed_ = false;  ///< centred, and in the sector of its parameters if it has any
+  TimePoint ready_at_{};
+
+  // What it was told.
+  std::optional<HeadCommand> parameters_;
+  TimePoint configured_at_{};
+  bool motor_error_ = false;
+  int owed_ = 0;  ///< lines
+  TimePoint owed_since_{};
+
+  // What it does.
+  std::uint64_t next_ping_number_ = 0;
+  std::optional<Ping> ping_;
+  std::optional<MicronJob> job_;             ///< not yet taken
+  std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
+  TimePoint free_since_{};                   ///< when the last ping ended, or its job was answered
+  TimePoint next_ping_at_{};                 ///< by the pace of lines
+  TimePoint link_free_at_{};
+};
+
+}  // namespace sonard::micron

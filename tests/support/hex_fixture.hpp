@@ -1,0 +1,19 @@
+// Messages as bytes, from the hexadecimal files in tests/data.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sonard::testing {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// The bytes of tests/data/`folder`/`name`.hex. Throws std::runtime_error when there is no such file or it
+/// holds anything but hexadecimal bytes.
+Bytes load_hex_fixture(const std::string& folder, const std::string& name);
+
+/// Names of all fixtures of a folder, sorted.
+std::vector<std::string> hex_fixture_names(const std::string& folder);
+
+}  // namespace sonard::testing

@@ -1,0 +1,212 @@
+// A head on a bench: virtual time, a renderer that takes a set time, everything said written down.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "protocol/micron/codec.hpp"
+#include "protocol/micron/device.hpp"
+#include "tests/support/hex_fixture.hpp"
+
+namespace sonard::micron {
+
+using namespace std::chrono_literals;
+using Bytes = std::vector<std::uint8_t>;
+
+/// Frames as drivers send them and heads answer them (tests/data/micron).
+inline Bytes fixture(const std::string& name) {
+  return sonard::testing::load_hex_fixture("micron", name);
+}
+
+/// Any values that tell pings and bins apart.
+inline std::uint8_t test_sample(std::uint64_t ping, std::size_t bin) {
+  return static_cast<std::uint8_t>(ping * 31 + bin * 7);
+}
+
+inline MicronLine test_line(const MicronJob& job) {
+  MicronLine line{job.ping_number, Bytes(static_cast<std::size_t>(job.bins))};
+  for (std::size_t bin = 0; bin < line.samples.size(); ++bin) {
+    line.samples[bin] = test_sample(job.ping_number, bin);
+  }
+  return line;
+}
+
+/// A sector from `left` to `right`, clockwise first; 20 bins, so that lines are quick.
+inline HeadCommand sector(std::uint16_t left, std::uint16_t right, std::uint8_t step = 32) {
+  HeadCommand command;
+  command.control = 0x2305;
+  command.left_limit = left;
+  command.right_limit = right;
+  command.step = step;
+  command.bins = 20;
+  return command;
+}
+
+/// All round to the right, or to the left; 20 bins.
+inline HeadCommand all_round(std::uint8_t step = 32, bool right = true) {
+  HeadCommand command = sector(0, 0, step);
+  command.control = right ? 0x2307 : 0x2303;
+  return command;
+}
+
+class Bench {
+ public:
+  struct Sent {
+    TimePoint at{};
+    Bytes bytes;
+  };
+
+  explicit Bench(const DeviceConfig& config = {}) : device(config, 0ns) { step(); }
+
+  // What a test sets.
+  std::chrono::nanoseconds render_time{0};
+  std::function<MicronLine(const MicronJob&)> render = test_line;
+  bool renderer_answers = true;  ///< false: the test answers the jobs itself
+  bool renderer_fails = false;
+  /// Sees each frame as it is sent; may not call the bench.
+  std::function<void(const Sent&)> on_sent;
+
+  // What a test looks at.
+  Device device;
+  TimePoint now{};
+  std::vector<Sent> sent;
+  std::vector<MicronJob> jobs;
+
+  void raw(std::span<const std::uint8_t> bytes) {
+    device.on_bytes(now, bytes);
+    step();
+  }
+  void command(const Command& command) { raw(encode(command)); }
+  void answer(const MicronLine& line) {
+    device.on_line(now, line);
+    step();
+  }
+  void fail(std::uint64_t ping_number) {
+    device.on_line_failed(now, ping_number);
+    step();
+  }
+  void power_cycle() {
+    device.power_cycle(now);
+    step();
+  }
+
+  /// When something happens next of itself.
+  TimePoint next_event() const { return job_ ? std::min(timer_, job_->first) : timer_; }
+  /// One thing happens.
+  void run_once() {
+    now = std::max(now, next_event());
+    if (job_ && job_->first <= now) {
+      const MicronJob job = std::exchange(job_, std::nullopt)->second;
+      if (renderer_fails) {
+        device.on_line_failed(now, job.ping_number);
+      } else {
+        device.on_line(now, render(job));
+      }
+    }
+    step();
+  }
+  void run_until(TimePoint end) {
+    while (next_event() <= end) {
+      run_once();
+    }
+    now = std::max(now, end);
+  }
+  void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
+  /// Centred, with these parameters, and ready to ping; nothing said so far counts.
+  void make_ready(const HeadCommand& parameters) {
+    run_until(10s);
+    command(parameters);
+    run_for(2s);
+    sent.clear();
+  }
+  /// Asks, as most drivers do, for another line whenever one has come, until there are `count`.
+  std::vector<HeadData> scan(std::size_t count) {
+    const std::size_t from = sent.size();
+    std::size_t seen = 0;
+    command(SendData{});
+    for (const TimePoint end = now + 100s; seen < count && now < end;) {
+      run_once();
+      for (const std::size_t lines = all<HeadData>(from).size(); seen < std::min(lines, count); ++seen) {
+        command(SendData{});
+      }
+    }
+    std::vector<HeadData> lines;
+    for (const auto& [at, line] : all<HeadData>(from)) {
+      lines.push_back(line);
+    }
+    EXPECT_GE(lines.size(), count);
+    lines.resize(std::min(lines.size(), count));
+    return lines;
+  }
+
+  /// The messages of one type among those sent from index `from` on. Lines view `sent`.
+  template <class Message>
+  std::vector<std::pair<TimePoint, Message>> all(std::size_t from = 0) const {
+    std::vector<std::pair<TimePoint, Message>> found;
+    for (std::size_t i = from; i < sent.size(); ++i) {
+      const auto report = decode_report(sent[i].bytes);
+      if (!report) {
+        ADD_FAILURE() << "undecodable frame sent: " << to_string(report.error());
+        continue;
+      }
+      if (const Message* message = std::get_if<Message>(&*report)) {
+        found.emplace_back(sent[i].at, *message);
+      }
+    }
+    return found;
+  }
+  /// HeadInf of every alive sent so far.
+  std::vector<int> head_infos(std::size_t from = 0) const {
+    std::vector<int> infos;
+    for (const auto& [at, alive] : all<Alive>(from)) {
+      infos.push_back(alive.head_info);
+    }
+    return infos;
+  }
+
+ private:
+  void step() {
+    device.advance(now);
+    const auto deadline = device.next_deadline();
+    timer_ = deadline.value_or(TimePoint::max());
+    EXPECT_GT(timer_, now) << "the head would keep its caller spinning";
+    for (Bytes& frame : device.take_outgoing()) {
+      sent.push_back({now, std::move(frame)});
+      EXPECT_EQ(next_frame(sent.back().bytes, max_report_frame_size),
+                static_cast<std::ptrdiff_t>(sent.back().bytes.size()))
+          << "one whole frame at a time";
+      if (on_sent) {
+        on_sent(sent.back());
+      }
+    }
+    if (const auto job = device.take_job()) {
+      jobs.push_back(*job);
+      if (renderer_answers) {
+        EXPECT_FALSE(job_) << "a second job while one is unanswered";
+        job_.emplace(now + render_time, *job);
+      }
+    }
+  }
+
+  TimePoint timer_ = TimePoint::max();
+  std::optional<std::pair<TimePoint, MicronJob>> job_;
+};
+
+inline std::vector<int> bearings_of(const std::vector<HeadData>& lines) {
+  std::vector<int> bearings;
+  for (const HeadData& line : lines) {
+    bearings.push_back(line.bearing);
+  }
+  return bearings;
+}
+
+}  // namespace sonard::micron

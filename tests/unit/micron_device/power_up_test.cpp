@@ -1,0 +1,248 @@
+// From power to a scan, as the alives tell it (docs/protocols/micron.md 6.2, 7).
+#include "bench.hpp"
+
+namespace sonard::micron {
+namespace {
+
+using Infos = std::vector<int>;
+
+TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
+  Bench bench;
+  bench.run_until(699ms);
+  EXPECT_TRUE(bench.sent.empty());
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::booting);
+  bench.run_until(5s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x4D, 0x4D, 0x4D, 0x4A}));
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
+
+  bench.sent.clear();
+  bench.command(all_round());
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::ready);
+  bench.run_for(2s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0xCA, 0x8A}));
+  bench.sent.clear();
+  bench.on_sent = [&](const Bench::Sent& frame) {
+    if (frame.bytes[10] == 2) {
+      bench.device.on_bytes(frame.at, fixture("send_data"));
+    }
+  };
+  bench.command(SendData{});
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::scanning);
+  bench.run_for(2s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0xAA, 0xAA}));
+}
+
+TEST(PowerUp, alives_come_once_a_second_with_clock_and_position) {
+  Bench bench;
+  bench.run_until(8s);
+  const auto alives = bench.all<Alive>();
+  ASSERT_EQ(alives.size(), 8U);
+  for (std::size_t i = 0; i < alives.size(); ++i) {
+    EXPECT_EQ(alives[i].first, 700ms + i * 1s);
+    EXPECT_EQ(alives[i].second.time_ms, 700 + i * 1000);
+    EXPECT_EQ(alives[i].second.needs_parameters, 0x80);
+    EXPECT_EQ(alives[i].second.position, i == 0 ? 2400 : 3200);
+  }
+}
+
+TEST(PowerUp, alive_is_the_published_frame) {
+  // Booted at 0.266 s, so that the seventh alive tells 6266 ms: 4A with position 3200 (section 10).
+  DeviceConfig config;
+  config.boot_time = 266ms;
+  Bench bench(config);
+  bench.run_until(6266ms);
+  EXPECT_EQ(bench.sent.back().bytes, fixture("alive_4a"));
+  bench.command(HeadCommand{});
+  bench.run_until(8266ms);
+  EXPECT_EQ(bench.sent[bench.sent.size() - 2].bytes, fixture("alive_ca"));
+  EXPECT_EQ(bench.sent.back().bytes, fixture("alive_8a"));
+}
+
+TEST(PowerUp, motor_seeks_the_centre_the_short_way_at_90_degrees_a_second) {
+  DeviceConfig config;
+  config.power_up_bearing = 6399;  // 179.94 degrees of starboard, through 4800
+  config.alive_period = 500ms;
+  Bench bench(config);
+  bench.run_until(4s);
+  std::vector<int> positions;
+  for (const auto& [at, alive] : bench.all<Alive>()) {
+    positions.push_back(alive.position);
+  }
+  EXPECT_EQ(positions, (std::vector<int>{6399, 5599, 4799, 3999, 3200, 3200, 3200}));
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x4D, 0x4D, 0x4D}));
+}
+
+TEST(PowerUp, slow_motor_centres_for_longer_than_the_least_time) {
+  DeviceConfig config;
+  config.power_up_bearing = 0;
+  config.seek_speed_rad_s = std::numbers::pi / 5;
+  Bench bench(config);
+  bench.run_until(7s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x5D, 0x4A, 0x4A}));
+}
+
+TEST(PowerUp, direction_bit_may_stay_after_centring) {
+  DeviceConfig config;
+  config.direction_bit_kept = true;
+  Bench bench(config);
+  bench.make_ready(sector(1600, 2400));
+  bench.run_for(1s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x9A}));
+  bench.command(SendData{});
+  bench.renderer_answers = false;
+  bench.run_for(1s);
+  EXPECT_EQ(bench.head_infos().back(), 0xBA);
+}
+
+TEST(Reboot, forgets_all_and_centres_again_with_at_least_three_alives) {
+  Bench bench;
+  bench.make_ready(sector(1600, 1600 + 320));
+  bench.scan(5);
+  bench.command(SendData{61'891'786});
+  bench.run_for(1s);
+  EXPECT_GT(bench.all<Alive>().back().second.time_ms, 61'891'786U);
+  const int position = bench.all<Alive>().back().second.position;
+  bench.sent.clear();
+
+  const TimePoint reboot = bench.now;
+  bench.raw(fixture("reboot"));
+  bench.run_until(reboot + 699ms);
+  EXPECT_TRUE(bench.sent.empty()) << "no answer, and silence";
+  bench.run_until(reboot + 5700ms);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x4D, 0x4D, 0x4D, 0x4A, 0x4A})) << "parameters are gone";
+  const auto alives = bench.all<Alive>();
+  EXPECT_EQ(alives[0].first, reboot + 700ms);
+  EXPECT_EQ(alives[0].second.time_ms, 700U);
+  EXPECT_EQ(alives[0].second.position, position);
+  EXPECT_TRUE(bench.all<HeadData>().empty()) << "lines that were owed are not";
+  EXPECT_EQ(bench.device.counters().boots, 1U);
+}
+
+TEST(Reboot, every_centring_time_that_may_be_set_shows_two_alives_of_it) {
+  for (const auto time : {2s, 3s, 15s}) {
+    DeviceConfig config;
+    config.centring_time = time;
+    Bench bench(config);
+    bench.run_until(20s);
+    const Infos infos = bench.head_infos();
+    const auto centring = std::ranges::count_if(infos, [](int info) { return (info & 3) == 1; });
+    EXPECT_EQ(centring, time / 1s);
+  }
+}
+
+TEST(Reboot, in_the_middle_of_a_ping_leaves_its_job_to_be_answered) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.renderer_answers = false;
+  bench.command(SendData{});
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  bench.command(Reboot{});
+  EXPECT_EQ(bench.device.called_off(), bench.jobs[0].ping_number);
+  bench.answer(test_line(bench.jobs[0]));
+  EXPECT_EQ(bench.device.called_off(), std::nullopt);
+  EXPECT_EQ(bench.device.counters().pings_cancelled, 1U);
+  bench.run_for(10s);
+  EXPECT_TRUE(bench.all<HeadData>().empty());
+}
+
+TEST(Reboot, bytes_that_come_while_it_boots_are_lost) {
+  Bench bench;
+  bench.run_until(10s);
+  bench.command(Reboot{});
+  bench.run_for(100ms);
+  bench.raw(fixture("send_version"));
+  bench.raw(fixture("head_command_ros"));
+  bench.run_for(5s);
+  EXPECT_TRUE(bench.all<VersionData>().empty());
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
+  EXPECT_EQ(bench.device.counters().unheard_bytes, 80U);
+}
+
+TEST(Reboot, spontaneous_one_shows_as_a_head_without_parameters) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.scan(3);
+  bench.power_cycle();
+  bench.sent.clear();
+  bench.run_for(1s);
+  ASSERT_EQ(bench.head_infos().size(), 1U);
+  EXPECT_EQ(bench.head_infos()[0] & head_info_bits::no_parameters, head_info_bits::no_parameters);
+}
+
+TEST(Alives, stop_until_the_next_reboot) {
+  Bench bench;
+  bench.run_until(3s);
+  const std::size_t before = bench.sent.size();
+  bench.raw(fixture("stop_alives"));
+  bench.command(all_round());
+  bench.run_for(20s);
+  EXPECT_EQ(bench.sent.size(), before);
+  EXPECT_EQ(bench.scan(4).size(), 4U) << "it scans all the same";
+  bench.command(Reboot{});
+  bench.run_for(3s);
+  EXPECT_FALSE(bench.head_infos(before).empty());
+}
+
+TEST(Alives, go_on_between_lines_of_a_scan_or_not) {
+  for (const bool on : {true, false}) {
+    DeviceConfig config;
+    config.alive_while_scanning = on;
+    Bench bench(config);
+    bench.make_ready(all_round());
+    const TimePoint begin = bench.now;
+    bench.scan(500);
+    const auto seconds = static_cast<std::size_t>((bench.now - begin) / 1s);
+    EXPECT_GE(seconds, 4U);
+    if (on) {
+      EXPECT_GE(bench.all<Alive>().size(), seconds);
+    } else {
+      EXPECT_TRUE(bench.all<Alive>().empty());
+      bench.run_for(2s);
+      EXPECT_FALSE(bench.all<Alive>().empty()) << "they come back when nothing is owed";
+    }
+  }
+}
+
+TEST(Alives, one_comes_at_once_after_parameters_if_so_set) {
+  DeviceConfig config;
+  config.alive_after_head_command = true;
+  Bench bench(config);
+  bench.run_until(10s);
+  bench.sent.clear();
+  bench.command(all_round());
+  EXPECT_EQ(bench.head_infos(), (Infos{0xCA}));
+  bench.run_for(1s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0xCA, 0x8A}));
+}
+
+TEST(Alives, parameters_during_centring_show_as_on_a_real_session) {
+  Bench bench;
+  bench.run_until(1s);
+  bench.command(all_round());
+  bench.run_until(5s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0xCD, 0x8D, 0x8D, 0x8A}));
+}
+
+TEST(Clock, follows_the_host_unless_told_not_to) {
+  for (const bool follows : {true, false}) {
+    DeviceConfig config;
+    config.clock_follows_host = follows;
+    Bench bench(config);
+    bench.run_until(1500ms);
+    bench.raw(fixture("send_data_with_time"));
+    bench.raw(fixture("send_data"));  // time 0 says nothing
+    bench.run_until(1700ms);
+    EXPECT_EQ(bench.all<Alive>().back().second.time_ms, follows ? 61'891'786U + 200U : 1700U);
+  }
+}
+
+TEST(Clock, wraps) {
+  Bench bench;
+  bench.run_until(1500ms);
+  bench.command(SendData{0xFFFFFFFF});
+  bench.run_until(1700ms);
+  EXPECT_EQ(bench.all<Alive>().back().second.time_ms, 199U);
+}
+
+}  // namespace
+}  // namespace sonard::micron

@@ -1,0 +1,166 @@
+// Nothing that a peer sends makes the head grow, stall or talk for ever; nobody's absence stops it.
+#include <random>
+
+#include "bench.hpp"
+
+namespace sonard::micron {
+namespace {
+
+Bytes begin_of(const std::string& name, std::size_t size) {
+  Bytes bytes = fixture(name);
+  bytes.resize(size);
+  return bytes;
+}
+
+TEST(Robustness, host_that_vanishes_in_the_middle_of_a_line_leaves_a_running_head) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.scan(5);
+  bench.raw(begin_of("head_command_uxv", 30));
+  bench.device.on_host_gone();
+  bench.run_for(10s);
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::ready) << "what was owed is sent to nobody";
+
+  bench.sent.clear();
+  bench.raw(fixture("send_version"));
+  ASSERT_EQ(bench.sent.size(), 1U) << "the next host is understood from its first byte on";
+  EXPECT_EQ(bench.sent[0].bytes, fixture("version_data"));
+  EXPECT_EQ(bench.scan(3).size(), 3U) << "with the parameters of the last one";
+}
+
+TEST(Robustness, half_a_frame_on_a_line_without_connections_costs_one_frame_at_most) {
+  Bench bench;
+  bench.run_until(10s);
+  bench.raw(begin_of("head_command_uxv", 30));
+  bench.run_for(1s);
+  bench.raw(fixture("send_version"));
+  bench.run_for(100ms);
+  EXPECT_EQ(bench.all<VersionData>().size(), 1U) << "found inside after 100 ms of silence";
+}
+
+TEST(Robustness, reboot_that_says_it_is_longer_than_it_is) {
+  Bench bench;
+  bench.run_until(10s);
+  const TimePoint asked = bench.now;
+  bench.raw(Bytes{0x40, 0x30, 0x30, 0x30, 0x43, 0x0C, 0x00, 0xFF, 0x02, 0x07, 0x10, 0x80, 0x02, 0x0A});
+  bench.run_for(99ms);
+  EXPECT_EQ(bench.device.counters().boots, 0U);
+  bench.run_for(1ms);
+  EXPECT_EQ(bench.device.counters().boots, 1U);
+  EXPECT_EQ(bench.device.counters().cut_frames, 1U);
+  bench.sent.clear();
+  bench.run_for(2s);
+  EXPECT_EQ(bench.sent.at(0).at, asked + 100ms + 700ms);
+}
+
+TEST(Robustness, ping_that_cannot_be_rendered_is_a_line_that_does_not_come) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.renderer_fails = true;
+  bench.command(SendData{});
+  bench.run_for(1s);
+  EXPECT_TRUE(bench.all<HeadData>().empty());
+  EXPECT_EQ(bench.device.counters().pings_failed, 2U);
+  bench.renderer_fails = false;
+  EXPECT_EQ(bearings_of(bench.scan(2)), (std::vector<int>{3264, 3296})) << "the head has turned on";
+}
+
+TEST(Robustness, line_of_the_wrong_size_counts_as_failed) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.render = [](const MicronJob& job) { return MicronLine{job.ping_number, Bytes(19)}; };
+  bench.command(SendData{});
+  bench.run_for(1s);
+  EXPECT_TRUE(bench.all<HeadData>().empty());
+  EXPECT_EQ(bench.device.counters().pings_failed, 2U);
+}
+
+TEST(Robustness, answers_to_no_job_are_dropped) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.answer(MicronLine{0, Bytes(20)});
+  bench.fail(5);
+  bench.renderer_answers = false;
+  bench.command(SendData{});
+  bench.answer(MicronLine{77, Bytes(20)});
+  bench.answer(test_line(bench.jobs.at(0)));
+  bench.answer(test_line(bench.jobs.at(0)));
+  bench.run_for(1s);
+  EXPECT_EQ(bench.device.counters().stale_lines, 4U);
+  EXPECT_EQ(bench.all<HeadData>().size(), 1U);
+}
+
+TEST(Robustness, flood_of_commands_is_bounded_in_output) {
+  Bench bench;
+  bench.make_ready(all_round());
+  for (int i = 0; i < 20'000; ++i) {
+    bench.raw(fixture("send_data"));
+  }
+  bench.run_for(5s);
+  EXPECT_EQ(bench.all<HeadData>().size(), 4U);
+  for (int i = 0; i < 2000; ++i) {
+    bench.raw(fixture("head_command_uxv"));
+    bench.command(SendData{});
+    bench.run_for(1ms);
+  }
+  EXPECT_EQ(bench.all<HeadData>().size(), 4U) << "a head that is told anew all the time never gets ready";
+  bench.run_for(2s);
+  EXPECT_EQ(bench.all<HeadData>().size(), 8U);
+}
+
+TEST(Robustness, random_bytes_at_random_times) {
+  const char* names[] = {"send_data",
+                         "send_data",
+                         "send_data",
+                         "send_version",
+                         "head_command_ros",
+                         "head_command_rock",
+                         "head_command_uxv",
+                         "gain",
+                         "reverse",
+                         "send_bb_user",
+                         "reboot"};
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto draw = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
+    DeviceConfig config;
+    config.half_duplex = draw(2) == 0;
+    config.requests_survive_head_command = draw(2) == 0;
+    config.nibble_order = draw(2) == 0 ? NibbleOrder::high_first : NibbleOrder::low_first;
+    Bench bench(config);
+    bench.render_time = std::chrono::milliseconds(draw(60));
+    for (int i = 0; i < 2000; ++i) {
+      Bytes bytes = fixture(names[draw(draw(30) == 0 ? 11 : 10)]);
+      for (unsigned flips = draw(3) == 0 ? draw(4) : 0; flips > 0; --flips) {
+        bytes[draw(static_cast<unsigned>(bytes.size()))] = static_cast<std::uint8_t>(draw(256));
+      }
+      if (draw(10) == 0) {
+        bytes.resize(draw(static_cast<unsigned>(bytes.size() + 1)));
+      }
+      bench.raw(bytes);
+      bench.renderer_fails = draw(10) == 0;
+      if (draw(100) == 0) {
+        bench.device.on_host_gone();
+      }
+      bench.run_for(std::chrono::microseconds(draw(100) == 0 ? draw(5'000'000) : draw(50'000)));
+    }
+    const DeviceCounters& counters = bench.device.counters();
+    EXPECT_GT(counters.lines_sent, 10U);
+    const std::uint64_t ended = counters.lines_sent + counters.pings_failed + counters.pings_cancelled;
+    EXPECT_LE(ended, counters.pings_started);
+    EXPECT_GE(ended + 1, counters.pings_started);
+    EXPECT_EQ(bench.all<HeadData>().size(), counters.lines_sent) << "all of it can be decoded";
+  }
+}
+
+TEST(Robustness, head_can_be_moved) {
+  Device device(DeviceConfig{}, 0ns);
+  device.advance(0ns);
+  Device moved(std::move(device));
+  moved.on_bytes(5s, fixture("send_version"));
+  moved.advance(5s);
+  EXPECT_EQ(moved.take_outgoing().size(), 2U);
+}
+
+}  // namespace
+}  // namespace sonard::micron
