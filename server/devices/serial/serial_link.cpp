@@ -41,7 +41,7 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
   bool connected() const;
   void take(Incoming incoming);
   void pump();
-  void deliver(const Incoming& incoming);
+  void deliver(const Incoming& incoming) const;
   void schedule();
 
   const Clock& clock;
@@ -171,7 +171,7 @@ void SerialLink::Impl::pump() {
   }
 }
 
-void SerialLink::Impl::deliver(const Incoming& incoming) {
+void SerialLink::Impl::deliver(const Incoming& incoming) const {
   if (incoming.bytes.empty()) {
     left(incoming.peer);
   } else {

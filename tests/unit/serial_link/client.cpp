@@ -59,17 +59,21 @@ Client Client::tty(const std::string& path) {
   return Client(checked(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), "open"));
 }
 
-void Client::write(std::span<const std::uint8_t> bytes) {
+bool Client::try_write(std::span<const std::uint8_t> bytes) const {
   // A socket that the link has closed must fail the test, not kill it.
   ssize_t written = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   if (written < 0 && errno == ENOTSOCK) {
     written = ::write(fd_, bytes.data(), bytes.size());
   }
-  EXPECT_EQ(written, static_cast<ssize_t>(bytes.size())) << std::generic_category().message(errno);
+  return written == static_cast<ssize_t>(bytes.size());
 }
 
-Bytes Client::read_once(std::size_t most) {
-  Bytes bytes(most);
+void Client::write(std::span<const std::uint8_t> bytes) const {
+  EXPECT_TRUE(try_write(bytes)) << std::generic_category().message(errno);
+}
+
+Bytes Client::read_once() const {
+  Bytes bytes(65536);
   const ssize_t length = ::read(fd_, bytes.data(), bytes.size());
   bytes.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
   return bytes;

@@ -27,10 +27,12 @@ class Client {
   Client& operator=(Client&&) = delete;
   ~Client() { close(); }
 
+  /// False when not all of it was taken.
+  bool try_write(std::span<const std::uint8_t> bytes) const;
   /// All of it, or a failure of the test.
-  void write(std::span<const std::uint8_t> bytes);
+  void write(std::span<const std::uint8_t> bytes) const;
   /// What one read() finds; empty when there is nothing, or nothing any more.
-  Bytes read_once(std::size_t most = 65536);
+  Bytes read_once() const;
   /// What can be read now, added to what was read before.
   const Bytes& heard();
   /// True once the other end has closed the connection and all is read.

@@ -1,4 +1,6 @@
 // Bytes take their time on the line, on a clock that the test moves.
+#include <algorithm>
+
 #include "tests/unit/serial_link/link_fixture.hpp"
 
 namespace sonard::server {
@@ -126,6 +128,41 @@ TEST_F(LineSpeed, a_client_that_says_too_much_loses_it) {
   write(send_version);
   step(milliseconds{14});
   EXPECT_EQ(heard_, send_version);
+}
+
+// What is due by then comes one after the other, not each from within the callback before.
+TEST_F(LineSpeed, callbacks_that_answer_do_not_pile_up) {
+  int depth = 0;
+  int deepest = 0;
+  link_ = std::make_unique<SerialLink>(io_, SerialLinkConfig{{}, {any_udp}, {}, 10'000}, stepped_);
+  link_->start(
+      [&](std::span<const std::uint8_t> bytes, const std::string&) {
+        deepest = std::max(deepest, ++depth);
+        heard_.insert(heard_.end(), bytes.begin(), bytes.end());
+        link_->send(alive);
+        --depth;
+      },
+      [](const std::string&) {});
+  Client client = udp_client();
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    client.write(Bytes{i});
+  }
+  ASSERT_TRUE(run_until([&] { return link_->counters().ports.bytes_in == 3; }));
+  step(milliseconds{1000});
+  EXPECT_EQ(heard_, (Bytes{0, 1, 2}));
+  EXPECT_EQ(deepest, 1);
+}
+
+TEST_F(LineSpeed, may_be_destroyed_by_a_callback_that_a_send_has_caused) {
+  link_ = std::make_unique<SerialLink>(io_, SerialLinkConfig{{}, {any_udp}, {}, 10'000}, stepped_);
+  link_->start([&](std::span<const std::uint8_t>, const std::string&) { link_.reset(); },
+               [](const std::string&) {});
+  Client client = udp_client();
+  client.write(Bytes{1});
+  ASSERT_TRUE(run_until([&] { return link_->counters().ports.bytes_in == 1; }));
+  stepped_.time += milliseconds{1};
+  link_->send(alive);
+  EXPECT_EQ(link_, nullptr);
 }
 
 TEST_F(LinkTest, the_line_keeps_real_time) {

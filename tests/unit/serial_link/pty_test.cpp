@@ -1,7 +1,7 @@
 // A serial line as a pseudo terminal: clients that open and close a tty, and its link.
-#include <stdlib.h>
 #include <termios.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>

@@ -1,7 +1,11 @@
 // A serial line over TCP, with clients that come, go and dawdle at any byte.
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "tests/unit/serial_link/link_fixture.hpp"
@@ -58,6 +62,37 @@ TEST_F(TcpLink, each_frame_arrives_in_one_piece) {
     ASSERT_TRUE(run_until([&] { return client.readable() > 0; }));
     EXPECT_EQ(client.read_once(), frame);
   }
+}
+
+/// The link's end of a client's connection; it is in this process too.
+int other_end(const Client& client) {
+  for (int fd = 0; fd < 1024; ++fd) {
+    sockaddr_in peer{};
+    socklen_t length = sizeof peer;
+    if (getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &length) == 0 && peer.sin_family == AF_INET &&
+        ntohs(peer.sin_port) == client.endpoint().port) {
+      return fd;
+    }
+  }
+  return -1;
+}
+
+int option(int fd, int level, int name) {
+  int value = -1;
+  socklen_t length = sizeof value;
+  EXPECT_EQ(getsockopt(fd, level, name, &value, &length), 0);
+  return value;
+}
+
+TEST_F(TcpLink, small_frames_do_not_wait_and_vanished_clients_are_noticed) {
+  Client client = tcp_client();
+  ASSERT_TRUE(run_until_connections(1));
+  const int fd = other_end(client);
+  EXPECT_NE(option(fd, IPPROTO_TCP, TCP_NODELAY), 0);
+  EXPECT_NE(option(fd, SOL_SOCKET, SO_KEEPALIVE), 0);
+  const int gives_up_after_s = option(fd, IPPROTO_TCP, TCP_KEEPIDLE) +
+                               option(fd, IPPROTO_TCP, TCP_KEEPINTVL) * option(fd, IPPROTO_TCP, TCP_KEEPCNT);
+  EXPECT_LE(gives_up_after_s, 60);
 }
 
 TEST_F(TcpLink, clients_may_drop_at_any_byte) {
