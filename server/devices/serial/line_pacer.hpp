@@ -14,9 +14,9 @@
 namespace sonard::server {
 
 /// Items keep their order and come out whole. A byte takes ten bits, one of them the start bit and one the
-/// stop bit (micron.md 1: 8 data, no parity, 1 stop), and begins when the one before it has ended, so an item
-/// of n bytes on an idle line comes out n * 10 / baud seconds after it went in: 22 bytes at 115200 baud take
-/// 1.9 ms. Without a speed it comes out at once.
+/// stop bit (docs/protocols/micron.md 1: 8 data, no parity, 1 stop), and begins when the one before it has
+/// ended, so an item of n bytes on an idle line comes out n * 10 / baud seconds after it went in: 22 bytes at
+/// 115200 baud take 1.9 ms. Without a speed it comes out at once.
 ///
 /// Pure: time goes in, items come out. Time must not go backwards.
 template <typename Item>

@@ -34,7 +34,8 @@ struct SerialAddresses {
 };
 
 /// All clients share one line, as on RS485: each hears every frame, and what they send comes in the order in
-/// which it was read. A client that is not there when a frame is sent never gets it (micron.md 1).
+/// which it was read. A client that is not there when a frame is sent never gets it (docs/protocols/micron.md
+/// 1).
 ///
 /// With a line speed (SerialLinkConfig::baud) bytes take their time in both directions, see LinePacer, and
 /// still arrive in one piece: a frame of n bytes n * 10 / baud seconds after send() at the earliest, a read

@@ -12,9 +12,9 @@ class io_context;
 
 namespace sonard::server {
 
-/// Bytes pass both ways unchanged; there are no RFC 2217 or telnet escapes (micron.md 1). Segments mean
-/// nothing: a command may come in any pieces. A client that ends its sending direction has left. One that
-/// vanished without a word gives its place back within a minute (keepalive).
+/// Bytes pass both ways unchanged; there are no RFC 2217 or telnet escapes (docs/protocols/micron.md 1).
+/// Segments mean nothing: a command may come in any pieces. A client that ends its sending direction has
+/// left. One that vanished without a word gives its place back within a minute (keepalive).
 ///
 /// Shutdown: stop() closes acceptor and connections. Handlers that are still queued find them closed; they
 /// share ownership of the inner state, so the port may be destroyed before they run.

@@ -10,9 +10,9 @@
 
 namespace sonard::server {
 
-/// Each frame goes out as one datagram, to the peer that was heard last (micron.md 1), from the address at
-/// which that peer sent to us. A peer has left when another is heard. UDP tells of no other departure: the
-/// last peer counts as connected for good.
+/// Each frame goes out as one datagram, to the peer that was heard last (docs/protocols/micron.md 1), from
+/// the address at which that peer sent to us. A peer has left when another is heard. UDP tells of no other
+/// departure: the last peer counts as connected for good.
 class UdpPort final : public SerialPort {
  public:
   /// @throws SocketError

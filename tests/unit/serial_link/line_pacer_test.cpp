@@ -23,7 +23,7 @@ TEST(LinePacer, a_byte_takes_ten_bits) {
 }
 
 TEST(LinePacer, agrees_with_the_times_of_the_document) {
-  // micron.md 8.4: T_tx of 245, 445 and 545 bytes at 115200 baud is 21.3, 38.6 and 47.3 ms.
+  // docs/protocols/micron.md 8.4: T_tx of 245, 445 and 545 bytes at 115200 baud is 21.3, 38.6 and 47.3 ms.
   for (const auto& [size, expected_us] : {std::pair{245U, 21'300}, {445U, 38'600}, {545U, 47'300}}) {
     Pacer pacer(115'200, 1000);
     pacer.push(TimePoint{0}, "", size);
