@@ -129,6 +129,32 @@ struct LinkConfig {
   std::uint64_t seed = 1;
 };
 
+/// A TCP listener that gives a serial line's raw bytes to each client, as serial device servers do.
+struct SerialTcpConfig {
+  Endpoint bind;
+  AllowList allow;
+};
+
+/// A UDP socket that carries a serial line: a datagram for each write of either side.
+struct SerialUdpConfig {
+  Endpoint bind;
+  AllowList allow;
+};
+
+/// A pseudo terminal, whose slave is a serial device to whoever opens it.
+struct SerialPtyConfig {
+  /// Symbolic link to the slave, whose own name is new at each start; empty: none.
+  std::filesystem::path link;
+};
+
+/// Every way at once by which the clients of a serial device reach it.
+struct SerialLinkConfig {
+  std::vector<SerialTcpConfig> tcp;
+  std::vector<SerialUdpConfig> udp;
+  std::vector<SerialPtyConfig> pty;
+  int baud = 0;  ///< bits per second of the line, ten to a byte; 0: bytes pass as fast as they go
+};
+
 /// One Gemini 720i.
 struct GeminiHeadConfig {
   std::string name;  ///< unique in the daemon; appears in every log line of this head

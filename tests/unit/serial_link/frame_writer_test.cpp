@@ -1,0 +1,115 @@
+// Frames into a stream that takes as many bytes as the test says.
+#include "server/devices/serial/frame_writer.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using boost::system::error_code;
+
+struct NarrowStream {
+  enum Wait { wait_write };
+
+  std::size_t room = 0;
+  Bytes taken;
+  int writes = 0;
+  std::function<void(const error_code&)> when_writable;
+
+  std::size_t write_some(const boost::asio::const_buffer& buffer, error_code& error) {
+    ++writes;
+    const std::size_t length = std::min(room, buffer.size());
+    error = length == 0 ? make_error_code(boost::system::errc::operation_would_block) : error_code();
+    const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
+    taken.insert(taken.end(), bytes, bytes + length);
+    room -= length;
+    return length;
+  }
+  void async_wait(Wait, std::function<void(const error_code&)> handler) {
+    EXPECT_FALSE(when_writable) << "waits twice";
+    when_writable = std::move(handler);
+  }
+  void gain_room(std::size_t bytes) {
+    room += bytes;
+    if (when_writable) {
+      std::exchange(when_writable, nullptr)({});
+    }
+  }
+};
+
+struct FrameWriterTest : testing::Test {
+  NarrowStream stream;
+  FrameWriter<NarrowStream> writer{stream};
+  std::shared_ptr<int> owner = std::make_shared<int>();
+  const Bytes abcd{'a', 'b', 'c', 'd'};
+  const Bytes xyz{'x', 'y', 'z'};
+};
+
+TEST_F(FrameWriterTest, writes_a_frame_with_one_call) {
+  stream.room = 100;
+  EXPECT_TRUE(writer.send(abcd, owner));
+  EXPECT_EQ(stream.taken, abcd);
+  EXPECT_EQ(stream.writes, 1);
+  EXPECT_FALSE(stream.when_writable);
+}
+
+TEST_F(FrameWriterTest, drops_a_frame_of_which_nothing_fits) {
+  EXPECT_FALSE(writer.send(abcd, owner));
+  stream.gain_room(100);
+  EXPECT_TRUE(writer.send(xyz, owner));
+  EXPECT_EQ(stream.taken, xyz) << "what was dropped does not come later";
+}
+
+TEST_F(FrameWriterTest, finishes_what_it_has_begun_and_drops_what_comes_meanwhile) {
+  for (std::size_t first = 1; first < abcd.size(); ++first) {
+    stream = {};
+    stream.room = first;
+    EXPECT_TRUE(writer.send(abcd, owner));
+    EXPECT_FALSE(writer.send(xyz, owner));
+    while (stream.when_writable) {
+      stream.gain_room(1);
+    }
+    EXPECT_EQ(stream.taken, abcd) << first;
+    stream.room = 100;
+    EXPECT_TRUE(writer.send(xyz, owner));
+    EXPECT_EQ(stream.taken.size(), abcd.size() + xyz.size());
+  }
+}
+
+TEST_F(FrameWriterTest, forgets_the_rest_when_told_to) {
+  stream.room = 2;
+  EXPECT_TRUE(writer.send(abcd, owner));
+  writer.clear();
+  stream.gain_room(100);
+  EXPECT_TRUE(writer.send(xyz, owner));
+  EXPECT_EQ(stream.taken, (Bytes{'a', 'b', 'x', 'y', 'z'}));
+}
+
+TEST_F(FrameWriterTest, waits_once_however_often_it_begins_anew) {
+  for (int i = 0; i < 3; ++i) {
+    stream.room = 1;
+    EXPECT_TRUE(writer.send(abcd, owner));
+    writer.clear();
+  }
+  stream.room = 1;
+  EXPECT_TRUE(writer.send(xyz, owner));
+  stream.gain_room(100);
+  EXPECT_EQ(stream.taken, (Bytes{'a', 'a', 'a', 'x', 'y', 'z'}));
+}
+
+TEST_F(FrameWriterTest, keeps_its_owner_only_while_it_waits) {
+  stream.room = 2;
+  EXPECT_TRUE(writer.send(abcd, owner));
+  EXPECT_EQ(owner.use_count(), 2);
+  stream.gain_room(100);
+  EXPECT_EQ(owner.use_count(), 1);
+}
+
+}  // namespace
+}  // namespace sonard::server
