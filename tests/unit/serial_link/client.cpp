@@ -73,7 +73,7 @@ void Client::write(std::span<const std::uint8_t> bytes) const {
 }
 
 Bytes Client::read_once() const {
-  Bytes bytes(65536);
+  Bytes bytes(4096);
   const ssize_t length = ::read(fd_, bytes.data(), bytes.size());
   bytes.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
   return bytes;

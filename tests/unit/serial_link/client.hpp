@@ -31,7 +31,7 @@ class Client {
   bool try_write(std::span<const std::uint8_t> bytes) const;
   /// All of it, or a failure of the test.
   void write(std::span<const std::uint8_t> bytes) const;
-  /// What one read() finds; empty when there is nothing, or nothing any more.
+  /// What one read() of up to 4096 bytes finds; empty when there is nothing, or nothing any more.
   Bytes read_once() const;
   /// What can be read now, added to what was read before.
   const Bytes& heard();

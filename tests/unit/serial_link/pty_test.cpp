@@ -233,6 +233,7 @@ TEST_F(PtyLinkName, spares_a_file) {
   std::ofstream(link_name_) << "precious";
   EXPECT_THAT(complaint(), "cannot make the link " + link_name_.string() +
                                ": what stands there is no link to a pseudo terminal, and is not replaced");
+  ASSERT_TRUE(fs::is_regular_file(fs::symlink_status(link_name_)));
   std::ostringstream content;
   content << std::ifstream(link_name_).rdbuf();
   EXPECT_EQ(content.str(), "precious");

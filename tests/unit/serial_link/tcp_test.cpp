@@ -163,7 +163,7 @@ TEST_F(TcpLink, all_clients_hear_all) {
 
 TEST_F(TcpLink, who_does_not_read_loses_whole_frames_and_nobody_else_does) {
   constexpr std::size_t size = 1545;
-  constexpr int frames = 400;
+  constexpr int frames = 150;
   Client slow = tcp_client(localhost, /*receive_buffer_bytes=*/4096);
   Client good = tcp_client();
   ASSERT_TRUE(run_until_connections(2));
