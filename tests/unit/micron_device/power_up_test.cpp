@@ -223,6 +223,17 @@ TEST(Alives, parameters_during_centring_show_as_on_a_real_session) {
   EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0xCD, 0x8D, 0x8D, 0x8A}));
 }
 
+TEST(Alives, one_acknowledges_each_set_of_parameters) {
+  Bench bench;
+  bench.make_ready(all_round());
+  for (int i = 0; i < 2; ++i) {
+    bench.sent.clear();
+    bench.command(sector(3000, 3400));
+    bench.run_for(3s);
+    EXPECT_EQ(bench.head_infos(), (Infos{0xCA, 0x8A, 0x8A}));
+  }
+}
+
 TEST(Clock, follows_the_host_unless_told_not_to) {
   for (const bool follows : {true, false}) {
     DeviceConfig config;

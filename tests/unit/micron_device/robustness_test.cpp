@@ -120,7 +120,7 @@ TEST(Robustness, random_bytes_at_random_times) {
                          "reverse",
                          "send_bb_user",
                          "reboot"};
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
     std::mt19937 random(seed);
     const auto draw = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
     DeviceConfig config;

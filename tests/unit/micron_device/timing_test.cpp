@@ -144,6 +144,16 @@ TEST(Timing, still_head_does_not_wait_for_its_motor) {
   EXPECT_NEAR(ms(lines[10].first - lines[0].first) / 10, 66.56 + 3.0, 0.01);
 }
 
+TEST(Timing, motor_takes_the_time_of_the_way_that_it_goes) {
+  Bench bench;
+  bench.make_ready(sector(3190, 3210, 255));  // 20 units between the limits
+  bench.scan(12);
+  const auto lines = bench.all<HeadData>();
+  const double listen_and_turn_ms = 20 * 53 * 640e-6 + 20 * 0.25;
+  const double send_ms = 65 * 10 / 115.2;
+  EXPECT_NEAR(ms(lines[11].first - lines[1].first) / 10, std::max(listen_and_turn_ms, send_ms) + 3.0, 0.01);
+}
+
 /// From new parameters to the transmission of the first ping, with requests owed.
 std::chrono::nanoseconds repositioning(const HeadCommand& command, const DeviceConfig& config = {}) {
   Bench bench(config);

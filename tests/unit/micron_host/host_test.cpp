@@ -52,8 +52,9 @@ TEST(Host, gets_a_whole_turn_in_order_with_its_samples) {
   }
 }
 
-TEST(Host, keeps_a_full_duplex_head_busy) {
+TEST(Host, keeps_a_full_duplex_head_busy_though_lines_take_their_time) {
   Session session;
+  session.byte_time = 86'806ns;  // ten bits at 115200 baud
   session.host.start(0ns, HeadCommand{}, 100);
   session.run_to_end();
   const double per_line_ms =

@@ -17,6 +17,7 @@ class Session {
   // What a test sets: the pieces in which a frame arrives; none: it is lost.
   Carrier to_head = [](const Bytes& frame) { return std::vector<Bytes>{frame}; };
   Carrier to_host = to_head;
+  std::chrono::nanoseconds byte_time{0};  ///< on the way to the host
 
   // What a test looks at.
   Bench head;
@@ -48,11 +49,22 @@ class Session {
   }
 
  private:
-  TimePoint host_event() const { return std::max(head.now, host.next_deadline().value_or(TimePoint::max())); }
+  TimePoint host_event() const {
+    return std::max(head.now, std::min(arrival(), host.next_deadline().value_or(TimePoint::max())));
+  }
+  /// When the next frame from the head has come to its end.
+  TimePoint arrival() const {
+    if (read_ == head.sent.size()) {
+      return TimePoint::max();
+    }
+    const Bench::Sent& frame = head.sent[read_];
+    return std::max(frame.at, last_arrival_) + static_cast<int>(frame.bytes.size()) * byte_time;
+  }
   void exchange() {
     for (bool talks = true; talks;) {
       talks = false;
-      for (; read_ < head.sent.size(); ++read_) {
+      for (; arrival() <= head.now; ++read_) {
+        last_arrival_ = arrival();
         for (const Bytes& piece : to_host(head.sent[read_].bytes)) {
           host.on_bytes(head.now, piece);
         }
@@ -74,6 +86,7 @@ class Session {
   }
 
   std::size_t read_ = 0;
+  TimePoint last_arrival_{};
 };
 
 }  // namespace sonard::micron
