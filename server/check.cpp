@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <system_error>
+#include <variant>
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
@@ -15,7 +16,7 @@
 #include "renderer/scene/world.hpp"
 #include "server/config/addresses.hpp"
 #include "server/config/overlaps.hpp"
-#include "server/devices/gemini_settings.hpp"
+#include "server/devices/heads.hpp"
 #include "server/devices/interfaces.hpp"
 
 namespace sonard::server {
@@ -52,7 +53,8 @@ class Check {
   void check_world();
   void check_poses();
   void check_head(std::size_t index);
-  void check_sampling(const GeminiHeadConfig& head);
+  void describe(const GeminiHeadConfig& head);
+  void describe(const MicronHeadConfig& head);
   void check_addresses();
   void check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces);
   template <typename Protocol>
@@ -141,15 +143,44 @@ std::string status_text(const GeminiHeadConfig& head) {
   return fmt::format("to {}", fmt::join(hosts, ", "));
 }
 
+std::string acoustics_text(const render::SonarSettings& acoustics) {
+  return fmt::format("mode {}, absorption {:.1f} dB/km",
+                     acoustics.model == render::Model::paper ? "paper" : "physical",
+                     1000.0 * acoustics.physical.absorption_db_per_m);
+}
+
+void Check::describe(const GeminiHeadConfig& head) {
+  report_.summary.push_back(fmt::format("head     {}: Gemini 720i, ID {}, commands to {}, status {}, {}",
+                                        head.name, head.device.sonar_id,
+                                        endpoint_text({head.bind_address, head.command_port}),
+                                        status_text(head), acoustics_text(head.acoustics)));
+}
+
+void Check::describe(const MicronHeadConfig& head) {
+  std::vector<std::string> ways;
+  for (const SerialTcpConfig& tcp : head.serial.tcp) {
+    ways.push_back("TCP " + endpoint_text(tcp.bind));
+  }
+  for (const SerialUdpConfig& udp : head.serial.udp) {
+    ways.push_back("UDP " + endpoint_text(udp.bind));
+  }
+  for (const SerialPtyConfig& pty : head.serial.pty) {
+    ways.push_back(pty.link.empty() ? "a pty" : "a pty at " + pty.link.string());
+  }
+  report_.summary.push_back(fmt::format("head     {}: Micron, node {}, {} duplex, line by {}, {}", head.name,
+                                        head.device.node, head.device.half_duplex ? "half" : "full",
+                                        fmt::join(ways, ", "), acoustics_text(head.acoustics)));
+}
+
 void Check::check_head(std::size_t index) {
-  const GeminiHeadConfig& head = config_.heads[index];
-  const render::SonarSettings& acoustics = head.acoustics;
-  report_.summary.push_back(fmt::format(
-      "head     {}: Gemini 720i, ID {}, commands to {}, status {}, mode {}, absorption {:.1f} dB/km",
-      head.name, head.device.sonar_id, endpoint_text({head.bind_address, head.command_port}),
-      status_text(head), acoustics.model == render::Model::paper ? "paper" : "physical",
-      1000.0 * acoustics.physical.absorption_db_per_m));
-  check_sampling(head);
+  const AnyHeadConfig& any = config_.heads[index];
+  std::visit([this](const auto& head) { describe(head); }, any);
+  const HeadConfig& head = common(any);
+  try {
+    check_sampling_of(any);
+  } catch (const render::RequestError& error) {
+    problem("sampling", fmt::format("head '{}': {}", head.name, error.what()));
+  }
   if (head.dump_directory) {
     std::error_code ignored;
     const std::filesystem::path& folder = *head.dump_directory;
@@ -160,20 +191,12 @@ void Check::check_head(std::size_t index) {
   }
 }
 
-void Check::check_sampling(const GeminiHeadConfig& head) {
-  try {
-    check_sampling_of(head.acoustics);
-  } catch (const render::RequestError& error) {
-    problem("sampling", fmt::format("head '{}': {}", head.name, error.what()));
-  }
-}
-
 void Check::check_addresses() {
   for (const PlannedSocket& socket : planned_udp_sockets(config_)) {
     try_socket<asio::ip::udp>(socket.endpoint, socket.key);
   }
-  if (config_.poses.tcp) {
-    try_socket<asio::ip::tcp>(config_.poses.tcp->bind, "poses.tcp.bind");
+  for (const PlannedSocket& socket : planned_tcp_sockets(config_)) {
+    try_socket<asio::ip::tcp>(socket.endpoint, socket.key);
   }
   const std::vector<InterfaceAddress> interfaces = interface_addresses();
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
@@ -221,8 +244,11 @@ void Check::try_socket(const Endpoint& endpoint, const std::string& key) {
 
 /// Later clients stay silent towards a head whose mask is not that of their own interface.
 void Check::check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces) {
-  const GeminiHeadConfig& head = config_.heads[index];
-  const gemini::DeviceConfig& device = head.device;
+  const auto* gemini = std::get_if<GeminiHeadConfig>(&config_.heads[index]);
+  if (gemini == nullptr) {
+    return;
+  }
+  const gemini::DeviceConfig& device = gemini->device;
   const std::optional<InterfaceAddress> owner = owner_of(device.alternate_address, interfaces);
   if (owner && owner->netmask != device.netmask) {
     warning(fmt::format("heads[{}].network.netmask", index),
@@ -230,7 +256,7 @@ void Check::check_netmask(std::size_t index, const std::vector<InterfaceAddress>
                         address_text(device.netmask), owner->interface, address_text(owner->netmask)));
   }
   // Where the head is bound to it, trying the socket has already told.
-  if (!owner && head.bind_address != device.alternate_address) {
+  if (!owner && gemini->bind_address != device.alternate_address) {
     warning(fmt::format("heads[{}].network.alternate_address", index),
             fmt::format("{} is not an address of this machine, but clients will send there",
                         address_text(device.alternate_address)));

@@ -19,8 +19,7 @@
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "server/clock.hpp"
-#include "server/devices/gemini_head.hpp"
-#include "server/devices/gemini_settings.hpp"
+#include "server/devices/heads.hpp"
 #include "server/devices/ping_dump.hpp"
 #include "server/devices/udp_endpoint.hpp"
 #include "server/exit_codes.hpp"
@@ -77,12 +76,13 @@ std::vector<std::unique_ptr<PoseSource>> make_sources(asio::io_context& io, cons
 }
 
 // By stream; null for a head that keeps nothing.
-std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<GeminiHeadConfig>& heads) {
+std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<AnyHeadConfig>& heads) {
   std::vector<std::unique_ptr<PingDump>> dumps(heads.size());
   for (std::size_t i = 0; i < heads.size(); ++i) {
-    if (heads[i].dump_directory) {
+    const HeadConfig& head = common(heads[i]);
+    if (head.dump_directory) {
       try {
-        dumps[i] = std::make_unique<PingDump>(*heads[i].dump_directory, heads[i].name);
+        dumps[i] = std::make_unique<PingDump>(*head.dump_directory, head.name);
       } catch (const std::exception& error) {
         throw StartError(head_key(i, "dump.directory"), exit_config, error.what());
       }
@@ -120,7 +120,7 @@ class Daemon {
   std::vector<std::unique_ptr<PoseSource>> sources_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
   RenderService renderer_;
-  std::vector<std::unique_ptr<GeminiHead>> heads_;
+  std::vector<std::unique_ptr<Head>> heads_;
   std::string ready_line_;
 };
 
@@ -129,12 +129,13 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       sources_(make_sources(io_, config, clock_, poses_)),
       dumps_(make_dumps(config.heads)),
       renderer_(make_renderer, static_cast<int>(config.heads.size()), hooks()) {
-  const GeminiHeadServices services{io_, clock_, renderer_, poses_, world.water_surface_z_m, config.skip};
+  const HeadServices services{io_, clock_, renderer_, poses_, world.water_surface_z_m, config.skip};
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     try {
-      heads_.push_back(std::make_unique<GeminiHead>(config.heads[i], static_cast<int>(i), services));
+      heads_.push_back(make_head(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
-      throw StartError(head_key(i, "network.bind"), exit_network, error.what());
+      const bool serial = std::holds_alternative<MicronHeadConfig>(config.heads[i]);
+      throw StartError(head_key(i, serial ? "serial" : "network.bind"), exit_network, error.what());
     }
   }
   start_sources();
@@ -179,7 +180,7 @@ int Daemon::run() {
   auto io_work = asio::make_work_guard(io_);
   std::thread io_thread(&Daemon::run_io, this);
   asio::post(io_, [this] {
-    for (const std::unique_ptr<GeminiHead>& head : heads_) {
+    for (const std::unique_ptr<Head>& head : heads_) {
       head->start();
     }
     spdlog::info(ready_line_);
@@ -212,7 +213,7 @@ void Daemon::stop_io() {
     spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}", source->description(),
                  done.samples, done.malformed, done.bad_value, done.refused);
   }
-  for (const std::unique_ptr<GeminiHead>& head : heads_) {
+  for (const std::unique_ptr<Head>& head : heads_) {
     head->stop();
   }
 }
@@ -246,11 +247,12 @@ render::World load(const DaemonConfig& config) {
 
 int run_daemon(const DaemonConfig& config) {
   const render::World world = load(config);
-  for (const GeminiHeadConfig& head : config.heads) {
+  for (const AnyHeadConfig& head : config.heads) {
     try {
-      check_sampling_of(head.acoustics);
+      check_sampling_of(head);
     } catch (const render::RequestError& error) {
-      throw StartError("sampling", exit_config, fmt::format("head '{}': {}", head.name, error.what()));
+      throw StartError("sampling", exit_config,
+                       fmt::format("head '{}': {}", common(head).name, error.what()));
     }
   }
   const render::RendererOptions options{config.backend, 0, config.skip};

@@ -9,9 +9,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "protocol/gemini/device_config.hpp"
+#include "protocol/micron/device_config.hpp"
 #include "protocol/pose/pose_codec.hpp"
 #include "renderer/backend.hpp"
 #include "renderer/pose.hpp"
@@ -155,9 +157,21 @@ struct SerialLinkConfig {
   int baud = 0;  ///< bits per second of the line, ten to a byte; 0: bytes pass as fast as they go
 };
 
-/// One Gemini 720i.
-struct GeminiHeadConfig {
-  std::string name;  ///< unique in the daemon; appears in every log line of this head
+/// What all heads have.
+struct HeadConfig {
+  std::string name;              ///< unique in the daemon; appears in every log line of this head
+  render::Pose T_vehicle_sonar;  ///< mount
+  /// Everything of a ping that the device does not say by itself.
+  render::SonarSettings acoustics;
+  std::uint64_t seed = 1;  ///< of speckle and noise
+  /// Folder that receives the samples of every ping as the renderer handed them over, for tests and
+  /// debugging.
+  std::optional<std::filesystem::path> dump_directory;
+};
+
+/// One Gemini 720i. The sonar's x axis is the acoustic axis, so a down tilt is in the mount. Its bearing
+/// table and the ping job fill in `aperture.beam_edges_rad` and `range` of the acoustics.
+struct GeminiHeadConfig : HeadConfig {
   /// Identity, addresses and timing. `water_sound_speed_mps` is already chosen (0: follow the ping
   /// configuration).
   gemini::DeviceConfig device;
@@ -168,18 +182,27 @@ struct GeminiHeadConfig {
   StatusDestination status;
   AllowList allow;  ///< surfaces that are served; status packets are not affected
 
-  render::Pose T_vehicle_sonar;  ///< mount; the sonar's x axis is the acoustic axis, so a down tilt is in it
-  /// Everything of a ping that its configuration command does not say. `aperture.beam_edges_rad` and `range`
-  /// are filled in per ping from the device's bearing table and the ping job.
-  render::SonarSettings acoustics;
-  std::uint64_t seed = 1;  ///< of speckle and noise
   LinkConfig link;
   /// A UDP socket whose every datagram counts as one edge of the external trigger (run mode 2).
   std::optional<Endpoint> trigger;
-  /// Folder that receives the samples of every ping as the renderer handed them over, for tests and
-  /// debugging.
-  std::optional<std::filesystem::path> dump_directory;
 };
+
+/// One Micron. The head turns about the z axis of its mount, and looks along x where it says "ahead". Its
+/// jobs fill in `range` of the acoustics.
+struct MicronHeadConfig : HeadConfig {
+  MicronHeadConfig();
+
+  micron::DeviceConfig device;
+  SerialLinkConfig serial;
+  double nominal_gain_db = 36.0;  ///< of the client's, at which the level is that of the acoustics; [0, 80]
+  double chirp_bandwidth_hz = 100'000.0;  ///< sets the range cell; 0: a pulse without length
+};
+
+using AnyHeadConfig = std::variant<GeminiHeadConfig, MicronHeadConfig>;
+
+inline const HeadConfig& common(const AnyHeadConfig& head) {
+  return std::visit([](const HeadConfig& any) -> const HeadConfig& { return any; }, head);
+}
 
 struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
@@ -189,7 +212,7 @@ struct DaemonConfig {
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;
-  std::vector<GeminiHeadConfig> heads;  ///< at least one
+  std::vector<AnyHeadConfig> heads;  ///< at least one
 };
 
 }  // namespace sonard::server

@@ -27,8 +27,16 @@ struct ConfigWarning {
   std::string message;
 };
 
-GeminiHeadConfig read_gemini_head(YamlSection& section, const HeadContext& context,
-                                  std::vector<ConfigWarning>& warnings);
+AnyHeadConfig read_head(YamlSection& section, const HeadContext& context,
+                        std::vector<ConfigWarning>& warnings);
+
+/// Name, mount and dump of any head, and the sampling that it takes from the document.
+void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head);
+/// What the acoustics of all heads have. What stands in `head` is the default.
+void read_acoustics(YamlSection& section, HeadConfig& head);
+/// Absorption at the frequency of the head. To be called before the acoustics are read.
+void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,
+                 std::vector<ConfigWarning>& warnings);
 
 /// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down).
 void read_pose(YamlSection& section, render::Pose& pose);

@@ -178,9 +178,8 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
   root.section("poses", [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
   root.section("sampling", [&](YamlSection& section) { read_sampling(section, context.sampling); });
   root.require("heads", "a list of sonar heads");
-  root.sections("heads", [&](YamlSection& section) {
-    config.heads.push_back(read_gemini_head(section, context, warnings));
-  });
+  root.sections("heads",
+                [&](YamlSection& section) { config.heads.push_back(read_head(section, context, warnings)); });
   if (root.is_list("heads") && config.heads.empty()) {
     root.report("heads", "no head is listed (expected at least one)");
   }

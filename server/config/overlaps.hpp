@@ -15,10 +15,11 @@ struct PlannedSocket {
   std::string key;  ///< "heads[0].network.bind"
 };
 
-/// Of pose input, heads and triggers, in this order.
+/// Of pose input first, then of each head.
 std::vector<PlannedSocket> planned_udp_sockets(const DaemonConfig& config);
+std::vector<PlannedSocket> planned_tcp_sockets(const DaemonConfig& config);
 
-/// UDP sockets that clash; names, sonar IDs and alternate addresses given twice.
+/// Sockets that clash; names, sonar IDs, alternate addresses and links given twice.
 std::vector<ConfigProblem> find_overlaps(const DaemonConfig& config, const KeyPositions& positions);
 
 }  // namespace sonard::server

@@ -13,10 +13,9 @@
 #include "server/devices/faulty_link.hpp"
 #include "server/devices/gemini_head_log.hpp"
 #include "server/devices/gemini_settings.hpp"
+#include "server/devices/head_rendering.hpp"
 #include "server/devices/interfaces.hpp"
 #include "server/devices/udp_endpoint.hpp"
-#include "server/pose/pose_history.hpp"
-#include "server/render_service.hpp"
 
 namespace sonard::server {
 namespace {
@@ -35,22 +34,22 @@ void keep_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePo
 }  // namespace
 
 struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
-  Impl(const GeminiHeadConfig& head_config, int stream_number, const GeminiHeadServices& head_services);
+  Impl(const GeminiHeadConfig& head_config, int stream_number, const HeadServices& head_services);
 
   const GeminiHeadConfig config;
-  const int stream;
-  const GeminiHeadServices services;
+  const HeadServices services;
 
   gemini::Device device;
   gemini::DeviceAddresses addresses;
   std::unique_ptr<UdpEndpoint> socket;
   std::unique_ptr<UdpEndpoint> trigger;
+  HeadRendering rendering;
   FaultyLink to_surface;
   FaultyLink from_surface;
   asio::steady_timer timer;
   std::optional<TimePoint> timer_deadline;
   asio::steady_timer report_timer;
-  GeminiHeadCounters counters;  // total() adds what the parts count themselves
+  std::uint64_t not_allowed = 0;
   GeminiHeadLog log;
   bool running = false;
 
@@ -75,13 +74,12 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void check_interface() const;
 
   bool render(const gemini::PingJob& job);
-  std::optional<render::Pose> sonar_pose(TimePoint time) const;
   bool out_of_water(TimePoint now) const;
 
   void report_every_period();
 };
 
-GeminiHead::GeminiHead(const GeminiHeadConfig& config, int stream, const GeminiHeadServices& services)
+GeminiHead::GeminiHead(const GeminiHeadConfig& config, int stream, const HeadServices& services)
     : impl_(std::make_shared<Impl>(config, stream, services)) {}
 
 GeminiHead::~GeminiHead() {
@@ -99,13 +97,13 @@ GeminiHeadCounters GeminiHead::counters() const {
 }
 
 GeminiHead::Impl::Impl(const GeminiHeadConfig& head_config, int stream_number,
-                       const GeminiHeadServices& head_services)
+                       const HeadServices& head_services)
     : config(head_config),
-      stream(stream_number),
       services(head_services),
       device(config.device, services.clock.now()),
       addresses(device.addresses()),
       socket(std::make_unique<UdpEndpoint>(services.io, Endpoint{config.bind_address, config.command_port})),
+      rendering(config, stream_number, services),
       to_surface(config.link.to_surface, config.link.seed),
       from_surface(config.link.from_surface, ~config.link.seed),  // the two directions draw apart
       timer(services.io),
@@ -169,7 +167,9 @@ void GeminiHead::Impl::listen_for_triggers() {
 }
 
 GeminiHeadCounters GeminiHead::Impl::total() const {
-  GeminiHeadCounters all = counters;
+  GeminiHeadCounters all;
+  static_cast<RenderCounters&>(all) = rendering.counters();
+  all.not_allowed = not_allowed;
   all.device = device.counters();
   all.socket = socket->counters();
   all.to_surface = to_surface.counters();
@@ -182,7 +182,7 @@ GeminiHeadCounters GeminiHead::Impl::total() const {
 
 void GeminiHead::Impl::on_datagram(const Datagram& datagram) {
   if (!allows(config.allow, datagram.remote.address)) {
-    ++counters.not_allowed;
+    ++not_allowed;
     log.stranger(datagram.remote.address);
     return;
   }
@@ -192,14 +192,9 @@ void GeminiHead::Impl::on_datagram(const Datagram& datagram) {
 
 void GeminiHead::Impl::on_rendered(std::uint64_t ping_number, RenderResult result) {
   const TimePoint now = services.clock.now();
-  if (result.error.empty()) {
-    ++counters.pings_rendered;
-    const render::PingStatistics& spent = result.statistics;
-    counters.render_seconds += spent.visibility_s + spent.binning_s + spent.receiver_s;
-    counters.skipped += spent.skipped;
+  if (rendering.take(result)) {
     device.on_image(now, {ping_number, std::move(result.samples.u8), std::move(result.samples.u16)});
   } else {
-    log.render_error(result.error);
     device.on_image_failed(now, ping_number);
   }
   pump();
@@ -248,12 +243,10 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
   drop_unheard_job(now);  // the surface has just timed out
 }
 
-// SkipRule::nobody_listening: a ping that is called off while other heads are being rendered is not.
+// A ping that is called off while other heads are being rendered is not rendered.
 void GeminiHead::Impl::drop_unheard_job(TimePoint now) {
   const std::optional<std::uint64_t> ping_number = device.called_off();
-  if (ping_number && services.skip.on(render::SkipRule::nobody_listening) &&
-      services.renderer.withdraw(stream)) {
-    counters.skipped.add(render::SkipRule::nobody_listening);
+  if (ping_number && rendering.withdraw()) {
     device.on_image_failed(now, *ping_number);
   }
 }
@@ -369,40 +362,28 @@ void GeminiHead::Impl::check_interface() const {
 // False when this ping cannot be made.
 bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   log.settings(job);
-  const std::optional<render::Pose> T_world_sonar = sonar_pose(job.transmit_time);
+  const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(job.transmit_time);
   if (!T_world_sonar) {
-    ++counters.pings_without_pose;
+    rendering.count_missing_pose();
     return false;
   }
-  log.ping(job, device.clock_us(job.transmit_time), *T_world_sonar);
-  RenderJob request;
-  request.stream = stream;
-  request.head = config.name;
-  request.transmit_us = device.clock_us(job.transmit_time);
-  request.request = {*T_world_sonar, to_sonar_settings(job, config.acoustics), job.ping_number, config.seed};
-  request.bodies = services.poses.bodies_at(job.transmit_time);
-  services.renderer.submit(std::move(request),
-                           [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
-                             if (const auto self = weak.lock()) {
-                               self->on_rendered(number, std::move(result));
-                             }
-                           });
+  const std::uint64_t transmit_us = device.clock_us(job.transmit_time);
+  log.ping(job, transmit_us, *T_world_sonar);
+  rendering.submit({job.ping_number, job.transmit_time, transmit_us, *T_world_sonar,
+                    to_sonar_settings(job, config.acoustics)},
+                   [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
+                     if (const auto self = weak.lock()) {
+                       self->on_rendered(number, std::move(result));
+                     }
+                   });
   return true;
-}
-
-std::optional<render::Pose> GeminiHead::Impl::sonar_pose(TimePoint time) const {
-  const std::optional<PoseEstimate> vehicle = services.poses.at(time);
-  if (!vehicle) {
-    return std::nullopt;
-  }
-  return vehicle->T_world_vehicle * config.T_vehicle_sonar;
 }
 
 bool GeminiHead::Impl::out_of_water(TimePoint now) const {
   if (!services.water_surface_z_m) {
     return false;
   }
-  const std::optional<render::Pose> T_world_sonar = sonar_pose(now);
+  const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(now);
   return T_world_sonar && T_world_sonar->position_m.z > *services.water_surface_z_m;
 }
 

@@ -12,17 +12,6 @@ namespace {
 
 constexpr std::size_t most_strangers = 8;
 
-// " rule=count" of every rule that has skipped something.
-std::string text_of(const render::SkipCounts& skipped) {
-  std::string text;
-  for (const render::SkipRuleEntry& entry : render::skip_rules) {
-    if (const std::uint64_t count = skipped.of(entry.rule); count > 0) {
-      text += fmt::format(" {}={}", entry.name, count);
-    }
-  }
-  return text;
-}
-
 // The part of a job that the client chose.
 bool same_settings(const gemini::PingJob& a, const gemini::PingJob& b) {
   return a.native_lines == b.native_lines && a.compression_log2 == b.compression_log2 &&
@@ -72,27 +61,16 @@ void GeminiHeadLog::stranger(Ipv4 address) {
   }
 }
 
-void GeminiHeadLog::render_error(const std::string& what) {
-  if (what != render_error_) {
-    render_error_ = what;
-    spdlog::error("head={} cannot render: {}", head_, what);
-  }
-}
-
 void GeminiHeadLog::rates(const GeminiHeadCounters& total, std::chrono::duration<double> period) {
   const GeminiHeadCounters before = std::exchange(reported_, total);
   const std::uint64_t sent = total.device.pings_sent - before.device.pings_sent;
-  const std::uint64_t rendered = total.pings_rendered - before.pings_rendered;
   if (sent > 0) {
     spdlog::info("head={} pings_per_s={:.1f} render_ms={:.1f} lines_resent={} tails_resent={}", head_,
-                 static_cast<double>(sent) / period.count(),
-                 rendered > 0
-                     ? 1e3 * (total.render_seconds - before.render_seconds) / static_cast<double>(rendered)
-                     : 0.0,
+                 static_cast<double>(sent) / period.count(), mean_render_ms(before, total),
                  total.device.lines_resent - before.device.lines_resent,
                  total.device.tails_resent - before.device.tails_resent);
   }
-  log_skipped(total.skipped - before.skipped);
+  log_skipped(head_, total.skipped - before.skipped);
   if (const std::uint64_t missed = total.pings_without_pose - before.pings_without_pose; missed > 0) {
     spdlog::warn("head={} {} pings not made: no pose, or only a stale one", head_, missed);
   }
@@ -133,15 +111,9 @@ void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
       "overflowed={}",
       head_, socket.sent, socket.received, total.not_allowed, socket.truncated, socket.kernel_dropped,
       socket.blocked, socket.send_failed, socket.overflowed);
-  log_skipped(total.skipped);
+  log_skipped(head_, total.skipped);
   log_faults("to_surface", total.to_surface);
   log_faults("from_surface", total.from_surface);
-}
-
-void GeminiHeadLog::log_skipped(const render::SkipCounts& skipped) const {
-  if (const std::string rules = text_of(skipped); !rules.empty()) {
-    spdlog::info("head={} skipped:{}", head_, rules);
-  }
 }
 
 void GeminiHeadLog::log_faults(const char* direction, const FaultyLinkCounters& link) const {

@@ -29,21 +29,18 @@ class GeminiHeadLog {
   void ping(const gemini::PingJob& job, std::uint64_t transmit_us, const render::Pose& T_world_sonar) const;
   /// A datagram came from an address that is not served.
   void stranger(Ipv4 address);
-  void render_error(const std::string& what);
   /// To be called every `period`; silent when nothing was asked of the head in it.
   void rates(const GeminiHeadCounters& total, std::chrono::duration<double> period);
   /// Once, at the end.
   void totals(const GeminiHeadCounters& total) const;
 
  private:
-  void log_skipped(const render::SkipCounts& skipped) const;
   void log_faults(const char* direction, const FaultyLinkCounters& link) const;
 
   std::string head_;
   Ipv4 surface_ = 0;
   std::optional<gemini::PingJob> settings_;
   std::set<Ipv4> strangers_;
-  std::string render_error_;
   GeminiHeadCounters reported_;
 };
 

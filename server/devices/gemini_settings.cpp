@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "protocol/gemini/bearings.hpp"
-#include "renderer/visibility/sample_grid.hpp"
 
 namespace sonard::server {
 namespace {
@@ -31,13 +30,6 @@ render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const render
   settings.transmit = job.transmit;
   settings.physical.gain_db += job.gain_db;
   return settings;
-}
-
-void check_sampling_of(const render::SonarSettings& acoustics) {
-  const render::SonarSettings settings = to_sonar_settings(gemini::PingJob{}, acoustics);
-  if (render::needs_grid(settings)) {
-    render::make_sample_grid(settings.aperture, settings.sampling, render::grid_options(settings));
-  }
 }
 
 }  // namespace sonard::server

@@ -13,8 +13,4 @@ namespace sonard::server {
 ///   size of the job, and the gain moved by the job's. A head that only listens hears no echo.
 render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const render::SonarSettings& acoustics);
 
-/// Cuts the fan into pixels as it will be for any ping; the range of a ping changes nothing of it.
-/// @throws render::RequestError when that cannot be done
-void check_sampling_of(const render::SonarSettings& acoustics);
-
 }  // namespace sonard::server

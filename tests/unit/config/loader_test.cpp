@@ -35,7 +35,7 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_EQ(config.poses.stale_policy, StalePolicy::hold);
 
   ASSERT_EQ(config.heads.size(), 1U);
-  const GeminiHeadConfig& head = config.heads[0];
+  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
   EXPECT_EQ(head.name, "front");
   EXPECT_EQ(head.device.sonar_id, 513);
   EXPECT_EQ(head.device.alternate_address, 0x7F000002U);
@@ -64,7 +64,7 @@ TEST_F(Loader, reads_the_backend) {
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
   const LoadedConfig loaded =
       load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");
-  const render::PaperModel& paper = loaded.config.heads[0].acoustics.paper;
+  const render::PaperModel& paper = std::get<GeminiHeadConfig>(loaded.config.heads[0]).acoustics.paper;
   EXPECT_EQ(paper.speckle, render::PaperModel::Speckle::folded_gaussian);
   EXPECT_EQ(paper.speckle_mean, 0.9);
   EXPECT_EQ(paper.speckle_sd, 0.30);  // docs/physics.md 1.2, A8
@@ -77,7 +77,7 @@ TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device
   const LoadedConfig loaded =
       load(minimal_config + "water: {temperature_c: 10, salinity_ppt: 0, depth_m: 5, ph: 7}\n");
   const double expected_db_per_m = 0.161088 * std::pow(723.38 / 720.0, 2);
-  const render::PhysicalModel& model = loaded.config.heads[0].acoustics.physical;
+  const render::PhysicalModel& model = std::get<GeminiHeadConfig>(loaded.config.heads[0]).acoustics.physical;
   EXPECT_NEAR(model.absorption_db_per_m, expected_db_per_m, 1e-6);
   EXPECT_NEAR(model.tvg_absorption_db_per_m, expected_db_per_m, 1e-6);
 }
@@ -86,7 +86,7 @@ TEST_F(Loader, takes_water_properties_that_are_given_outright) {
   const LoadedConfig loaded = load(minimal_config +
                                    "    acoustics: {physical: {tvg_absorption_db_per_km: 120}}\n"
                                    "water: {absorption_db_per_km: 80, sound_speed_mps: 1482.5}\n");
-  const GeminiHeadConfig& head = loaded.config.heads[0];
+  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(loaded.config.heads[0]);
   EXPECT_DOUBLE_EQ(head.acoustics.physical.absorption_db_per_m, 0.080);
   EXPECT_DOUBLE_EQ(head.acoustics.physical.tvg_absorption_db_per_m, 0.120);
   EXPECT_DOUBLE_EQ(head.device.water_sound_speed_mps, 1482.5);
@@ -94,18 +94,19 @@ TEST_F(Loader, takes_water_properties_that_are_given_outright) {
 
 TEST_F(Loader, computes_the_speed_of_sound_when_asked_to) {
   const std::string water = "water: {temperature_c: 10, salinity_ppt: 35, depth_m: 10, sound_speed_mps: ";
-  EXPECT_NEAR(load(minimal_config + water + "computed}\n").config.heads[0].device.water_sound_speed_mps,
+  EXPECT_NEAR(std::get<GeminiHeadConfig>(load(minimal_config + water + "computed}\n").config.heads[0])
+                  .device.water_sound_speed_mps,
               1489.97,
               5e-3);  // Mackenzie, docs/physics.md 2.2
-  EXPECT_EQ(
-      load(minimal_config + water + "ping_configuration}\n").config.heads[0].device.water_sound_speed_mps,
-      0.0);
+  EXPECT_EQ(std::get<GeminiHeadConfig>(load(minimal_config + water + "ping_configuration}\n").config.heads[0])
+                .device.water_sound_speed_mps,
+            0.0);
 }
 
 TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
   const LoadedConfig down =
       load(minimal_config + "    mount: {position_m: [0.5, 0, -0.25], rpy_deg: [0, 20, 0]}\n");
-  const render::Pose& mount = down.config.heads[0].T_vehicle_sonar;
+  const render::Pose& mount = std::get<GeminiHeadConfig>(down.config.heads[0]).T_vehicle_sonar;
   EXPECT_EQ(mount.position_m, glm::dvec3(0.5, 0, -0.25));
   // A down tilt of 20 degrees: the acoustic axis points forward and down.
   const glm::dvec3 axis = mount.orientation * glm::dvec3(1, 0, 0);
@@ -115,7 +116,7 @@ TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
 
   // Rz(90) Ry(0) Rx(90): the body's y axis goes up by the roll and stays there; x turns to the left.
   const LoadedConfig rolled = load(minimal_config + "    mount: {rpy_deg: [90, 0, 90]}\n");
-  const glm::dquat& q = rolled.config.heads[0].T_vehicle_sonar.orientation;
+  const glm::dquat& q = std::get<GeminiHeadConfig>(rolled.config.heads[0]).T_vehicle_sonar.orientation;
   EXPECT_NEAR(glm::length(q * glm::dvec3(0, 1, 0) - glm::dvec3(0, 0, 1)), 0, 1e-12);
   EXPECT_NEAR(glm::length(q * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)), 0, 1e-12);
 }
@@ -126,7 +127,7 @@ TEST_F(Loader, reads_the_link_and_its_units) {
                                    "      seed: 18446744073709551615\n"
                                    "      to_surface: {loss: 0.05, delay_ms: 1.5, jitter_ms: 0.25}\n"
                                    "      from_surface: {reorder: 0.01, duplicate: 1}\n");
-  const LinkConfig& link = loaded.config.heads[0].link;
+  const LinkConfig& link = std::get<GeminiHeadConfig>(loaded.config.heads[0]).link;
   EXPECT_EQ(link.seed, 18446744073709551615U);
   EXPECT_EQ(link.to_surface.loss, 0.05);
   EXPECT_EQ(link.to_surface.delay, std::chrono::microseconds{1500});
@@ -146,7 +147,7 @@ TEST_F(Loader, resolves_paths_against_the_folder_of_the_file) {
   EXPECT_EQ(loaded.config.poses.trajectory->speed, 2.0);
   EXPECT_TRUE(loaded.config.poses.trajectory->loop);
   EXPECT_EQ(loaded.config.poses.trajectory->axes, pose::Axes::ned_frd);
-  EXPECT_EQ(loaded.config.heads[0].dump_directory, folder_ / "pings");
+  EXPECT_EQ(std::get<GeminiHeadConfig>(loaded.config.heads[0]).dump_directory, folder_ / "pings");
 }
 
 TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
@@ -167,7 +168,7 @@ TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
   EXPECT_THAT(
       complaints(minimal_config + "    moutn: {}\n"),
       ElementsAre(AllOf(StartsWith("config.yaml:11:5: heads[0].moutn: unknown key, did you mean 'mount'?"),
-                        HasSubstr("expected one of name, type,"))));
+                        HasSubstr("expected one of type, name,"))));
   EXPECT_THAT(complaints(minimal_config + "wibble: 1\n"),
               ElementsAre(StartsWith("config.yaml:11:1: wibble: unknown key (expected one of log, world")));
 }
@@ -292,10 +293,14 @@ TEST_F(Loader, wants_an_allow_list_for_everything_but_loopback) {
 }
 
 TEST_F(Loader, reads_where_status_packets_go) {
-  EXPECT_THAT(load(minimal_config + "      status: [127.0.0.1, 127.0.0.9]\n").config.heads[0].status.hosts,
+  EXPECT_THAT(std::get<GeminiHeadConfig>(
+                  load(minimal_config + "      status: [127.0.0.1, 127.0.0.9]\n").config.heads[0])
+                  .status.hosts,
               ElementsAre(0x7F000001U, 0x7F000009U));
-  EXPECT_EQ(load(minimal_config + "      status: directed_broadcast\n").config.heads[0].status.mode,
-            StatusDestination::Mode::directed_broadcast);
+  EXPECT_EQ(
+      std::get<GeminiHeadConfig>(load(minimal_config + "      status: directed_broadcast\n").config.heads[0])
+          .status.mode,
+      StatusDestination::Mode::directed_broadcast);
   EXPECT_THAT(complaints(minimal_config + "      status: []\n"), ElementsAre(HasSubstr("no host is listed")));
   EXPECT_THAT(complaints(minimal_config + "      status: multicast\n"),
               ElementsAre(HasSubstr("'multicast' is not understood (expected one of limited_broadcast")));
@@ -359,7 +364,8 @@ TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
 
 TEST_F(Loader, reads_the_error_that_is_aimed_at) {
   const auto preset = [&](const std::string& section) {
-    return load(minimal_config + section).config.heads[0].acoustics.sampling.preset;
+    return std::get<GeminiHeadConfig>(load(minimal_config + section).config.heads[0])
+        .acoustics.sampling.preset;
   };
   using Preset = render::Sampling::Preset;
   EXPECT_EQ(preset(""), Preset::normal);

@@ -40,7 +40,7 @@ TEST(ShippedConfigs, trajectories_load) {
 
 void expect_demo_head(const DaemonConfig& config) {
   ASSERT_EQ(config.heads.size(), 1U);
-  const GeminiHeadConfig& head = config.heads[0];
+  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
   EXPECT_EQ(head.device.sonar_id, 513);
   EXPECT_EQ(head.command_port, 52901);
   EXPECT_EQ(head.surface_port, 52900);
@@ -66,7 +66,7 @@ TEST(ShippedConfigs, demo_starts_where_its_trajectory_starts) {
 TEST(ShippedConfigs, demo_serves_loopback) {
   const DaemonConfig config = load_config(configs / "demo.yaml").config;
   expect_demo_head(config);
-  const GeminiHeadConfig& head = config.heads[0];
+  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
   EXPECT_EQ(head.bind_address, 0x7F000002U);
   EXPECT_EQ(head.device.alternate_address, 0x7F000002U);
   EXPECT_EQ(head.device.netmask, 0xFF000000U);
@@ -77,7 +77,7 @@ TEST(ShippedConfigs, demo_serves_loopback) {
 TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
   const DaemonConfig config = load_config(configs / "gemini-netns.yaml").config;
   expect_demo_head(config);
-  const GeminiHeadConfig& head = config.heads[0];
+  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
   EXPECT_EQ(head.bind_address, 0x0A3D13C8U);
   EXPECT_EQ(head.device.alternate_address, 0x0A3D13C8U);
   EXPECT_EQ(head.device.netmask, 0xFFFFFF00U);
@@ -86,7 +86,8 @@ TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
 }
 
 TEST(ShippedConfigs, paper_uses_the_model_of_the_paper) {
-  EXPECT_EQ(load_config(configs / "paper.yaml").config.heads[0].acoustics.model, render::Model::paper);
+  EXPECT_EQ(std::get<GeminiHeadConfig>(load_config(configs / "paper.yaml").config.heads[0]).acoustics.model,
+            render::Model::paper);
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ struct GeminiHeadTest : testing::Test {
     hooks.post = [this](std::function<void()> task) { asio::post(io, std::move(task)); };
     hooks.on_failure = [](const std::string& what) { FAIL() << what; };
     service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
-    const GeminiHeadServices services{io, clock, *service, *poses, water_surface_z_m};
+    const HeadServices services{io, clock, *service, *poses, water_surface_z_m};
     head = std::make_unique<GeminiHead>(config, 0, services);
     head->start();
   }

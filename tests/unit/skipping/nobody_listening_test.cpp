@@ -75,7 +75,7 @@ class NobodyListening : public testing::Test {
     hooks.post = [this](std::function<void()> task) { boost::asio::post(io_, std::move(task)); };
     hooks.on_failure = [](const std::string& what) { FAIL() << what; };
     service_ = std::make_unique<RenderService>(test::fake_renderer_factory(renderer_), 2, hooks);
-    const GeminiHeadServices services{io_, clock_, *service_, poses_, std::nullopt, skip};
+    const HeadServices services{io_, clock_, *service_, poses_, std::nullopt, skip};
     head_ = std::make_unique<GeminiHead>(config_, 0, services);
     head_->start();
     RenderJob job;

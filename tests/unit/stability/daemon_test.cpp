@@ -143,7 +143,8 @@ TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
     const LoadedConfig loaded = load(minimal_config + second_head + "water: {" + water + "}\n");
     ASSERT_EQ(loaded.warnings.size(), 1U) << water;
     EXPECT_NE(loaded.warnings[0].find("water"), std::string::npos) << loaded.warnings[0];
-    for (const GeminiHeadConfig& head : loaded.config.heads) {
+    for (const AnyHeadConfig& any : loaded.config.heads) {
+      const HeadConfig& head = common(any);
       const double absorption = head.acoustics.physical.absorption_db_per_m;
       EXPECT_TRUE(std::isfinite(absorption) && absorption > 0 && absorption < 1) << water;
     }

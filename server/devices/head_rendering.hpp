@@ -1,0 +1,67 @@
+// What every head does to have its pings rendered, and what it counts and says of that.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "renderer/pose.hpp"
+#include "renderer/skip_ledger.hpp"
+#include "renderer/sonar_settings.hpp"
+#include "server/config/config.hpp"
+#include "server/devices/head.hpp"
+#include "server/render_service.hpp"
+
+namespace sonard::server {
+
+/// They only grow.
+struct RenderCounters {
+  std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
+  std::uint64_t pings_rendered = 0;
+  double render_seconds = 0.0;  ///< all of them together
+  render::SkipCounts skipped;   ///< of all pings
+};
+
+/// One ping of a head, as it goes to the render thread.
+struct HeadPing {
+  std::uint64_t number = 0;
+  TimePoint transmit_time{};
+  std::uint64_t transmit_us = 0;  ///< of the clock of the head
+  render::Pose T_world_sonar;
+  render::SonarSettings settings;
+};
+
+/// Belongs to the I/O thread, as its head does.
+class HeadRendering {
+ public:
+  HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
+      : config_(config), stream_(stream), services_(services) {}
+
+  /// Where the mount of the head is. nullopt: there is no pose, or only a stale one that is not to be used.
+  std::optional<render::Pose> T_world_mount(TimePoint time) const;
+
+  void submit(HeadPing ping, RenderService::Done done) const;
+  /// Counts an answer, and logs what is wrong with it, the same thing once. @return whether there are
+  /// samples.
+  bool take(const RenderResult& result);
+  /// SkipRule::nobody_listening: takes back a ping that waits behind those of other heads.
+  bool withdraw();
+  void count_missing_pose() { ++counters_.pings_without_pose; }
+
+  const RenderCounters& counters() const { return counters_; }
+
+ private:
+  const HeadConfig& config_;
+  int stream_;
+  HeadServices services_;
+  RenderCounters counters_;
+  std::string last_error_;
+};
+
+/// "head=NAME skipped: rule=count ..." of every rule that has skipped something.
+void log_skipped(const std::string& head, const render::SkipCounts& skipped);
+/// Milliseconds of a mean ping between two states of the counters; 0 when there was none.
+double mean_render_ms(const RenderCounters& before, const RenderCounters& now);
+
+}  // namespace sonard::server

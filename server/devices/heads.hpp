@@ -1,0 +1,19 @@
+// From a head's configuration to the head: the one place that knows every type of head.
+#pragma once
+
+#include <memory>
+
+#include "server/config/config.hpp"
+#include "server/devices/head.hpp"
+
+namespace sonard::server {
+
+/// @param stream number of this head among the users of the renderer
+/// @throws SocketError naming the address or path
+std::unique_ptr<Head> make_head(const AnyHeadConfig& config, int stream, const HeadServices& services);
+
+/// Cuts the head's fan into pixels as it will be for any ping; the range of a ping changes nothing of it.
+/// @throws render::RequestError when that cannot be done
+void check_sampling_of(const AnyHeadConfig& config);
+
+}  // namespace sonard::server

@@ -1,0 +1,227 @@
+#include "server/devices/micron_head.hpp"
+
+#include <chrono>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "protocol/micron/device.hpp"
+#include "server/devices/micron_head_log.hpp"
+#include "server/devices/micron_settings.hpp"
+#include "server/devices/serial/serial_link.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr std::chrono::seconds report_period{10};
+
+}  // namespace
+
+struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
+  Impl(const MicronHeadConfig& head_config, int stream, const HeadServices& head_services)
+      : config(head_config),
+        services(head_services),
+        power_up(services.clock.now()),
+        device(config.device, power_up),
+        link(services.io, config.serial, services.clock),
+        rendering(config, stream, services),
+        timer(services.io),
+        report_timer(services.io),
+        log(config.name) {}
+
+  const MicronHeadConfig config;
+  const HeadServices services;
+  const TimePoint power_up;
+
+  micron::Device device;
+  SerialLink link;
+  HeadRendering rendering;
+  asio::steady_timer timer;
+  std::optional<TimePoint> timer_deadline;
+  asio::steady_timer report_timer;
+  MicronHeadLog log;
+  bool running = false;
+
+  void start();
+  void stop();
+  MicronHeadCounters total() const;
+
+  void on_bytes(std::span<const std::uint8_t> bytes);
+  void on_rendered(std::uint64_t ping_number, RenderResult result);
+  void pump();
+  void advance_device(TimePoint now);
+  void drop_unheard_job(TimePoint now);
+  bool render(const micron::MicronJob& job);
+  void schedule();
+  void report_every_period();
+};
+
+MicronHead::MicronHead(const MicronHeadConfig& config, int stream, const HeadServices& services)
+    : impl_(std::make_shared<Impl>(config, stream, services)) {}
+
+MicronHead::~MicronHead() {
+  impl_->stop();
+}
+
+void MicronHead::start() {
+  impl_->start();
+}
+void MicronHead::stop() {
+  impl_->stop();
+}
+MicronHeadCounters MicronHead::counters() const {
+  return impl_->total();
+}
+SerialAddresses MicronHead::addresses() const {
+  return impl_->link.addresses();
+}
+
+// Handlers hold the head weakly: one that is still queued when the head is gone does nothing.
+void MicronHead::Impl::start() {
+  running = true;
+  link.start(
+      [weak = weak_from_this()](std::span<const std::uint8_t> bytes, const std::string&) {
+        if (const auto self = weak.lock()) {
+          self->on_bytes(bytes);
+        }
+      },
+      [weak = weak_from_this()](const std::string&) {
+        if (const auto self = weak.lock()) {
+          self->device.on_host_gone();
+        }
+      });
+  for (const std::string& port : link.descriptions()) {
+    spdlog::info("head={} serves {}", config.name, port);
+  }
+  report_every_period();
+  pump();
+}
+
+void MicronHead::Impl::stop() {
+  if (!std::exchange(running, false)) {
+    return;
+  }
+  timer.cancel();
+  report_timer.cancel();
+  link.stop();
+  log.totals(total());
+}
+
+MicronHeadCounters MicronHead::Impl::total() const {
+  MicronHeadCounters all;
+  static_cast<RenderCounters&>(all) = rendering.counters();
+  all.device = device.counters();
+  all.link = link.counters();
+  return all;
+}
+
+void MicronHead::Impl::on_bytes(std::span<const std::uint8_t> bytes) {
+  device.on_bytes(services.clock.now(), bytes);
+  pump();
+}
+
+void MicronHead::Impl::on_rendered(std::uint64_t ping_number, RenderResult result) {
+  const TimePoint now = services.clock.now();
+  if (rendering.take(result)) {
+    device.on_line(now, {ping_number, std::move(result.samples.u8)});
+  } else {
+    device.on_line_failed(now, ping_number);
+  }
+  pump();
+}
+
+// Does all that is due now and sleeps until the next thing is. Called after every event.
+void MicronHead::Impl::pump() {
+  if (!running) {
+    return;
+  }
+  const TimePoint now = services.clock.now();
+  advance_device(now);
+  for (std::vector<std::uint8_t>& frame : device.take_outgoing()) {
+    link.send(std::move(frame));
+  }
+  log.state(device.state(now));
+  schedule();
+}
+
+void MicronHead::Impl::advance_device(TimePoint now) {
+  drop_unheard_job(now);  // new parameters have called it off, and the next ping waits for its answer
+  device.advance(now);
+  while (const std::optional<micron::MicronJob> job = device.take_job()) {
+    if (render(*job)) {
+      return;
+    }
+    // The device must hear of it, and has a next deadline only after it has advanced over it. Each turn takes
+    // one of the lines that are owed, so this ends.
+    device.on_line_failed(now, job->ping_number);
+    device.advance(now);
+  }
+}
+
+void MicronHead::Impl::drop_unheard_job(TimePoint now) {
+  const std::optional<std::uint64_t> ping_number = device.called_off();
+  if (ping_number && rendering.withdraw()) {
+    device.on_line_failed(now, *ping_number);
+  }
+}
+
+// False when this ping cannot be made.
+bool MicronHead::Impl::render(const micron::MicronJob& job) {
+  log.settings(job);
+  const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(job.transmit_time);
+  if (!T_world_mount) {
+    rendering.count_missing_pose();
+    return false;
+  }
+  const auto since_power_up =
+      std::chrono::duration_cast<std::chrono::microseconds>(job.transmit_time - power_up);
+  HeadPing ping{job.ping_number, job.transmit_time, static_cast<std::uint64_t>(since_power_up.count()),
+                T_world_transducer(*T_world_mount, job), to_sonar_settings(job, config)};
+  log.ping(job, ping);
+  rendering.submit(std::move(ping), [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
+    if (const auto self = weak.lock()) {
+      self->on_rendered(number, std::move(result));
+    }
+  });
+  return true;
+}
+
+void MicronHead::Impl::schedule() {
+  const std::optional<TimePoint> deadline = device.next_deadline();
+  if (deadline == timer_deadline) {
+    return;
+  }
+  timer_deadline = deadline;
+  timer.cancel();
+  if (!deadline) {
+    return;
+  }
+  timer.expires_at(to_steady(*deadline));
+  timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error) {
+      self->timer_deadline.reset();
+      self->pump();
+    }
+  });
+}
+
+void MicronHead::Impl::report_every_period() {
+  report_timer.expires_after(report_period);
+  report_timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error && self->running) {
+      self->log.rates(self->total(), report_period);
+      self->report_every_period();
+    }
+  });
+}
+
+}  // namespace sonard::server
