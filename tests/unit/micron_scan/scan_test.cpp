@@ -1,0 +1,269 @@
+// A Micron in the tank (docs/worlds.md), from the command of a host to the bins it reads, in virtual time:
+// the head, the mapping of its pings and the renderer, without sockets. Truth: the four planes of the walls.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <glm/gtc/quaternion.hpp>
+
+#include "protocol/micron/device.hpp"
+#include "protocol/micron/host.hpp"
+#include "protocol/micron/units.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "server/devices/micron_settings.hpp"
+
+namespace sonard::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double half_beam = 1.5 * degree;
+/// Inner faces of the walls.
+constexpr double east_m = 7, west_m = -7, north_m = 5, south_m = -5;
+const glm::dvec3 start_m{-1, -0.5, -4};
+
+/// Range of the nearest wall from the start, along a horizontal ray.
+double wall_range_m(double world_azimuth_rad) {
+  const double c = std::cos(world_azimuth_rad), s = std::sin(world_azimuth_rad);
+  const double along_x = c == 0 ? INFINITY : ((c > 0 ? east_m : west_m) - start_m.x) / c;
+  const double along_y = s == 0 ? INFINITY : ((s > 0 ? north_m : south_m) - start_m.y) / s;
+  return std::min(along_x, along_y);
+}
+
+struct Span {
+  double nearest_m, furthest_m;
+};
+
+/// Of the wall over the beam around an azimuth, on the horizontal.
+Span wall_span(double world_azimuth_rad) {
+  Span span{INFINITY, 0};
+  for (int i = -50; i <= 50; ++i) {
+    const double range_m = wall_range_m(world_azimuth_rad + i / 50.0 * half_beam);
+    span.nearest_m = std::min(span.nearest_m, range_m);
+    span.furthest_m = std::max(span.furthest_m, range_m);
+  }
+  return span;
+}
+
+/// Where things stand in front of the walls, to port of the bow, with half a beam to either side
+/// (docs/worlds.md).
+bool sees_furniture(double world_azimuth_rad) {
+  const double a = std::remainder(world_azimuth_rad, 2 * std::numbers::pi) / degree;
+  const auto between = [a](double low, double high) { return a > low - 1.6 && a < high + 1.6; };
+  return between(11, 18) || between(67, 73) || between(155, 165) || between(-66, -54);
+}
+
+/// A line of a scan, and where and when it was heard.
+struct Line {
+  micron::ReceivedLine received;
+  micron::MicronJob job;
+};
+
+/// Head, renderer and host around one clock that runs as fast as they do.
+class Scan {
+ public:
+  explicit Scan(MicronHeadConfig config)
+      : config_(std::move(config)),
+        device_(config_.device, 0ns),
+        host_({}, 0ns),
+        renderer_(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
+                  {render::Backend::ray, 0}) {}
+
+  /// Of the vehicle; at rest at the start, bow to the east.
+  std::function<double(micron::TimePoint)> yaw_rad = [](micron::TimePoint) { return 0.0; };
+
+  std::vector<Line> run(const micron::HeadCommand& command, std::uint64_t lines) {
+    host_.start(now_, command, lines);
+    std::vector<Line> scan;
+    while (!host_.finished() && now_ < 120s) {
+      step();
+      for (micron::ReceivedLine& line : host_.take_lines()) {
+        const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const micron::MicronJob& one) {
+          return one.bearing == line.head.bearing && one.ping_number >= next_job_;
+        });
+        if (job == jobs_.end()) {
+          ADD_FAILURE() << "a line at " << line.head.bearing << " was never rendered";
+          return scan;
+        }
+        next_job_ = job->ping_number + 1;
+        scan.push_back({std::move(line), *job});
+      }
+    }
+    return scan;
+  }
+
+  micron::TimePoint now() const { return now_; }
+
+ private:
+  void step() {
+    host_.advance(now_);
+    for (const auto& frame : host_.take_outgoing()) {
+      device_.on_bytes(now_, frame);
+    }
+    device_.advance(now_);
+    while (const std::optional<micron::MicronJob> job = device_.take_job()) {
+      answer(*job);
+      device_.advance(now_);
+    }
+    for (const auto& frame : device_.take_outgoing()) {
+      host_.on_bytes(now_, frame);
+    }
+    host_.advance(now_);
+    std::optional<micron::TimePoint> next = device_.next_deadline();
+    if (const auto other = host_.next_deadline(); other && (!next || *other < *next)) {
+      next = other;
+    }
+    now_ = std::max(now_ + 1us, next.value_or(now_ + 1ms));
+  }
+
+  void answer(const micron::MicronJob& job) {
+    const glm::dquat yaw = glm::angleAxis(yaw_rad(job.transmit_time), glm::dvec3(0, 0, 1));
+    const render::Pose T_world_mount = render::Pose{start_m, yaw} * config_.T_vehicle_sonar;
+    render::PingSamples samples =
+        renderer_.render_ping({T_world_transducer(T_world_mount, job), to_sonar_settings(job, config_),
+                               job.ping_number, config_.seed});
+    jobs_.push_back(job);
+    device_.on_line(now_, {job.ping_number, std::move(samples.u8)});
+  }
+
+  MicronHeadConfig config_;
+  micron::TimePoint now_{};
+  micron::Device device_;
+  micron::Host host_;
+  render::SonarRenderer renderer_;
+  std::vector<micron::MicronJob> jobs_;
+  std::uint64_t next_job_ = 0;
+};
+
+/// 400 bins to 10.2 m in steps of 1.8 degrees, all round.
+micron::HeadCommand all_round() {
+  return {};
+}
+
+/// Without anything random, and with the edges of the beam sharp: what is heard is where things are.
+MicronHeadConfig plain_head() {
+  MicronHeadConfig config;
+  config.acoustics.physical.noise = false;
+  config.acoustics.physical.speckle = render::PhysicalModel::Speckle::off;
+  config.acoustics.aperture.elevation = render::Aperture::Elevation::top_hat;
+  config.chirp_bandwidth_hz = 0;
+  return config;
+}
+
+int first_echo(const Line& line) {
+  const auto& bins = line.received.bins;
+  return static_cast<int>(std::find_if(bins.begin(), bins.end(), [](std::uint8_t code) { return code > 0; }) -
+                          bins.begin());
+}
+
+/// Within one bin of the closed form, at every bearing that hears nothing but wall.
+void expect_walls(const std::vector<Line>& scan, const std::function<double(micron::TimePoint)>& yaw_rad) {
+  int walls = 0, worst = 0;
+  for (const Line& line : scan) {
+    const double azimuth = yaw_rad(line.job.transmit_time) - micron::bearing_rad(line.received.head.bearing);
+    if (sees_furniture(azimuth)) {
+      continue;
+    }
+    const int expected = static_cast<int>(wall_span(azimuth).nearest_m / line.job.bin_length_m);
+    worst = std::max(worst, std::abs(first_echo(line) - expected));
+    EXPECT_LE(std::abs(first_echo(line) - expected), 1)
+        << "bearing " << line.received.head.bearing << ", azimuth " << azimuth / degree;
+    ++walls;
+  }
+  std::printf("%d walls in %zu lines, worst off by %d bins\n", walls, scan.size(), worst);
+  EXPECT_GT(walls, 160);
+}
+
+TEST(MicronScan, AStillHeadHearsTheWallsWhereTheyAre) {
+  Scan scan(plain_head());
+  const std::vector<Line> lines = scan.run(all_round(), 200);
+  ASSERT_EQ(lines.size(), 200u);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    EXPECT_EQ(micron::wrapped(lines[i].received.head.bearing - lines[i - 1].received.head.bearing), 32);
+  }
+  expect_walls(lines, scan.yaw_rad);
+}
+
+// The vehicle turns by 20 degrees, evenly, over the time of a turn of the head: at every step the picture is
+// off by as much as the vehicle has turned by then.
+TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
+  Scan scan(plain_head());
+  constexpr double turn_rad = 20 * degree;
+  constexpr micron::TimePoint begin = 6s;  // it is centred and scans by then
+  constexpr std::chrono::duration<double> duration{8.3};
+  const auto yaw_rad = [&](micron::TimePoint time) {
+    return turn_rad * std::clamp(std::chrono::duration<double>(time - begin) / duration, 0.0, 1.0);
+  };
+  scan.yaw_rad = yaw_rad;
+  const std::vector<Line> lines = scan.run(all_round(), 500);
+  ASSERT_EQ(lines.size(), 500u);
+  expect_walls(lines, yaw_rad);
+  // The south wall, 4.5 m away at 90 degrees to starboard: where it is heard once and a turn and a half
+  // later.
+  const auto south_wall = [&](std::size_t from) {
+    double lines_there = 0, bearing = 0, yaw = 0;
+    for (std::size_t i = from; i < from + 200; ++i) {
+      const double range_m = first_echo(lines[i]) * lines[i].job.bin_length_m;
+      const double at = micron::bearing_rad(lines[i].received.head.bearing);
+      if (at > 70 * degree && at < 130 * degree && range_m > 4.4 && range_m < 4.6) {
+        ++lines_there;
+        bearing += at;
+        yaw += yaw_rad(lines[i].job.transmit_time);
+      }
+    }
+    EXPECT_GT(lines_there, 10);
+    return std::pair{bearing / lines_there / degree, yaw / lines_there / degree};
+  };
+  const auto [first_bearing, first_yaw] = south_wall(0);
+  const auto [last_bearing, last_yaw] = south_wall(300);
+  EXPECT_NEAR(first_bearing, 90 + first_yaw, 0.9);
+  EXPECT_NEAR(last_bearing, 90 + last_yaw, 0.9);
+  EXPECT_GT(last_bearing - first_bearing, 15);
+}
+
+TEST(MicronScan, WithEverythingOnTheStrongestEchoIsTheWall) {
+  Scan scan{MicronHeadConfig{}};
+  const std::vector<Line> lines = scan.run(all_round(), 200);
+  ASSERT_EQ(lines.size(), 200u);
+  for (const Line& line : lines) {
+    const double azimuth = -micron::bearing_rad(line.received.head.bearing);
+    if (sees_furniture(azimuth)) {
+      continue;
+    }
+    const auto& bins = line.received.bins;
+    const auto strongest = std::max_element(bins.begin(), bins.end());
+    const double range_m = (static_cast<double>(strongest - bins.begin()) + 0.5) * line.job.bin_length_m;
+    const Span wall = wall_span(azimuth);
+    EXPECT_GT(range_m, wall.nearest_m - 1.5 * line.job.bin_length_m) << azimuth / degree;
+    // At the elevations of a beam of 35 degrees a wall is up to 7.6 % further.
+    EXPECT_LT(range_m, 1.076 * wall.furthest_m + 1.5 * line.job.bin_length_m) << azimuth / degree;
+    EXPECT_GE(*strongest, 90);   // 28 dB: plain above the noise
+    EXPECT_LE(*strongest, 191);  // an imaging head says no more
+  }
+}
+
+// docs/protocols/micron.md 8.4: 41.6 ms a line with 400 bins, 8.3 s a turn.
+TEST(MicronScan, ATurnTakesItsTimeOnTheClockOfTheHead) {
+  Scan scan(plain_head());
+  const auto started = std::chrono::steady_clock::now();
+  const std::vector<Line> lines = scan.run(all_round(), 201);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
+  ASSERT_EQ(lines.size(), 201u);
+  const std::chrono::duration<double> turn = lines[200].job.transmit_time - lines[0].job.transmit_time;
+  std::printf("a turn of 200 lines: %.3f s of the head; rendered at %.0f pings/s\n", turn.count(),
+              201 / took.count());
+  EXPECT_NEAR(turn.count() / 200, 0.0416, 0.0002);
+}
+
+}  // namespace
+}  // namespace sonard::server
