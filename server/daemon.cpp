@@ -1,5 +1,6 @@
 #include "server/daemon.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstddef>
 #include <exception>
@@ -92,12 +93,14 @@ std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<AnyHeadConfi
 }
 
 // Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
-// `io_`, and with it sources, history and heads; the render thread is in RenderService.
+// `io_`, and with it sources, history and heads; each RenderService has a render thread. Scanning heads have
+// one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that takes a
+// hundred.
 //
 // Shutdown, in the order of run(): main is told to end by a signal or by end(). It posts stop_io(), which
-// closes every socket and cancels every timer; joins the render thread, which finishes the ping it is working
-// on; then gives up the work guard, so that `io_` runs out of work, and joins the I/O thread. Only then is
-// anything destroyed, on main, in the reverse order of the members.
+// closes every socket and cancels every timer; joins the render threads, which finish the pings they are
+// working on; then gives up the work guard, so that `io_` runs out of work, and joins the I/O thread. Only
+// then is anything destroyed, on main, in the reverse order of the members.
 class Daemon {
  public:
   Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer);
@@ -107,6 +110,8 @@ class Daemon {
 
  private:
   RenderServiceHooks hooks();
+  std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
+                                                  const RendererFactory& make_renderer);
   void start_sources();
   void run_io();
   void stop_io();
@@ -119,7 +124,7 @@ class Daemon {
   PoseHistory poses_;
   std::vector<std::unique_ptr<PoseSource>> sources_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
-  RenderService renderer_;
+  std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
   std::string ready_line_;
 };
@@ -128,9 +133,11 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     : poses_(config.poses),
       sources_(make_sources(io_, config, clock_, poses_)),
       dumps_(make_dumps(config.heads)),
-      renderer_(make_renderer, static_cast<int>(config.heads.size()), hooks()) {
-  const HeadServices services{io_, clock_, renderer_, poses_, world.water_surface_z_m, config.skip};
+      fan_renderer_(make_renderer_of(false, config, make_renderer)),
+      beam_renderer_(make_renderer_of(true, config, make_renderer)) {
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    RenderService& renderer = *(is_scanning(config.heads[i]) ? beam_renderer_ : fan_renderer_);
+    const HeadServices services{io_, clock_, renderer, poses_, world.water_surface_z_m, config.skip};
     try {
       heads_.push_back(make_head(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
@@ -140,7 +147,17 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
   }
   start_sources();
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
-                            world.name, world.triangle_count(), renderer_.renderer_description());
+                            world.name, world.triangle_count(),
+                            (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
+}
+
+std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const DaemonConfig& config,
+                                                        const RendererFactory& make_renderer) {
+  const auto streams =
+      std::count_if(config.heads.begin(), config.heads.end(),
+                    [scanning](const AnyHeadConfig& head) { return is_scanning(head) == scanning; });
+  return streams > 0 ? std::make_unique<RenderService>(make_renderer, static_cast<int>(streams), hooks())
+                     : nullptr;
 }
 
 RenderServiceHooks Daemon::hooks() {
@@ -190,7 +207,11 @@ int Daemon::run() {
 
   signals.clear();  // from here on a second signal kills, whatever hangs
   asio::post(io_, [this] { stop_io(); });
-  renderer_.stop();
+  for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
+    if (renderer != nullptr) {
+      renderer->stop();
+    }
+  }
   io_work.reset();
   io_thread.join();
   return exit_code_;

@@ -33,6 +33,10 @@ std::unique_ptr<Head> make_head(const AnyHeadConfig& config, int stream, const H
   return std::visit([&](const auto& head) { return make(head, stream, services); }, config);
 }
 
+bool is_scanning(const AnyHeadConfig& config) {
+  return std::holds_alternative<MicronHeadConfig>(config);
+}
+
 void check_sampling_of(const AnyHeadConfig& config) {
   const render::SonarSettings settings =
       std::visit([](const auto& head) { return any_ping_of(head); }, config);

@@ -12,6 +12,9 @@ namespace sonard::server {
 /// @throws SocketError naming the address or path
 std::unique_ptr<Head> make_head(const AnyHeadConfig& config, int stream, const HeadServices& services);
 
+/// One beam at a time, which takes a small part of the time of a fan to render.
+bool is_scanning(const AnyHeadConfig& config);
+
 /// Cuts the head's fan into pixels as it will be for any ping; the range of a ping changes nothing of it.
 /// @throws render::RequestError when that cannot be done
 void check_sampling_of(const AnyHeadConfig& config);
