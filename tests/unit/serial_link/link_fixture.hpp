@@ -15,7 +15,7 @@
 #include "server/config/addresses.hpp"
 #include "server/devices/serial/serial_link.hpp"
 #include "server/devices/udp_endpoint.hpp"
-#include "tests/unit/serial_link/client.hpp"
+#include "tests/support/serial_client.hpp"
 
 namespace sonard::server {
 

@@ -1,5 +1,6 @@
 #include "server/daemon.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -12,10 +13,14 @@
 #include <unistd.h>
 #include <boost/asio/io_context.hpp>
 
+#include "protocol/micron/host.hpp"
+#include "server/clock.hpp"
 #include "server/devices/udp_endpoint.hpp"
 #include "server/exit_codes.hpp"
 #include "tests/support/fake_renderer.hpp"
 #include "tests/support/loopback.hpp"
+#include "tests/support/serial_client.hpp"
+#include "tests/support/wait_for.hpp"
 
 namespace sonard::server {
 namespace {
@@ -120,6 +125,50 @@ TEST_F(DaemonTest, ServesSeveralHeads) {
     second = second || datagram.remote.address == second_address;
     return first && second;
   });
+  EXPECT_EQ(code, exit_clean);
+}
+
+// Lines of a Micron take their 24 ms while the renderer is busy for seconds with one fan.
+TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
+  MicronHeadConfig micron;
+  micron.name = "micron";
+  micron.serial.tcp = {{{head_address, 4001}, {{0x7F000000, 8}}}};
+  micron.device.boot_time = std::chrono::milliseconds{0};
+  micron.device.centring_time = std::chrono::seconds{2};
+  config.heads.emplace_back(micron);
+  std::atomic<bool> fan_is_busy{false}, lines_are_here{false};
+  renderer->before_ping = [&](const render::PingRequest& request, int) {
+    if (request.settings.aperture.beam_count() > 1) {
+      fan_is_busy = true;
+      EXPECT_TRUE(test::wait_for([&] { return lines_are_here.load(); }));
+    }
+  };
+  std::thread scan([&] {
+    ASSERT_TRUE(test::wait_for([&] { return fan_is_busy.load(); }));
+    const SteadyClock clock;
+    test::Client client = test::Client::tcp({head_address, 4001});
+    micron::Host host({}, clock.now());
+    host.start(clock.now(), {}, 20);
+    std::size_t consumed = 0;
+    EXPECT_TRUE(test::wait_for([&] {
+      const test::Bytes& heard = client.heard();
+      host.on_bytes(clock.now(), std::span(heard).subspan(consumed));
+      consumed = heard.size();
+      host.advance(clock.now());
+      for (const auto& frame : host.take_outgoing()) {
+        client.write(frame);
+      }
+      return host.finished();
+    }));
+    lines_are_here = true;
+  });
+  const int code = serve_until([&](UdpEndpoint& surface, const Datagram& datagram) {
+    if (is(datagram, 0x40) && !fan_is_busy) {
+      surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(continuous_config())}});
+    }
+    return lines_are_here.load() && is(datagram, 0x43);
+  });
+  scan.join();
   EXPECT_EQ(code, exit_clean);
 }
 

@@ -1,4 +1,4 @@
-#include "tests/unit/serial_link/client.hpp"
+#include "tests/support/serial_client.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>

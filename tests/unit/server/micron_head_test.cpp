@@ -1,0 +1,264 @@
+#include "server/devices/micron_head.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+
+#include "protocol/micron/host.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/render_service.hpp"
+#include "tests/support/fake_renderer.hpp"
+#include "tests/support/serial_client.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+/// 20 bins of 48 mm, all round in steps of 7.2 degrees: lines are quick.
+micron::HeadCommand quick_scan() {
+  micron::HeadCommand command;
+  command.bins = 20;
+  command.ad_interval = 100;
+  command.step = 128;
+  return command;
+}
+
+// One head and its host on one io_context that the test runs, the host on a socket or a tty of its own.
+struct MicronHeadTest : testing::Test {
+  asio::io_context io;
+  SteadyClock clock;
+  std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
+  PoseConfig pose_config;
+  MicronHeadConfig config;
+
+  std::unique_ptr<PoseHistory> poses;
+  std::unique_ptr<RenderService> service;
+  std::unique_ptr<MicronHead> head;
+  std::optional<test::Client> client;
+  std::optional<micron::Host> host;
+  std::vector<micron::ReceivedLine> lines;
+
+  MicronHeadTest() {
+    spdlog::set_level(spdlog::level::off);
+    pose_config.T_world_vehicle_initial = render::Pose{};
+    config.name = "head";
+    config.serial.tcp = {{{0x7F000001, 0}, {{0x7F000000, 8}}}};
+    // As quick as a head may be.
+    config.device.boot_time = 10ms;
+    config.device.centring_time = 2s;
+    config.device.alive_period = 100ms;
+    config.device.reconfiguration_time = 10ms;
+  }
+
+  ~MicronHeadTest() override {
+    if (head) {
+      head->stop();
+    }
+    if (service) {
+      service->stop();
+    }
+    spdlog::set_level(spdlog::level::info);
+  }
+
+  void start() {
+    poses = std::make_unique<PoseHistory>(pose_config);
+    RenderServiceHooks hooks;
+    hooks.post = [this](std::function<void()> task) { asio::post(io, std::move(task)); };
+    hooks.on_failure = [](const std::string& what) { FAIL() << what; };
+    service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
+    head = std::make_unique<MicronHead>(config, 0, HeadServices{io, clock, *service, *poses, std::nullopt});
+    head->start();
+  }
+
+  void connect() {
+    client.emplace(test::Client::tcp(head->addresses().tcp.at(0)));
+    consumed_ = 0;
+    host.emplace(micron::HostConfig{}, clock.now());
+  }
+
+  bool run_until(const std::function<bool()>& done, std::chrono::milliseconds limit = 20s) {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (!done() && std::chrono::steady_clock::now() < deadline) {
+      io.run_one_for(2ms);
+      io.restart();
+      talk();
+    }
+    return done();
+  }
+
+  bool run_until_lines(std::size_t count) {
+    return run_until([&] { return lines.size() >= count; });
+  }
+
+ private:
+  /// What the host has to say and to hear.
+  void talk() {
+    if (!client || !host) {
+      return;
+    }
+    const test::Bytes& heard = client->heard();
+    host->on_bytes(clock.now(), std::span(heard).subspan(consumed_));
+    consumed_ = heard.size();
+    host->advance(clock.now());
+    for (const auto& frame : host->take_outgoing()) {
+      client->write(frame);
+    }
+    for (micron::ReceivedLine& line : host->take_lines()) {
+      lines.push_back(std::move(line));
+    }
+  }
+
+  std::size_t consumed_ = 0;
+};
+
+TEST_F(MicronHeadTest, SendsWhatTheRendererHandedOver) {
+  start();
+  connect();
+  host->start(clock.now(), quick_scan(), 12);
+  ASSERT_TRUE(run_until_lines(12));
+  for (std::size_t i = 0; i < 12; ++i) {
+    ASSERT_EQ(lines[i].bins.size(), 20u);
+    for (int bin = 0; bin < 20; ++bin) {
+      EXPECT_EQ(lines[i].bins[static_cast<std::size_t>(bin)], test::fake_sample(i, bin, 0)) << i;
+    }
+  }
+  EXPECT_GE(head->counters().pings_rendered, 12u);
+}
+
+TEST_F(MicronHeadTest, RendersOneBeamWhereTheVehicleTheMountAndTheHeadPoint) {
+  const double half = std::sqrt(0.5);
+  pose_config.T_world_vehicle_initial =
+      render::Pose{{10, 0, -5}, glm::dquat(half, 0, 0, half)};  // bow to north
+  config.T_vehicle_sonar.position_m = {1, 0, 0};
+  config.seed = 77;
+  start();
+  connect();
+  host->start(clock.now(), quick_scan(), 6);
+  ASSERT_TRUE(run_until_lines(6));
+  const std::vector<render::PingRequest> requests = renderer->recorded();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const render::PingRequest& request = requests.at(i);
+    EXPECT_EQ(request.settings.aperture.beam_count(), 1);
+    EXPECT_EQ(request.settings.range.count, 20);
+    EXPECT_NEAR(request.settings.range.step_m, 100 * 640e-9 * 750, 1e-12);
+    EXPECT_EQ(request.settings.output_scale, render::OutputScale::half_decibels);
+    EXPECT_EQ(request.seed, 77u);
+    EXPECT_NEAR(glm::length(request.T_world_sonar.position_m - glm::dvec3(10, 1, -5)), 0, 1e-12);
+    // The first ping looks ahead, to the north; each one 7.2 degrees further to starboard, to the east.
+    const double turned = static_cast<double>(i) * 7.2 * std::numbers::pi / 180;
+    const glm::dvec3 axis = request.T_world_sonar.orientation * glm::dvec3(1, 0, 0);
+    EXPECT_NEAR(glm::length(axis - glm::dvec3(std::sin(turned), std::cos(turned), 0)), 0, 1e-9) << i;
+    EXPECT_EQ(lines[i].head.bearing, 3200 + 128 * i);
+  }
+}
+
+TEST_F(MicronHeadTest, TheClientsGainMovesTheLevel) {
+  start();
+  connect();
+  micron::HeadCommand loud = quick_scan();
+  loud.gain = {210, 210};  // 80 dB
+  host->start(clock.now(), loud, 2);
+  ASSERT_TRUE(run_until_lines(2));
+  EXPECT_NEAR(renderer->recorded().at(0).settings.physical.gain_db,
+              config.acoustics.physical.gain_db + 80 - config.nominal_gain_db, 1e-9);
+}
+
+TEST_F(MicronHeadTest, AClientThatVanishesInTheMiddleOfALineLeavesTheNextOneAClearLine) {
+  start();
+  connect();
+  host->start(clock.now(), quick_scan(), 0);
+  ASSERT_TRUE(run_until_lines(3));
+  const test::Bytes half_a_command{'@', '0', '0', '3', 'C', 0x3C, 0x00, 0xFF, 0x02, 0x37, 0x13};
+  client->write(half_a_command);
+  client->reset();
+  host.reset();
+  ASSERT_TRUE(run_until([&] { return head->counters().link.ports.connections == 1 && service; }, 200ms));
+  lines.clear();
+  connect();
+  // The head has its parameters and has turned on meanwhile: it scans again at once, without a new power-up.
+  host->start(clock.now(), quick_scan(), 5);
+  ASSERT_TRUE(run_until_lines(5));
+  EXPECT_EQ(head->counters().device.bad_frames, 0u);
+  EXPECT_EQ(head->counters().device.boots, 0u);
+}
+
+TEST_F(MicronHeadTest, IsASerialDeviceTooAndAllClientsHearIt) {
+  config.serial.pty = {{}};
+  start();
+  test::Client listener = test::Client::tty(head->addresses().pty.at(0));
+  connect();
+  host->start(clock.now(), quick_scan(), 4);
+  ASSERT_TRUE(run_until_lines(4));
+  micron::Host second({}, clock.now());
+  std::size_t consumed = 0;
+  ASSERT_TRUE(run_until([&] {
+    const test::Bytes& heard = listener.heard();
+    second.on_bytes(clock.now(), std::span(heard).subspan(consumed));
+    consumed = heard.size();
+    return second.statistics().frames >= 4;
+  }));
+  EXPECT_GT(second.statistics().alives, 0u);
+}
+
+TEST_F(MicronHeadTest, WithoutAPoseItTurnsOnAndSendsNoLine) {
+  pose_config.T_world_vehicle_initial.reset();
+  start();
+  connect();
+  host->start(clock.now(), quick_scan(), 2);
+  ASSERT_TRUE(run_until([&] { return head->counters().pings_without_pose >= 2; }));
+  EXPECT_TRUE(lines.empty());
+  EXPECT_EQ(head->counters().pings_rendered, 0u);
+}
+
+TEST_F(MicronHeadTest, APingThatCannotBeRenderedFailsAlone) {
+  renderer->before_ping = [](const render::PingRequest& request, int) {
+    if (request.ping_number == 1) {
+      throw render::RequestError("not this one");
+    }
+  };
+  start();
+  connect();
+  host->start(clock.now(), quick_scan(), 4);
+  ASSERT_TRUE(run_until_lines(4));
+  EXPECT_EQ(head->counters().device.pings_failed, 1u);
+}
+
+TEST_F(MicronHeadTest, StopsInTheMiddleOfAPing) {
+  start();
+  connect();
+  host->start(clock.now(), quick_scan(), 0);
+  ASSERT_TRUE(run_until([&] { return renderer->attempts > 0; }));
+  head->stop();
+  head.reset();
+  service->stop();
+  while (io.poll() > 0) {
+    io.restart();  // what was posted meanwhile finds nobody
+  }
+}
+
+TEST_F(MicronHeadTest, AnAddressInUseIsNamed) {
+  start();
+  MicronHeadConfig other = config;
+  other.serial.tcp[0].bind = head->addresses().tcp.at(0);
+  try {
+    const MicronHead second(other, 0, HeadServices{io, clock, *service, *poses, std::nullopt});
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("127.0.0.1:"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace sonard::server
