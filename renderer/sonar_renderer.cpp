@@ -7,7 +7,7 @@
 
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/binning/echo_binner.hpp"
-#include "renderer/visibility/grid_choice.hpp"
+#include "renderer/visibility/beam_refinement.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
 #include "renderer/visibility/slices/slice_sampler.hpp"
@@ -182,6 +182,7 @@ struct SonarRenderer::Impl {
   WorkerPool workers;  // outlives the sampler, which uses it
   ChosenSampler chosen;
   std::unique_ptr<SliceSampler> slices;  // of the backend `ray`
+  BeamRefinement refinement;             // of the backend `raster`
   Receiver receiver;
   PingStatistics statistics;
   std::map<std::string, Pose> T_world_body;
@@ -192,6 +193,7 @@ struct SonarRenderer::Impl {
       : skip(options.skip),
         workers(options.threads),
         chosen(choose_sampler(world, options.backend, workers)),
+        refinement(*chosen.sampler, workers),
         receiver(options.skip) {
     for (const Body& body : world.bodies) {
       T_world_body[body.name] = body.T_world_body;
@@ -266,47 +268,21 @@ struct SonarRenderer::Impl {
     return bins;
   }
 
-  /// Samples finer and finer until the error is what the preset wants. What it begins with and all that
-  /// follows depend on the request alone, so the image does.
   BinningResult look_until_close(const Pose& T_world_sonar, const SonarSettings& settings,
                                  const std::vector<float>& line_weight) {
-    constexpr int most_looks = 3;
+    Stopwatch watch;
+    const SurfaceModel surface = surface_model(settings);
     const BinningOptions options = binning_options(settings, skip);
-    GridLadder& grids = ladder_for(settings.aperture);
-    int step = grids.first_step(settings.sampling.preset);
-    for (int looks = 1;; ++looks) {
-      Stopwatch watch;
-      const SampleGrid& samples = grids.grid(step);
-      const auto views =
-          chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), sampled_range_m(settings));
-      statistics.visibility_s += watch.lap();
-      BinningResult bins = bin_echoes(samples, views, settings.range, options, workers);
-      statistics.samples += bins.samples;
-      int next = step;
-      if (looks < most_looks && step < grids.last_step()) {
-        const SampleGrid& coarse = grids.grid(step - 2);
-        const ThinnedSamples thinned(samples, views, coarse);
-        const BinningResult coarse_bins =
-            bin_echoes(coarse, thinned.views(), settings.range, options, workers);
-        next = next_step(grids, step, estimate_error(bins, coarse_bins, line_weight),
-                         target_error(settings.sampling.preset));
-      }
-      statistics.binning_s += watch.lap();
-      if (next == step) {
-        statistics.invalid_samples = bins.invalid_samples;
-        return bins;
-      }
-      step = next;
-    }
-  }
-
-  GridLadder& ladder_for(const Aperture& aperture) {
-    if (ladder && ladder->fits(aperture) && skip.on(SkipRule::unchanged_settings)) {
+    BeamRefinement::Result found =
+        refinement.look({T_world_sonar, settings, surface, sampled_range_m(settings), options, line_weight},
+                        skip.on(SkipRule::unchanged_settings));
+    if (found.known_grid) {
       statistics.skipped.add(SkipRule::unchanged_settings);
-    } else {
-      ladder.emplace(aperture);
     }
-    return *ladder;
+    BinningResult bins = counted(std::move(found.bins), watch);
+    statistics.visibility_s = found.visibility_s;
+    statistics.binning_s -= found.visibility_s;
+    return bins;
   }
 
   /// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
@@ -341,7 +317,6 @@ struct SonarRenderer::Impl {
            a.sampling.columns_per_view == b.sampling.columns_per_view && a.sampling.rows == b.sampling.rows;
   }
 
-  std::optional<GridLadder> ladder;  // of the last aperture that left its grid to the preset
   SampleGrid grid;
   std::optional<SonarSettings> grid_key;
   GridOptions made_with;

@@ -1,52 +1,61 @@
-// How finely backend `raster` samples for an error preset (docs/accuracy.md).
+// How finely backend `raster` samples each beam for an error preset (docs/accuracy.md).
 #pragma once
 
-#include <array>
-#include <memory>
 #include <vector>
 
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/sonar_settings.hpp"
+#include "renderer/visibility/beam_judge.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler.hpp"
 
 namespace sonard::render {
 
-/// The grids that one aperture may be sampled with, coarse to fine. A step doubles the columns or the rows in
-/// turn, so that two steps down is the grid of every second column and row. Each is made when it is first
-/// used.
-class GridLadder {
- public:
-  /// @throws RequestError when the aperture cannot be gridded.
-  explicit GridLadder(const Aperture& aperture);
+/// How finely a beam is sampled: evenly, or more finely in a zone of it. Columns are even in number.
+struct BeamDensity {
+  int columns = 0;  ///< in the beam, or in the zone
+  int rows = 0;     ///< over the height of the fan
+  /// The zone, where there is one.
+  double zone_port_rad = 0.0, zone_starboard_rad = 0.0;
+  int port_columns = 0, starboard_columns = 0;  ///< beside the zone; 0: it ends where the beam ends
 
-  /// True: made for this aperture.
-  bool fits(const Aperture& aperture) const { return aperture_ == aperture; }
-
-  const SampleGrid& grid(int step);
-  Sampling sampling(int step) const;
-
-  /// The finest: 32 columns a beam and 2048 rows over 20 degrees, or fewer where that were more than 2^25
-  /// samples.
-  int last_step() const { return last_step_; }
-  /// Where a preset begins.
-  int first_step(Sampling::Preset preset) const;
-
- private:
-  static constexpr int step_count = 10;
-  static constexpr int least_step = 2;
-
-  Aperture aperture_;
-  int views_ = 1;
-  int last_step_ = least_step;
-  std::array<std::unique_ptr<const SampleGrid>, step_count> grids_;
+  bool has_zone() const { return zone_port_rad > zone_starboard_rad; }
+  double samples() const { return 1.0 * (columns + port_columns + starboard_columns) * rows; }
+  bool operator==(const BeamDensity&) const = default;
 };
 
-/// The error that `fast` and `normal` aim at: pooled relative RMS of bins above 1e-2 of their beam's maximum.
-double target_error(Sampling::Preset preset);
+/// What a preset promises of every image (docs/physics.md 6).
+struct GridTargets {
+  double bins;     ///< relative RMS of bins above 1e-2 of their beam's maximum
+  BeamError beam;  ///< of the worst beam
+};
 
-/// Every second column and row of the samples of a grid, as if the grid two steps down had been sampled: each
-/// is moved to the centre of its larger pixel, along the surface that it saw.
+/// Of `fast` and `normal`; `reference` has those of `normal`.
+GridTargets grid_targets(Sampling::Preset preset);
+
+/// The even grid that a preset begins with: fewer samples where it were more than 2^25.
+/// @throws RequestError when the aperture cannot be gridded.
+BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset);
+
+/// All beams of the aperture in one run, without a zone.
+BeamRun whole_fan(const Aperture& aperture, const BeamDensity& density);
+
+/// A beam and how finely it is to be sampled.
+struct BeamChoice {
+  int beam = 0;
+  BeamDensity density;
+};
+
+/// Neighbours that are sampled alike share views. Runs have 1, 2, 4 ... beams, so that views of few sizes
+/// come back from ping to ping; a beam with a zone is one for itself.
+/// @param choices in the order of beams.
+std::vector<BeamRun> beam_runs(const Aperture& aperture, const std::vector<BeamChoice>& choices);
+
+/// The same runs with every second column and row.
+std::vector<BeamRun> thinned(std::vector<BeamRun> runs);
+
+/// Every second column and row of the samples of a grid, as if the grid of the thinned runs had been sampled:
+/// each is moved to the centre of its larger pixel, along the surface that it saw.
 class ThinnedSamples {
  public:
   ThinnedSamples(const SampleGrid& fine, const std::vector<const SurfaceSample*>& samples,
@@ -58,12 +67,24 @@ class ThinnedSamples {
   std::vector<std::vector<SurfaceSample>> views_;
 };
 
-/// What the error of `image` may be, judged by how far the image of its thinned samples is from it.
+/// What the relative RMS error of a beam's bins above 1e-2 of its maximum may be, judged by how far its image
+/// of thinned samples is from it.
+/// @param echo, thinned `lines` values each.
 /// @param line_weight of every line, what the image is yet to be multiplied with; empty: 1.
-double estimate_error(const BinningResult& image, const BinningResult& thinned,
-                      const std::vector<float>& line_weight);
+double bin_error(const float* echo, const float* thinned, std::size_t lines,
+                 const std::vector<float>& line_weight);
 
-/// The step to look with after `step` had this error. `step` itself: it is good enough, or none is finer.
-int next_step(const GridLadder& ladder, int step, double error, double target);
+/// What is known of a beam.
+struct BeamState {
+  BeamDensity density;
+  JudgedBeam judged;
+  double bin_rms = 0.0;
+};
+
+/// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they
+/// take no more than 2^25 samples.
+/// @param beams all beams of the aperture.
+std::vector<BeamChoice> beams_in_doubt(const Aperture& aperture, const std::vector<BeamState>& beams,
+                                       const GridTargets& targets);
 
 }  // namespace sonard::render

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <list>
 #include <map>
@@ -225,23 +226,30 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
   return node;
 }
 
-/// One camera drawing one SubView into a float texture, and the copy that is read back.
+/// A camera that draws views of one size into a float texture, and the copy that is read back.
 struct ViewTarget {
+  int columns = 0, rows = 0;
   osg::ref_ptr<osgUtil::SceneView> scene_view;
   osg::ref_ptr<osg::Texture2D> texture;
+  osg::ref_ptr<osg::Uniform> tan_half;
   std::vector<SurfaceSample> samples;
+  std::uint64_t used = 0;  ///< number of the call that used it last
+
+  double pixels() const { return 1.0 * columns * rows; }
 };
 
-ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state) {
+ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* state) {
   ViewTarget target;
+  target.columns = columns;
+  target.rows = rows;
   target.texture = new osg::Texture2D;
-  target.texture->setTextureSize(view.columns, view.rows);
+  target.texture->setTextureSize(columns, rows);
   target.texture->setInternalFormat(GL_RGBA32F_ARB);
   target.texture->setSourceFormat(GL_RGBA);
   target.texture->setSourceType(GL_FLOAT);
   target.texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
   target.texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
-  target.samples.resize(static_cast<std::size_t>(view.columns) * static_cast<std::size_t>(view.rows));
+  target.samples.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
 
   target.scene_view = new osgUtil::SceneView;
   target.scene_view->setDefaults(osgUtil::SceneView::COMPILE_GLOBJECTS_AT_INIT);
@@ -249,7 +257,7 @@ ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state)
   target.scene_view->setSceneData(scene);
   target.scene_view->setFrameStamp(new osg::FrameStamp);
   osg::Camera* camera = target.scene_view->getCamera();
-  camera->setViewport(0, 0, view.columns, view.rows);
+  camera->setViewport(0, 0, columns, rows);
   camera->setClearColor(osg::Vec4(0, 0, 0, 0));
   camera->setClearDepth(0.0);
   camera->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -259,13 +267,11 @@ ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state)
   camera->attach(osg::Camera::COLOR_BUFFER0, target.texture);
   camera->attach(osg::Camera::DEPTH_BUFFER, GL_DEPTH_COMPONENT32F);
   camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-  camera->setViewMatrix(view_matrix(view));
-  camera->setProjectionMatrix(projection_matrix(view));
   osg::StateSet* state_set = target.scene_view->getGlobalStateSet();
-  state_set->addUniform(new osg::Uniform("tan_half", osg::Vec2(static_cast<float>(view.tan_half_width),
-                                                               static_cast<float>(view.tan_half_height))));
+  target.tan_half = new osg::Uniform("tan_half", osg::Vec2());
+  state_set->addUniform(target.tan_half);
   state_set->addUniform(
-      new osg::Uniform("pixels", osg::Vec2(static_cast<float>(view.columns), static_cast<float>(view.rows))));
+      new osg::Uniform("pixels", osg::Vec2(static_cast<float>(columns), static_cast<float>(rows))));
   // Only the sides cull: there is no far plane, and small features are echoes too.
   target.scene_view->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING);
   target.scene_view->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
@@ -274,20 +280,17 @@ ViewTarget make_target(const SubView& view, osg::Node* scene, osg::State* state)
   return target;
 }
 
-/// The targets of all views of one grid.
-struct GridTargets {
-  std::vector<SubView> views;
-  std::vector<ViewTarget> targets;
-};
-// One ping may look at the world with this many grids in turn; making targets takes as long as drawing.
-constexpr std::size_t most_grids = 3;
-
-bool same_views(const std::vector<SubView>& a, const std::vector<SubView>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SubView& x, const SubView& y) {
-    return x.azimuth_rad == y.azimuth_rad && x.tan_half_width == y.tan_half_width &&
-           x.tan_half_height == y.tan_half_height && x.columns == y.columns && x.rows == y.rows;
-  });
+void aim(const ViewTarget& target, const SubView& view) {
+  target.scene_view->getCamera()->setViewMatrix(view_matrix(view));
+  target.scene_view->getCamera()->setProjectionMatrix(projection_matrix(view));
+  target.tan_half->set(
+      osg::Vec2(static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height)));
 }
+
+// Making a target takes as long as drawing into it, so those of earlier calls are kept: so many pixels in all
+// (36 bytes each), and as many targets.
+constexpr double most_kept_pixels = 0x1p25;
+constexpr std::size_t most_kept_targets = 1024;
 
 }  // namespace
 
@@ -301,7 +304,9 @@ struct RasterSampler::Impl {
   std::string description;
   osg::ref_ptr<osg::Group> scene;
   std::map<std::string, BodyNode> bodies;
-  std::list<GridTargets> grids;  // the last used first
+  std::list<ViewTarget> targets;  // the last used first
+  double target_pixels = 0;       // of all of them
+  std::uint64_t calls = 0;        // of sample()
   float max_range_m = 0.0F;
   int max_texture_px = 0;
 
@@ -326,14 +331,12 @@ struct RasterSampler::Impl {
 
   ~Impl() {
     if (context->makeCurrent()) {
-      for (GridTargets& grid : grids) {
-        for (ViewTarget& target : grid.targets) {
-          target.scene_view->releaseAllGLObjects();
-        }
+      for (const ViewTarget& target : targets) {
+        target.scene_view->releaseAllGLObjects();
       }
       scene->releaseGLObjects(context->getState());
     }
-    grids.clear();
+    targets.clear();
     context->close();
   }
 
@@ -375,47 +378,56 @@ struct RasterSampler::Impl {
     state.setMode(GL_CULL_FACE, surface.two_sided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
   }
 
-  /// Puts the targets of these views in front.
-  void set_views(const std::vector<SubView>& wanted) {
-    const auto known = std::find_if(grids.begin(), grids.end(),
-                                    [&](const GridTargets& grid) { return same_views(grid.views, wanted); });
-    if (known != grids.end()) {
-      grids.splice(grids.begin(), grids, known);
-      return;
-    }
-    for (const SubView& view : wanted) {
+  /// A target for every view, aimed at it.
+  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views) {
+    ++calls;
+    std::vector<ViewTarget*> found;
+    for (const SubView& view : views) {
       if (view.columns > max_texture_px || view.rows > max_texture_px) {
         throw RequestError("sampling: a view exceeds the GL limit of " + std::to_string(max_texture_px) +
                            " pixels");
       }
+      found.push_back(&target_for(view));
+      aim(*found.back(), view);
     }
-    if (grids.size() == most_grids) {
+    while (targets.back().used != calls &&
+           (target_pixels > most_kept_pixels || targets.size() > most_kept_targets)) {
       release_last();
     }
-    GridTargets& grid = grids.emplace_front();
-    for (const SubView& view : wanted) {
-      grid.targets.push_back(make_target(view, scene, context->getState()));
+    return found;
+  }
+
+  ViewTarget& target_for(const SubView& view) {
+    const auto free = std::find_if(targets.begin(), targets.end(), [&](const ViewTarget& target) {
+      return target.columns == view.columns && target.rows == view.rows && target.used != calls;
+    });
+    if (free != targets.end()) {
+      targets.splice(targets.begin(), targets, free);
+    } else {
+      targets.push_front(make_target(view.columns, view.rows, scene, context->getState()));
+      target_pixels += targets.front().pixels();
     }
-    grid.views = wanted;
+    targets.front().used = calls;
+    return targets.front();
   }
 
   void release_last() {
-    for (ViewTarget& target : grids.back().targets) {
-      target.scene_view->getCamera()->releaseGLObjects(context->getState());
-      target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
-    }
-    grids.pop_back();
+    const ViewTarget& target = targets.back();
+    target_pixels -= target.pixels();
+    target.scene_view->getCamera()->releaseGLObjects(context->getState());
+    target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
+    targets.pop_back();
   }
 
-  void draw(std::vector<ViewTarget>& targets) const {
-    for (ViewTarget& target : targets) {
-      target.scene_view->cull();
-      target.scene_view->draw();
+  void draw(const std::vector<ViewTarget*>& views) const {
+    for (const ViewTarget* target : views) {
+      target->scene_view->cull();
+      target->scene_view->draw();
     }
     // All views are drawn before the first is read: reading waits for the drawing to end.
-    for (ViewTarget& target : targets) {
-      target.texture->getTextureObject(context->getState()->getContextID())->bind();
-      glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target.samples.data());
+    for (ViewTarget* target : views) {
+      target->texture->getTextureObject(context->getState()->getContextID())->bind();
+      glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target->samples.data());
     }
     context->getState()->haveAppliedTextureAttribute(context->getState()->getActiveTextureUnit(),
                                                      osg::StateAttribute::TEXTURE);
@@ -431,19 +443,18 @@ RasterSampler::~RasterSampler() = default;
 std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                         const SurfaceModel& surface, double max_range_m) {
   impl_->make_current();
-  impl_->set_views(grid.views);
+  const std::vector<ViewTarget*> targets = impl_->targets_for(grid.views);
   impl_->set_surface(surface);
   impl_->max_range_m = static_cast<float>(max_range_m);
   const Pose T_sonar_world = inverse(T_world_sonar);
   for (auto& [name, body] : impl_->bodies) {
     body.transform->setMatrix(to_osg(T_sonar_world * body.T_world_body));
   }
-  std::vector<ViewTarget>& targets = impl_->grids.front().targets;
   impl_->draw(targets);
   static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
   std::vector<const SurfaceSample*> samples;
-  for (const ViewTarget& target : targets) {
-    samples.push_back(target.samples.data());
+  for (const ViewTarget* target : targets) {
+    samples.push_back(target->samples.data());
   }
   return samples;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 
@@ -21,8 +22,8 @@ void check(const Sampling& sampling) {
   }
 }
 
-std::vector<SubView> make_views(const Aperture& aperture, const Sampling& sampling,
-                                const GridOptions& options) {
+BeamRun even_views(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+  check(sampling);
   const double port = aperture.beam_edges_rad.front();
   const double width = port - aperture.beam_edges_rad.back();
   int count = sampling.views;
@@ -35,30 +36,57 @@ std::vector<SubView> make_views(const Aperture& aperture, const Sampling& sampli
   if (samples > most_samples) {
     throw RequestError("sampling: more than 2^27 samples; lower views, columns or rows");
   }
-  std::vector<SubView> views(static_cast<std::size_t>(count));
+  BeamRun run{0, aperture.beam_count(), {}, sampling.rows};
   for (int i = 0; i < count; ++i) {
-    SubView& view = views[static_cast<std::size_t>(i)];
-    const double half = width / count / 2;
-    view.azimuth_rad = port - (2 * i + 1) * half;
-    view.tan_half_width = std::tan(half);
-    // The elevation limit is highest in the plane of the view at its sides. Without the mask the paper's
-    // frustum is kept: the limit holds on the axis only.
-    view.tan_half_height =
-        std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
-    view.columns = sampling.columns_per_view;
-    view.rows = sampling.rows;
+    run.views.push_back(
+        {port - width * i / count, port - width * (i + 1) / count, sampling.columns_per_view});
   }
-  return views;
+  return run;
+}
+
+SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, const GridOptions& options) {
+  const double half = (span.port_rad - span.starboard_rad) / 2;
+  SubView view;
+  view.azimuth_rad = (span.port_rad + span.starboard_rad) / 2;
+  view.tan_half_width = std::tan(half);
+  // The elevation limit is highest in the plane of the view at its sides. Without the mask the paper's
+  // frustum is kept: the limit holds on the axis only.
+  view.tan_half_height =
+      std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
+  view.columns = span.columns;
+  view.rows = rows;
+  return view;
 }
 
 /// Builds the parts of one aperture; a class only to keep the running vectors together.
 class GridBuilder {
  public:
   GridBuilder(const Aperture& aperture, const GridOptions& options, SampleGrid& grid)
-      : aperture_(aperture), options_(options), grid_(grid) {}
+      : aperture_(aperture), options_(options), grid_(grid) {
+    grid_.elevation_limit_rad = aperture.elevation_limit_rad();
+    grid_.beam_parts.push_back(0);
+  }
 
-  void add_beam(double port_edge_rad, double starboard_edge_rad) {
-    for (std::size_t v = 0; v < grid_.views.size(); ++v) {
+  /// @throws RequestError when a beam gets no column.
+  void add_run(const BeamRun& run) {
+    const std::size_t first_view = grid_.views.size();
+    for (const ViewSpan& span : run.views) {
+      grid_.views.push_back(make_view(aperture_, span, run.rows, options_));
+    }
+    for (int beam = run.begin; beam < run.end; ++beam) {
+      const auto b = static_cast<std::size_t>(beam);
+      add_beam(first_view, aperture_.beam_edges_rad[b], aperture_.beam_edges_rad[b + 1]);
+      if (grid_.beam_parts.back() == *std::prev(grid_.beam_parts.end(), 2)) {
+        throw RequestError("sampling: beam " + std::to_string(beam) +
+                           " gets no column; raise columns per view");
+      }
+    }
+  }
+
+ private:
+  /// From the views from `first_view` on.
+  void add_beam(std::size_t first_view, double port_edge_rad, double starboard_edge_rad) {
+    for (std::size_t v = first_view; v < grid_.views.size(); ++v) {
       const SubView& view = grid_.views[v];
       const double half = std::atan(view.tan_half_width);
       // Azimuth to starboard of the view axis; edges outside the view are cut at its side.
@@ -71,7 +99,6 @@ class GridBuilder {
     grid_.beam_parts.push_back(static_cast<int>(grid_.parts.size()));
   }
 
- private:
   void add_columns(int view_index, double x_from, double x_to) {
     const SubView& view = grid_.views[static_cast<std::size_t>(view_index)];
     const double step = view.pixel_width();
@@ -138,9 +165,15 @@ class GridBuilder {
       }
       const double q = 1 + x * x + y * y;
       const double solid_angle = part.width * height / (q * std::sqrt(q));
-      const double elevation_rad = std::atan(y / std::hypot(1.0, x));
-      grid_.weights.push_back(static_cast<float>(solid_angle * aperture_.elevation_weight(elevation_rad)));
+      grid_.weights.push_back(static_cast<float>(solid_angle * elevation_weight(x, y)));
     }
+  }
+
+  /// Of a ray. Where there is no pattern, nobody needs the angle: this is most of the cost of a grid.
+  double elevation_weight(double x, double y) const {
+    return aperture_.elevation == Aperture::Elevation::top_hat
+               ? 1.0
+               : aperture_.elevation_weight(std::atan(y / std::hypot(1.0, x)));
   }
 
   const Aperture& aperture_;
@@ -149,6 +182,14 @@ class GridBuilder {
 };
 
 }  // namespace
+
+double BeamRun::samples() const {
+  double columns = 0;
+  for (const ViewSpan& view : views) {
+    columns += view.columns;
+  }
+  return columns * rows;
+}
 
 bool needs_grid(const SonarSettings& settings) {
   const PaperModel& paper = settings.paper;
@@ -168,19 +209,18 @@ GridOptions grid_options(const SonarSettings& settings) {
 
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
   check_aperture(aperture);
-  check(sampling);
   SampleGrid grid;
-  grid.views = make_views(aperture, sampling, options);
-  grid.elevation_limit_rad = aperture.elevation_limit_rad();
-  grid.beam_parts.push_back(0);
+  GridBuilder(aperture, options, grid).add_run(even_views(aperture, sampling, options));
+  return grid;
+}
+
+SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs) {
+  check_aperture(aperture);
+  const GridOptions options;
+  SampleGrid grid;
   GridBuilder builder(aperture, options, grid);
-  for (int beam = 0; beam < aperture.beam_count(); ++beam) {
-    const auto b = static_cast<std::size_t>(beam);
-    builder.add_beam(aperture.beam_edges_rad[b], aperture.beam_edges_rad[b + 1]);
-    if (grid.beam_parts[b + 1] == grid.beam_parts[b]) {
-      throw RequestError("sampling: beam " + std::to_string(beam) +
-                         " gets no column; raise columns per view");
-    }
+  for (const BeamRun& run : runs) {
+    builder.add_run(run);
   }
   return grid;
 }

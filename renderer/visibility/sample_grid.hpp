@@ -75,4 +75,24 @@ GridOptions grid_options(const SonarSettings& settings);
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling,
                             const GridOptions& options = {});
 
+/// A view of some azimuths.
+struct ViewSpan {
+  double port_rad = 0.0, starboard_rad = 0.0;
+  int columns = 1;
+};
+
+/// Neighbouring beams that have views of their own.
+struct BeamRun {
+  int begin = 0, end = 0;       ///< beams [begin, end) of the aperture, at least one
+  std::vector<ViewSpan> views;  ///< from port to starboard; together the azimuths of the beams
+  int rows = 1;
+
+  double samples() const;
+};
+
+/// The sampling of some beams only. The beams of the grid are those of the runs, one run after the other.
+/// @param runs in the order of the beams, none twice; no view wider than 60 degrees.
+/// @throws RequestError when a beam gets no column.
+SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs);
+
 }  // namespace sonard::render

@@ -91,26 +91,16 @@ render::EchoImage AccuracyTest::render(const Scene& scene) const {
   return renderer.render_echo(request);
 }
 
-void AccuracyTest::expect_bins(const AccuracyLimits& limits, const ImageAccuracy& found,
-                               const std::string& what) {
+void AccuracyTest::expect_within(const AccuracyLimits& limits, const ImageAccuracy& found,
+                                 const std::string& what) {
   std::printf("%s: bins %.5f, holes %.6f\n", what.c_str(), found.bin_rms, found.hole_fraction);
   EXPECT_LE(found.bin_rms, limits.bin_rms) << what;
   EXPECT_LE(found.hole_fraction, limits.hole_fraction) << what;
-}
-
-void AccuracyTest::expect_beams(const AccuracyLimits& limits, const ImageAccuracy& found,
-                                const std::string& what) {
   std::printf("%s: worst beam: total %.5f, first echo %.3f bins, centroid %.4f bins\n", what.c_str(),
               found.beam_total, found.first_echo_bins, found.centroid_bins);
   EXPECT_LE(found.beam_total, limits.beam_total) << what;
   EXPECT_LE(found.first_echo_bins, limits.first_echo_bins) << what;
   EXPECT_LE(found.centroid_bins, limits.centroid_bins) << what;
-}
-
-void AccuracyTest::expect_within(const AccuracyLimits& limits, const ImageAccuracy& found,
-                                 const std::string& what) {
-  expect_bins(limits, found, what);
-  expect_beams(limits, found, what);
 }
 
 Scene forward_looking_scene(std::vector<render::Body> bodies, const render::RangeLines& range) {

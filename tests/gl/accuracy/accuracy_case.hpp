@@ -53,18 +53,11 @@ class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
   /// The scene's image at the preset.
   render::EchoImage render(const Scene& scene) const;
 
-  /// Prints the errors under `what` and asserts the limits: of bins, of whole beams, or both.
-  static void expect_bins(const AccuracyLimits& limits, const ImageAccuracy& found, const std::string& what);
-  static void expect_beams(const AccuracyLimits& limits, const ImageAccuracy& found, const std::string& what);
+  /// Prints the errors under `what` and asserts the limits.
   static void expect_within(const AccuracyLimits& limits, const ImageAccuracy& found,
                             const std::string& what);
 };
 
-inline auto ray_cases() {
-  using Preset = render::Sampling::Preset;
-  return ::testing::Values(AccuracyCase{render::Backend::ray, Preset::fast},
-                           AccuracyCase{render::Backend::ray, Preset::normal});
-}
 inline auto all_cases() {
   using Preset = render::Sampling::Preset;
   return ::testing::Values(AccuracyCase{render::Backend::ray, Preset::fast},

@@ -16,7 +16,7 @@ constexpr double degree = std::numbers::pi / 180;
 class EdgeAccuracy : public AccuracyTest {};
 class DihedralAccuracy : public AccuracyTest {};
 
-INSTANTIATE_TEST_SUITE_P(Accuracy, EdgeAccuracy, ray_cases(), case_name);
+INSTANTIATE_TEST_SUITE_P(Accuracy, EdgeAccuracy, all_cases(), case_name);
 INSTANTIATE_TEST_SUITE_P(Accuracy, DihedralAccuracy, all_cases(), case_name);
 
 // T6: walls at 8 and 12 m; the near one ends inside a beam, a third from its edge.

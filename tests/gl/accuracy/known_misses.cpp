@@ -6,6 +6,7 @@ namespace {
 
 using Limits = AccuracyLimits;
 constexpr auto ray = render::Backend::ray;
+constexpr auto raster = render::Backend::raster;
 constexpr auto fast = render::Sampling::Preset::fast;
 constexpr auto normal = render::Sampling::Preset::normal;
 
@@ -18,10 +19,16 @@ struct Miss {
 };
 
 constexpr Miss misses[] = {
+    // The last beam hears the slope over a line and a half, at less than one of the 256 elevations at which
+    // slices
+    // are compared.
+    {"T1_ObliqueSlope", ray, normal, &Limits::beam_total, 0.0014},
     // The limb of a body far away: it takes up so few of the beam's elevations that `fast` leaves it at that.
     {"Flat100k", ray, fast, &Limits::centroid_bins, 0.34},
     // A bed that shadows itself everywhere has a silhouette in every beam; it is two beams in 256.
     {"Ripple100k", ray, normal, &Limits::centroid_bins, 0.122},
+    // The end of a shadow is known to half a row, and a row is three to five lines of the bed there.
+    {"T7_ShadowOfAWall", raster, fast, &Limits::shadow_bins, 3.4},
 };
 
 }  // namespace

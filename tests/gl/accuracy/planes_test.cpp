@@ -18,7 +18,7 @@ class PlaneAccuracy : public AccuracyTest {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Accuracy, SlopeAccuracy, ray_cases(), case_name);
+INSTANTIATE_TEST_SUITE_P(Accuracy, SlopeAccuracy, all_cases(), case_name);
 INSTANTIATE_TEST_SUITE_P(Accuracy, PlaneAccuracy, all_cases(), case_name);
 
 TEST_P(SlopeAccuracy, T1_ObliqueSlope) {
@@ -26,8 +26,9 @@ TEST_P(SlopeAccuracy, T1_ObliqueSlope) {
   const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.35, -0.5));
   const glm::dvec3 a = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1)));
   const glm::dvec3 b = glm::cross(n, a);
-  const glm::dvec3 corner = glm::dvec3(9, 0, 0) - 300.0 * a - 300.0 * b;
-  const Scene scene = forward_looking_scene({make_body("slope", make_quad(corner, 600.0 * a, 600.0 * b))});
+  // Just beyond the range: corners are floats, and the last beam hears but a few centimetres of depth.
+  const glm::dvec3 corner = glm::dvec3(9, 0, 0) - 32.0 * a - 32.0 * b;
+  const Scene scene = forward_looking_scene({make_body("slope", make_quad(corner, 64.0 * a, 64.0 * b))});
   const PlaneTruth truth{9 * n.x, n.x, n.y, n.z, scene.settings.aperture.elevation_limit_rad()};
   const auto echo = [&](double from, double to, double r1, double r2) {
     return bench::plane_beam_echo(truth, from, to, r1, r2);

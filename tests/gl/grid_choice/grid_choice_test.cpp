@@ -1,4 +1,4 @@
-// Backend `raster` finds the grid that an error preset takes (docs/accuracy.md).
+// Backend `raster` finds the grids that an error preset takes (docs/accuracy.md).
 #include "renderer/visibility/grid_choice.hpp"
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using Preset = Sampling::Preset;
 
-// ---- the ladder
+// ---- the first look
 
 Aperture fan(int beams, double width_rad) {
   Aperture aperture;
@@ -23,46 +23,197 @@ Aperture fan(int beams, double width_rad) {
   return aperture;
 }
 
-TEST(GridLadder, TwoStepsDownIsEverySecondColumnAndRow) {
-  const GridLadder ladder(fan(256, 2.0943951));
-  for (int step = 2; step <= ladder.last_step(); ++step) {
-    const Sampling fine = ladder.sampling(step);
-    const Sampling coarse = ladder.sampling(step - 2);
-    EXPECT_EQ(fine.columns_per_view, 2 * coarse.columns_per_view) << step;
-    EXPECT_EQ(fine.rows, 2 * coarse.rows) << step;
-    EXPECT_EQ(fine.views, coarse.views) << step;
-  }
-}
-
-TEST(GridLadder, NoViewExceedsWhatCanBeDrawnAndNoGridTheMemory) {
-  for (const auto& [beams, width_rad] : {std::pair{1, 0.05}, {256, 2.0943951}, {512, 6.28}, {4096, 2.4}}) {
-    const GridLadder ladder(fan(beams, width_rad));
-    for (int step = 0; step <= ladder.last_step(); ++step) {
-      const Sampling sampling = ladder.sampling(step);
-      EXPECT_LE(sampling.columns_per_view, 16384);
-      EXPECT_LE(sampling.rows, 16384);
-      EXPECT_GE(sampling.views * sampling.columns_per_view, beams);
-      EXPECT_LE(width_rad / sampling.views, 1.0472);
-      EXPECT_LE(1.0 * sampling.views * sampling.columns_per_view * sampling.rows, 0x1p25);
+TEST(FirstLook, NoViewExceedsWhatCanBeDrawnAndNoGridTheMemory) {
+  for (const auto& [beams, width_rad] :
+       {std::pair{1, 0.05}, {1, 2.5}, {256, 2.0943951}, {512, 6.28}, {4096, 2.4}}) {
+    for (const Preset preset : {Preset::fast, Preset::normal, Preset::reference}) {
+      const Aperture aperture = fan(beams, width_rad);
+      const BeamDensity density = first_density(aperture, preset);
+      const BeamRun run = whole_fan(aperture, density);
+      EXPECT_GE(density.columns, 2);
+      EXPECT_LE(run.rows, 8192);
+      EXPECT_LE(run.samples(), 0x1p25);
+      for (const ViewSpan& view : run.views) {
+        EXPECT_LE(view.columns, 8192);
+        EXPECT_LE(view.port_rad - view.starboard_rad, 1.0472);
+      }
     }
-    EXPECT_GE(ladder.first_step(Preset::normal), ladder.first_step(Preset::fast));
-    EXPECT_EQ(ladder.first_step(Preset::reference), ladder.last_step());
   }
 }
 
-TEST(GridLadder, RowsAreAsNarrowInATallFan) {
+TEST(FirstLook, IsFinerForSmallerErrors) {
+  const Aperture aperture = fan(256, 2.0943951);
+  EXPECT_EQ(first_density(aperture, Preset::fast), (BeamDensity{2, 256, 0, 0, 0, 0}));
+  EXPECT_EQ(first_density(aperture, Preset::normal), (BeamDensity{4, 512, 0, 0, 0, 0}));
+  EXPECT_EQ(first_density(aperture, Preset::reference), (BeamDensity{32, 2048, 0, 0, 0, 0}));
+}
+
+TEST(FirstLook, RowsAreAsNarrowInATallFan) {
   Aperture tall = fan(64, 1);
   tall.vertical_beamwidth_rad *= 3;
-  EXPECT_EQ(GridLadder(tall).sampling(2).rows, 3 * GridLadder(fan(64, 1)).sampling(2).rows);
+  EXPECT_EQ(first_density(tall, Preset::fast).rows, 3 * first_density(fan(64, 1), Preset::fast).rows);
 }
 
-TEST(GridLadder, GoesFinerOnlyWhileTheErrorIsTooLarge) {
-  const GridLadder ladder(fan(256, 2.0943951));
-  EXPECT_EQ(next_step(ladder, 2, 0.05, 0.05), 2);
-  EXPECT_EQ(next_step(ladder, 2, 0.051, 0.05), 3);
-  EXPECT_GT(next_step(ladder, 2, 0.2, 0.05), 3);
-  EXPECT_EQ(next_step(ladder, 2, INFINITY, 0.05), 6) << "one odd bin, at most 16 times the samples";
-  EXPECT_EQ(next_step(ladder, ladder.last_step(), 0.9, 0.05), ladder.last_step());
+// ---- runs
+
+TEST(BeamRuns, NeighboursThatAreSampledAlikeShareViewsOfFewSizes) {
+  const Aperture aperture = fan(256, 2.0943951);
+  const BeamDensity coarse{8, 512, 0, 0, 0, 0}, fine{512, 512, 0, 0, 0, 0};
+  std::vector<BeamChoice> choices;
+  for (int beam = 10; beam < 17; ++beam) {
+    choices.push_back({beam, coarse});
+  }
+  for (int beam = 17; beam < 50; ++beam) {
+    choices.push_back({beam, fine});
+  }
+  choices.push_back({60, fine});
+  std::vector<std::pair<int, int>> found;
+  for (const BeamRun& run : beam_runs(aperture, choices)) {
+    found.emplace_back(run.begin, run.end);
+    ASSERT_EQ(run.views.size(), 1u);
+    EXPECT_EQ(run.views[0].columns, (run.end - run.begin) * (run.begin < 17 ? 8 : 512));
+    EXPECT_EQ(run.views[0].port_rad, aperture.beam_edges_rad[static_cast<std::size_t>(run.begin)]);
+    EXPECT_EQ(run.views[0].starboard_rad, aperture.beam_edges_rad[static_cast<std::size_t>(run.end)]);
+  }
+  EXPECT_EQ(found, (std::vector<std::pair<int, int>>{
+                       {10, 14}, {14, 16}, {16, 17}, {17, 33}, {33, 49}, {49, 50}, {60, 61}}));
+}
+
+TEST(BeamRuns, ABeamWithAZoneHasAViewOfItAndOneOnEitherSide) {
+  const Aperture aperture = fan(4, 0.04);
+  const auto& edges = aperture.beam_edges_rad;
+  const BeamDensity zone{64, 512, edges[1] - 0.004, edges[1] - 0.005, 2, 4};
+  const BeamRun run = beam_runs(aperture, {{1, zone}}).at(0);
+  ASSERT_EQ(run.views.size(), 3u);
+  EXPECT_EQ(run.views[0].port_rad, edges[1]);
+  EXPECT_EQ(run.views[2].starboard_rad, edges[2]);
+  // All of the beam's solid angle is there, once.
+  const SampleGrid grid = make_sample_grid(aperture, {run});
+  double solid_angle = 0;
+  for (const float weight : grid.weights) {
+    solid_angle += static_cast<double>(weight);
+  }
+  const double expected = 0.01 * 2 * std::sin(aperture.elevation_limit_rad());
+  EXPECT_NEAR(solid_angle / expected, 1, 1e-5);
+}
+
+// ---- beams in doubt
+
+constexpr GridTargets one_per_cent{0.01, {0.001, 0.05}};
+
+/// A beam of even columns, none of which adds an error.
+BeamState sure(const Aperture& aperture, int beam, const BeamDensity& density) {
+  BeamState state{density, {}, 0};
+  const auto b = static_cast<std::size_t>(beam);
+  const double port = aperture.beam_edges_rad[b];
+  const double width = (port - aperture.beam_edges_rad[b + 1]) / density.columns;
+  for (int i = 0; i < density.columns; ++i) {
+    state.judged.columns.push_back({port - i * width, port - (i + 1) * width, {}});
+  }
+  return state;
+}
+
+class BeamsInDoubt : public ::testing::Test {
+ protected:
+  const Aperture aperture_ = fan(8, 0.08);
+  const BeamDensity first_ = first_density(aperture_, Preset::normal);
+  std::vector<BeamState> beams_ = all_sure();
+
+  std::vector<BeamState> all_sure() const {
+    std::vector<BeamState> beams;
+    for (int beam = 0; beam < 8; ++beam) {
+      beams.push_back(sure(aperture_, beam, first_));
+    }
+    return beams;
+  }
+  std::vector<BeamChoice> in_doubt() const { return beams_in_doubt(aperture_, beams_, one_per_cent); }
+};
+
+TEST_F(BeamsInDoubt, NoneWhereAllAgree) {
+  for (BeamState& beam : beams_) {
+    beam.bin_rms = 0.01;
+    beam.judged.by_rows = {0.0005, 0.025};
+    beam.judged.by_columns = {0.0005, 0.025};
+  }
+  EXPECT_TRUE(in_doubt().empty());
+}
+
+TEST_F(BeamsInDoubt, MoreRowsWhereEdgesLieBetweenRows) {
+  beams_[3].judged.by_rows = {0.002, 0};
+  const auto choices = in_doubt();
+  ASSERT_EQ(choices.size(), 1u);
+  EXPECT_EQ(choices[0].beam, 3);
+  EXPECT_EQ(choices[0].density.columns, first_.columns);
+  EXPECT_EQ(choices[0].density.rows, 4 * first_.rows);
+}
+
+TEST_F(BeamsInDoubt, MoreOfBothWhereBinsAreOff) {
+  beams_[5].bin_rms = 0.02;
+  const auto choices = in_doubt();
+  ASSERT_EQ(choices.size(), 1u);
+  EXPECT_EQ(choices[0].density, (BeamDensity{2 * first_.columns, 2 * first_.rows, 0, 0, 0, 0}));
+}
+
+TEST_F(BeamsInDoubt, ALoneEdgeIsLookedAtInAZone) {
+  BeamState& beam = beams_[2];
+  beam.judged.columns[1].error = beam.judged.columns[2].error = {0.1, 0};
+  beam.judged.by_columns = {0.14, 0};
+  const auto choices = in_doubt();
+  ASSERT_EQ(choices.size(), 1u);
+  const BeamDensity& density = choices[0].density;
+  EXPECT_EQ(density.zone_port_rad, beam.judged.columns[1].port_rad);
+  EXPECT_EQ(density.zone_starboard_rad, beam.judged.columns[2].starboard_rad);
+  EXPECT_GE(density.columns, 32 * 2);
+  EXPECT_EQ(density.rows, first_.rows);
+  EXPECT_EQ(density.port_columns, 2);
+  EXPECT_EQ(density.starboard_columns, 2);
+  EXPECT_LT(density.samples(), 20 * first_.samples());
+}
+
+TEST_F(BeamsInDoubt, ManyEdgesTakeColumnsInAllOfTheBeam) {
+  BeamState& beam = beams_[2];
+  for (ColumnError& column : beam.judged.columns) {
+    column.error = {0.001, 0};
+  }
+  beam.judged.by_columns = {0.002, 0};
+  const auto choices = in_doubt();
+  ASSERT_EQ(choices.size(), 1u);
+  EXPECT_FALSE(choices[0].density.has_zone());
+  EXPECT_EQ(choices[0].density.columns, 4 * first_.columns);
+}
+
+TEST_F(BeamsInDoubt, OneThinThingHasAllBeamsLookedAtWithMoreColumns) {
+  beams_[7].judged.thin = true;
+  const auto choices = in_doubt();
+  ASSERT_EQ(choices.size(), 8u);
+  for (const BeamChoice& choice : choices) {
+    EXPECT_EQ(choice.density, (BeamDensity{4 * first_.columns, first_.rows, 0, 0, 0, 0}));
+  }
+}
+
+TEST_F(BeamsInDoubt, AllTogetherTakeNoMoreThanTheMemoryAndEachIsFinerOrLeftOut) {
+  const Aperture wide = fan(2048, 2);
+  const BeamDensity first = first_density(wide, Preset::normal);
+  std::vector<BeamState> beams;
+  for (int beam = 0; beam < 2048; ++beam) {
+    beams.push_back(sure(wide, beam, first));
+    beams.back().bin_rms = 1;
+  }
+  double samples = 0;
+  for (const BeamChoice& choice : beams_in_doubt(wide, beams, one_per_cent)) {
+    EXPECT_GT(choice.density.samples(), first.samples());
+    samples += choice.density.samples();
+  }
+  EXPECT_GT(samples, 0);
+  EXPECT_LE(samples, 0x1p25);
+}
+
+TEST_F(BeamsInDoubt, WhatIsAsFineAsItGetsIsLeftAsItIs) {
+  const BeamDensity finest{512, 2048, 0, 0, 0, 0};
+  beams_[0] = sure(aperture_, 0, finest);
+  beams_[0].bin_rms = 1;
+  beams_[0].judged.by_rows = {1, 1};
+  EXPECT_TRUE(in_doubt().empty());
 }
 
 // ---- thinned samples
@@ -87,15 +238,22 @@ std::vector<SurfaceSample> plane_samples(const SubView& view, const glm::dvec3& 
   return samples;
 }
 
+/// A small fan in one view, and every second column and row of it.
+struct TwoGrids {
+  Aperture aperture = fan(8, 0.4);
+  BeamRun run = whole_fan(aperture, {2, 256, 0, 0, 0, 0});
+  SampleGrid fine = make_sample_grid(aperture, {run});
+  SampleGrid coarse = make_sample_grid(aperture, thinned({run}));
+};
+
 TEST(ThinnedSamples, OfAPlaneAreThoseOfTheCoarseGrid) {
-  GridLadder ladder(fan(8, 0.4));
-  const SampleGrid& fine = ladder.grid(2);
-  const SampleGrid& coarse = ladder.grid(0);
-  ASSERT_EQ(fine.views.size(), 1u);
+  const TwoGrids grids;
+  ASSERT_EQ(grids.fine.views.size(), 1u);
   const glm::dvec3 n = glm::normalize(glm::dvec3(1, 0.4, -0.7));
-  const std::vector<SurfaceSample> samples = plane_samples(fine.views[0], n, 5);
-  const std::vector<SurfaceSample> expected = plane_samples(coarse.views[0], n, 5);
-  const ThinnedSamples thinned(fine, {samples.data()}, coarse);
+  const std::vector<SurfaceSample> samples = plane_samples(grids.fine.views[0], n, 5);
+  const std::vector<SurfaceSample> expected = plane_samples(grids.coarse.views[0], n, 5);
+  EXPECT_EQ(4 * expected.size(), samples.size());
+  const ThinnedSamples thinned(grids.fine, {samples.data()}, grids.coarse);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const SurfaceSample& found = thinned.views()[0][i];
     ASSERT_NEAR(found.range_m, expected[i].range_m, 1e-5F) << i;
@@ -106,27 +264,27 @@ TEST(ThinnedSamples, OfAPlaneAreThoseOfTheCoarseGrid) {
 }
 
 TEST(ThinnedSamples, WhereNothingIsSeenNothingIs) {
-  GridLadder ladder(fan(2, 0.1));
-  const SampleGrid& fine = ladder.grid(2);
+  const TwoGrids grids;
   const std::vector<SurfaceSample> samples(
-      static_cast<std::size_t>(fine.views[0].columns * fine.views[0].rows));
-  const ThinnedSamples thinned(fine, {samples.data()}, ladder.grid(0));
+      static_cast<std::size_t>(grids.fine.views[0].columns * grids.fine.views[0].rows));
+  const ThinnedSamples thinned(grids.fine, {samples.data()}, grids.coarse);
   EXPECT_EQ(thinned.views()[0][0], SurfaceSample{});
 }
 
 // ---- the estimate
 
-TEST(EstimatedError, CountsOnlyWhatIsLoudAfterTheLineWeights) {
-  BinningResult image, thinned;
-  image.beams = thinned.beams = 2;
-  image.lines = thinned.lines = 3;
-  image.echo = {1.0F, 1.0F, 0.005F, 0, 0, 0};  // the second beam hears nothing
-  thinned.echo = {1.3F, 0.6F, 0.9F, 0, 0, 1.0F};
-  EXPECT_NEAR(estimate_error(image, thinned, {}), 0.4 * std::sqrt((0.09 + 0.16) / 2), 1e-6);
+TEST(BinError, CountsOnlyWhatIsLoudAfterTheLineWeights) {
+  const std::vector<float> echo{1.0F, 1.0F, 0.005F};
+  const std::vector<float> thinned{1.3F, 0.6F, 0.9F};
+  const auto error = [&](const std::vector<float>& of, const std::vector<float>& line_weight) {
+    return bin_error(echo.data(), of.data(), 3, line_weight);
+  };
+  EXPECT_NEAR(error(thinned, {}), 0.4 * std::sqrt((0.09 + 0.16) / 2), 1e-6);
   // A weight lifts the third bin above a hundredth of the beam's loudest and drops the second below.
-  EXPECT_NEAR(estimate_error(image, thinned, {1, 0.001F, 100}), 0.4 * std::sqrt((0.09 + 179.0 * 179.0) / 2),
-              1e-2);
-  EXPECT_EQ(estimate_error(image, image, {}), 0);
+  EXPECT_NEAR(error(thinned, {1, 0.001F, 100}), 0.4 * std::sqrt((0.09 + 179.0 * 179.0) / 2), 1e-2);
+  EXPECT_EQ(error(echo, {}), 0);
+  const std::vector<float> silent{0, 0, 0};
+  EXPECT_EQ(bin_error(silent.data(), thinned.data(), 3, {}), 0);
 }
 
 // ---- the presets
@@ -161,7 +319,7 @@ class RasterPreset : public ::testing::Test {
       samples.push_back(renderer.last_statistics().samples);
       std::printf("%s: RMS %.4f, %llu samples\n", name.c_str(), error->bin_rms,
                   static_cast<unsigned long long>(samples.back()));
-      EXPECT_LT(error->bin_rms, target_error(preset)) << name;
+      EXPECT_LT(error->bin_rms, grid_targets(preset).bins) << name;
       EXPECT_LE(error->first_echo_bins, preset == Preset::fast ? 1.0 : 0.5) << name;
       EXPECT_LE(error->hole_fraction, preset == Preset::fast ? 1e-3 : 0.0) << name;
     }

@@ -1,0 +1,187 @@
+// What the judge says of images whose error can be written down.
+#include "renderer/visibility/beam_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace sonard::render {
+namespace {
+
+constexpr double step_m = 0.02;
+
+/// Three beams of half a degree, sampled evenly in one view; what is said of "the beam" is of the middle one.
+class Judged : public ::testing::Test {
+ protected:
+  static constexpr int columns_per_beam = 8;
+
+  Judged() {
+    for (int i = 0; i < 4; ++i) {
+      aperture_.beam_edges_rad.push_back(0.0135 - 0.009 * i);
+    }
+    make_grid(columns_per_beam, 64);
+  }
+
+  void make_grid(int columns, int rows) {
+    grid_ = make_sample_grid(aperture_, std::vector<BeamRun>{{0, 3, {{0.0135, -0.0135, 3 * columns}}, rows}});
+  }
+
+  /// @param what is seen at an azimuth and the tangent of an elevation.
+  JudgedBeam judge(const std::function<SurfaceSample(double psi, double y)>& what,
+                   const RangeLines& range = {1000, step_m, 0, false}) {
+    const SubView& view = grid_.views[0];
+    std::vector<SurfaceSample> samples;
+    for (int j = 0; j < view.rows; ++j) {
+      for (int i = 0; i < view.columns; ++i) {
+        const double x = -view.tan_half_width + (i + 0.5) * view.pixel_width();
+        samples.push_back(what(-std::atan(x), -view.tan_half_height + (j + 0.5) * view.pixel_height()));
+      }
+    }
+    return judge_beams(grid_, {samples.data()}, range, {}, workers_)[1];
+  }
+
+  /// What is heard of the middle beam where columns see only what lies in their centres: share of the beam to
+  /// port of an upright edge.
+  double sampled_share(double edge_rad) const {
+    double share = 0;
+    const SubView& view = grid_.views[0];
+    for (int p = grid_.beam_parts[1]; p < grid_.beam_parts[2]; ++p) {
+      const ColumnPart& part = grid_.parts[static_cast<std::size_t>(p)];
+      const double x = -view.tan_half_width + (part.column + 0.5) * view.pixel_width();
+      share += -std::atan(x) > edge_rad ? static_cast<double>(part.width) : 0.0;
+    }
+    return share / (2 * std::tan(0.0045));
+  }
+
+  Aperture aperture_;
+  SampleGrid grid_;
+  WorkerPool workers_{1};
+};
+
+TEST_F(Judged, AnUprightEdgeMayBeAnywhereBetweenTwoColumns) {
+  // To port an echo of 1 at 5 m, to starboard one of 0.25 at 10 m.
+  const double column_rad = 0.009 / columns_per_beam;
+  double worst = 0;
+  for (double edge = -0.0044; edge < 0.0044; edge += 0.0001) {
+    const JudgedBeam judged = judge([&](double psi, double) {
+      return psi > edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{10, 0.25F, 0, 0};
+    });
+    const double share = (0.0045 - edge) / 0.009;
+    const double total = share + 0.25 * (1 - share);
+    const double found = sampled_share(edge) + 0.25 * (1 - sampled_share(edge));
+    // A jump to a column of the next beam is met once only.
+    const double allowed = std::abs(edge) > 0.0045 - column_rad / 2 ? std::numbers::sqrt2 : 1.0;
+    const double error = std::abs(found - total) / found;
+    EXPECT_LE(error, 1.02 * allowed * judged.by_columns.total) << edge;
+    worst = std::max(worst, error / judged.by_columns.total);
+    EXPECT_LE(judged.by_columns.total * found, 0.75 * column_rad / 0.009) << "as if it were nowhere";
+    const auto lines = [](double part, double all) { return (250 * part + 500 * 0.25 * (1 - part)) / all; };
+    const double centroid_error = std::abs(lines(sampled_share(edge), found) - lines(share, total));
+    EXPECT_LE(centroid_error, 1.1 * allowed * judged.by_columns.centroid_lines) << edge;
+    EXPECT_LT(judged.by_rows.total, 1e-5);
+  }
+  EXPECT_GT(worst, 0.8) << "no more than it may be";
+}
+
+TEST_F(Judged, TheEdgeIsInTheColumnsThatAreSaidToBeOff) {
+  const double edge = 0.001;
+  const JudgedBeam judged = judge([&](double psi, double) {
+    return psi > edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{};
+  });
+  for (const ColumnError& column : judged.columns) {
+    const double column_rad = column.port_rad - column.starboard_rad;
+    const bool near =
+        column.port_rad + 0.5 * column_rad > edge && column.starboard_rad - 0.5 * column_rad < edge;
+    EXPECT_EQ(column.error.total > 1e-3, near) << column.port_rad;
+  }
+}
+
+TEST_F(Judged, ALevelEdgeMayBeAnywhereBetweenTwoRows) {
+  const double half = std::tan(aperture_.elevation_limit_rad());
+  const SubView& view = grid_.views[0];
+  for (double edge = -0.9 * half; edge < 0.9 * half; edge += 0.013 * half) {
+    const JudgedBeam judged = judge([&](double, double y) {
+      return y < edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.5F, 0, 0};
+    });
+    // Nearly: rows of equal tangent.
+    const double share = (edge + half) / (2 * half);
+    const double rows = std::floor((edge + view.tan_half_height) / view.pixel_height() + 0.5);
+    const double found = (rows * view.pixel_height() - view.tan_half_height + half) / (2 * half);
+    const double error = 0.5 * std::abs(found - share) / (0.5 + 0.5 * found);
+    EXPECT_LE(error, 1.1 * judged.by_rows.total) << edge;
+    EXPECT_LE(judged.by_rows.total, 0.6 / 64 / (0.5 + 0.5 * found)) << edge;
+    EXPECT_LT(judged.by_columns.total, 1e-6);
+  }
+}
+
+TEST_F(Judged, WhatGoesOnIsNoEdge) {
+  // A wall seen at a slant: echo and range change by a third over the three beams.
+  const JudgedBeam judged = judge([](double psi, double y) {
+    return SurfaceSample{static_cast<float>(8 + 60 * psi + 2 * y), static_cast<float>(1 + 6 * psi + y), -60,
+                         2};
+  });
+  EXPECT_LT(judged.by_columns.total, 2e-4);
+  EXPECT_LT(judged.by_columns.centroid_lines, 0.01);
+  EXPECT_LT(judged.by_rows.total, 2e-4);
+  EXPECT_LT(judged.by_rows.centroid_lines, 0.02);
+  EXPECT_FALSE(judged.thin);
+}
+
+TEST_F(Judged, TheLastLineIsNoEdge) {
+  // A surface that leaves the range half way up the beam.
+  const auto slope = [](double, double y) {
+    return SurfaceSample{static_cast<float>(20 + 20 * y), 1, 0, 20};
+  };
+  const JudgedBeam within = judge(slope, {2000, step_m, 0, false});
+  const JudgedBeam cut = judge(slope, {1000, step_m, 0, false});
+  EXPECT_LT(within.by_rows.total, 1e-3);
+  EXPECT_LT(cut.by_rows.total, 1e-3);
+  // But a body before what lies out of range has one.
+  const JudgedBeam body = judge(
+      [&](double psi, double) {
+        return psi > 0.001 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{90, 1, 0, 0};
+      },
+      {1000, step_m, 0, false});
+  EXPECT_GT(body.by_columns.total, 0.05);
+}
+
+TEST_F(Judged, AnEdgeBetweenTwoBeamsIsNoticedByBoth) {
+  // 0.0045 is the port edge of the middle beam. The last column of the beam to port sees the wall.
+  make_grid(4, 64);
+  const JudgedBeam judged = judge([&](double psi, double) {
+    return psi > 0.0044 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.5F, 0, 0};
+  });
+  EXPECT_GT(judged.by_columns.total, 1e-4 / 0.009);
+}
+
+TEST_F(Judged, WhatOneColumnHearsAloneIsThin) {
+  const auto thing = [&](double width_rad) {
+    return judge([=](double psi, double) {
+      return std::abs(psi) < width_rad / 2 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.2F, 0, 0};
+    });
+  };
+  make_grid(9, 64);  // a column is 0.001 wide, and one stands in the middle
+  EXPECT_TRUE(thing(0.0015).thin);
+  EXPECT_FALSE(thing(0.0035).thin);
+}
+
+TEST_F(Judged, SilenceIsNotJudged) {
+  const JudgedBeam judged = judge([](double, double) { return SurfaceSample{}; });
+  EXPECT_TRUE(judged.columns.empty());
+  EXPECT_EQ(judged.by_columns.total, 0);
+  EXPECT_EQ(judged.by_rows.centroid_lines, 0);
+}
+
+TEST_F(Judged, SamplesThatAreNoNumbersDoNotCount) {
+  const JudgedBeam judged = judge([](double psi, double) {
+    return SurfaceSample{5, std::abs(psi) < 0.0005 ? NAN : 1.0F, 0, 0};
+  });
+  EXPECT_TRUE(std::isfinite(judged.by_columns.total));
+  EXPECT_TRUE(std::isfinite(judged.by_columns.centroid_lines));
+}
+
+}  // namespace
+}  // namespace sonard::render
