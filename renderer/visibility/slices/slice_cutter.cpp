@@ -142,7 +142,7 @@ void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, do
   }
   const auto tan_limit = static_cast<double>(fan.tan_limit());
   const auto probe = [tan_limit](double at) {
-    const double place = (at / tan_limit + 1) * (0.5 * side_probes) + 0.5;
+    const double place = (at / (probe_reach * tan_limit) + 1) * (0.5 * (side_probes - 1)) + 1;
     return static_cast<std::int32_t>(std::clamp(place, 0.0, static_cast<double>(side_probes)));
   };
   const auto turn = [&](int from, int to) {

@@ -27,8 +27,11 @@ struct Slice {
         sine(static_cast<float>(std::sin(azimuth))) {}
 };
 
-/// Neighbouring slices are compared at so many t, evenly spaced over the elevation of the fan.
+/// Neighbouring slices are compared at so many t, evenly spaced over the elevation of the fan; the first and
+/// the last lie just inside its limits, where a beam that hears little hears it.
 inline constexpr int side_probes = 256;
+inline constexpr double probe_reach = 0.999;  ///< of the tangent of the limit
+
 using ProbeSet = std::bitset<side_probes>;
 
 /// Where a surface ends along a slice or turns sharply: the end of a wall, the side of a post, the corner of

@@ -14,7 +14,7 @@ namespace {
 constexpr int parts_at_edges = 5;
 constexpr int parts_of_bows = 3;
 constexpr float bows_per_edge = 10.0F;  // what a bow displaces stays nearby, what an edge hides is gone
-constexpr float ends_per_edge = 1.0F;  // where the range ends, the smear of a slice is right in first order
+constexpr float ends_per_edge = 1.0F;   // where the range ends, the smear of a slice is right in first order
 constexpr std::size_t borders_per_job = 32;
 constexpr float least_heard = 0.5F / side_probes;
 

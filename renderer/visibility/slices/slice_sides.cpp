@@ -10,6 +10,14 @@ namespace sonard::render {
 
 namespace {
 
+float first_probe(float tan_limit) {
+  return -static_cast<float>(probe_reach) * tan_limit;
+}
+
+float probe_step(float tan_limit) {
+  return -2 * first_probe(tan_limit) / (side_probes - 1);
+}
+
 /// Shares and lines of SliceSides from its profiles. Ranges are positive, so that their bits are ordered as
 /// they are: GCC 12 vectorises extremes of integers only.
 SONARD_SIMD_CLONES
@@ -45,7 +53,7 @@ void summarise(const SideView& view, SliceSides& sides) {
 SideView::SideView(float tan_limit_, float max_range_m_, float line_m_)
     : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant() {
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = tan_limit * (2 * (static_cast<float>(i) + 0.5F) / side_probes - 1);
+    const float t = first_probe(tan_limit) + static_cast<float>(i) * probe_step(tan_limit);
     secant[i] = std::sqrt(1 + t * t);
   }
 }
@@ -115,7 +123,7 @@ void SideExpectation::follow(float width_rad, float tan_limit) {
 SONARD_SIMD_CLONES
 void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   const auto count = count_;
-  const float probes_per_t = side_probes / (2 * tan_limit);
+  const float probes_per_t = 1 / probe_step(tan_limit), lowest = first_probe(tan_limit);
   const auto end = static_cast<float>(side_probes);
   const float* __restrict low = low_.data();
   const float* __restrict high = high_.data();
@@ -124,10 +132,9 @@ void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   std::int32_t* __restrict first = first_probe_.data();
   std::int32_t* __restrict last = last_probe_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    // The first probe at or above t; probes lie in the middle of their steps. Truncation is floor where it
-    // counts.
-    const float from = (low[i] + low_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
-    const float to = (high[i] + high_drift[i] * offset_rad + tan_limit) * probes_per_t + 0.5F;
+    // The first probe above t. Truncation is floor where it counts.
+    const float from = (low[i] + low_drift[i] * offset_rad - lowest) * probes_per_t + 1;
+    const float to = (high[i] + high_drift[i] * offset_rad - lowest) * probes_per_t + 1;
     first[i] = static_cast<std::int32_t>(from < 0 ? 0.0F : (from > end ? end : from));
     last[i] = static_cast<std::int32_t>(to < 0 ? 0.0F : (to > end ? end : to));
   }
@@ -135,7 +142,7 @@ void SideExpectation::find_probes(float tan_limit, float offset_rad) {
 
 /// @param offset_rad from the middle of the slice, positive to port.
 void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& out) {
-  const float step = 2 * tan_limit / side_probes;
+  const float step = probe_step(tan_limit);
   find_probes(tan_limit, offset_rad);
   std::int32_t end = 0;  // of what is filled
   for (std::size_t i = 0; i < count_; ++i) {
@@ -145,7 +152,7 @@ void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& ou
     }
     const float slope = w_slope_[i] * step;
     const float w = w_at_0_[i] + w_by_azimuth_[i] * offset_rad +
-                    w_slope_[i] * (-tan_limit + (static_cast<float>(first) + 0.5F) * step);
+                    w_slope_[i] * (first_probe(tan_limit) + static_cast<float>(first) * step);
     // Most hold a probe or two. What is written too much the next piece writes again, or the end.
     float* const at = &out[static_cast<std::size_t>(first)];
     for (std::int32_t k = 0; k < probe_padding; ++k) {
