@@ -8,14 +8,20 @@ constexpr Repetition some{7, 201, 0.2};
 constexpr Repetition many{50, 1000, 0.3};  // pings of some ten microseconds
 constexpr Repetition few{2, 3, 0.3};
 
-/// `reference` takes long and has no target: one scene shows what it costs.
+/// `reference` takes long and has no target: one scene shows what it costs. The targets are those of `ray`; `raster` is
+/// there for comparison, where a ping of it takes less than a second.
 Plan presets(const std::string& scene, const Repetition& repetition) {
   Plan plan;
   for (const Point& point : preset_points()) {
-    if (point.name == "reference" && scene != "flat100k") {
+    const bool reference = point.name == "reference";
+    if (reference && scene != "flat100k") {
       continue;
     }
-    plan.points.push_back({point, point.name == "reference" ? few : repetition});
+    plan.points.push_back({point, reference ? few : repetition, render::Backend::ray});
+    const bool slow = point.name != "fast" && (scene == "ripple100k" || scene == "swell1m");
+    if (!slow) {
+      plan.points.push_back({point, few, render::Backend::raster});
+    }
   }
   return plan;
 }

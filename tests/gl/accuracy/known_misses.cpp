@@ -15,7 +15,7 @@ struct Miss {
   render::Backend backend;
   render::Sampling::Preset preset;
   double Limits::*target;
-  double bound;  ///< held instead: a third above what was measured, twice at limbs
+  double bound;  ///< held instead: a third above what was measured
 };
 
 constexpr Miss misses[] = {
