@@ -49,6 +49,22 @@ void put_label(cv::Mat& image, const std::string& text, cv::Point2d at, double a
   }
 }
 
+/// Outside the starboard edge; in a full circle, which has no outside, to the right of the line ahead.
+void put_ring_label(cv::Mat& grid, const SectorGeometry& geometry, double radius_m) {
+  if (geometry.full_circle()) {
+    const cv::Point2d end = geometry.pixel(radius_m, 0.0);
+    put_label(grid, metres_text(radius_m), {end.x + label_gap_px, end.y + 1.5 * label_gap_px}, 0.0);
+    return;
+  }
+  const double edge_rad = geometry.starboard_edge_rad();
+  const cv::Point2d end = geometry.pixel(radius_m, edge_rad);
+  // Across the edge, 8 pixels right and 12 down of one at 60 degrees.
+  const double right = std::cos(edge_rad);
+  const double anchor = right > 0.3 ? 0.0 : right < -0.3 ? 1.0 : 0.5;
+  put_label(grid, metres_text(radius_m),
+            {end.x + 2.0 * label_gap_px * right, end.y + 1.732 * label_gap_px * std::sin(edge_rad)}, anchor);
+}
+
 void draw_rings(cv::Mat& grid, const SectorGeometry& geometry) {
   const double range_m = geometry.range_m();
   const double step_m = ring_step_m(range_m);
@@ -62,10 +78,7 @@ void draw_rings(cv::Mat& grid, const SectorGeometry& geometry) {
   arc(range_m);
   for (int ring = 1; ring * step_m <= range_m * whole_range_slack; ++ring) {
     arc(std::min(ring * step_m, range_m));
-    // Beside the starboard edge; in a full circle, where all is inside, to the right of the line ahead.
-    const double bearing_rad = geometry.full_circle() ? 0.0 : geometry.starboard_edge_rad();
-    const cv::Point2d end = geometry.pixel(ring * step_m, bearing_rad);
-    put_label(grid, metres_text(ring * step_m), {end.x + label_gap_px, end.y + 1.5 * label_gap_px}, 0.0);
+    put_ring_label(grid, geometry, ring * step_m);
   }
 }
 
