@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <opencv2/imgproc.hpp>
 
 namespace sonard::client::amber {
 namespace {
@@ -44,6 +45,17 @@ cv::Mat palette() {
     colours.at<cv::Vec3b>(0, value) = colour_of(value);
   }
   return colours;
+}
+
+cv::Mat paint(const cv::Mat& samples, const cv::Mat& inside) {
+  static const cv::Mat colours = palette();
+  cv::Mat grey;
+  cv::cvtColor(samples, grey, cv::COLOR_GRAY2BGR);
+  cv::Mat coloured;
+  cv::LUT(grey, colours, coloured);
+  cv::Mat picture(samples.size(), CV_8UC3, background());
+  coloured.copyTo(picture, inside);
+  return picture;
 }
 
 cv::Scalar background() {

@@ -10,6 +10,9 @@ namespace sonard::client::amber {
 /// picture reads the same in grey.
 cv::Mat palette();
 
+/// Samples (CV_8UC1) in colour, on the background where `inside` (CV_8UC1) is 0: CV_8UC3, BGR.
+cv::Mat paint(const cv::Mat& samples, const cv::Mat& inside);
+
 /// BGR.
 cv::Scalar background();
 cv::Scalar grid();

@@ -30,7 +30,6 @@ class FanImage {
 
  private:
   void map_pixels();
-  void draw_grid();
 
   FanGeometry geometry_;
   FanLook look_;
@@ -38,14 +37,10 @@ class FanImage {
   cv::Mat map_beams_;  ///< CV_32FC1: fractional column of each pixel
   cv::Mat map_lines_;  ///< CV_32FC1: fractional row
   cv::Mat inside_;     ///< CV_8UC1: 255 within the fan
-  cv::Mat palette_;
-  cv::Mat grid_;  ///< CV_8UC3, black where nothing is drawn
+  cv::Mat grid_;       ///< CV_8UC3, black where nothing is drawn
 };
 
 /// Samples as they came, CV_8UC1: one column per beam, port on the left; one row per line, range upwards.
 cv::Mat raw_polar_image(const cv::Mat& polar);
-
-/// Distance of range arcs for a full range: 1, 2 or 5 times a power of ten that gives at most eight of them.
-double ring_step_m(double range_m);
 
 }  // namespace sonard::client

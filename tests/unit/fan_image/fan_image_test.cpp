@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "clients/sonarview/amber.hpp"
+#include "clients/sonarview/polar_grid.hpp"
 #include "protocol/gemini/bearings.hpp"
 
 namespace sonard::client {

@@ -1,4 +1,4 @@
-#include "clients/sonarview/viewer.hpp"
+#include "clients/sonarview/gemini/viewer.hpp"
 
 #include <fmt/format.h>
 
@@ -12,11 +12,12 @@
 #include <string>
 #include <utility>
 
-#include "clients/sonarview/datagram_dropper.hpp"
+#include "clients/sonarview/gemini/datagram_dropper.hpp"
+#include "clients/sonarview/gemini/ipv4_text.hpp"
+#include "clients/sonarview/gemini/ping_log.hpp"
+#include "clients/sonarview/gemini/ping_pictures.hpp"
+#include "clients/sonarview/gemini/sockets.hpp"
 #include "clients/sonarview/image_writer.hpp"
-#include "clients/sonarview/ipv4_text.hpp"
-#include "clients/sonarview/ping_log.hpp"
-#include "clients/sonarview/sockets.hpp"
 
 namespace sonard::client {
 namespace {
@@ -36,7 +37,7 @@ TimePoint now() {
 /// Everything on one thread but the writing of pictures.
 class Viewer {
  public:
-  explicit Viewer(const Options& options);
+  explicit Viewer(const GeminiOptions& options);
 
   ExitStatus run();
 
@@ -55,7 +56,7 @@ class Viewer {
   void arm_timer();
   ExitStatus sum_up();
 
-  const Options options_;
+  const GeminiOptions options_;
   boost::asio::io_context io_;
   udp::socket reports_;
   udp::socket commands_;
@@ -76,21 +77,22 @@ class Viewer {
   std::uint64_t pings_at_progress_ = 0;
   PingRate rate_;
   std::optional<gemini::ReceivedPing> last_ping_;  ///< only while its picture may be wanted
+  PingPictures pictures_;
   std::optional<ImageWriter> writer_;
   std::optional<ExitStatus> failure_;
   bool ended_ = false;
 };
 
-Viewer::Viewer(const Options& options)
+Viewer::Viewer(const GeminiOptions& options)
     : options_(options),
       reports_(open_report_socket(io_, options.bind_address)),
       commands_(open_command_socket(io_, options.surface_address)),
       surface_(options.surface),
       drop_rx_(options.drop_rx, options.seed, 0),
-      drop_tx_(options.drop_tx, options.seed, 1) {
+      drop_tx_(options.drop_tx, options.seed, 1),
+      pictures_({.radius_px = options.radius_px}, options.settings.sound_speed_mps) {
   if (!options_.out.empty()) {
-    writer_.emplace(ImageWriter::Settings{options_.out, FanLook{.radius_px = options_.radius_px},
-                                          options_.settings.sound_speed_mps});
+    writer_.emplace(options_.out);
   }
 }
 
@@ -182,8 +184,8 @@ void Viewer::take_ping(gemini::ReceivedPing ping) {
   if (options_.every == 0) {
     last_ping_ = std::move(ping);
   } else if (ping.number % options_.every == 0) {
-    std::string name = fmt::format("{:06}", ping.number);
-    writer_->write(std::move(ping), std::move(name));
+    const std::string name = fmt::format("{:06}", ping.number);
+    writer_->write(pictures_.of(std::move(ping), name));
   }
 }
 
@@ -237,7 +239,7 @@ void Viewer::check_limits(TimePoint at) {
                "have a pose?\n",
                std::chrono::duration<double>(options_.ping_wait).count(), ipv4_text(surface_.head()->address),
                gemini::head_port, ipv4_text(options_.surface_address));
-    failure_ = ExitStatus::pings_incomplete;
+    failure_ = ExitStatus::incomplete;
     end();
   }
 }
@@ -287,7 +289,7 @@ ExitStatus Viewer::sum_up() {
   ProgramCounters counters;
   if (writer_) {
     if (last_ping_) {
-      writer_->write(std::move(*last_ping_), "last");
+      writer_->write(pictures_.of(std::move(*last_ping_), "last"));
     }
     writer_->finish();
     counters.images_written = writer_->written();
@@ -305,12 +307,12 @@ ExitStatus Viewer::sum_up() {
   fmt::print("{}\n", summary_line(statistics, counters));
   std::fflush(stdout);
   const bool all_complete = statistics.pings_complete > 0 && statistics.pings_incomplete == 0;
-  return failure_.value_or(all_complete ? ExitStatus::ok : ExitStatus::pings_incomplete);
+  return failure_.value_or(all_complete ? ExitStatus::ok : ExitStatus::incomplete);
 }
 
 }  // namespace
 
-ExitStatus view(const Options& options) {
+ExitStatus view_gemini(const GeminiOptions& options) {
   return Viewer(options).run();
 }
 

@@ -1,4 +1,4 @@
-#include "clients/sonarview/ping_log.hpp"
+#include "clients/sonarview/gemini/ping_log.hpp"
 
 #include <fmt/format.h>
 

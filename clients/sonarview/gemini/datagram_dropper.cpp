@@ -1,4 +1,4 @@
-#include "clients/sonarview/datagram_dropper.hpp"
+#include "clients/sonarview/gemini/datagram_dropper.hpp"
 
 namespace sonard::client {
 

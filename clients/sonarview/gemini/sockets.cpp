@@ -1,4 +1,4 @@
-#include "clients/sonarview/sockets.hpp"
+#include "clients/sonarview/gemini/sockets.hpp"
 
 #include <fmt/format.h>
 #include <ifaddrs.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <memory>
 
-#include "clients/sonarview/ipv4_text.hpp"
+#include "clients/sonarview/gemini/ipv4_text.hpp"
 #include "protocol/gemini/messages.hpp"
 
 namespace sonard::client {

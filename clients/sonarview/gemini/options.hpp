@@ -1,26 +1,21 @@
-// What the user asks of sonarview.
+// What the user asks of sonarview for a Gemini 720i.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <string>
 
 #include "protocol/gemini/ping_settings.hpp"
 #include "protocol/gemini/surface.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace sonard::client {
 
-/// Exit status of the program, in its documentation and in scripts.
-enum class ExitStatus : int {
-  ok = 0,
-  system = 1,            ///< a socket or a file could not be opened or written
-  usage = 2,             ///< the command line makes no sense
-  no_head = 3,           ///< no status of a head came in time
-  pings_incomplete = 4,  ///< a ping ended with lines missing, or none came
-};
-
-struct Options {
+struct GeminiOptions {
   gemini::Ipv4 surface_address = 0x7F000001;  ///< commands leave from here
   gemini::Ipv4 bind_address = 0;              ///< reports arrive here; 0: on all addresses
   gemini::SurfaceConfig surface;
@@ -33,7 +28,7 @@ struct Options {
 
   std::filesystem::path out;  ///< folder for pictures; empty: none
   std::uint64_t every = 0;    ///< a picture of each n-th ping; 0: only of the last
-  int radius_px = 0;          ///< of the fan
+  int radius_px = 900;        ///< of the fan
   bool log_pings = false;
   bool quiet = false;
 
@@ -42,7 +37,31 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-/// nullopt: the program ends with `status`, after --help or an error that has been printed.
-std::optional<Options> parse_options(int argc, char** argv, ExitStatus& status);
+/// The options of the program without a subcommand.
+class GeminiArguments {
+ public:
+  /// Declares them; `app` and this object then live until it has parsed.
+  explicit GeminiArguments(CLI::App& app);
+
+  /// What they mean.
+  /// @throws CLI::ValidationError
+  GeminiOptions options() const;
+
+ private:
+  void declare_link(CLI::App& app);
+  void declare_sonar(CLI::App& app);
+  void declare_run(CLI::App& app);
+
+  GeminiOptions options_;
+  // As they are typed, before they have their units.
+  std::string surface_address_ = "127.0.0.1";
+  std::string bind_address_ = "0.0.0.0";
+  std::string head_address_;
+  int bits_ = 8;
+  double interval_ms_ = 0.0;
+  double seconds_ = 0.0;
+  double status_wait_s_ = 5.0;
+  double ping_wait_s_ = 30.0;
+};
 
 }  // namespace sonard::client

@@ -1,4 +1,4 @@
-#include "clients/sonarview/ipv4_text.hpp"
+#include "clients/sonarview/gemini/ipv4_text.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>

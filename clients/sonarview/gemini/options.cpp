@@ -1,0 +1,144 @@
+#include "clients/sonarview/gemini/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <string>
+
+#include "clients/sonarview/gemini/ipv4_text.hpp"
+
+namespace sonard::client {
+namespace {
+
+std::chrono::nanoseconds to_ns(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+gemini::Ipv4 address_of(const std::string& option, const std::string& text) {
+  const auto address = parse_ipv4(text);
+  if (!address) {
+    throw CLI::ValidationError(option, "expected an IPv4 address, found '" + text + "'");
+  }
+  return *address;
+}
+
+}  // namespace
+
+void GeminiArguments::declare_link(CLI::App& app) {
+  app.add_option("--surface-address", surface_address_, "Local address that commands leave from, port 52901")
+      ->capture_default_str()
+      ->group("Link");
+  app.add_option("--bind", bind_address_, "Local address on which reports arrive, port 52900")
+      ->capture_default_str()
+      ->group("Link");
+  app.add_option("--head", head_address_,
+                 "Address of the head, port 52901; without it, the alternate address that its status names")
+      ->group("Link");
+  app.add_option("--sonar-id", options_.surface.sonar_id, "The head to talk to; 0: the first that is heard")
+      ->capture_default_str()
+      ->group("Link");
+  app.add_option("--wait", status_wait_s_, "Seconds to wait for the first status")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str()
+      ->group("Link");
+  app.add_option("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: for ever")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group("Link");
+}
+
+void GeminiArguments::declare_sonar(CLI::App& app) {
+  auto& settings = options_.settings;
+  app.add_option("--range", settings.range_m, "Metres")
+      ->check(CLI::Range(0.3, 150.0))
+      ->capture_default_str()
+      ->group("Sonar");
+  app.add_option("--gain", settings.gain_percent, "Percent")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str()
+      ->group("Sonar");
+  app.add_option("--sound-speed", settings.sound_speed_mps, "Metres per second, in which ranges are counted")
+      ->check(CLI::Range(1400.0, 1588.0))
+      ->capture_default_str()
+      ->group("Sonar");
+  app.add_option("--compression", settings.compression_log2,
+                 "0..4: average 1, 2, 4, 8 or 16 range lines into one")
+      ->check(CLI::Range(0, 4))
+      ->capture_default_str()
+      ->group("Sonar");
+  app.add_option("--rle", settings.rle_threshold,
+                 "Samples below this become zero and travel run-length coded; 0: off")
+      ->check(CLI::Range(0, 255))
+      ->capture_default_str()
+      ->group("Sonar");
+  app.add_option("--bits", bits_, "Bits of a sample")
+      ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str()
+      ->group("Sonar");
+  app.add_option(
+         "--continuous", interval_ms_,
+         "Let the head ping by itself at this interval in milliseconds; without it each ping is asked for")
+      ->check(CLI::Range(1.0, 1e6))
+      ->group("Sonar");
+}
+
+void GeminiArguments::declare_run(CLI::App& app) {
+  app.add_option("--pings", options_.pings, "End after this many pings; 0: go on")
+      ->capture_default_str()
+      ->group("Run");
+  app.add_option("--seconds", seconds_, "End this many seconds after the first status; 0: go on")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str()
+      ->group("Run");
+  app.add_option("--out", options_.out, "Folder for pictures: the fan in colour, the samples in grey")
+      ->group("Run");
+  app.add_option("--every", options_.every, "Pictures of each n-th ping; 0: only of the last")
+      ->capture_default_str()
+      ->group("Run");
+  app.add_option("--size", options_.radius_px, "Pixels from the apex of the fan to its full range")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str()
+      ->group("Run");
+  app.add_flag("--log-pings", options_.log_pings, "One line of key=value for each ping on standard output")
+      ->group("Run");
+  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+  app.add_option("--drop-rx", options_.drop_rx, "Share of arriving datagrams to lose on purpose")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group("Test of the link");
+  app.add_option("--drop-tx", options_.drop_tx, "Share of leaving datagrams to lose on purpose")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group("Test of the link");
+  app.add_option("--seed", options_.seed, "Which datagrams those are")
+      ->capture_default_str()
+      ->group("Test of the link");
+}
+
+GeminiArguments::GeminiArguments(CLI::App& app) {
+  declare_link(app);
+  declare_sonar(app);
+  declare_run(app);
+}
+
+GeminiOptions GeminiArguments::options() const {
+  GeminiOptions options = options_;
+  options.surface_address = address_of("--surface-address", surface_address_);
+  options.bind_address = address_of("--bind", bind_address_);
+  if (options.surface_address == 0) {
+    throw CLI::ValidationError("--surface-address", "must name one address of this machine");
+  }
+  if (!head_address_.empty()) {
+    options.surface.head_address = address_of("--head", head_address_);
+  }
+  if (options.surface.sonar_id == 1) {
+    throw CLI::ValidationError("--sonar-id", "1 is reserved for production");
+  }
+  options.settings.sixteen_bit = bits_ == 16;
+  if (interval_ms_ > 0.0) {
+    options.settings.interval = std::chrono::microseconds{std::llround(interval_ms_ * 1e3)};
+  }
+  options.duration = to_ns(seconds_);
+  options.status_wait = to_ns(status_wait_s_);
+  options.ping_wait = to_ns(ping_wait_s_);
+  return options;
+}
+
+}  // namespace sonard::client

@@ -1,0 +1,188 @@
+#include "clients/sonarview/micron/options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "protocol/micron/units.hpp"
+
+namespace sonard::client {
+namespace {
+
+constexpr double unit_deg = 360.0 / micron::units_per_turn;
+constexpr int most_step = 255;  // it is a byte
+constexpr int most_ad_interval = 65'535;
+
+std::chrono::nanoseconds to_ns(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+LineAddress host_and_port(LineAddress::Way way, const std::string& option, const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  unsigned port = 0;
+  if (colon != std::string::npos && colon > 0) {
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
+    port = error == std::errc() && rest == end && port <= 65'535 ? port : 0;
+  }
+  if (port == 0) {
+    throw CLI::ValidationError(option, "expected HOST:PORT, found '" + text + "'");
+  }
+  return {.way = way, .place = text.substr(0, colon), .port = static_cast<std::uint16_t>(port)};
+}
+
+int step_of(double degrees) {
+  const double units = degrees / unit_deg;
+  const double whole = std::round(units);
+  if (whole < 1.0 || whole > most_step || std::abs(units - whole) > 1e-3) {
+    throw CLI::ValidationError(
+        "--step",
+        fmt::format("expected a multiple of {} degrees, {} at most, found {}; the nearest is {}", unit_deg,
+                    most_step * unit_deg, degrees, std::clamp(whole, 1.0, 1.0 * most_step) * unit_deg));
+  }
+  return static_cast<int>(whole);
+}
+
+int bearing_of(double degrees) {
+  return micron::wrapped(micron::bearing_ahead + static_cast<int>(std::lround(degrees / unit_deg)));
+}
+
+ScanSector sector_of(const std::vector<double>& from_to_deg) {
+  const ScanSector sector{bearing_of(from_to_deg[0]), bearing_of(from_to_deg[1])};
+  if (sector.left == sector.right) {
+    throw CLI::ValidationError("--sector", "FROM and TO are one bearing; leave it away to scan all round");
+  }
+  return sector;
+}
+
+}  // namespace
+
+MicronArguments::MicronArguments(CLI::App& app) {
+  declare_link(app);
+  declare_sonar(app);
+  declare_run(app);
+}
+
+void MicronArguments::declare_link(CLI::App& app) {
+  CLI::Option* tcp = app.add_option("--tcp", tcp_, "HOST:PORT of a serial device server, or of sonard");
+  CLI::Option* udp = app.add_option("--udp", udp_, "HOST:PORT, the same in datagrams");
+  CLI::Option* tty = app.add_option("--tty", tty_, "Serial device or pseudo terminal");
+  tcp->excludes(udp)->excludes(tty)->group("Link (one of --tcp, --udp, --tty)");
+  udp->excludes(tty)->group("Link (one of --tcp, --udp, --tty)");
+  tty->group("Link (one of --tcp, --udp, --tty)");
+  const std::string group = tcp->get_group();
+  app.add_option("--baud", baud_, "Bits per second of a serial device, 8N1")
+      ->needs(tty)
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--node", node_, "Node of the head")
+      ->check(CLI::Range(1, 254))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--reboot", options_.host.reboot_first, "Begin with a head that has forgotten everything")
+      ->group(group);
+  app.add_option("--wait", wait_s_,
+                 "Seconds to try to reach a link, at first or again, and to wait for the head's first word")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--line-wait", line_wait_s_, "Seconds to wait for the next line of a scan; 0: for ever")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void MicronArguments::declare_sonar(CLI::App& app) {
+  ScanSettings& scan = options_.scan;
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->capture_default_str()->group("Sonar");
+  };
+  add("--range", scan.range_m, "Metres; the head covers this or a little less")
+      ->check(CLI::Range(0.1, 200.0));
+  add("--bins", scan.bins, "Bins of a line")->check(CLI::Range(1, micron::max_bins));
+  add("--step", step_deg_, "Degrees from line to line, a multiple of 0.05625 (1/16 gradian)");
+  app.add_option("--sector", sector_deg_,
+                 "FROM TO: scan to and fro between these bearings, in degrees, 0 ahead, positive to "
+                 "starboard; the sector lies clockwise from FROM to TO. Without it: all round")
+      ->expected(2)
+      ->check(CLI::Range(-360.0, 360.0))
+      ->group("Sonar");
+  app.add_flag("--scan-left", scan_left_, "Turn counter-clockwise; in a sector: at first")->group("Sonar");
+  add("--gain", scan.gain_percent, "Initial gain, percent")->check(CLI::Range(0.0, 100.0));
+  CLI::Option* four_bit =
+      app.add_flag("--four-bit", four_bit_, "4-bit bins, of the window below; else 8-bit bins, 0..80 dB")
+          ->group("Sonar");
+  add("--ad-low", scan.ad_low_db, "Lower end of the window, dB")
+      ->check(CLI::Range(0.0, 80.0))
+      ->needs(four_bit);
+  add("--ad-span", scan.ad_span_db, "Width of the window, dB")->check(CLI::Range(0.0, 80.0))->needs(four_bit);
+  add("--sound-speed", scan.sound_speed_mps, "Metres per second, in which ranges are counted")
+      ->check(CLI::Range(1300.0, 1700.0));
+}
+
+void MicronArguments::declare_run(CLI::App& app) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group("Run");
+  };
+  add("--turns", options_.turns, "End after this many turns, or sweeps of the sector; 0: go on")
+      ->capture_default_str();
+  add("--lines", options_.lines, "End after this many lines; 0: go on")->capture_default_str();
+  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: go on")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  add("--out", options_.out, "Folder for pictures: turn or sector in colour, the samples in grey");
+  add("--every", options_.every, "Keep the pictures of each n-th turn; 0: only of the last")
+      ->capture_default_str();
+  add("--size", options_.radius_px, "Pixels from the apex to the full range")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  add("--raw", options_.raw, "File for the lines as they came, a JSON object each");
+  app.add_flag("--log-lines", options_.log_lines, "One line of key=value for each line on standard output")
+      ->group("Run");
+  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+}
+
+LineAddress MicronArguments::line() const {
+  if (!tcp_.empty()) {
+    return host_and_port(LineAddress::Way::tcp, "--tcp", tcp_);
+  }
+  if (!udp_.empty()) {
+    return host_and_port(LineAddress::Way::udp, "--udp", udp_);
+  }
+  if (!tty_.empty()) {
+    return {.way = LineAddress::Way::tty, .place = tty_, .baud = baud_};
+  }
+  throw CLI::ValidationError("--tcp, --udp, --tty", "one of them must say where the head is");
+}
+
+ScanSettings MicronArguments::scan() const {
+  ScanSettings scan = options_.scan;
+  scan.step = step_of(step_deg_);
+  if (!sector_deg_.empty()) {
+    scan.sector = sector_of(sector_deg_);
+  }
+  scan.clockwise = !scan_left_;
+  scan.eight_bit = !four_bit_;
+  if (const int interval = ad_interval(scan); interval < 1 || interval > most_ad_interval) {
+    throw CLI::ValidationError(
+        "--bins", fmt::format("{} bins over {} m are too {} for a head, which takes 1 to {} times 640 ns "
+                              "between bins",
+                              scan.bins, scan.range_m, interval < 1 ? "fine" : "coarse", most_ad_interval));
+  }
+  return scan;
+}
+
+MicronOptions MicronArguments::options() const {
+  MicronOptions options = options_;
+  options.line = line();
+  options.host.node = static_cast<std::uint8_t>(node_);
+  options.scan = scan();
+  options.duration = to_ns(seconds_);
+  options.wait = to_ns(wait_s_);
+  options.line_wait = to_ns(line_wait_s_);
+  return options;
+}
+
+}  // namespace sonard::client

@@ -1,0 +1,117 @@
+#include "clients/sonarview/micron/scan_turns.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "protocol/micron/units.hpp"
+
+namespace sonard::client {
+
+using micron::units_per_turn;
+using micron::wrapped;
+
+ScanTurns::ScanTurns(const micron::HeadCommand& parameters)
+    : sector_(!parameters.has(micron::control_bits::continuous)),
+      step_(parameters.step),
+      left_(parameters.left_limit),
+      length_(sector_ ? wrapped(parameters.right_limit - parameters.left_limit) : units_per_turn),
+      clockwise_(parameters.has(micron::control_bits::scan_right)),
+      begun_(!sector_) {}
+
+std::optional<Turn> ScanTurns::add(const micron::ReceivedLine& line) {
+  return sector_ ? add_in_sector(line) : add_all_round(line);
+}
+
+std::optional<Turn> ScanTurns::add_all_round(const micron::ReceivedLine& line) {
+  std::optional<Turn> done;
+  const int bearing = line.head.bearing;
+  const int way = last_ ? wrapped(clockwise_ ? bearing - *last_ : *last_ - bearing) : 0;
+  last_ = bearing;
+  count_missed(way);
+  if (turn_.lines.empty()) {
+    travelled_ = 0;
+  } else if (travelled_ + way >= length_) {  // the last lines of the turn are missing
+    done = finish();
+  } else {
+    travelled_ += way;
+  }
+  take(line);
+  if (travelled_ + step_ >= length_) {
+    done = finish();
+  }
+  return done;
+}
+
+/// The head turns round at its limits, so the way between two lines may lead over one.
+std::optional<Turn> ScanTurns::add_in_sector(const micron::ReceivedLine& line) {
+  std::optional<Turn> done;
+  // Relative to the middle first: a head may stop short of a limit or beyond it.
+  const int place = micron::shortest_turn(left_ + length_ / 2, line.head.bearing) + length_ / 2;
+  if (!begun_ && last_ && place != *last_) {
+    clockwise_ = place > *last_;
+  }
+  const bool turned = last_ && place != *last_ && (place > *last_) != clockwise_;
+  if (turned) {  // the line at the limit is missing
+    const int limit = clockwise_ ? length_ : 0;
+    count_missed((steps(std::abs(limit - *last_)) + steps(std::abs(place - limit))) * step_);
+    done = finish();
+    clockwise_ = !clockwise_;
+  } else if (last_) {
+    count_missed(std::abs(place - *last_));
+  }
+  last_ = place;
+  travelled_ = std::clamp(clockwise_ ? place : length_ - place, 0, length_);
+  if (begun_) {
+    take(line);
+  }
+  const bool at_left = line.head.sweep == micron::SweepCode::left_limit || place <= 0;
+  const bool at_right = line.head.sweep == micron::SweepCode::right_limit || place >= length_;
+  if (at_left || at_right) {
+    if (begun_ && turn_.lines.size() > 1) {
+      done = finish();
+    }
+    turn_.lines.clear();
+    turn_.lines_missed = 0;
+    begun_ = true;
+    clockwise_ = at_left;
+    travelled_ = 0;
+    take(line);
+  }
+  return done;
+}
+
+void ScanTurns::take(const micron::ReceivedLine& line) {
+  turn_.lines.push_back(line);
+}
+
+int ScanTurns::steps(int way) const {
+  return (way + step_ - 1) / step_;
+}
+
+void ScanTurns::count_missed(int way) {
+  const auto missed = static_cast<std::uint64_t>(std::max(0, steps(way) - 1));
+  turn_.lines_missed += missed;
+  lines_missed_ += missed;
+}
+
+Turn ScanTurns::finish() {
+  Turn next;
+  next.number = turn_.number + 1;
+  travelled_ = 0;
+  return std::exchange(turn_, std::move(next));
+}
+
+void ScanTurns::restart() {
+  turn_.lines.clear();
+  turn_.lines_missed = 0;
+  last_.reset();
+  travelled_ = 0;
+  begun_ = !sector_;
+}
+
+double ScanTurns::share() const {
+  return std::min(1.0, static_cast<double>(travelled_) / length_);
+}
+
+}  // namespace sonard::client

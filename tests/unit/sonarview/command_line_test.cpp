@@ -1,0 +1,161 @@
+// What the words of a command line mean, and which are refused.
+#include "clients/sonarview/command_line.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sonard::client {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+struct Parsed {
+  std::optional<CommandLine> command_line;
+  ExitStatus status = ExitStatus::ok;
+  std::string out;
+  std::string err;
+};
+
+Parsed parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "sonarview");
+  Parsed parsed;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  parsed.command_line = parse_command_line(static_cast<int>(words.size()), words.data(), parsed.status);
+  parsed.out = testing::internal::GetCapturedStdout();
+  parsed.err = testing::internal::GetCapturedStderr();
+  return parsed;
+}
+
+MicronOptions micron(std::vector<const char*> words) {
+  words.insert(words.begin(), "micron");
+  const Parsed parsed = parse(std::move(words));
+  EXPECT_EQ(parsed.err, "");
+  return std::get<MicronOptions>(parsed.command_line.value());
+}
+
+void expect_refused(const std::vector<const char*>& words, const std::string& message) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.command_line);
+  EXPECT_EQ(parsed.status, ExitStatus::usage);
+  EXPECT_THAT(parsed.err, HasSubstr(message));
+}
+
+TEST(CommandLine, WithoutASubcommandItIsAGemini) {
+  const auto options = std::get<GeminiOptions>(
+      parse({"--range", "20", "--compression", "1", "--pings", "7", "--continuous", "100"})
+          .command_line.value());
+  EXPECT_EQ(options.settings.range_m, 20.0);
+  EXPECT_EQ(options.settings.compression_log2, 1);
+  EXPECT_EQ(options.settings.interval, std::chrono::microseconds{100'000});
+  EXPECT_EQ(options.pings, 7U);
+  EXPECT_EQ(options.surface_address, 0x7F000001U);
+  EXPECT_EQ(options.status_wait, 5s);
+  EXPECT_EQ(options.radius_px, 900);
+}
+
+TEST(CommandLine, GeminiMistakesAreSaidAsEver) {
+  expect_refused({"--sonar-id", "1"}, "--sonar-id: 1 is reserved for production");
+  expect_refused({"--head", "ten"}, "--head: expected an IPv4 address, found 'ten'");
+  expect_refused({"--tcp", "127.0.0.1:4001"}, "not expected");
+}
+
+TEST(CommandLine, HelpIsNoMistake) {
+  for (const auto& words : {std::vector<const char*>{"--help"}, {"micron", "--help"}}) {
+    const Parsed parsed = parse(words);
+    EXPECT_FALSE(parsed.command_line);
+    EXPECT_EQ(parsed.status, ExitStatus::ok);
+    EXPECT_THAT(parsed.out, HasSubstr("Exit status: 0"));
+  }
+}
+
+TEST(CommandLine, AMicronIsReachedInOneOfThreeWays) {
+  const LineAddress tcp = micron({"--tcp", "sonar.local:4001"}).line;
+  EXPECT_EQ(tcp.way, LineAddress::Way::tcp);
+  EXPECT_EQ(tcp.place, "sonar.local");
+  EXPECT_EQ(tcp.port, 4001);
+  const LineAddress udp = micron({"--udp", "10.0.0.7:1"}).line;
+  EXPECT_EQ(udp.way, LineAddress::Way::udp);
+  EXPECT_EQ(udp.text(), "udp 10.0.0.7:1");
+  const LineAddress tty = micron({"--tty", "/dev/ttyUSB0", "--baud", "57600"}).line;
+  EXPECT_EQ(tty.text(), "tty /dev/ttyUSB0 at 57600 baud");
+  EXPECT_EQ(micron({"--tty", "x"}).line.baud, 115'200U);
+
+  expect_refused({"micron"}, "one of them must say where the head is");
+  expect_refused({"micron", "--tcp", "a:1", "--tty", "b"}, "excludes");
+  expect_refused({"micron", "--tcp", "a:1", "--baud", "9600"}, "--baud requires --tty");
+  for (const char* place : {"host", "host:", ":1", "host:0", "host:65536", "host:1x", "host:-1"}) {
+    expect_refused({"micron", "--tcp", place}, "expected HOST:PORT, found '" + std::string(place) + "'");
+  }
+}
+
+TEST(CommandLine, MicronSettingsBecomeThoseOfAScan) {
+  const MicronOptions options =
+      micron({"--tty",     "x",   "--range",       "20",   "--bins",      "200",        "--step",   "0.45",
+              "--gain",    "40",  "--node",        "7",    "--scan-left", "--four-bit", "--ad-low", "13",
+              "--ad-span", "25",  "--sound-speed", "1450", "--turns",     "3",          "--lines",  "9",
+              "--seconds", "1.5", "--reboot"});
+  EXPECT_EQ(options.scan.range_m, 20.0);
+  EXPECT_EQ(options.scan.bins, 200);
+  EXPECT_EQ(options.scan.step, 8);
+  EXPECT_EQ(options.scan.gain_percent, 40.0);
+  EXPECT_FALSE(options.scan.clockwise);
+  EXPECT_FALSE(options.scan.eight_bit);
+  EXPECT_EQ(options.scan.ad_low_db, 13.0);
+  EXPECT_EQ(options.scan.ad_span_db, 25.0);
+  EXPECT_EQ(options.scan.sound_speed_mps, 1450.0);
+  EXPECT_FALSE(options.scan.sector);
+  EXPECT_EQ(options.host.node, 7);
+  EXPECT_TRUE(options.host.reboot_first);
+  EXPECT_EQ(options.turns, 3U);
+  EXPECT_EQ(options.lines, 9U);
+  EXPECT_EQ(options.duration, 1500ms);
+}
+
+TEST(CommandLine, StepsAreWholeSixteenthsOfAGradian) {
+  const std::vector<std::pair<const char*, int>> steps{{"0.05625", 1}, {"0.225", 4},  {"0.45", 8},
+                                                       {"0.9", 16},    {"1.8", 32},   {"3.6", 64},
+                                                       {"7.2", 128},   {"0.50625", 9}};
+  for (const auto& [text, units] : steps) {
+    EXPECT_EQ(micron({"--tty", "x", "--step", text}).scan.step, units) << text;
+  }
+  expect_refused({"micron", "--tty", "x", "--step", "1"}, "the nearest is 1.0125");
+  expect_refused({"micron", "--tty", "x", "--step", "0"}, "the nearest is 0.05625");
+  expect_refused({"micron", "--tty", "x", "--step", "90"}, "14.34375 at most");
+}
+
+TEST(CommandLine, SectorsAreDegreesFromAhead) {
+  const auto sector = [](const char* from, const char* to) {
+    return micron({"--tty", "x", "--sector", from, to}).scan.sector.value();
+  };
+  EXPECT_EQ(sector("-45", "45").left, 2400);
+  EXPECT_EQ(sector("-45", "45").right, 4000);
+  EXPECT_EQ(sector("135", "-135").left, 5600);  // through astern
+  EXPECT_EQ(sector("135", "-135").right, 800);
+  EXPECT_EQ(sector("135", "225").right, 800);  // the same
+  EXPECT_EQ(sector("-180", "0").left, 0);
+  expect_refused({"micron", "--tty", "x", "--sector", "-180", "180"}, "leave it away to scan all round");
+  expect_refused({"micron", "--tty", "x", "--sector", "10"}, "--sector");
+}
+
+TEST(CommandLine, BinsThatNoHeadCanTellApartAreRefused) {
+  expect_refused({"micron", "--tty", "x", "--range", "0.5", "--bins", "1500"}, "too fine for a head");
+  expect_refused({"micron", "--tty", "x", "--range", "100", "--bins", "1"}, "too coarse for a head");
+}
+
+TEST(CommandLine, TheWindowBelongsToFourBitLines) {
+  expect_refused({"micron", "--tty", "x", "--ad-low", "10"}, "--ad-low requires --four-bit");
+}
+
+TEST(CommandLine, OptionsBeforeTheSubcommandAreNotLostInSilence) {
+  expect_refused({"--range", "20", "micron", "--tty", "x"}, "--range: stands before 'micron'");
+  expect_refused({"micron", "--tty", "x", "--pings", "3"}, "--pings");
+}
+
+}  // namespace
+}  // namespace sonard::client

@@ -1,0 +1,202 @@
+// Turns and gaps of scans whose bearings are written out by hand (docs/protocols/micron.md 8.3).
+#include "clients/sonarview/micron/scan_turns.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "clients/sonarview/micron/scan_settings.hpp"
+
+namespace sonard::client {
+namespace {
+
+using micron::SweepCode;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+micron::ReceivedLine line_at(int bearing, SweepCode sweep = SweepCode::normal) {
+  micron::ReceivedLine line;
+  line.head.bearing = static_cast<std::uint16_t>(bearing);
+  line.head.sweep = sweep;
+  return line;
+}
+
+std::vector<int> bearings(const Turn& turn) {
+  std::vector<int> all;
+  for (const auto& line : turn.lines) {
+    all.push_back(line.head.bearing);
+  }
+  return all;
+}
+
+/// A scan, and the turns that came of it.
+struct Scan {
+  explicit Scan(const ScanSettings& settings) : turns(make_head_command(settings)) {}
+  void hear(const std::vector<int>& all) {
+    for (const int bearing : all) {
+      if (auto turn = turns.add(line_at(bearing))) {
+        done.push_back(*turn);
+      }
+    }
+  }
+  ScanTurns turns;
+  std::vector<Turn> done;
+};
+
+// Steps of 200 units, 11.25 degrees: 32 to the turn.
+ScanSettings wide_steps(bool clockwise = true) {
+  return {.step = 200, .clockwise = clockwise};
+}
+
+TEST(ScanTurns, ATurnEndsBeforeItsFirstBearingComesAgain) {
+  Scan scan(wide_steps());
+  for (int line = 0; line < 64; ++line) {
+    scan.hear({(3200 + 200 * line) % 6400});
+    EXPECT_EQ(scan.done.size(), static_cast<std::size_t>((line + 1) / 32)) << line;
+  }
+  ASSERT_EQ(scan.done.size(), 2U);
+  EXPECT_EQ(scan.done[1].number, 1U);
+  EXPECT_EQ(scan.done[1].lines.size(), 32U);
+  EXPECT_EQ(scan.done[1].lines.front().head.bearing, 3200);
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, CounterClockwiseIsTheSame) {
+  Scan scan(wide_steps(false));
+  for (int line = 0; line < 33; ++line) {
+    scan.hear({(6400 + 1000 - 200 * line) % 6400});
+  }
+  ASSERT_EQ(scan.done.size(), 1U);
+  EXPECT_EQ(scan.done[0].lines.size(), 32U);
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, StepsThatDoNotDivideTheTurnMakeItALineLonger) {
+  ScanSettings settings;
+  settings.step = 250;  // 25.6 to the turn
+  Scan scan(settings);
+  int bearing = 3200;
+  for (int line = 0; line < 52; ++line, bearing = (bearing + 250) % 6400) {
+    scan.hear({bearing});
+  }
+  ASSERT_EQ(scan.done.size(), 2U);
+  EXPECT_EQ(scan.done[0].lines.size(), 26U);
+  EXPECT_EQ(scan.done[1].lines.size(), 26U);
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, LinesThatAreLostAreCountedByTheGap) {
+  Scan scan(wide_steps());
+  scan.hear({3200, 3400, 4000, 4200});  // 3600 and 3800 are missing
+  EXPECT_EQ(scan.turns.lines_missed(), 2U);
+  EXPECT_EQ(scan.turns.current().lines_missed, 2U);
+  EXPECT_NEAR(scan.turns.share(), 1000.0 / 6400.0, 1e-12);
+}
+
+TEST(ScanTurns, ATurnWhoseEndIsLostEndsWithTheNextLine) {
+  Scan scan(wide_steps());
+  for (int line = 0; line < 31; ++line) {
+    scan.hear({(3200 + 200 * line) % 6400});
+  }
+  EXPECT_THAT(scan.done, IsEmpty());
+  scan.hear({3400});  // 3000 and 3200 are missing
+  ASSERT_EQ(scan.done.size(), 1U);
+  EXPECT_EQ(scan.done[0].lines.size(), 31U);
+  EXPECT_EQ(scan.done[0].lines_missed, 2U);
+  EXPECT_THAT(bearings(scan.turns.current()), ElementsAre(3400));
+}
+
+TEST(ScanTurns, ALineLostBetweenTwoTurnsIsCounted) {
+  Scan scan(wide_steps());
+  for (int line = 0; line < 32; ++line) {
+    scan.hear({(3200 + 200 * line) % 6400});
+  }
+  ASSERT_EQ(scan.done.size(), 1U);
+  scan.hear({3400});
+  EXPECT_EQ(scan.turns.lines_missed(), 1U);
+}
+
+TEST(ScanTurns, ALineThatComesTwiceIsNoGap) {
+  Scan scan(wide_steps());
+  scan.hear({3200, 3400, 3400, 3600});
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+ScanSettings sector(int left, int right) {
+  ScanSettings settings;
+  settings.step = 200;
+  settings.sector = ScanSector{left, right};
+  return settings;
+}
+
+TEST(ScanTurns, ASweepGoesFromLimitToLimitAndTheWayThereIsNone) {
+  Scan scan(sector(2800, 3500));
+  scan.hear({3200, 3400, 3500, 3300, 3100, 2900, 2800, 3000, 3200, 3400, 3500});
+  ASSERT_EQ(scan.done.size(), 2U);
+  EXPECT_THAT(bearings(scan.done[0]), ElementsAre(3500, 3300, 3100, 2900, 2800));
+  EXPECT_THAT(bearings(scan.done[1]), ElementsAre(2800, 3000, 3200, 3400, 3500));
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, ASectorMayLieAstern) {
+  Scan scan(sector(6200, 300));
+  scan.hear({300, 100, 6300, 6200, 0, 200, 300});
+  ASSERT_EQ(scan.done.size(), 2U);
+  EXPECT_THAT(bearings(scan.done[0]), ElementsAre(300, 100, 6300, 6200));
+  EXPECT_THAT(bearings(scan.done[1]), ElementsAre(6200, 0, 200, 300));
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, ASectorMayBeAllButALittle) {
+  Scan scan(sector(100, 6300));  // 6200 wide, 31 steps
+  for (int line = 0; line <= 31; ++line) {
+    scan.hear({100 + 200 * line});
+  }
+  ASSERT_EQ(scan.done.size(), 1U);
+  EXPECT_EQ(scan.done[0].lines.size(), 32U);
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, ASweepWhoseLimitIsLostEndsWhereTheScanTurnsBack) {
+  Scan scan(sector(2800, 3500));
+  scan.hear({2800, 3000, 3200, 3400, /*3500,*/ 3300, 3100});
+  ASSERT_EQ(scan.done.size(), 1U);
+  EXPECT_THAT(bearings(scan.done[0]), ElementsAre(2800, 3000, 3200, 3400));
+  EXPECT_EQ(scan.done[0].lines_missed, 1U);
+  EXPECT_THAT(bearings(scan.turns.current()), ElementsAre(3300, 3100));
+  EXPECT_EQ(scan.turns.lines_missed(), 1U);
+}
+
+TEST(ScanTurns, AHeadThatStopsShortOfALimitSaysSo) {
+  Scan scan(sector(2800, 3500));
+  scan.hear({2800, 3000, 3200});
+  const auto turn = scan.turns.add(line_at(3400, SweepCode::right_limit));
+  ASSERT_TRUE(turn);
+  EXPECT_THAT(bearings(*turn), ElementsAre(2800, 3000, 3200, 3400));
+  scan.hear({3200});
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, AHeadThatBeginsAnewLosesTheTurnAndNoLine) {
+  Scan scan(wide_steps());
+  scan.hear({3200, 3400, 3600});
+  scan.turns.restart();
+  scan.hear({800});
+  EXPECT_THAT(bearings(scan.turns.current()), ElementsAre(800));
+  EXPECT_EQ(scan.turns.current().number, 0U);
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+TEST(ScanTurns, ASectorBegunAnewGoesEitherWayAtFirst) {
+  Scan scan(sector(2800, 3500));
+  scan.hear({2800, 3000});
+  scan.turns.restart();
+  scan.hear({3300, 3100, 2900, 2800, 3000, 3200, 3400, 3500});
+  ASSERT_EQ(scan.done.size(), 1U);
+  EXPECT_THAT(bearings(scan.done[0]), ElementsAre(2800, 3000, 3200, 3400, 3500));
+  EXPECT_EQ(scan.turns.lines_missed(), 0U);
+}
+
+}  // namespace
+}  // namespace sonard::client
