@@ -193,7 +193,7 @@ BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset) {
   const int rows = least_rows(aperture);
   BeamDensity density{4, 4 * rows, 0, 0, 0, 0};
   if (preset == Sampling::Preset::fast) {
-    density = {2, 2 * rows, 0, 0, 0, 0};
+    density = {2, 4 * rows, 0, 0, 0, 0};
   } else if (preset == Sampling::Preset::reference) {
     density = {32, most_rows(aperture), 0, 0, 0, 0};
   }

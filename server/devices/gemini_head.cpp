@@ -10,6 +10,7 @@
 
 #include "protocol/gemini/device.hpp"
 #include "server/config/addresses.hpp"
+#include "server/devices/deadline_timer.hpp"
 #include "server/devices/faulty_link.hpp"
 #include "server/devices/gemini_head_log.hpp"
 #include "server/devices/gemini_settings.hpp"
@@ -46,8 +47,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   HeadRendering rendering;
   FaultyLink to_surface;
   FaultyLink from_surface;
-  asio::steady_timer timer;
-  std::optional<TimePoint> timer_deadline;
+  DeadlineTimer timer;
   asio::steady_timer report_timer;
   std::uint64_t not_allowed = 0;
   GeminiHeadLog log;
@@ -257,19 +257,9 @@ void GeminiHead::Impl::schedule() {
   if (!socket->blocked()) {
     keep_earlier(deadline, device.next_deadline());
   }
-  if (deadline == timer_deadline) {
-    return;
-  }
-  timer_deadline = deadline;
-  timer.cancel();
-  if (!deadline) {
-    return;
-  }
-  timer.expires_at(to_steady(*deadline));
-  timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-    const auto self = weak.lock();
-    if (self && !error) {
-      self->timer_deadline.reset();
+  timer.set(deadline, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) {
+      self->timer.passed();
       self->pump();
     }
   });

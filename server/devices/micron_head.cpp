@@ -11,6 +11,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/micron/device.hpp"
+#include "server/devices/deadline_timer.hpp"
 #include "server/devices/micron_head_log.hpp"
 #include "server/devices/micron_settings.hpp"
 #include "server/devices/serial/serial_link.hpp"
@@ -43,8 +44,7 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
   micron::Device device;
   SerialLink link;
   HeadRendering rendering;
-  asio::steady_timer timer;
-  std::optional<TimePoint> timer_deadline;
+  DeadlineTimer timer;
   asio::steady_timer report_timer;
   MicronHeadLog log;
   bool running = false;
@@ -195,19 +195,9 @@ bool MicronHead::Impl::render(const micron::MicronJob& job) {
 
 void MicronHead::Impl::schedule() {
   const std::optional<TimePoint> deadline = device.next_deadline();
-  if (deadline == timer_deadline) {
-    return;
-  }
-  timer_deadline = deadline;
-  timer.cancel();
-  if (!deadline) {
-    return;
-  }
-  timer.expires_at(to_steady(*deadline));
-  timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-    const auto self = weak.lock();
-    if (self && !error) {
-      self->timer_deadline.reset();
+  timer.set(deadline, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) {
+      self->timer.passed();
       self->pump();
     }
   });

@@ -70,38 +70,18 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
   }
 }
 
-/// Arrays never shrink: they may be longer than there are pieces.
-void SlicePatcher::grow(std::size_t count) {
-  for (auto* array :
-       {&low_,         &high_,       &low_drift_, &high_drift_,  &low_reach_, &high_reach_, &w_at_0_,
-        &w_slope_,     &normal_h_,   &normal_s_,  &normal_z_,    &range_low_, &range_mid_,  &range_high_,
-        &smear_low_,   &smear_high_, &cosine_,    &solid_angle_, &response_,  &plain_,      &range_tilt_,
-        &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_}) {
-    array->resize(count);
-  }
-}
-
-/// Gathers what the pieces' segments and triangles say of them.
 void SlicePatcher::lay_out(const Request& request) {
-  const std::size_t count = pieces_->size();
-  if (count > low_.size()) {
-    grow(count + count / 2);
+  seen_.lay_out(*pieces_);
+  if (seen_.size() > plain_.size()) {
+    for (auto* array :
+         {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
+          &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_}) {
+      array->resize(seen_.size());
+    }
   }
   const bool as_cosine = request.surface.model == Model::physical;
-  for (std::size_t i = 0; i < count; ++i) {
-    const VisiblePiece& piece = (*pieces_)[i];
-    low_[i] = piece.low;
-    high_[i] = piece.high;
-    low_drift_[i] = piece.low_run.drift;
-    high_drift_[i] = piece.high_run.drift;
-    low_reach_[i] = piece.low_run.reach;
-    high_reach_[i] = piece.high_run.reach;
-    w_at_0_[i] = piece.w_at_0;
-    w_slope_[i] = piece.w_slope;
-    normal_h_[i] = piece.normal_h;
-    normal_s_[i] = piece.normal_s;
-    normal_z_[i] = piece.normal_z;
-    plain_[i] = as_cosine && piece.triangle->plain ? 1.0F : 0.0F;
+  for (std::size_t i = 0; i < seen_.count; ++i) {
+    plain_[i] = as_cosine && (*pieces_)[i].triangle->plain ? 1.0F : 0.0F;
   }
 }
 
@@ -113,18 +93,18 @@ SONARD_SIMD_CLONES
 void SlicePatcher::measure(const Request& request) {
   const float width = request.slice.width_rad;
   const auto count = pieces_->size();
-  const float* __restrict low = low_.data();
-  const float* __restrict high = high_.data();
-  float* __restrict low_drift = low_drift_.data();
-  float* __restrict high_drift = high_drift_.data();
-  const float* __restrict low_reach = low_reach_.data();
-  const float* __restrict high_reach = high_reach_.data();
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
+  float* __restrict low_drift = seen_.low_drift.data();
+  float* __restrict high_drift = seen_.high_drift.data();
+  const float* __restrict low_reach = seen_.low_reach.data();
+  const float* __restrict high_reach = seen_.high_reach.data();
   const float tan_limit = request.tan_limit;
-  const float* __restrict w_at_0 = w_at_0_.data();
-  const float* __restrict w_slope = w_slope_.data();
-  const float* __restrict normal_h = normal_h_.data();
-  const float* __restrict normal_s = normal_s_.data();
-  const float* __restrict normal_z = normal_z_.data();
+  const float* __restrict w_at_0 = seen_.w_at_0.data();
+  const float* __restrict w_slope = seen_.w_slope.data();
+  const float* __restrict normal_h = seen_.normal_h.data();
+  const float* __restrict normal_s = seen_.normal_s.data();
+  const float* __restrict normal_z = seen_.normal_z.data();
   float* __restrict range_low = range_low_.data();
   float* __restrict range_high = range_high_.data();
   float* __restrict smear_low = smear_low_.data();
@@ -171,8 +151,8 @@ void SlicePatcher::measure(const Request& request) {
 SONARD_SIMD_CLONES
 void SlicePatcher::find_tilts(const Request& request) {
   const auto count = pieces_->size();
-  const float* __restrict low = low_.data();
-  const float* __restrict high = high_.data();
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
   const float* __restrict range_low = range_low_.data();
   const float* __restrict range_mid = range_mid_.data();
   const float* __restrict range_high = range_high_.data();
@@ -182,8 +162,8 @@ void SlicePatcher::find_tilts(const Request& request) {
   const float* __restrict plain = plain_.data();
   float* __restrict range_tilt = range_tilt_.data();
   float* __restrict displaced = displaced_.data();
-  const float* __restrict low_drift = low_drift_.data();
-  const float* __restrict high_drift = high_drift_.data();
+  const float* __restrict low_drift = seen_.low_drift.data();
+  const float* __restrict high_drift = seen_.high_drift.data();
   const float width = request.slice.width_rad;
   const float furthest = request.max_range_m;
   // A tilt moves the middle of the echo by a third of this.
@@ -274,7 +254,7 @@ bool SlicePatcher::divide_uneven(const Request& request) {
     any = true;
     VisiblePiece part = whole;
     // A range that turns round inside does so where dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
-    const float turn = w_slope_[i] / w_at_0_[i];
+    const float turn = seen_.w_slope[i] / seen_.w_at_0[i];
     const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
     for (int k = 1; k <= parts; ++k) {
       const float share = static_cast<float>(k) / static_cast<float>(parts);
@@ -300,7 +280,7 @@ void SlicePatcher::shade(const Request& request) {
     const float t = 0.5F * (piece.low + piece.high);
     float cosine = cosine_[i];
     if (part.vertex_normals || part.normal_map) {
-      const float h = 1.0F / (w_at_0_[i] + w_slope_[i] * t);
+      const float h = 1.0F / (seen_.w_at_0[i] + seen_.w_slope[i] * t);
       const PiecePlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
       // In the middle; that the mean differs from the middle is a matter of geometry.
       const float middle = cosine_mid_[i];

@@ -12,7 +12,7 @@
 #include "renderer/scene/world.hpp"
 #include "renderer/visibility/normal_pyramid.hpp"
 #include "renderer/visibility/sampler.hpp"
-#include "renderer/visibility/slices/slice_sweep.hpp"
+#include "renderer/visibility/slices/piece_arrays.hpp"
 
 namespace sonard::render {
 
@@ -61,7 +61,6 @@ class SlicePatcher {
   void make(const Request& request, std::vector<EchoPatch>& patches);
 
  private:
-  void grow(std::size_t count);
   void lay_out(const Request& request);
   void measure(const Request& request);
   void find_tilts(const Request& request);
@@ -71,11 +70,10 @@ class SlicePatcher {
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
   void shade(const Request& request);
 
-  /// Pieces after division, and what is known of each; arrays, because loops over them are vectorised.
+  /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
   std::vector<VisiblePiece> whole_, divided_;
-  std::vector<float> low_, high_, low_drift_, high_drift_, low_reach_, high_reach_;
-  std::vector<float> w_at_0_, w_slope_, normal_h_, normal_s_, normal_z_;
+  PieceArrays seen_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
   std::vector<float> plain_;        ///< 1 where the response is the cosine to the facet, else 0
   std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used

@@ -68,47 +68,29 @@ void SideExpectation::find(const std::vector<VisiblePiece>& pieces, float width_
 }
 
 void SideExpectation::lay_out(const std::vector<VisiblePiece>& pieces) {
-  count_ = pieces.size();
-  if (count_ > low_.size()) {
-    const std::size_t size = count_ + count_ / 2;
-    for (auto* array : {&low_, &high_, &low_drift_, &high_drift_, &low_reach_, &high_reach_, &w_at_0_,
-                        &w_slope_, &w_by_azimuth_, &normal_h_, &normal_s_, &normal_z_}) {
-      array->resize(size);
-    }
-    first_probe_.resize(size);
-    last_probe_.resize(size);
-  }
-  for (std::size_t i = 0; i < count_; ++i) {
-    const VisiblePiece& piece = pieces[i];
-    low_[i] = piece.low;
-    high_[i] = piece.high;
-    low_drift_[i] = piece.low_run.drift;
-    high_drift_[i] = piece.high_run.drift;
-    low_reach_[i] = piece.low_run.reach;
-    high_reach_[i] = piece.high_run.reach;
-    w_at_0_[i] = piece.w_at_0;
-    w_slope_[i] = piece.w_slope;
-    normal_h_[i] = piece.normal_h;
-    normal_s_[i] = piece.normal_s;
-    normal_z_[i] = piece.normal_z;
+  seen_.lay_out(pieces);
+  if (seen_.size() > w_by_azimuth_.size()) {
+    w_by_azimuth_.resize(seen_.size());
+    first_probe_.resize(seen_.size());
+    last_probe_.resize(seen_.size());
   }
 }
 
 /// How each piece goes on beside the slice.
 SONARD_SIMD_CLONES
 void SideExpectation::follow(float width_rad, float tan_limit) {
-  const auto count = count_;
-  const float* __restrict low = low_.data();
-  const float* __restrict high = high_.data();
-  float* __restrict low_drift = low_drift_.data();
-  float* __restrict high_drift = high_drift_.data();
-  const float* __restrict low_reach = low_reach_.data();
-  const float* __restrict high_reach = high_reach_.data();
-  const float* __restrict w_at_0 = w_at_0_.data();
-  const float* __restrict w_slope = w_slope_.data();
-  const float* __restrict normal_h = normal_h_.data();
-  const float* __restrict normal_s = normal_s_.data();
-  const float* __restrict normal_z = normal_z_.data();
+  const auto count = seen_.count;
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
+  float* __restrict low_drift = seen_.low_drift.data();
+  float* __restrict high_drift = seen_.high_drift.data();
+  const float* __restrict low_reach = seen_.low_reach.data();
+  const float* __restrict high_reach = seen_.high_reach.data();
+  const float* __restrict w_at_0 = seen_.w_at_0.data();
+  const float* __restrict w_slope = seen_.w_slope.data();
+  const float* __restrict normal_h = seen_.normal_h.data();
+  const float* __restrict normal_s = seen_.normal_s.data();
+  const float* __restrict normal_z = seen_.normal_z.data();
   float* __restrict w_by_azimuth = w_by_azimuth_.data();
   for (std::size_t i = 0; i < count; ++i) {
     low_drift[i] = EdgeRun{low_drift[i], low_reach[i]}.drift_within(low[i], width_rad, tan_limit);
@@ -122,13 +104,13 @@ void SideExpectation::follow(float width_rad, float tan_limit) {
 /// The probes of each piece, as they run if the piece goes on as it does in the middle.
 SONARD_SIMD_CLONES
 void SideExpectation::find_probes(float tan_limit, float offset_rad) {
-  const auto count = count_;
+  const auto count = seen_.count;
   const float probes_per_t = 1 / probe_step(tan_limit), lowest = first_probe(tan_limit);
   const auto end = static_cast<float>(side_probes);
-  const float* __restrict low = low_.data();
-  const float* __restrict high = high_.data();
-  const float* __restrict low_drift = low_drift_.data();
-  const float* __restrict high_drift = high_drift_.data();
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
+  const float* __restrict low_drift = seen_.low_drift.data();
+  const float* __restrict high_drift = seen_.high_drift.data();
   std::int32_t* __restrict first = first_probe_.data();
   std::int32_t* __restrict last = last_probe_.data();
   for (std::size_t i = 0; i < count; ++i) {
@@ -145,14 +127,14 @@ void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& ou
   const float step = probe_step(tan_limit);
   find_probes(tan_limit, offset_rad);
   std::int32_t end = 0;  // of what is filled
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < seen_.count; ++i) {
     const std::int32_t first = first_probe_[i], last = last_probe_[i];
     for (; end < first; ++end) {
       out[static_cast<std::size_t>(end)] = 0.0F;
     }
-    const float slope = w_slope_[i] * step;
-    const float w = w_at_0_[i] + w_by_azimuth_[i] * offset_rad +
-                    w_slope_[i] * (first_probe(tan_limit) + static_cast<float>(first) * step);
+    const float slope = seen_.w_slope[i] * step;
+    const float w = seen_.w_at_0[i] + w_by_azimuth_[i] * offset_rad +
+                    seen_.w_slope[i] * (first_probe(tan_limit) + static_cast<float>(first) * step);
     // Most hold a probe or two. What is written too much the next piece writes again, or the end.
     float* const at = &out[static_cast<std::size_t>(first)];
     for (std::int32_t k = 0; k < probe_padding; ++k) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/visibility/slices/slice_sweep.hpp"
+#include "renderer/visibility/slices/piece_arrays.hpp"
 
 namespace sonard::render {
 
@@ -41,9 +41,8 @@ class SideExpectation {
   void find_probes(float tan_limit, float offset_rad);
   void profile(float tan_limit, float offset_rad, SideProfile& out);
 
-  std::size_t count_ = 0;  ///< of pieces; arrays may be longer
-  std::vector<float> low_, high_, low_drift_, high_drift_, low_reach_, high_reach_;
-  std::vector<float> w_at_0_, w_slope_, w_by_azimuth_, normal_h_, normal_s_, normal_z_;
+  PieceArrays seen_;
+  std::vector<float> w_by_azimuth_;
   std::vector<std::int32_t> first_probe_, last_probe_;
 };
 

@@ -6,8 +6,8 @@
 
 #include <spdlog/spdlog.h>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 
+#include "server/devices/deadline_timer.hpp"
 #include "server/devices/serial/line_pacer.hpp"
 #include "server/devices/serial/pty_port.hpp"
 #include "server/devices/serial/tcp_port.hpp"
@@ -51,8 +51,7 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
   std::vector<SerialPort*> ports;  // all of the above
   LinePacer<Frame> to_clients;
   LinePacer<Incoming> from_clients;
-  asio::steady_timer timer;
-  std::optional<TimePoint> timer_deadline;
+  DeadlineTimer timer;
   Receive receive;
   Left left;
   bool running = false;
@@ -106,7 +105,6 @@ void SerialLink::Impl::stop() {
   }
   to_clients.clear();
   from_clients.clear();
-  timer_deadline.reset();
   timer.cancel();
 }
 
@@ -181,19 +179,10 @@ void SerialLink::Impl::deliver(const Incoming& incoming) const {
 
 void SerialLink::Impl::schedule() {
   const std::optional<TimePoint> deadline = earlier(to_clients.next_due(), from_clients.next_due());
-  if (deadline == timer_deadline) {
-    return;
-  }
-  timer_deadline = deadline;
-  timer.cancel();
-  if (!deadline) {
-    return;
-  }
-  timer.expires_at(to_steady(*deadline));
-  timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+  timer.set(deadline, [weak = weak_from_this()] {
     const auto self = weak.lock();
-    if (self && !error && self->running) {
-      self->timer_deadline.reset();
+    if (self && self->running) {
+      self->timer.passed();
       self->pump();
     }
   });
