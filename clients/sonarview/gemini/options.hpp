@@ -9,7 +9,7 @@
 #include "protocol/gemini/ping_settings.hpp"
 #include "protocol/gemini/surface.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
 }
 

@@ -11,7 +11,7 @@
 #include "clients/sonarview/micron/serial_line.hpp"
 #include "protocol/micron/host.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
 }
 

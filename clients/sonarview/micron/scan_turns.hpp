@@ -29,6 +29,8 @@ class ScanTurns {
   void restart();
 
   const Turn& current() const { return turn_; }
+  /// False on the way to the first limit of a sector.
+  bool begun() const { return begun_; }
   /// Share of the turn that is done, 0..1.
   double share() const;
   /// Lines that the head must have sent between those that came, over all.

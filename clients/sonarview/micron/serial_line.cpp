@@ -10,6 +10,7 @@
 #include <boost/asio/post.hpp>
 #include <cerrno>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 namespace sonard::client {

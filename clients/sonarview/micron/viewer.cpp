@@ -9,8 +9,10 @@
 #include <csignal>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "clients/sonarview/image_writer.hpp"
 #include "clients/sonarview/micron/line_file.hpp"
@@ -61,7 +63,7 @@ class Viewer {
   TimePoint next_wake() const;
   void arm_timer();
   ExitStatus sum_up();
-  bool limited(nanoseconds limit) const { return limit.count() > 0; }
+  static bool limited(nanoseconds limit) { return limit.count() > 0; }
 
   const MicronOptions options_;
   boost::asio::io_context io_;
@@ -282,8 +284,11 @@ void Viewer::show_progress(TimePoint at) {
     fmt::print(stderr, "sonarview: {} lines, none in the last second; {}\n", lines, head_text());
     return;
   }
-  fmt::print(stderr, "sonarview: bearing {:+.1f} deg, {} lines, {} in the last second; turn {}, {:.0f} %\n",
-             bearing_deg(last_bearing_), lines, fresh, turns_.current().number, 100.0 * turns_.share());
+  const std::string done =
+      turns_.begun() ? fmt::format("turn {}, {:.0f} %", turns_.current().number, 100.0 * turns_.share())
+                     : "on the way to the first limit";
+  fmt::print(stderr, "sonarview: bearing {:+.1f} deg, {} lines, {} in the last second; {}\n",
+             bearing_deg(last_bearing_), lines, fresh, done);
 }
 
 // ---- Ends
