@@ -6,7 +6,6 @@ namespace {
 
 using Limits = AccuracyLimits;
 constexpr auto ray = render::Backend::ray;
-constexpr auto raster = render::Backend::raster;
 constexpr auto fast = render::Sampling::Preset::fast;
 constexpr auto normal = render::Sampling::Preset::normal;
 
@@ -23,8 +22,6 @@ constexpr Miss misses[] = {
     {"Flat100k", ray, fast, &Limits::centroid_bins, 0.34},
     // A bed that shadows itself everywhere has a silhouette in every beam; it is two beams in 256.
     {"Ripple100k", ray, normal, &Limits::centroid_bins, 0.122},
-    // The end of a shadow is known to half a row, and a row is three to five lines of the bed there.
-    {"T7_ShadowOfAWall", raster, fast, &Limits::shadow_bins, 3.4},
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST(FirstLook, NoViewExceedsWhatCanBeDrawnAndNoGridTheMemory) {
 
 TEST(FirstLook, IsFinerForSmallerErrors) {
   const Aperture aperture = fan(256, 2.0943951);
-  EXPECT_EQ(first_density(aperture, Preset::fast), (BeamDensity{2, 256, 0, 0, 0, 0}));
+  EXPECT_EQ(first_density(aperture, Preset::fast), (BeamDensity{2, 512, 0, 0, 0, 0}));
   EXPECT_EQ(first_density(aperture, Preset::normal), (BeamDensity{4, 512, 0, 0, 0, 0}));
   EXPECT_EQ(first_density(aperture, Preset::reference), (BeamDensity{32, 2048, 0, 0, 0, 0}));
 }
