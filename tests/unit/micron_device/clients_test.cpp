@@ -321,6 +321,32 @@ TEST_P(Clients, project_rinzler) {
   }
 }
 
+// 9.4, the C client of 2024: long pauses, no alives, short lines; it throws away what came while it slept.
+TEST_P(Clients, linux_c) {
+  Driver driver(GetParam());
+  driver.sleep(5s);
+  driver.write("stop_alives");
+  driver.sleep(2s);
+  driver.flush();
+  const std::size_t alives = driver.bench().all<Alive>().size();
+  driver.write("send_version");
+  ASSERT_TRUE(driver.await(MessageType::version_data, 1s));
+  driver.sleep(2s);
+  Bytes command = fixture("head_command_gain_block");
+  command[53] = 20;
+  command[54] = 0;
+  driver.write(command);
+  driver.sleep(2s);
+  for (int i = 0; i < 30; ++i) {
+    driver.flush();
+    driver.write("send_data");
+    const auto line = driver.await_line(1s);
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line->size(), 65U);
+  }
+  EXPECT_EQ(driver.bench().all<Alive>().size(), alives);
+}
+
 constexpr Link clean{"clean"};
 constexpr Link split{.name = "split", .split = true};
 constexpr Link noisy{.name = "noisy", .noise = true};
