@@ -55,8 +55,8 @@ bool lies_aside(const Fan& fan, std::uint32_t count, const Corners& at) {
   std::int32_t to_port = 0, to_starboard = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const float a = azimuth[i];
-    to_port += (a > port) & (a < port + half_turn) ? 1 : 0;
-    to_starboard += (a < starboard) & (a > starboard - half_turn) ? 1 : 0;
+    to_port += ((a > port) & (a < port + half_turn)) ? 1 : 0;
+    to_starboard += ((a < starboard) & (a > starboard - half_turn)) ? 1 : 0;
   }
   const auto all = static_cast<std::int32_t>(count);
   return to_port == all || to_starboard == all;
