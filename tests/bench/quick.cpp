@@ -8,8 +8,8 @@ constexpr Repetition some{7, 201, 0.2};
 constexpr Repetition many{50, 1000, 0.3};  // pings of some ten microseconds
 constexpr Repetition few{2, 3, 0.3};
 
-/// `reference` takes long and has no target: one scene shows what it costs. The targets are those of `ray`; `raster` is
-/// there for comparison, where a ping of it takes less than a second.
+/// `reference` takes long and has no target: one scene shows what it costs. The targets are those of `ray`;
+/// `raster` is there for comparison, where a ping of it takes less than a second.
 Plan presets(const std::string& scene, const Repetition& repetition) {
   Plan plan;
   for (const Point& point : preset_points()) {
