@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "renderer/simd.hpp"
 #include "renderer/visibility/slices/coplanar_facets.hpp"
 #include "renderer/visibility/slices/slice_sampler_impl.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
