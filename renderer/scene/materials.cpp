@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,31 +17,47 @@ struct TableRow {
   std::string_view name;
   double reflectance;
   double lambert_mu_db;
+  double pressure_reflection;
+  double rms_slope;
+  double rms_height_mm;
 };
 
-/// mu: docs/physics.md 2.4 (typical values; 720 kHz is an extrapolation). rho: the amplitude reflection
-/// coefficient of the same table, scaled so that clean steel is the brightest example of the paper, 2.12.
+/// R, mu, m and sigma: docs/physics.md 2.4 (typical values; 720 kHz is an extrapolation). rho: |R|, scaled so
+/// that clean steel is the brightest example of the paper, 2.12. Of the two that depend on the weather `air`
+/// is a surface at rest and `sea_surface` one under 5 m/s of wind (slopes by Cox & Munk 1954, heights by
+/// Pierson & Moskowitz 1964). Nothing is known of `default`, so it has no facets.
 constexpr std::array<TableRow, 14> table{{
-    {"default", 1.00, -22.0},
-    {"steel", 2.12, -25.0},
-    {"steel_fouled", 2.03, -15.0},
-    {"aluminium", 1.89, -25.0},
-    {"concrete", 1.53, -18.0},
-    {"pvc", 0.81, -28.0},
-    {"rock", 1.87, -15.0},
-    {"gravel", 1.35, -15.0},
-    {"sand", 0.86, -22.0},
-    {"mud", 0.14, -32.0},
-    {"wood", 0.15, -28.0},
-    {"rubber", 0.20, -32.0},
-    {"air", 2.26, -20.0},
-    {"aluminum", 1.89, -25.0},
+    {"default", 1.00, -22.0, 0.0, 0.2, 2.0},
+    {"steel", 2.12, -25.0, 0.94, 0.05, 0.1},
+    {"steel_fouled", 2.03, -15.0, 0.90, 0.3, 2.0},
+    {"aluminium", 1.89, -25.0, 0.84, 0.05, 0.1},
+    {"concrete", 1.53, -18.0, 0.68, 0.2, 1.0},
+    {"pvc", 0.81, -28.0, 0.36, 0.05, 0.1},
+    {"rock", 1.87, -15.0, 0.83, 0.4, 10.0},
+    {"gravel", 1.35, -15.0, 0.60, 0.4, 5.0},
+    {"sand", 0.86, -22.0, 0.38, 0.2, 2.0},
+    {"mud", 0.14, -32.0, 0.06, 0.1, 1.0},
+    {"wood", 0.15, -28.0, 0.065, 0.2, 0.5},
+    {"rubber", 0.20, -32.0, 0.09, 0.1, 0.3},
+    {"air", 2.26, -20.0, -1.0, 0.05, 0.1},
+    {"sea_surface", 2.26, -20.0, -1.0, 0.12, 130.0},
+}};
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> aliases{{
+    {"aluminum", "aluminium"},
+    {"steel_clean", "steel"},
+    {"fouled_steel", "steel_fouled"},
+    {"water_surface", "air"},
+    {"stone", "rock"},
 }};
 
 constexpr double max_mu = std::numbers::inv_pi;
 constexpr double huge_reflectance = 10.0;
 constexpr double retro_reference_rho = 0.35;
 constexpr double retro_reference_mu_db = -22.0;
+constexpr double least_rms_slope = 0.01;  // 0.6 degrees
+constexpr double most_rms_slope = 1.0;
+constexpr double most_rms_height_mm = 1000.0;
 
 double linear(double level_db) {
   return std::pow(10.0, level_db / 10.0);
@@ -53,7 +70,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// "Steel.001" and "steel" name the same thing.
+/// "Steel.001", "steel_clean" and "steel" name the same thing.
 std::string canonical(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   if (dot != std::string_view::npos && dot + 1 < name.size() &&
@@ -61,7 +78,10 @@ std::string canonical(std::string_view name) {
                   [](unsigned char c) { return std::isdigit(c) != 0; })) {
     name = name.substr(0, dot);
   }
-  return lower(name);
+  const std::string key = lower(name);
+  const auto* alias =
+      std::find_if(aliases.begin(), aliases.end(), [&](const auto& a) { return a.first == key; });
+  return alias == aliases.end() ? key : std::string(alias->second);
 }
 
 /// Levenshtein distance.
@@ -112,6 +132,26 @@ double mu_of_reflectance(double rho, std::vector<std::string>& warnings) {
   return checked_mu(retro_reference_mu_db + 20.0 * std::log10(rho / retro_reference_rho), warnings);
 }
 
+double checked(double value, double least, double most, std::string_view what) {
+  if (!(value >= least && value <= most)) {
+    throw WorldError(fmt::format("{} is {}: expected a number from {} to {}", what, value, least, most));
+  }
+  return value;
+}
+
+/// The numbers that stand for themselves, in place of those of the material.
+void replace_facets(const MaterialRequest& request, AcousticMaterial& material) {
+  if (request.pressure_reflection) {
+    material.pressure_reflection = checked(*request.pressure_reflection, -1.0, 1.0, "pressure_reflection");
+  }
+  if (request.rms_slope) {
+    material.rms_slope = checked(*request.rms_slope, least_rms_slope, most_rms_slope, "rms_slope");
+  }
+  if (request.rms_height_mm) {
+    material.rms_height_m = checked(*request.rms_height_mm, 0.0, most_rms_height_mm, "rms_height_mm") / 1000;
+  }
+}
+
 std::string unknown_name_message(std::string_view name) {
   const std::string similar = similar_material_name(name);
   return fmt::format("unknown material '{}'{}; known: {}; a new one needs reflectance and lambert_mu_db",
@@ -136,7 +176,8 @@ std::optional<AcousticMaterial> find_acoustic_material(std::string_view name) {
   if (row == table.end()) {
     return std::nullopt;
   }
-  return AcousticMaterial{std::string(row->name), row->reflectance, linear(row->lambert_mu_db)};
+  return AcousticMaterial{std::string(row->name),   row->reflectance, linear(row->lambert_mu_db),
+                          row->pressure_reflection, row->rms_slope,   row->rms_height_mm / 1000};
 }
 
 std::string similar_material_name(std::string_view name) {
@@ -171,6 +212,7 @@ AcousticMaterial make_acoustic_material(const MaterialRequest& request, std::vec
   } else if (request.reflectance && request.name.empty()) {
     material.lambert_mu = mu_of_reflectance(material.reflectance, warnings);
   }
+  replace_facets(request, material);
   return material;
 }
 
@@ -179,7 +221,11 @@ AcousticMaterial material_of_laser_retro(double laser_retro, std::vector<std::st
   if (rho == 0.0) {
     return {};
   }
-  return {"laser_retro", rho, mu_of_reflectance(rho, warnings)};
+  AcousticMaterial material;
+  material.name = "laser_retro";
+  material.reflectance = rho;
+  material.lambert_mu = mu_of_reflectance(rho, warnings);
+  return material;
 }
 
 }  // namespace sonard::render

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -17,6 +18,8 @@ namespace {
 
 constexpr const char* material_element = "sonard:material";
 constexpr const char* water_surface_element = "sonard:water_surface_z";
+constexpr std::array<std::string_view, 5> material_numbers{
+    "reflectance", "lambert_mu_db", "pressure_reflection", "rms_slope", "rms_height_mm"};
 constexpr std::array<std::string_view, 4> material_parents{"visual", "collision", "link", "model"};
 
 std::string_view trimmed(std::string_view text) {
@@ -47,7 +50,7 @@ std::optional<double> attribute(const sdf::ElementPtr& element, const char* key)
   return number(element->GetAttribute(key)->GetAsString(), key);
 }
 
-void check_attributes(const sdf::ElementPtr& element, std::initializer_list<std::string_view> allowed) {
+void check_attributes(const sdf::ElementPtr& element, std::span<const std::string_view> allowed) {
   for (const auto& given : element->GetAttributes()) {
     const std::string key = given->GetKey();
     if (!key.starts_with("xmlns") && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
@@ -64,7 +67,7 @@ void check_own_element(const sdf::ElementPtr& element, const std::string& parent
       throw WorldError(fmt::format("{}: <{}> inside <{}>: it belongs in one of: {}", place_of(element), name,
                                    parent, fmt::join(material_parents, ", ")));
     }
-    check_attributes(element, {"reflectance", "lambert_mu_db"});
+    check_attributes(element, material_numbers);
   } else if (name == water_surface_element) {
     if (parent != "world") {
       throw WorldError(
@@ -97,11 +100,17 @@ std::optional<AcousticMaterial> own_material(const sdf::ElementPtr& element,
   if (!given) {
     return std::nullopt;
   }
-  const MaterialRequest request{text_of(given), attribute(given, "reflectance"),
-                                attribute(given, "lambert_mu_db")};
-  if (request.name.empty() && !request.reflectance && !request.lambert_mu_db) {
-    throw WorldError(fmt::format(
-        "<{}> is empty: expected a name, or an attribute reflectance or lambert_mu_db", material_element));
+  const MaterialRequest request{text_of(given),
+                                attribute(given, "reflectance"),
+                                attribute(given, "lambert_mu_db"),
+                                attribute(given, "pressure_reflection"),
+                                attribute(given, "rms_slope"),
+                                attribute(given, "rms_height_mm")};
+  if (request.name.empty() &&
+      std::none_of(material_numbers.begin(), material_numbers.end(),
+                   [&](std::string_view key) { return given->HasAttribute(std::string(key)); })) {
+    throw WorldError(fmt::format("<{}> is empty: expected a name, or one of the attributes {}",
+                                 material_element, fmt::join(material_numbers, ", ")));
   }
   std::vector<std::string> remarks;
   AcousticMaterial material = make_acoustic_material(request, remarks);

@@ -28,6 +28,13 @@ struct AcousticMaterial {
   /// Lambert coefficient mu of mode `physical`: s_b = mu cos^2(phi). Linear, in [0, 1/pi] for a passive
   /// surface.
   double lambert_mu = 0.0063;
+  /// Pressure reflection coefficient R of a plane, smooth surface, (Z2 - Z1) / (Z2 + Z1), in [-1, 1]
+  /// (docs/physics.md 2.4): the strength of facets and of mirror images. 0: neither.
+  double pressure_reflection = 0.0;
+  /// Rms slope m of the facets of the surface along each of its two axes, > 0: how wide their echo is.
+  double rms_slope = 0.2;
+  /// Rms height sigma of the surface, >= 0: how much of a mirror image survives (docs/physics.md 2.11).
+  double rms_height_m = 0.002;
 };
 
 /// Triangles in the coordinates of the body part, metres. Validated: every index is in range, every

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,18 +28,42 @@ std::string error_of(const MaterialRequest& request) {
   return "";
 }
 
-// docs/physics.md 2.4, column "mu dB".
-TEST(MaterialTable, HoldsTheLambertCoefficients) {
-  const std::vector<std::pair<std::string, double>> expected{
-      {"steel", -25}, {"steel_fouled", -15}, {"aluminium", -25}, {"concrete", -18},
-      {"pvc", -28},   {"gravel", -15},       {"rock", -15},      {"sand", -22},
-      {"mud", -32},   {"wood", -28},         {"rubber", -32},    {"air", -20}};
-  for (const auto& [name, mu_db] : expected) {
-    const auto material = find_acoustic_material(name);
-    ASSERT_TRUE(material) << name;
-    EXPECT_NEAR(level_db(material->lambert_mu), mu_db, 1e-9) << name;
-    EXPECT_GT(material->reflectance, 0.0) << name;
+// The table of docs/physics.md 2.4, where R of rock and gravel and of wood is a span: the ends of the first,
+// the middle of the second. Its sigma of rock and gravel is "> 5".
+TEST(MaterialTable, HoldsTheBackscatterTable) {
+  struct Row {
+    std::string name;
+    double R, mu_db, m, sigma_mm;
+  };
+  const std::vector<Row> expected{
+      {"steel", .94, -25, .05, .1},  {"steel_fouled", .9, -15, .3, 2}, {"aluminium", .84, -25, .05, .1},
+      {"concrete", .68, -18, .2, 1}, {"pvc", .36, -28, .05, .1},       {"gravel", .6, -15, .4, 5},
+      {"rock", .83, -15, .4, 10},    {"sand", .38, -22, .2, 2},        {"mud", .06, -32, .1, 1},
+      {"wood", .065, -28, .2, .5},   {"rubber", .09, -32, .1, .3},     {"air", -1.0, -20, .05, .1}};
+  for (const Row& row : expected) {
+    const auto material = find_acoustic_material(row.name);
+    ASSERT_TRUE(material) << row.name;
+    EXPECT_NEAR(material->pressure_reflection, row.R, 1e-12) << row.name;
+    EXPECT_NEAR(level_db(material->lambert_mu), row.mu_db, 1e-9) << row.name;
+    EXPECT_NEAR(material->rms_slope, row.m, 1e-12) << row.name;
+    EXPECT_NEAR(material->rms_height_m, row.sigma_mm / 1000, 1e-12) << row.name;
+    EXPECT_NEAR(material->reflectance, 2.12 / 0.94 * std::abs(row.R), 0.0051) << row.name;
   }
+}
+
+// Cox & Munk (1954), clean surface: mean square slope of both axes 0.003 + 5.12e-3 U. Pierson & Moskowitz
+// (1964): significant height 0.21 U^2 / g, four times the rms height. U = 5 m/s.
+TEST(MaterialTable, TheSeaSurfaceIsThatOfALightBreeze) {
+  const AcousticMaterial sea = find_acoustic_material("sea_surface").value();
+  EXPECT_EQ(sea.pressure_reflection, -1.0);
+  EXPECT_NEAR(sea.rms_slope, std::sqrt((0.003 + 5.12e-3 * 5) / 2), 0.005);
+  EXPECT_NEAR(sea.rms_height_m, 0.21 * 25 / 9.81 / 4, 0.005);
+}
+
+TEST(MaterialTable, HasOtherNamesForSome) {
+  EXPECT_EQ(find_acoustic_material("aluminum").value().name, "aluminium");
+  EXPECT_EQ(find_acoustic_material("Steel_Clean.002").value().name, "steel");
+  EXPECT_EQ(find_acoustic_material("water_surface").value().name, "air");
 }
 
 TEST(MaterialTable, EveryRowIsPassive) {
@@ -52,6 +78,10 @@ TEST(MaterialTable, TheDefaultIsTheDefault) {
   const AcousticMaterial named = find_acoustic_material("default").value();
   EXPECT_EQ(named.reflectance, AcousticMaterial{}.reflectance);
   EXPECT_NEAR(named.lambert_mu, AcousticMaterial{}.lambert_mu, 2e-5);
+  EXPECT_EQ(named.pressure_reflection, 0.0);
+  EXPECT_EQ(named.pressure_reflection, AcousticMaterial{}.pressure_reflection);
+  EXPECT_EQ(named.rms_slope, AcousticMaterial{}.rms_slope);
+  EXPECT_EQ(named.rms_height_m, AcousticMaterial{}.rms_height_m);
 }
 
 TEST(MaterialTable, IgnoresCaseAndTheSuffixesOfModellingTools) {
@@ -69,10 +99,42 @@ TEST(MaterialRequest, ReplacesSingleNumbersOfANamedMaterial) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST(MaterialRequest, ReplacesTheNumbersOfFacets) {
+  std::vector<std::string> warnings;
+  MaterialRequest request;
+  request.name = "concrete";
+  request.rms_slope = 0.1;
+  AcousticMaterial material = make_acoustic_material(request, warnings);
+  EXPECT_EQ(material.rms_slope, 0.1);
+  EXPECT_EQ(material.pressure_reflection, 0.68);
+  EXPECT_NEAR(material.rms_height_m, 0.001, 1e-12);
+  request.pressure_reflection = -0.5;
+  request.rms_height_mm = 0.0;
+  material = make_acoustic_material(request, warnings);
+  EXPECT_EQ(material.pressure_reflection, -0.5);
+  EXPECT_EQ(material.rms_height_m, 0.0);
+  EXPECT_NEAR(level_db(material.lambert_mu), -18.0, 1e-9);
+  EXPECT_TRUE(warnings.empty());
+}
+
+TEST(MaterialRequest, ChecksTheNumbersOfFacets) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double wrong : {-1.01, 1.01, nan}) {
+    EXPECT_THAT(error_of({"", {}, {}, wrong, {}, {}}), HasSubstr("pressure_reflection is"));
+  }
+  for (const double wrong : {0.0, 0.009, 1.01, nan}) {
+    EXPECT_THAT(error_of({"", {}, {}, {}, wrong, {}}), HasSubstr("rms_slope is"));
+  }
+  for (const double wrong : {-0.1, 1000.1, nan}) {
+    EXPECT_THAT(error_of({"", {}, {}, {}, {}, wrong}), HasSubstr("rms_height_mm is"));
+  }
+}
+
 TEST(MaterialRequest, MayDefineANewOne) {
   std::vector<std::string> warnings;
   const AcousticMaterial material = make_acoustic_material({"hull_paint", 1.2, -20.0}, warnings);
   EXPECT_EQ(material.name, "hull_paint");
+  EXPECT_EQ(material.pressure_reflection, 0.0);
   EXPECT_NEAR(material.lambert_mu, 0.01, 1e-12);
 }
 
