@@ -3,10 +3,9 @@
 
 #include <cstdint>
 #include <map>
-#include <vector>
 
 #include "renderer/acoustics/beam_filter.hpp"
-#include "renderer/acoustics/range_response.hpp"
+#include "renderer/acoustics/receiver_tables.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
@@ -14,27 +13,6 @@
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
-
-/// What mode `physical` works out from the settings alone; kept for as long as they stay the same.
-struct ReceiverTables {
-  Aperture aperture;
-  RangeLines range;
-  PhysicalModel model;
-  bool sixteen_bit = false;
-  OutputScale output_scale = OutputScale::linear;
-
-  BeamFilter filter;
-  RangeResponse response;
-  std::vector<float> gain;     ///< per native line: amplitude to codes, TVG included
-  std::vector<float> profile;  ///< per beam: noise amplitude relative to that away from broadside
-  float noise = 0;             ///< amplitude before TVG; 0: off
-  float leak = 0;              ///< share of a line's strongest echo that all its beams get
-
-  ReceiverTables() = default;
-  explicit ReceiverTables(const SonarSettings& settings);
-  /// True: made from these settings.
-  bool fits(const SonarSettings& settings) const;
-};
 
 /// The receiver of all sonars that share a renderer. One thread calls it. Mode `physical` with speckle `ou`
 /// keeps a field per stream, so that speckle survives small motions as it does in the water; everything else
@@ -67,8 +45,5 @@ class Receiver {
   SkipCounts skipped_;
   std::map<int, Stream> streams_;
 };
-
-/// Time-varying gain and gain setting of mode `physical` per native line, as amplitude.
-std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range);
 
 }  // namespace sonard::render

@@ -1,0 +1,38 @@
+// One line of complex numbers.
+#pragma once
+
+#include <cstdint>
+
+#include "renderer/acoustics/beam_filter.hpp"
+#include "renderer/acoustics/random.hpp"
+#include "renderer/aligned_vector.hpp"
+
+namespace sonard::render {
+
+/// Real and imaginary part of one line, each starting on a cache line.
+class ComplexRow {
+ public:
+  explicit ComplexRow(int width)
+      : stride_(aligned_stride(width)), parts_(2 * static_cast<std::size_t>(stride_)) {}
+
+  float* real() { return parts_.data(); }
+  float* imaginary() { return parts_.data() + stride_; }
+  const float* real() const { return parts_.data(); }
+  const float* imaginary() const { return parts_.data() + stride_; }
+
+  /// CN(0, 1) all along, the padding at the end included: whole vectors are faster than exact counts.
+  void draw(RandomKey key, int line) {
+    fill_complex_gaussian(key, static_cast<std::uint32_t>(line), stride_, real(), imaginary());
+  }
+  /// The filtered `white`.
+  void filter(const BeamFilter& filter, const ComplexRow& white) {
+    filter.apply(white.real(), real());
+    filter.apply(white.imaginary(), imaginary());
+  }
+
+ private:
+  int stride_;
+  AlignedVector<float> parts_;
+};
+
+}  // namespace sonard::render

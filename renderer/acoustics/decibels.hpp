@@ -1,0 +1,13 @@
+// Levels.
+#pragma once
+
+#include <cmath>
+
+namespace sonard::render {
+
+/// The intensity of a level of 10 log10.
+inline double decibels_to_power(double decibels) {
+  return std::pow(10.0, decibels / 10);
+}
+
+}  // namespace sonard::render

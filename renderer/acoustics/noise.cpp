@@ -1,0 +1,20 @@
+#include "renderer/acoustics/noise.hpp"
+
+#include <cmath>
+
+#include "renderer/acoustics/decibels.hpp"
+
+namespace sonard::render {
+
+std::vector<float> noise_profile(const SonarSettings& settings) {
+  std::vector<float> profile;
+  const auto& edges = settings.aperture.beam_edges_rad;
+  const double peak = decibels_to_power(settings.physical.broadside_stripe_db) - 1;
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    const double x = 0.5 * (edges[b] + edges[b + 1]) / settings.aperture.receive_beamwidth_rad;
+    profile.push_back(static_cast<float>(std::sqrt(1 + peak * std::exp(-x * x))));
+  }
+  return profile;
+}
+
+}  // namespace sonard::render

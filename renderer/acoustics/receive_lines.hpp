@@ -1,0 +1,49 @@
+// Native lines of a ping, shared among the threads.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+
+#include "renderer/acoustics/echo_block.hpp"
+#include "renderer/acoustics/output_lines.hpp"
+#include "renderer/skip_ledger.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Shares blocks of lines among the threads. `Lines` is made once per thread, for its buffers, and takes
+/// native lines one by one.
+template <class Lines, class Ping>
+PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
+                          WorkerPool& workers, SkipCounts& skipped) {
+  PingSamples samples = make_samples(settings);
+  const int looks_log2 = settings.range.compression_log2;
+  const int lines_per_block = EchoBlock::most_lines >> looks_log2;
+  const int blocks = (samples.lines + lines_per_block - 1) / lines_per_block;
+  std::atomic<int> next{0};
+  std::mutex counting;
+  workers.run(std::min(blocks, static_cast<int>(workers.size())), [&](int) {
+    EchoBlock block(echo);
+    Lines lines(ping, block);
+    OutputLines output(settings, samples);
+    for (int i = next++; i < blocks; i = next++) {
+      const int begin = i * lines_per_block;
+      const int end = std::min(begin + lines_per_block, samples.lines);
+      block.load(begin << looks_log2, (end - begin) << looks_log2);
+      for (int line = begin; line < end; ++line) {
+        output.begin();
+        for (int native = line << looks_log2; native < (line + 1) << looks_log2; ++native) {
+          lines.add_native_line(native, output);
+        }
+        output.end(line);
+      }
+    }
+    const std::lock_guard lock(counting);
+    skipped += lines.skipped();
+  });
+  return samples;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,36 @@
+// What the receiver works out once for many pings.
+#pragma once
+
+#include <vector>
+
+#include "renderer/acoustics/beam_filter.hpp"
+#include "renderer/acoustics/range_response.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// What mode `physical` works out from the settings alone; kept for as long as they stay the same.
+struct ReceiverTables {
+  Aperture aperture;
+  RangeLines range;
+  PhysicalModel model;
+  bool sixteen_bit = false;
+  OutputScale output_scale = OutputScale::linear;
+
+  BeamFilter filter;
+  RangeResponse response;
+  std::vector<float> gain;     ///< per native line: amplitude to codes, TVG included
+  std::vector<float> profile;  ///< per beam: noise amplitude relative to that away from broadside
+  float noise = 0;             ///< amplitude before TVG; 0: off
+  float leak = 0;              ///< share of a line's strongest echo that all its beams get
+
+  ReceiverTables() = default;
+  explicit ReceiverTables(const SonarSettings& settings);
+  /// True: made from these settings.
+  bool fits(const SonarSettings& settings) const;
+};
+
+/// Time-varying gain and gain setting of mode `physical` per native line, as amplitude.
+std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range);
+
+}  // namespace sonard::render
