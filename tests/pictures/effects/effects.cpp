@@ -1,0 +1,17 @@
+#include "tests/pictures/effects/effects.hpp"
+
+#include <utility>
+
+namespace sonard::pictures {
+
+std::vector<EffectPicture> effect_pictures() {
+  std::vector<EffectPicture> all;
+  for (const auto& family : {receiver_pictures, response_pictures, water_pictures}) {
+    for (EffectPicture& picture : family()) {
+      all.push_back(std::move(picture));
+    }
+  }
+  return all;
+}
+
+}  // namespace sonard::pictures

@@ -1,0 +1,29 @@
+// The pictures of docs/acoustics.md: one view without and with each effect. An effect is added to the table
+// of its family.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/pictures/view.hpp"
+
+namespace sonard::pictures {
+
+struct EffectPicture {
+  std::string name;            ///< of the file: docs/images/acoustics/<name>.png
+  std::function<View()> view;  ///< of both halves
+  std::string caption_before;
+  std::function<void(View&)> before;  ///< changes the settings (or the world) for the left half
+  std::string caption_after;
+  std::function<void(View&)> after;  ///< the same for the right half
+};
+
+std::vector<EffectPicture> receiver_pictures();  ///< speckle, noise, what is in the samples without an echo
+std::vector<EffectPicture> response_pictures();  ///< patterns of the aperture, pulse
+std::vector<EffectPicture> water_pictures();     ///< absorption and gain
+
+/// All of them, in this order.
+std::vector<EffectPicture> effect_pictures();
+
+}  // namespace sonard::pictures
