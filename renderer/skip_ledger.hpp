@@ -26,6 +26,11 @@ enum class SkipRule : std::uint8_t {
   no_noise,
   unmoved_speckle,
   narrow_aperture,
+  long_lines,
+  many_scatterers,
+  ring_down_over,
+  no_interference,
+  clear_water,
 };
 
 /// One line of the ledger. What a rule may change at most, in one ping with the rule on against the same ping
@@ -78,6 +83,22 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::narrow_aperture, "narrow_aperture",
                   "beams do not share elements: one beam only, or beams no wider than their spacing", "rows",
                   0, "output codes"},
+    SkipRuleEntry{SkipRule::long_lines, "long_lines",
+                  "lines do not share a pulse: none is shorter than `range_cell_m`", "rows", 0,
+                  "output codes"},
+    SkipRuleEntry{
+        SkipRule::many_scatterers, "many_scatterers",
+        "more than 20 scatterers in a cell: intensities vary by less than a tenth more than speckle's",
+        "lines", 0.1, "of the scintillation index"},
+    SkipRuleEntry{SkipRule::ring_down_over, "ring_down_over",
+                  "the line lies beyond `ring_down.end_m`, where 80 dB of the ring-down are gone", "lines",
+                  1e-3, "of its highest output code"},
+    SkipRuleEntry{SkipRule::no_interference, "no_interference",
+                  "the ping is not hit, or the line is nearer than where interference begins", "lines", 0,
+                  "output codes"},
+    SkipRuleEntry{SkipRule::clear_water, "clear_water",
+                  "volume scattering below -75 dB/m^3, or a range of less than 20 m", "pings", 0.1,
+                  "of the highest output code over a bed"},
 };
 
 inline constexpr std::size_t skip_rule_count = skip_rules.size();
@@ -98,21 +119,21 @@ class SkipSwitches {
  public:
   constexpr bool on(SkipRule rule) const { return (off_ >> static_cast<unsigned>(rule) & 1U) == 0; }
   constexpr SkipSwitches& turn_off(SkipRule rule) {
-    off_ |= std::uint32_t{1} << static_cast<unsigned>(rule);
+    off_ |= std::uint64_t{1} << static_cast<unsigned>(rule);
     return *this;
   }
   /// Nothing is skipped: every image is worked out in full.
   static constexpr SkipSwitches none() {
     SkipSwitches switches;
-    switches.off_ = (std::uint32_t{1} << skip_rule_count) - 1;
+    switches.off_ = (std::uint64_t{1} << skip_rule_count) - 1;
     return switches;
   }
 
   constexpr bool operator==(const SkipSwitches&) const = default;
 
  private:
-  static_assert(skip_rule_count < 32);
-  std::uint32_t off_ = 0;
+  static_assert(skip_rule_count < 64);
+  std::uint64_t off_ = 0;
 };
 
 /// How often each rule skipped something, in SkipRuleEntry::counts. A thread has its own; they are added up.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "renderer/acoustics/receiver.hpp"
+#include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/visibility/beam_refinement.hpp"
 #include "renderer/visibility/sample_grid.hpp"
@@ -74,6 +75,8 @@ SurfaceModel surface_model(const SonarSettings& settings) {
 BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches& skip) {
   BinningOptions options;
   options.skip = skip;
+  options.open_water =
+      has_volume_reverberation(settings) && !(is_clear_water(settings) && skip.on(SkipRule::clear_water));
   options.footprint = settings.sampling.footprint;
   if (settings.model == Model::paper) {
     options.mean = true;
@@ -133,7 +136,8 @@ bool same_echo(const SonarSettings& a, const SonarSettings& b) {
       a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
     return false;
   }
-  return a.model == Model::physical ? a.physical.absorption_db_per_m == b.physical.absorption_db_per_m
+  return a.model == Model::physical ? a.physical.absorption_db_per_m == b.physical.absorption_db_per_m &&
+                                          a.physical.volume_scattering_db == b.physical.volume_scattering_db
                                     : echo_part(a.paper) == echo_part(b.paper);
 }
 
@@ -214,9 +218,14 @@ struct SonarRenderer::Impl {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
-    image.intensity = look(settings, T_world_sonar, line_weight, std::move(image.intensity)).echo;
+    BinningResult bins = look(settings, T_world_sonar, line_weight, std::move(image.intensity));
+    image.intensity = std::move(bins.echo);
     Stopwatch watch;
     if (settings.model == Model::physical) {
+      add_volume_reverberation(bins.open_sr, settings, image);
+      if (has_volume_reverberation(settings) && bins.open_sr.empty()) {
+        statistics.skipped.add(SkipRule::clear_water);
+      }
       apply(line_weight, image);
     }
     statistics.binning_s += watch.lap();

@@ -31,6 +31,17 @@ double Aperture::elevation_weight(double elevation_rad) const {
   return amplitude * amplitude;
 }
 
+double Aperture::pattern_height() const {
+  constexpr int steps = 512;  // Simpson; the pattern is smooth
+  const double limit = std::sin(elevation_limit_rad());
+  double sum = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    const int share = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+    sum += share * elevation_weight(std::asin(limit * (2.0 * i / steps - 1)));
+  }
+  return sum * 2 * limit / (3 * steps);
+}
+
 void check_aperture(const Aperture& aperture) {
   const auto& edges = aperture.beam_edges_rad;
   if (edges.size() < 2) {

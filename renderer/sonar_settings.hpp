@@ -1,6 +1,7 @@
 // What one ping asks of the renderer: aperture, range lines, water, receiver. All angles in radians.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace sonard::render {
@@ -23,6 +24,8 @@ struct Aperture {
   double elevation_limit_rad() const;
   /// One-way power pattern at an elevation; 1 on the axis.
   double elevation_weight(double elevation_rad) const;
+  /// Integral of the pattern over the sine of the rendered elevations: steradians per radian of azimuth.
+  double pattern_height() const;
 
   bool operator==(const Aperture&) const = default;
 };
@@ -87,6 +90,25 @@ struct PaperModel {
   }
 };
 
+/// A scanning head hears its own transducer after the pulse (docs/physics.md 2.16).
+struct RingDown {
+  bool on = false;
+  double level_db = 6.0;  ///< intensity at the peak, re the source intensity at 1 m, before TVG
+  double peak_m = 0.28;   ///< > 0; it rises from 0 at half of this
+  double end_m = 0.95;    ///< where it has fallen by 80 dB, > peak_m
+
+  bool operator==(const RingDown&) const = default;
+};
+
+/// Another sonar, or the vehicle: noise rises from some range to the end of a ping (docs/physics.md 2.16).
+struct Interference {
+  double probability = 0.0;  ///< of a ping to be hit, [0, 1]
+  double least_db = 2.0;     ///< noise rises by this at least
+  double most_db = 11.0;     ///< and at most; >= least_db
+
+  bool operator==(const Interference&) const = default;
+};
+
 /// Mode `physical`: water, source and receiver (docs/physics.md 2.1-2.9, 2.16). Levels are intensities in dB.
 struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
@@ -97,7 +119,13 @@ struct PhysicalModel {
   double range_cell_m = 0.0;
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
-  double noise_level_db = -138.2;
+  double noise_level_db = -138.2;  ///< render::noise_level_db() makes it of a sonar equation
+  /// Effective number of scatterers in a cell at `texture_range_m`, nu of the K distribution, in proportion
+  /// to the range (docs/physics.md 2.8); 0: of no number that shows.
+  double texture_nu = 0.0;
+  double texture_range_m = 10.0;  ///< > 0
+  /// Scattering strength of the water's volume, dB/m^3 (docs/physics.md 2.10); -infinity: none.
+  double volume_scattering_db = -std::numeric_limits<double>::infinity();
   double tvg_log_coefficient = 30.0;        ///< X of X log10 r + 2 alpha r
   double tvg_absorption_db_per_m = 0.2085;  ///< one way; what the device believes the water to be
   double tvg_max_db = 75.0;                 ///< ceiling of the two terms together
@@ -107,6 +135,8 @@ struct PhysicalModel {
   // What recordings of Gemini-class heads show (docs/physics.md 2.16).
   double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
+  RingDown ring_down;
+  Interference interference;
   /// What leaks of the strongest echo of a range line into all its beams; negative, 0 = off. Real: about -25.
   double side_lobe_floor_db = 0.0;
 

@@ -9,6 +9,12 @@
 
 namespace sonard::render {
 
+/// Complex numbers of one line that belong to somebody else.
+struct Phasors {
+  const float* real;
+  const float* imaginary;
+};
+
 /// Real and imaginary part of one line, each starting on a cache line.
 class ComplexRow {
  public:

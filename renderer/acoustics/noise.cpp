@@ -17,4 +17,14 @@ std::vector<float> noise_profile(const SonarSettings& settings) {
   return profile;
 }
 
+InterferenceStreak draw_interference(const Interference& interference, int lines, RandomKey key) {
+  if (!(uniform_number(key, 0) < interference.probability)) {
+    return {};
+  }
+  const double raise_db =
+      interference.least_db + (interference.most_db - interference.least_db) * uniform_number(key, 1);
+  return {static_cast<int>(lines * uniform_number(key, 2)),
+          static_cast<float>(std::sqrt(decibels_to_power(raise_db)))};
+}
+
 }  // namespace sonard::render

@@ -2,27 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "renderer/acoustics/complex_row.hpp"
 #include "renderer/acoustics/receive_lines.hpp"
+#include "renderer/acoustics/texture.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-using Speckle = PhysicalModel::Speckle;
-
-/// Envelope of echo plus noise.
+/// Envelope of echo, ring-down and noise.
 SONARD_SIMD_CLONES
 void envelope_row(const float* __restrict echo, float floor, const float* __restrict speckle_re,
-                  const float* __restrict speckle_im, float noise, const float* __restrict profile,
-                  const float* __restrict noise_re, const float* __restrict noise_im, float gain, int beams,
-                  float* __restrict out) {
+                  const float* __restrict speckle_im, float ring_down, float noise,
+                  const float* __restrict profile, const float* __restrict noise_re,
+                  const float* __restrict noise_im, float gain, int beams, float* __restrict out) {
   for (int b = 0; b < beams; ++b) {
     const float amplitude = std::sqrt(echo[b] + floor);
     const float n = noise * profile[b];
-    const float re = amplitude * speckle_re[b] + n * noise_re[b];
+    const float re = (amplitude * speckle_re[b] + ring_down) + n * noise_re[b];
     const float im = amplitude * speckle_im[b] + n * noise_im[b];
     out[b] = gain * std::sqrt(re * re + im * im);
   }
@@ -45,40 +45,41 @@ class PhysicalLines {
       : ping_(ping),
         block_(block),
         beams_(ping.tables.filter.beams()),
-        copies_(ping.tables.filter.copies() && ping.skip.on(SkipRule::narrow_aperture)),
-        white_(ping.tables.filter.row_width()),
-        speckle_(copies_ ? ping.tables.filter.row_width() : beams_),
-        noise_(copies_ ? ping.tables.filter.row_width() : beams_),
+        speckle_(ping.tables, ping.speckle, ping.skip, skipped_),
+        texture_(ping.tables, ping.texture, ping.skip, skipped_),
+        noise_(ping.tables, ping.noise, ping.skip, skipped_),
+        silence_(beams_),
+        still_(beams_),
+        textured_(static_cast<std::size_t>(beams_)),
         codes_(static_cast<std::size_t>(beams_)) {
-    if (ping.tables.model.speckle == Speckle::off) {
-      std::fill_n(speckle_.real(), beams_, 1.0F);  // the echo is a constant phasor
-    }
+    std::fill_n(still_.real(), beams_, 1.0F);
   }
 
   void add_native_line(int native, OutputLines& output) {
     const ReceiverTables& tables = ping_.tables;
     // The device puts out exactly 0 in its near field.
-    const bool blanked = (native + 0.5) * tables.range.step_m < tables.model.near_field_blank_m;
+    const bool blanked = range_m(native) < tables.model.near_field_blank_m;
     if (blanked && skips(SkipRule::blanked_near_field)) {
       return;
     }
     const float gain = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(native)];
     const float strongest = block_.strongest(native);
-    const bool silent = tables.noise == 0 && skips(SkipRule::no_noise);
-    const Phasors noise = silent ? silence() : draw(ping_.noise_key, native, noise_);
+    const float ring_down = ring_down_at(native);
+    const float level = noise_level_at(native);
+    const bool silent = level == 0 && skips(SkipRule::no_noise);
+    const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(native);
     // No echo in any beam, and so no leak either: speckle would multiply 0. Later images get other random
     // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
-    if (!(strongest > 0) && skips(SkipRule::lines_without_echo)) {
+    if (!(strongest > 0) && ring_down == 0 && skips(SkipRule::lines_without_echo)) {
       if (silent) {
         return;
       }
-      noise_envelope_row(tables.noise, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
+      noise_envelope_row(level, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
                          codes_.data());
     } else {
       const Phasors phasors = speckle_of(native);
-      envelope_row(block_.line(native), tables.leak * strongest, phasors.real, phasors.imaginary,
-                   tables.noise, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
-                   codes_.data());
+      envelope_row(echo_of(native), tables.leak * strongest, phasors.real, phasors.imaginary, ring_down,
+                   level, tables.profile.data(), noise.real, noise.imaginary, gain, beams_, codes_.data());
     }
     output.add(codes_.data());
   }
@@ -86,11 +87,6 @@ class PhysicalLines {
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
-  struct Phasors {
-    const float* real;
-    const float* imaginary;
-  };
-
   /// Counts too: to be asked only where the criterion of the rule is met.
   bool skips(SkipRule rule) {
     const bool on = ping_.skip.on(rule);
@@ -98,52 +94,88 @@ class PhysicalLines {
     return on;
   }
 
-  /// What noise of amplitude 0 is drawn as: nothing ever writes to the row, so it is 0 throughout.
-  Phasors silence() const { return {noise_.real(), noise_.imaginary()}; }
+  double range_m(int native) const { return (native + 0.5) * ping_.tables.range.step_m; }
 
-  Phasors speckle_of(int native) {
-    switch (ping_.tables.model.speckle) {
-      case Speckle::off:
-        break;
-      case Speckle::per_ping:
-        return draw(ping_.speckle_key, native, speckle_);
-      case Speckle::frozen:
-      case Speckle::ou:
-        if (!ping_.speckle.is_current(native) || !skips(SkipRule::unmoved_speckle)) {
-          const Phasors fresh = draw(ping_.speckle_key, native, speckle_);
-          ping_.speckle.evolve(native, fresh.real, fresh.imaginary);
-        }
-        return {ping_.speckle.real(native), ping_.speckle.imaginary(native)};
+  float ring_down_at(int native) {
+    const ReceiverTables& tables = ping_.tables;
+    if (!tables.rings) {
+      return 0.0F;
     }
-    return {speckle_.real(), speckle_.imaginary()};
+    const bool over = native >= tables.ring_down_lines && skips(SkipRule::ring_down_over);
+    return over ? 0.0F : tables.ring_down[static_cast<std::size_t>(native)];
   }
 
-  /// CN(0, 1) of one line with the grain of the array, in `row` or a part of it.
-  Phasors draw(RandomKey key, int native, ComplexRow& row) {
-    const BeamFilter& filter = ping_.tables.filter;
-    if (copies_) {
-      skipped_.add(SkipRule::narrow_aperture);
-      row.draw(key, native);
-      return {filter.middle(row.real()), filter.middle(row.imaginary())};
+  /// Amplitude before TVG.
+  float noise_level_at(int native) {
+    const float level = ping_.tables.noise;
+    if (!(ping_.tables.model.interference.probability > 0) ||
+        (!ping_.interference.raises(native) && skips(SkipRule::no_interference))) {
+      return level;
     }
-    white_.draw(key, native);
-    row.filter(filter, white_);
-    return {row.real(), row.imaginary()};
+    return level * ping_.interference.factor_at(native);
+  }
+
+  Phasors speckle_of(int native) {
+    const bool off = ping_.tables.model.speckle == PhysicalModel::Speckle::off;
+    return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(native);
+  }
+
+  /// The echo behind its texture.
+  const float* echo_of(int native) {
+    const PhysicalModel& model = ping_.tables.model;
+    const float* echo = block_.line(native);
+    if (!(model.texture_nu > 0) || model.speckle == PhysicalModel::Speckle::off) {
+      return echo;
+    }
+    const double scatterers = scatterers_at(model, range_m(native));
+    if (scatterers > many_scatterers && skips(SkipRule::many_scatterers)) {
+      return echo;
+    }
+    root_.set(scatterers);
+    root_.apply(echo, texture_.line(native).real, beams_, textured_.data());
+    return textured_.data();
   }
 
   const PhysicalPing& ping_;
   const EchoBlock& block_;
   int beams_;
-  bool copies_;  ///< beams share nothing: rows are as they are drawn
-  ComplexRow white_, speckle_, noise_;
-  AlignedVector<float> codes_;
   SkipCounts skipped_;
+  FieldReader speckle_, texture_, noise_;
+  ComplexRow silence_;  ///< noise of amplitude 0: 0 throughout
+  ComplexRow still_;    ///< speckle that is off: a constant phasor
+  TextureRoot root_;
+  AlignedVector<float> textured_, codes_;
 };
+
+/// Where lines share a pulse a line needs its neighbours, which may be another thread's: all of a kept field
+/// is brought up to date beforehand.
+void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, WorkerPool& workers,
+                  SkipCounts& skipped) {
+  const int reach = ping.tables.range_grain.reach();
+  if (field.kept == nullptr || reach == 0) {
+    return;
+  }
+  const int lines = ping.tables.range.count + 2 * reach;
+  constexpr int lines_per_job = 64;
+  const int jobs = (lines + lines_per_job - 1) / lines_per_job;
+  std::mutex counting;
+  workers.run(jobs, [&](int job) {
+    SkipCounts own;
+    FieldReader reader(ping.tables, field, ping.skip, own);
+    for (int line = job * lines_per_job; line < std::min((job + 1) * lines_per_job, lines); ++line) {
+      reader.evolve(line - reach);
+    }
+    const std::lock_guard lock(counting);
+    skipped += own;
+  });
+}
 
 }  // namespace
 
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
                              WorkerPool& workers, SkipCounts& skipped) {
+  evolve_whole(ping.speckle, ping, workers, skipped);
+  evolve_whole(ping.texture, ping, workers, skipped);
   return receive_lines<PhysicalLines>(echo, ping, settings, workers, skipped);
 }
 

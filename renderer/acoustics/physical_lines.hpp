@@ -1,19 +1,21 @@
-// Mode `physical` from the mean echo to samples: speckle, noise, envelope, gain (docs/physics.md 2.8, 2.9).
+// Mode `physical` from the mean echo to samples: texture, speckle, noise, envelope, gain
+// (docs/physics.md 2.8, 2.9).
 #pragma once
 
-#include "renderer/acoustics/random.hpp"
+#include "renderer/acoustics/field_reader.hpp"
+#include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/receiver_tables.hpp"
-#include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
+/// What one ping brings to the receiver beside its echo.
 struct PhysicalPing {
   const ReceiverTables& tables;
-  SpeckleField& speckle;
-  RandomKey speckle_key, noise_key;
+  RandomFieldOfPing speckle, texture, noise;
+  InterferenceStreak interference;
   const SkipSwitches& skip;
 };
 

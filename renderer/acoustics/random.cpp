@@ -45,6 +45,10 @@ RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std
   return {mix(key ^ ping_number)};
 }
 
+double uniform_number(RandomKey key, std::uint64_t index) {
+  return static_cast<double>(mix(key.value ^ index) >> 11) * 0x1p-53;
+}
+
 SONARD_SIMD_CLONES
 void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* __restrict real,
                            float* __restrict imaginary) {

@@ -12,12 +12,21 @@ struct RandomKey {
 };
 
 /// What a field is used for; keeps the fields of one ping apart.
-enum class RandomField : std::uint64_t { speckle = 1, noise = 2, paper_speckle = 3 };
+enum class RandomField : std::uint64_t {
+  speckle = 1,
+  noise = 2,
+  paper_speckle = 3,
+  texture = 4,
+  interference = 5
+};
 
 /// Mixes all inputs so that any difference gives an unrelated field.
 RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std::uint64_t ping_number);
 
 /// Circular complex Gaussians CN(0, 1), that is E|z|^2 = 1, for columns 0 ... count - 1 of row `row`.
 void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* real, float* imaginary);
+
+/// Number `index` of a field of even numbers, in [0, 1).
+double uniform_number(RandomKey key, std::uint64_t index);
 
 }  // namespace sonard::render

@@ -15,15 +15,21 @@ using Speckle = PhysicalModel::Speckle;
 void Receiver::advance_speckle(const PingRequest& request, Stream& state) {
   const PhysicalModel& model = request.settings.physical;
   const bool kept = model.speckle == Speckle::ou || model.speckle == Speckle::frozen;
-  if (state.kind != model.speckle || state.seed != request.seed || state.grain != state.tables.filter) {
+  const ReceiverTables& tables = state.tables;
+  if (state.kind != model.speckle || state.seed != request.seed || state.grain != tables.filter ||
+      state.range_grain != tables.range_grain) {
     state.kind = model.speckle;
     state.seed = request.seed;
-    state.grain = state.tables.filter;
+    state.grain = tables.filter;
+    state.range_grain = tables.range_grain;
     state.speckle = SpeckleField(kept ? request.settings.aperture.beam_count() : 0);
+    state.texture = state.speckle;
     state.T_world_sonar = request.T_world_sonar;
   }
   if (kept) {
-    state.speckle.ensure_lines(request.settings.range.count);
+    const int lines = request.settings.range.count + 2 * tables.range_grain.reach();
+    state.speckle.ensure_lines(lines);
+    state.texture.ensure_lines(model.texture_nu > 0 ? lines : 0);
   }
   if (model.speckle == Speckle::ou) {
     // docs/physics.md 2.8: correlation falls with the motion since the last ping, over half the aperture and
@@ -35,6 +41,7 @@ void Receiver::advance_speckle(const PingRequest& request, Stream& state) {
     const double turned = 2 * std::asin(std::min(1.0, glm::length(glm::dvec3(turn.x, turn.y, turn.z)))) /
                           (request.settings.aperture.receive_beamwidth_rad / 2);
     state.speckle.fade(moved * moved + turned * turned);
+    state.texture.fade(moved * moved + turned * turned);
   }
   state.T_world_sonar = request.T_world_sonar;
 }
@@ -65,8 +72,16 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
   }
   // Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
   const std::uint64_t speckle_ping = state.kind == Speckle::frozen ? 0 : request.ping_number;
-  const PhysicalPing ping{state.tables, state.speckle, key(RandomField::speckle, speckle_ping),
-                          key(RandomField::noise, request.ping_number), skip_};
+  const bool kept = state.kind == Speckle::ou || state.kind == Speckle::frozen;
+  const bool textured = settings.physical.texture_nu > 0;
+  const PhysicalPing ping{
+      state.tables,
+      {key(RandomField::speckle, speckle_ping), kept ? &state.speckle : nullptr},
+      {key(RandomField::texture, speckle_ping), kept && textured ? &state.texture : nullptr},
+      {key(RandomField::noise, request.ping_number), nullptr},
+      draw_interference(settings.physical.interference, settings.range.count,
+                        key(RandomField::interference, request.ping_number)),
+      skip_};
   return receive_physical(*heard, ping, settings, workers, skipped_);
 }
 

@@ -31,10 +31,11 @@ class Receiver {
   struct Stream {
     ReceiverTables tables;
     EchoImage spread;  ///< the echo behind the response of the pulse in range
-    SpeckleField speckle;
+    SpeckleField speckle, texture;
     // What the field was made for; with another of these it is begun anew.
     PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
     BeamFilter grain;
+    RangeGrain range_grain;
     std::uint64_t seed = 0;
     Pose T_world_sonar;  ///< at the last ping
   };

@@ -7,6 +7,7 @@
 #include "renderer/acoustics/decibels.hpp"
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/output_lines.hpp"
+#include "renderer/acoustics/ring_down.hpp"
 
 namespace sonard::render {
 
@@ -28,10 +29,14 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       model(settings.physical),
       sixteen_bit(settings.sixteen_bit),
       output_scale(settings.output_scale),
+      rings(settings.transmit && model.ring_down.on),
       filter(receive_kernel(aperture), aperture.beam_count()),
       response(model.range_cell_m, range.step_m),
+      range_grain(model.range_cell_m, range.step_m),
       gain(tvg_amplitudes(model, range)),
-      profile(noise_profile(settings)) {
+      profile(noise_profile(settings)),
+      ring_down(ring_down_amplitudes(model.ring_down, range)),
+      ring_down_lines(render::ring_down_lines(model.ring_down, range)) {
   const float codes = codes_per_amplitude(settings);
   for (float& g : gain) {
     g *= codes;
@@ -46,7 +51,8 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
 
 bool ReceiverTables::fits(const SonarSettings& settings) const {
   return aperture == settings.aperture && range == settings.range && model == settings.physical &&
-         sixteen_bit == settings.sixteen_bit && output_scale == settings.output_scale;
+         sixteen_bit == settings.sixteen_bit && output_scale == settings.output_scale &&
+         rings == (settings.transmit && settings.physical.ring_down.on);
 }
 
 }  // namespace sonard::render

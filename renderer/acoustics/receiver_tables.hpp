@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "renderer/acoustics/beam_filter.hpp"
+#include "renderer/acoustics/range_grain.hpp"
 #include "renderer/acoustics/range_response.hpp"
 #include "renderer/sonar_settings.hpp"
 
@@ -16,13 +17,17 @@ struct ReceiverTables {
   PhysicalModel model;
   bool sixteen_bit = false;
   OutputScale output_scale = OutputScale::linear;
+  bool rings = false;  ///< there is a ring-down to hear
 
   BeamFilter filter;
   RangeResponse response;
-  std::vector<float> gain;     ///< per native line: amplitude to codes, TVG included
-  std::vector<float> profile;  ///< per beam: noise amplitude relative to that away from broadside
-  float noise = 0;             ///< amplitude before TVG; 0: off
-  float leak = 0;              ///< share of a line's strongest echo that all its beams get
+  RangeGrain range_grain;
+  std::vector<float> gain;       ///< per native line: amplitude to codes, TVG included
+  std::vector<float> profile;    ///< per beam: noise amplitude relative to that away from broadside
+  float noise = 0;               ///< amplitude before TVG; 0: off
+  std::vector<float> ring_down;  ///< per native line: amplitude before TVG
+  int ring_down_lines = 0;       ///< that the ring-down is heard in
+  float leak = 0;                ///< share of a line's strongest echo that all its beams get
 
   ReceiverTables() = default;
   explicit ReceiverTables(const SonarSettings& settings);

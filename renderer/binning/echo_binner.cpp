@@ -15,19 +15,22 @@ namespace {
 
 // Means are not taken where less than this share of a beam is seen: there the weights are mostly rounding.
 constexpr float least_share = 0x1p-32F;
+// A beam that is open to less than this share is blocked: what remains is the error of the solid angles.
+constexpr double least_open = 2e-3;
 
 /// One beam's accumulators, and the memory of one thread.
 class BeamSums {
  public:
   /// @param solid_angle of the beam.
   /// @param most_echo that will be added.
-  void reset(const RangeLines& range, double solid_angle, double most_echo, bool mean) {
+  void reset(const RangeLines& range, double solid_angle, double most_echo, const BinningOptions& options) {
     lines_per_m_ = 1.0 / range.step_m;
     solid_angle_ = static_cast<float>(solid_angle);
-    mean_ = mean;
+    mean_ = options.mean;
+    weighs_ = options.mean || options.open_water;
     const auto lines = static_cast<std::size_t>(range.count);
     echo_.reset(lines, most_echo);
-    weight_.reset(mean ? lines : 0, solid_angle);
+    weight_.reset(weighs_ ? lines : 0, solid_angle);
     samples = 0;
     invalid = 0;
   }
@@ -45,7 +48,7 @@ class BeamSums {
     }
     ++samples;
     echo_.add(a, smear_a, b, smear_b, patch.echo, patch.echo_tilt);
-    if (mean_) {
+    if (weighs_) {
       weight_.add(a, smear_a, b, smear_b, patch.weight, patch.weight_tilt);
     }
   }
@@ -53,7 +56,7 @@ class BeamSums {
   void add_point(double line, float echo, float weight) {
     ++samples;
     echo_.add_point(line, echo);
-    if (mean_) {
+    if (weighs_) {
       weight_.add_point(line, weight);
     }
   }
@@ -61,14 +64,28 @@ class BeamSums {
   void read(std::size_t lines, float* out) {
     echo_.finish();
     echo_.read(out);
-    if (!mean_) {
+    if (!weighs_) {
       return;
     }
     weight_.finish();
     weights_.resize(lines);
     weight_.read(weights_.data());
+    if (!mean_) {
+      return;
+    }
     for (std::size_t k = 0; k < lines; ++k) {
       out[k] = weights_[k] > least_share * solid_angle_ ? std::min(1.0F, out[k] / weights_[k]) : 0.0F;
+    }
+  }
+
+  /// What is still open in the middle of every line; after read().
+  void read_open(float* out) const {
+    double open = static_cast<double>(solid_angle_);
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      const auto weight = static_cast<double>(weights_[k]);
+      const double here = open - weight / 2;
+      out[k] = here > least_open * static_cast<double>(solid_angle_) ? static_cast<float>(here) : 0.0F;
+      open -= weight;
     }
   }
 
@@ -81,6 +98,7 @@ class BeamSums {
   double lines_per_m_ = 1.0;
   float solid_angle_ = 1.0F;
   bool mean_ = false;
+  bool weighs_ = false;  ///< the weights are summed too
 };
 
 /// What a beam may hold at most.
@@ -101,6 +119,7 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
   result.lines = range.count;
   const auto lines = static_cast<std::size_t>(range.count);
   result.echo.resize(static_cast<std::size_t>(beams) * lines);
+  result.open_sr.resize(options.open_water ? result.echo.size() : 0);
   std::atomic<std::uint64_t> samples{0};
   std::atomic<std::uint64_t> invalid{0};
   std::atomic<std::uint64_t> empty_beams{0};
@@ -110,12 +129,15 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
     if (empty(b)) {
       ++empty_beams;
       std::fill_n(&result.echo[b * lines], lines, 0.0F);
-      return;
+      return;  // an empty beam is not asked for its open water
     }
     const BeamContent most = content(b);
-    sums.reset(range, most.solid_angle, most.echo, options.mean);
+    sums.reset(range, most.solid_angle, most.echo, options);
     fill(b, sums);
     sums.read(lines, &result.echo[b * lines]);
+    if (options.open_water) {
+      sums.read_open(&result.open_sr[b * lines]);
+    }
     samples += sums.samples;
     invalid += sums.invalid;
   });
@@ -194,7 +216,9 @@ BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Apert
       }
     }
   };
-  const double height = 2 * std::sin(aperture.elevation_limit_rad());
+  // The bound of a mean's weights, or exactly what the beam sees.
+  const double height =
+      options.open_water ? aperture.pattern_height() : 2 * std::sin(aperture.elevation_limit_rad());
   // What the slices of a beam hold in fact: the echo of a bed at grazing incidence keeps its digits.
   const auto content = [&](std::size_t beam) {
     double echo = 0.0;
@@ -206,7 +230,7 @@ BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Apert
     return BeamContent{height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]), echo};
   };
   const auto empty = [&](std::size_t beam) {
-    return options.skip.on(SkipRule::empty_beams) &&
+    return options.skip.on(SkipRule::empty_beams) && !options.open_water &&
            std::all_of(cells.begin() + static_cast<std::ptrdiff_t>(begins[beam]),
                        cells.begin() + static_cast<std::ptrdiff_t>(begins[beam + 1]),
                        [](const SliceCell* cell) { return cell->patches.empty(); });

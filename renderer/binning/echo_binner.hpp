@@ -17,6 +17,7 @@ struct BinningOptions {
   bool mean = false;              ///< divide by the solid angle that fell into the line (mode `paper`)
   bool footprint = true;          ///< false: a sample is a point in range
   bool legacy_bin_index = false;  ///< docs/physics.md 1.2, A4; only with footprint = false
+  bool open_water = false;        ///< fill BinningResult::open_sr; not with `mean`
   SkipSwitches skip{};            ///< for SkipRule::empty_beams, of slices
 };
 
@@ -27,6 +28,9 @@ struct BinningResult {
   /// weighted mean of response. Spreading and absorption are left to the caller: they depend on the line
   /// alone, and taken per line they stay exact where one sample spreads over many lines.
   std::vector<float> echo;
+  /// [beam * lines + line], only where it was asked for. Solid angle * elevation pattern, steradians, of what
+  /// of the beam nothing stands before, up to the middle of the line.
+  std::vector<float> open_sr;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
   SkipCounts skipped;

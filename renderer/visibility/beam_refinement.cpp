@@ -29,8 +29,11 @@ struct BeamRefinement::Ping {
     const BinningResult bins = bin_echoes(grid, views, request.settings.range, request.binning, workers);
     const auto lines = static_cast<std::size_t>(bins.lines);
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      std::copy_n(&bins.echo[i * lines], lines,
-                  &result.bins.echo[static_cast<std::size_t>(choices[i].beam) * lines]);
+      const std::size_t beam = static_cast<std::size_t>(choices[i].beam) * lines;
+      std::copy_n(&bins.echo[i * lines], lines, &result.bins.echo[beam]);
+      if (request.binning.open_water) {
+        std::copy_n(&bins.open_sr[i * lines], lines, &result.bins.open_sr[beam]);
+      }
     }
     result.bins.samples += bins.samples;
     result.bins.invalid_samples += bins.invalid_samples;
@@ -100,6 +103,7 @@ BeamRefinement::Result BeamRefinement::look(const Request& request, bool keep_gr
   ping.result.bins.beams = aperture.beam_count();
   ping.result.bins.lines = settings.range.count;
   ping.result.bins.echo.resize(beams * static_cast<std::size_t>(settings.range.count));
+  ping.result.bins.open_sr.resize(request.binning.open_water ? ping.result.bins.echo.size() : 0);
   std::vector<BeamChoice> choices(beams);
   for (std::size_t beam = 0; beam < beams; ++beam) {
     choices[beam] = {static_cast<int>(beam), density};

@@ -139,7 +139,7 @@ void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
 }
 
 void read_gemini_acoustics(YamlSection& section, GeminiHeadConfig& head) {
-  read_acoustics(section, head);
+  read_acoustics(section, carrier_hz, head);
   section.angle("receive_beamwidth_deg", head.acoustics.aperture.receive_beamwidth_rad,
                 Range::above(0.0, 60.0));
   section.boolean("snap_sound_speed", head.device.snap_sound_speed);

@@ -5,7 +5,8 @@
 namespace sonard::server {
 
 // Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
-// 80, the noise under the ceiling of the TVG to 5 dB, as recordings show (docs/physics.md 2.16).
+// 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 60 dB, and one ping of fourteen is hit
+// by interference, as recordings show (docs/physics.md 2.16).
 MicronHeadConfig::MicronHeadConfig() {
   constexpr double degree = std::numbers::pi / 180.0;
   acoustics.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
@@ -15,7 +16,9 @@ MicronHeadConfig::MicronHeadConfig() {
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.gain_db = -9.0;
   acoustics.physical.noise_level_db = -141.0;
-  acoustics.physical.near_field_blank_m = 0.3;
+  acoustics.physical.near_field_blank_m = 0.1;
+  acoustics.physical.ring_down.on = true;
+  acoustics.physical.interference.probability = 0.07;
   acoustics.physical.broadside_stripe_db = 0.0;
 }
 

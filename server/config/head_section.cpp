@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/acoustics/noise_budget.hpp"
 #include "renderer/acoustics/water.hpp"
 #include "server/config/addresses.hpp"
 #include "server/config/gemini_section.hpp"
@@ -18,7 +19,38 @@ namespace {
 constexpr std::uint64_t max_u64 = std::numeric_limits<std::uint64_t>::max();
 constexpr Range level_db = Range::from(-300.0, 300.0);
 
-void read_physical_model(YamlSection& section, render::PhysicalModel& model) {
+double read_noise_budget(YamlSection& section, double carrier_hz) {
+  render::NoiseBudget budget;
+  budget.spectral_level_db = render::thermal_noise_db(carrier_hz);
+  section.number("source_level_db", budget.source_level_db, level_db);
+  section.number("spectral_level_db", budget.spectral_level_db, level_db);
+  section.number("directivity_db", budget.directivity_db, Range::from(0.0, 100.0));
+  double bandwidth_khz = budget.bandwidth_hz / 1000.0;
+  section.number("bandwidth_khz", bandwidth_khz, Range::above(0.0, 10'000.0));
+  budget.bandwidth_hz = bandwidth_khz * 1000.0;
+  return render::noise_level_db(budget);
+}
+
+void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
+  section.boolean("on", ring_down.on);
+  section.number("level_db", ring_down.level_db, level_db);
+  section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0));
+  section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0));
+  if (ring_down.end_m <= ring_down.peak_m) {
+    section.report("end_m", "is not beyond peak_m (expected a larger range)");
+  }
+}
+
+void read_interference(YamlSection& section, render::Interference& interference) {
+  section.number("probability", interference.probability, Range::from(0.0, 1.0));
+  section.number("least_db", interference.least_db, Range::from(0.0, 100.0));
+  section.number("most_db", interference.most_db, Range::from(0.0, 100.0));
+  if (interference.most_db < interference.least_db) {
+    section.report("most_db", "is less than least_db (expected at least as much)");
+  }
+}
+
+void read_physical_model(YamlSection& section, double carrier_hz, render::PhysicalModel& model) {
   using Speckle = render::PhysicalModel::Speckle;
   section.choice("speckle", model.speckle,
                  {{"ou", Speckle::ou},
@@ -27,7 +59,16 @@ void read_physical_model(YamlSection& section, render::PhysicalModel& model) {
                   {"off", Speckle::off}});
   section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0));
   section.boolean("noise", model.noise);
+  if (section.has("noise_budget") && section.has("noise_level_db")) {
+    section.report("noise_budget", "sets noise_level_db, which is given too (expected one of the two)");
+  }
   section.number("noise_level_db", model.noise_level_db, level_db);
+  section.section("noise_budget",
+                  [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
+  section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0));
+  section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0));
+  section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
+                         {{"off", -std::numeric_limits<double>::infinity()}});
   section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0));
   double tvg_absorption_db_per_km = model.tvg_absorption_db_per_m * 1000.0;
   section.number("tvg_absorption_db_per_km", tvg_absorption_db_per_km, Range::from(0.0, 10'000.0));
@@ -36,6 +77,8 @@ void read_physical_model(YamlSection& section, render::PhysicalModel& model) {
   section.number("gain_db", model.gain_db, level_db);
   section.number("near_field_blank_m", model.near_field_blank_m, Range::from(0.0, 120.0));
   section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0));
+  section.section("ring_down", [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
+  section.section("interference", [&](YamlSection& inner) { read_interference(inner, model.interference); });
   section.number("side_lobe_floor_db", model.side_lobe_floor_db, Range::from(-200.0, 0.0));
 }
 
@@ -102,7 +145,7 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
   });
 }
 
-void read_acoustics(YamlSection& section, HeadConfig& head) {
+void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   render::SonarSettings& settings = head.acoustics;
   section.choice("mode", settings.model,
                  {{"physical", render::Model::physical}, {"paper", render::Model::paper}});
@@ -111,7 +154,8 @@ void read_acoustics(YamlSection& section, HeadConfig& head) {
   using Elevation = render::Aperture::Elevation;
   section.choice("elevation_pattern", settings.aperture.elevation,
                  {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}});
-  section.section("physical", [&](YamlSection& inner) { read_physical_model(inner, settings.physical); });
+  section.section("physical",
+                  [&](YamlSection& inner) { read_physical_model(inner, carrier_hz, settings.physical); });
   section.section("paper", [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });
 }
 

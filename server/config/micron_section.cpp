@@ -49,7 +49,7 @@ void read_timing(YamlSection& section, micron::DeviceConfig& device) {
 }
 
 void read_micron_acoustics(YamlSection& section, MicronHeadConfig& head) {
-  read_acoustics(section, head);
+  read_acoustics(section, carrier_hz, head);
   double beamwidth_deg = head.acoustics.aperture.receive_beamwidth_rad / degree;
   section.number("beamwidth_deg", beamwidth_deg, Range::above(0.0, 60.0));
   head.acoustics.aperture.receive_beamwidth_rad = beamwidth_deg * degree;

@@ -1,0 +1,17 @@
+// The transducer's own ringing after the pulse (docs/physics.md 2.16).
+#pragma once
+
+#include <vector>
+
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Amplitude of the ring-down per native line, before TVG: from nothing at half of the peak's range up to the
+/// peak as a half cosine, and from there by 80 dB down to the end, straight in dB and so on beyond.
+std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLines& range);
+
+/// The first native line beyond the end; 0: there is no ring-down.
+int ring_down_lines(const RingDown& ring_down, const RangeLines& range);
+
+}  // namespace sonard::render

@@ -1,0 +1,34 @@
+#include "renderer/acoustics/volume_reverberation.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include "renderer/acoustics/decibels.hpp"
+
+namespace sonard::render {
+
+namespace {
+constexpr double least_scattering_db = -75.0;
+constexpr double least_range_m = 20.0;
+}  // namespace
+
+bool has_volume_reverberation(const SonarSettings& settings) {
+  return settings.model == Model::physical && settings.transmit &&
+         decibels_to_power(settings.physical.volume_scattering_db) > 0;
+}
+
+bool is_clear_water(const SonarSettings& settings) {
+  return settings.physical.volume_scattering_db < least_scattering_db ||
+         settings.range.max_range_m() < least_range_m;
+}
+
+void add_volume_reverberation(const std::vector<float>& open_sr, const SonarSettings& settings,
+                              EchoImage& image) {
+  const auto strength =
+      static_cast<float>(decibels_to_power(settings.physical.volume_scattering_db) * settings.range.step_m);
+  for (std::size_t i = 0; i < open_sr.size(); ++i) {
+    image.intensity[i] += strength * open_sr[i];
+  }
+}
+
+}  // namespace sonard::render
