@@ -1,4 +1,5 @@
-// sonarview: talks to a Gemini 720i or a Micron as a vehicle would. Usage: docs/sonarview.md.
+// sonarview: talks to a Gemini 720i or a Micron as a vehicle would, and compares images. Usage:
+// docs/sonarview.md.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -6,6 +7,7 @@
 #include <variant>
 
 #include "clients/sonarview/command_line.hpp"
+#include "clients/sonarview/compare/report.hpp"
 #include "clients/sonarview/gemini/viewer.hpp"
 #include "clients/sonarview/micron/viewer.hpp"
 
@@ -16,6 +18,7 @@ using namespace sonard::client;
 struct View {
   ExitStatus operator()(const GeminiOptions& options) const { return view_gemini(options); }
   ExitStatus operator()(const MicronOptions& options) const { return view_micron(options); }
+  ExitStatus operator()(const CompareOptions& options) const { return compare(options); }
 };
 
 }  // namespace

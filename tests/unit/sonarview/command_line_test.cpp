@@ -46,6 +46,15 @@ void expect_refused(const std::vector<const char*>& words, const std::string& me
   EXPECT_THAT(parsed.err, HasSubstr(message));
 }
 
+TEST(CommandLine, TwoImagesToCompare) {
+  const auto options = std::get<CompareOptions>(
+      parse({"compare", "a.png", "dump/b.csv#3", "--json", "c.json"}).command_line.value());
+  EXPECT_EQ(options.a, "a.png");
+  EXPECT_EQ(options.b, "dump/b.csv#3");
+  EXPECT_EQ(options.json, "c.json");
+  expect_refused({"compare", "a.png"}, "b is required");
+}
+
 TEST(CommandLine, WithoutASubcommandItIsAGemini) {
   const auto options = std::get<GeminiOptions>(
       parse({"--range", "20", "--compression", "1", "--pings", "7", "--continuous", "100"})
@@ -154,6 +163,7 @@ TEST(CommandLine, TheWindowBelongsToFourBitLines) {
 
 TEST(CommandLine, OptionsBeforeTheSubcommandAreNotLostInSilence) {
   expect_refused({"--range", "20", "micron", "--tty", "x"}, "--range: stands before 'micron'");
+  expect_refused({"--range", "20", "compare", "a", "b"}, "--range: stands before 'compare'");
   expect_refused({"micron", "--tty", "x", "--pings", "3"}, "--pings");
 }
 

@@ -1,0 +1,116 @@
+#include "clients/sonarview/compare/frame.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <system_error>
+
+#include "clients/sonarview/compare/npy_file.hpp"
+#include "clients/sonarview/compare/turn_file.hpp"
+#include "clients/sonarview/fan_image.hpp"
+
+namespace sonard::client {
+namespace {
+
+constexpr double full_scale = 255;
+
+/// FILE and N of "FILE#N"; the whole word is the file where there is no such end.
+struct Source {
+  std::filesystem::path file;
+  std::string number;
+};
+
+Source split(const std::string& word) {
+  const std::size_t mark = word.rfind('#');
+  if (mark != std::string::npos) {
+    const std::filesystem::path file = word.substr(0, mark);
+    if (file.extension() == ".csv" || file.extension() == ".jsonl") {
+      return {file, word.substr(mark + 1)};
+    }
+  }
+  return {word, ""};
+}
+
+std::uint64_t number_of(const Source& source, const char* what) {
+  std::uint64_t number = 0;
+  const char* end = source.number.data() + source.number.size();
+  const auto [rest, error] = std::from_chars(source.number.data(), end, number);
+  if (source.number.empty() || error != std::errc() || rest != end) {
+    throw std::runtime_error(
+        fmt::format("{}: expected {}#{}", source.file.string(), source.file.string(), what));
+  }
+  return number;
+}
+
+void check_file(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw std::runtime_error(fmt::format("{}: is a folder", file.string()));
+  }
+  if (!std::filesystem::exists(file, error)) {
+    throw std::runtime_error(fmt::format("{}: no such file", file.string()));
+  }
+  if (!std::ifstream(file)) {
+    throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  }
+}
+
+cv::Mat scaled(const cv::Mat& samples) {
+  cv::Mat frame;
+  samples.convertTo(frame, CV_64F, samples.depth() == CV_16U ? full_scale / 65'535 : 1.0);
+  return frame;
+}
+
+cv::Mat read_picture(const std::filesystem::path& file) {
+  cv::Mat picture;
+  try {
+    picture = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+  } catch (const cv::Exception&) {
+    picture.release();  // larger than OpenCV is willing to read
+  }
+  if (picture.empty()) {
+    throw std::runtime_error(fmt::format("{}: is not a picture", file.string()));
+  }
+  return picture;
+}
+
+/// <head>-<number, 8 digits>.npy beside <head>.csv, if the index lists it.
+std::filesystem::path file_of_ping(const std::filesystem::path& index, std::uint64_t number) {
+  std::ifstream rows(index);
+  const std::string wanted = fmt::format("{},", number);
+  for (std::string row; std::getline(rows, row);) {
+    if (row.rfind(wanted, 0) == 0) {
+      return index.parent_path() / fmt::format("{}-{:08d}.npy", index.stem().string(), number);
+    }
+  }
+  throw std::runtime_error(fmt::format("{}: has no ping {}", index.string(), number));
+}
+
+cv::Mat read_ping(const std::filesystem::path& file) {
+  check_file(file);
+  return raw_polar_image(read_npy(file));
+}
+
+}  // namespace
+
+cv::Mat load_frame(const std::string& word) {
+  const Source source = split(word);
+  check_file(source.file);
+  if (source.file.extension() == ".csv") {
+    return scaled(read_ping(file_of_ping(source.file, number_of(source, "PING"))));
+  }
+  if (source.file.extension() == ".jsonl") {
+    return scaled(read_turn(source.file, number_of(source, "TURN")));
+  }
+  if (source.file.extension() == ".npy") {
+    return scaled(read_ping(source.file));
+  }
+  return scaled(read_picture(source.file));
+}
+
+}  // namespace sonard::client

@@ -1,0 +1,113 @@
+#include "clients/sonarview/compare/turn_file.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "clients/sonarview/turn_image.hpp"
+#include "protocol/micron/messages.hpp"
+#include "protocol/micron/units.hpp"
+
+namespace sonard::client {
+namespace {
+
+constexpr int four_bit_scale = 17;
+
+struct ScanLine {
+  std::uint64_t turn = 0;
+  TurnShape shape;
+  TurnLine line;
+};
+
+std::vector<std::uint8_t> bytes_of(std::string_view digits, int scale) {
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    int value = 0;
+    const char* end = digits.data() + std::min(i + 2, digits.size());
+    const auto [rest, error] = std::from_chars(digits.data() + i, end, value, 16);
+    if (error != std::errc() || rest != end || digits.size() - i < 2 || value * scale > 255) {
+      throw std::runtime_error("bins are not two hexadecimal digits each");
+    }
+    bytes.push_back(static_cast<std::uint8_t>(value * scale));
+  }
+  return bytes;
+}
+
+int integer(const YAML::Node& object, const char* key, int least, int most) {
+  const int value = object[key].as<int>();
+  if (value < least || value > most) {
+    throw std::runtime_error(fmt::format("{} {} is out of range", key, value));
+  }
+  return value;
+}
+
+/// An object of docs/sonarview.md, "Lines in a file". JSON is YAML.
+ScanLine parse_line(const std::string& text) {
+  const YAML::Node object = YAML::Load(text);
+  const int control = integer(object, "control", 0, 65'535);
+  const int last_bearing = micron::units_per_turn - 1;
+  ScanLine scan;
+  scan.turn = object["turn"].as<std::uint64_t>();
+  scan.line.bearing = integer(object, "bearing", 0, last_bearing);
+  scan.line.samples = bytes_of(object["bins"].as<std::string>(),
+                               (control & micron::control_bits::eight_bit) != 0 ? 1 : four_bit_scale);
+  scan.shape.step = integer(object, "step", 1, 255);
+  scan.shape.bins = static_cast<int>(scan.line.samples.size());
+  if ((control & micron::control_bits::continuous) == 0) {
+    scan.shape.left = integer(object, "left_limit", 0, last_bearing);
+    scan.shape.width = micron::wrapped(integer(object, "right_limit", 0, last_bearing) - scan.shape.left);
+  }
+  if (scan.shape.bins == 0 || scan.shape.width == 0) {
+    throw std::runtime_error("there is nothing in the line");
+  }
+  return scan;
+}
+
+bool same(const TurnShape& a, const TurnShape& b) {
+  return a.left == b.left && a.width == b.width && a.step == b.step && a.bins == b.bins;
+}
+
+}  // namespace
+
+cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
+  std::ifstream in(file);
+  std::optional<TurnShape> shape;
+  std::vector<TurnLine> lines;
+  int row = 0;
+  for (std::string text; std::getline(in, text);) {
+    ++row;
+    const auto refuse = [&](const std::string& why) {
+      throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), row, why));
+    };
+    ScanLine scan;
+    try {
+      scan = parse_line(text);
+    } catch (const YAML::Exception&) {
+      refuse("is no line of sonarview micron --raw");
+    } catch (const std::runtime_error& error) {
+      refuse(error.what());
+    }
+    if (scan.turn != turn) {
+      continue;
+    }
+    if (shape && !same(*shape, scan.shape)) {
+      refuse("has another step, sector or number of bins than the turn's first line");
+    }
+    shape = scan.shape;
+    lines.push_back(std::move(scan.line));
+  }
+  if (!shape) {
+    throw std::runtime_error(fmt::format("{}: has no turn {}", file.string(), turn));
+  }
+  return turn_polar_image(*shape, lines);
+}
+
+}  // namespace sonard::client

@@ -1,0 +1,129 @@
+// The files that can be compared, written byte by byte as their formats say, and those that are refused.
+#include "clients/sonarview/compare/frame.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+namespace sonard::client {
+namespace {
+
+using testing::HasSubstr;
+
+class Frame : public testing::Test {
+ protected:
+  Frame() { std::filesystem::create_directories(folder_); }
+  ~Frame() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return path(name);
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
+                                  testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+/// NumPy's format 1.0, padded so that the samples begin at a multiple of 64.
+std::string npy(const std::string& descr, const std::string& shape, const std::string& samples) {
+  std::string header = "{'descr': '" + descr + "', 'fortran_order': False, 'shape': " + shape + ", }";
+  header.resize(117, ' ');
+  return std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" + samples;
+}
+
+void expect_refused(const std::string& source, const std::string& message) {
+  try {
+    load_frame(source);
+    ADD_FAILURE() << source << " was taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(message));
+    EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
+  }
+}
+
+TEST_F(Frame, PicturesAreGrey) {
+  cv::Mat picture(2, 3, CV_8UC3, cv::Scalar(40, 40, 40));
+  picture.at<cv::Vec3b>(1, 2) = {255, 255, 255};
+  cv::imwrite(path("picture.png"), picture);
+  const cv::Mat frame = load_frame(path("picture.png"));
+  ASSERT_EQ(frame.size(), cv::Size(3, 2));
+  EXPECT_EQ(frame.at<double>(0, 0), 40);
+  EXPECT_EQ(frame.at<double>(1, 2), 255);
+}
+
+TEST_F(Frame, DumpedPingHasRangeUpwards) {
+  // Two lines of three beams, the near line first.
+  const cv::Mat frame = load_frame(write("ping.npy", npy("|u1", "(2, 3)", "\x01\x02\x03\x04\x05\x06")));
+  ASSERT_EQ(frame.size(), cv::Size(3, 2));
+  EXPECT_EQ(frame.at<double>(0, 0), 4);
+  EXPECT_EQ(frame.at<double>(1, 2), 3);
+}
+
+TEST_F(Frame, SixteenBitsHaveTheSameScale) {
+  const cv::Mat frame =
+      load_frame(write("ping.npy", npy("<u2", "(1, 2)", std::string("\xff\xff\x01\x01", 4))));
+  EXPECT_DOUBLE_EQ(frame.at<double>(0, 0), 255);
+  EXPECT_DOUBLE_EQ(frame.at<double>(0, 1), 1);  // 257 of 65535
+}
+
+TEST_F(Frame, PingOfADump) {
+  const std::string index = write("gemini.csv",
+                                  "number,id,transmit_us,lines,beams,crc32\n"
+                                  "7,7,1000,1,2,00000000\n12,12,2000,1,2,00000000\n");
+  write("gemini-00000012.npy", npy("|u1", "(1, 2)", "ab"));
+  EXPECT_EQ(load_frame(index + "#12").at<double>(0, 1), 'b');
+  expect_refused(index + "#1", "has no ping 1");
+  expect_refused(index + "#7", "gemini-00000007.npy: no such file");
+  expect_refused(index + "#seven", "expected");
+  expect_refused(index, "#PING");
+}
+
+TEST_F(Frame, TurnOfAScan) {
+  // Steps of 90 degrees; bearing 3200 is ahead, in the middle of a picture that begins astern. Control 3: 8
+  // bit, continuous.
+  const auto line = [](int turn, int bearing, const char* bins) {
+    return R"({"number":0,"turn":)" + std::to_string(turn) + R"(,"unix_s":1.5,"bearing":)" +
+           std::to_string(bearing) + R"(,"control":3,"left_limit":0,"right_limit":0,"step":1600,"bins":")" +
+           bins + "\"}\n";
+  };
+  const std::string steps = line(0, 3200, "1020");
+  std::string text = steps + line(1, 3200, "01ff") + line(1, 4800, "0304") + line(1, 0, "0506");
+  for (std::size_t at = text.find("1600"); at != std::string::npos; at = text.find("1600", at)) {
+    text.replace(at, 4, "160");  // the step is a byte: 9 degrees, 40 columns
+  }
+  const std::string file = write("turn.jsonl", text);
+  const cv::Mat frame = load_frame(file + "#1");
+  ASSERT_EQ(frame.size(), cv::Size(40, 2));
+  EXPECT_EQ(frame.at<double>(0, 20), 255);  // far bin, ahead
+  EXPECT_EQ(frame.at<double>(1, 30), 3);    // near bin, to starboard
+  EXPECT_EQ(frame.at<double>(0, 0), 6);     // astern
+  EXPECT_EQ(frame.at<double>(0, 10), 0);    // no line came from port
+  expect_refused(file + "#2", "has no turn 2");
+  expect_refused(file, "#TURN");
+  expect_refused(write("other.jsonl", line(0, 3200, "10") + "[3\n") + "#0",
+                 "other.jsonl:1: step 1600 is out of range");
+}
+
+TEST_F(Frame, OtherFilesAreRefused) {
+  expect_refused(path("missing.png"), "missing.png: no such file");
+  expect_refused(testing::TempDir(), "is a folder");
+  expect_refused(write("text.png", "no picture"), "text.png: is not a picture");
+  expect_refused(write("empty.png", ""), "is not a picture");
+  expect_refused(write("text.npy", "no array"), "is no NumPy file");
+  expect_refused(write("floats.npy", npy("<f4", "(1, 1)", "abcd")), "is no table of 8 or 16 bit samples");
+  expect_refused(write("flat.npy", npy("|u1", "(4,)", "abcd")), "is no table");
+  expect_refused(write("short.npy", npy("|u1", "(2, 3)", "abcde")), "does not hold as many samples");
+  expect_refused(write("long.npy", npy("|u1", "(2, 2)", "abcde")), "does not hold as many samples");
+  expect_refused(write("none.npy", npy("|u1", "(0, 3)", "")), "has no samples");
+  expect_refused(write("huge.npy", npy("|u1", "(999999, 999999)", "")), "too many samples");
+  expect_refused(write("text.jsonl", "no line\n") + "#0", "text.jsonl:1:");
+}
+
+}  // namespace
+}  // namespace sonard::client
