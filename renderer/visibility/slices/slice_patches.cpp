@@ -57,6 +57,7 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
   int rounds = 0;
   do {
     lay_out(request);
+    ends_.run_straight(*pieces_, request.slice.width_rad, request.tan_limit, seen_);
     measure(request);
     find_tilts(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
@@ -95,11 +96,8 @@ void SlicePatcher::measure(const Request& request) {
   const auto count = pieces_->size();
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
-  float* __restrict low_drift = seen_.low_drift.data();
-  float* __restrict high_drift = seen_.high_drift.data();
-  const float* __restrict low_reach = seen_.low_reach.data();
-  const float* __restrict high_reach = seen_.high_reach.data();
-  const float tan_limit = request.tan_limit;
+  const float* __restrict low_drift = seen_.low_drift.data();
+  const float* __restrict high_drift = seen_.high_drift.data();
   const float* __restrict w_at_0 = seen_.w_at_0.data();
   const float* __restrict w_slope = seen_.w_slope.data();
   const float* __restrict normal_h = seen_.normal_h.data();
@@ -130,12 +128,8 @@ void SlicePatcher::measure(const Request& request) {
     range_low[i] = r1;
     range_mid[i] = rm;
     range_high[i] = r2;
-    const float low_moves = EdgeRun{low_drift[i], low_reach[i]}.drift_within(t1, width, tan_limit);
-    const float high_moves = EdgeRun{high_drift[i], high_reach[i]}.drift_within(t2, width, tan_limit);
-    low_drift[i] = low_moves;
-    high_drift[i] = high_moves;
-    smear_low[i] = std::abs(by_azimuth1 + by_t1 * low_moves) * width;
-    smear_high[i] = std::abs(by_azimuth2 + by_t2 * high_moves) * width;
+    smear_low[i] = std::abs(by_azimuth1 + by_t1 * low_drift[i]) * width;
+    smear_high[i] = std::abs(by_azimuth2 + by_t2 * high_drift[i]) * width;
     const float c1 = std::abs(n1) / g1, c2 = std::abs(n2) / g2, cm = std::abs(nm) / gm;
     const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
     cos_phi[i] = cosine < 1 ? cosine : 1.0F;

@@ -11,6 +11,7 @@
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/visibility/normal_pyramid.hpp"
+#include "renderer/visibility/slices/piece_ends.hpp"
 #include "renderer/visibility/sampler.hpp"
 #include "renderer/visibility/slices/piece_arrays.hpp"
 
@@ -74,6 +75,7 @@ class SlicePatcher {
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
   std::vector<VisiblePiece> whole_, divided_;
   PieceArrays seen_;
+  PieceEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
   std::vector<float> plain_;        ///< 1 where the response is the cosine to the facet, else 0
   std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used
