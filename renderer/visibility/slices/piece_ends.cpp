@@ -69,7 +69,8 @@ void PieceEnds::find_surfaces(const std::vector<VisiblePiece>& pieces, const Pie
   }
 }
 
-/// Of pieces first to last, which make up a surface that ends at both: from its ends inwards as far as pieces cross.
+/// Of pieces first to last, which make up a surface that ends at both: from its ends inwards as far as pieces
+/// cross.
 void PieceEnds::keep_apart(std::size_t first, std::size_t last, float width_rad, PieceArrays& seen) {
   const auto most_of = [&](float length) { return 2 * length / width_rad; };
   const float whole = seen.high_drift[last] - seen.low_drift[first];

@@ -11,9 +11,9 @@
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/visibility/normal_pyramid.hpp"
-#include "renderer/visibility/slices/piece_ends.hpp"
 #include "renderer/visibility/sampler.hpp"
 #include "renderer/visibility/slices/piece_arrays.hpp"
+#include "renderer/visibility/slices/piece_ends.hpp"
 
 namespace sonard::render {
 
