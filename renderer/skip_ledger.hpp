@@ -83,8 +83,7 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::narrow_aperture, "narrow_aperture",
                   "beams do not share elements: one beam only, or beams no wider than their spacing", "rows",
                   0, "output codes"},
-    SkipRuleEntry{SkipRule::long_lines, "long_lines",
-                  "lines do not share a pulse: none is shorter than `range_cell_m`", "rows", 0,
+    SkipRuleEntry{SkipRule::long_lines, "long_lines", "no two lines lie within one pulse", "rows", 0,
                   "output codes"},
     SkipRuleEntry{
         SkipRule::many_scatterers, "many_scatterers",

@@ -128,7 +128,7 @@ struct PhysicalModel {
   double volume_scattering_db = -std::numeric_limits<double>::infinity();
   double tvg_log_coefficient = 30.0;        ///< X of X log10 r + 2 alpha r
   double tvg_absorption_db_per_m = 0.2085;  ///< one way; what the device believes the water to be
-  double tvg_max_db = 75.0;                 ///< ceiling of the two terms together
+  double tvg_max_db = 62.0;                 ///< ceiling of the two terms together
   /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it. Full
   /// scale of OutputScale::half_decibels is 80 dB.
   double gain_db = 60.0;

@@ -128,7 +128,7 @@ class PhysicalLines {
       return echo;
     }
     const double scatterers = scatterers_at(model, range_m(native));
-    if (scatterers > many_scatterers && skips(SkipRule::many_scatterers)) {
+    if (scatterers > texture_ends_at_nu && skips(SkipRule::many_scatterers)) {
       return echo;
     }
     root_.set(scatterers);

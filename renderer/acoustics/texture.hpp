@@ -25,6 +25,6 @@ class TextureRoot {
 double scatterers_at(const PhysicalModel& model, double range_m);
 
 /// Above this many scatterers in a cell their number no longer shows (SkipRule::many_scatterers).
-inline constexpr double many_scatterers = 20.0;
+inline constexpr double texture_ends_at_nu = 20.0;
 
 }  // namespace sonard::render

@@ -15,6 +15,7 @@ MicronHeadConfig::MicronHeadConfig() {
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.gain_db = -9.0;
+  acoustics.physical.tvg_max_db = 75.0;
   acoustics.physical.noise_level_db = -141.0;
   acoustics.physical.near_field_blank_m = 0.1;
   acoustics.physical.ring_down.on = true;

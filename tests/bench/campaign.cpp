@@ -62,7 +62,8 @@ void Campaign::run_in_renderer(render::Backend backend, const test::Scene& scene
     }
   }
   for (const PlannedReceiver& receiver : plan.receivers) {
-    run->measure_receiver(default_point(), receiver.lines, receiver.metric, receiver.repetition);
+    run->measure_receiver(default_point(), receiver.lines, receiver.metric, receiver.repetition,
+                          receiver.change);
   }
 }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer/backend.hpp"
+#include "renderer/sonar_settings.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/points.hpp"
 #include "tests/bench/timing.hpp"
@@ -28,6 +30,7 @@ struct PlannedReceiver {
   int lines;
   std::string metric;
   Repetition repetition;
+  std::function<void(render::PhysicalModel&)> change = [](render::PhysicalModel&) {};  ///< of the default
 };
 
 /// What to measure in one scene.

@@ -33,6 +33,24 @@ void add_point_ladder(Plan& plan) {
   }
 }
 
+/// The chain at the lengths of 8, 20 and 50 m, and at the first without one of its effects or with one more.
+std::vector<PlannedReceiver> receivers() {
+  using render::PhysicalModel;
+  return {
+      {1000, "receiver_ms", many},
+      {2411, "receiver_2411_ms", many},
+      {6028, "receiver_6028_ms", some},
+      {1000, "receiver_without_noise_ms", many, [](PhysicalModel& model) { model.noise = false; }},
+      {1000, "receiver_without_speckle_ms", many,
+       [](PhysicalModel& model) { model.speckle = PhysicalModel::Speckle::off; }},
+      {1000, "receiver_frozen_ms", many,
+       [](PhysicalModel& model) { model.speckle = PhysicalModel::Speckle::frozen; }},
+      {1000, "receiver_with_texture_ms", many, [](PhysicalModel& model) { model.texture_nu = 1; }},
+      {1000, "receiver_with_interference_ms", many,
+       [](PhysicalModel& model) { model.interference.probability = 1; }},
+      {1000, "receiver_with_ring_down_ms", many, [](PhysicalModel& model) { model.ring_down.on = true; }}};
+}
+
 }  // namespace
 
 void run_quick(Campaign& campaign) {
@@ -40,7 +58,7 @@ void run_quick(Campaign& campaign) {
     const test::Scene scene = test::make_scene(name);
     Plan plan = presets(name, some);
     if (scene.name == "plane") {
-      plan.receivers = {{1000, "receiver_ms", many}, {2411, "receiver_2411_ms", many}};
+      plan.receivers = receivers();
     }
     if (scene.name == "flat100k") {
       plan.points.push_back({paper_point(), some});

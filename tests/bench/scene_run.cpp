@@ -95,8 +95,10 @@ Timing SceneRun::time_unchanged(const render::PingRequest& request, const Repeti
 }
 
 void SceneRun::measure_receiver(const Point& point, int lines, const std::string& metric,
-                                const Repetition& repetition) {
+                                const Repetition& repetition,
+                                const std::function<void(render::PhysicalModel&)>& change) {
   render::PingRequest ping = request(point);
+  change(ping.settings.physical);
   ping.settings.range = {lines, scene_.settings.range.max_range_m() / lines, 0, false};
   const render::Pose start = ping.T_world_sonar;
   Timing receiver_ms;

@@ -1,6 +1,7 @@
 // One scene in one renderer, measured at points.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,8 +27,10 @@ class SceneRun {
   void measure(const Point& point, const Reference* reference, const Repetition& repetition);
 
   /// Times the whole `physical` receiver on `lines` native lines as `metric`.
+  /// @param change of the default settings
   void measure_receiver(const Point& point, int lines, const std::string& metric,
-                        const Repetition& repetition);
+                        const Repetition& repetition,
+                        const std::function<void(render::PhysicalModel&)>& change);
 
   render::Backend backend() const { return renderer_.backend(); }
   const std::string& backend_description() const { return renderer_.backend_description(); }

@@ -24,6 +24,10 @@ std::vector<std::uint16_t> several_pings() {
   request.settings.physical.range_cell_m = 0.03;
   request.settings.physical.noise_level_db = -100;
   request.settings.physical.side_lobe_floor_db = -25;
+  request.settings.physical.texture_nu = 1.5;
+  request.settings.physical.texture_range_m = 3;
+  request.settings.physical.ring_down.on = true;
+  request.settings.physical.interference.probability = 1;
   request.settings.sixteen_bit = true;
   WorkerPool workers(1);
   Receiver receiver;

@@ -223,6 +223,31 @@ TEST_F(Loader, refuses_wrong_types) {
               ElementsAre(HasSubstr("heads: is a mapping (expected a list, each item starting with '-')")));
 }
 
+TEST_F(Loader, noise_follows_from_a_budget) {
+  const auto physical = [&](const std::string& text) {
+    return load(minimal_config + "    acoustics: {physical: " + text + "}\n");
+  };
+  const auto level_db = [&](const std::string& text) {
+    return common(physical(text).config.heads.at(0)).acoustics.physical.noise_level_db;
+  };
+  // -15 + 20 log10 723.38 - 30 + 10 log10 94000 - 200
+  EXPECT_NEAR(level_db("{noise_budget: {}}"), -138.08, 0.01);
+  EXPECT_NEAR(level_db("{noise_budget: {source_level_db: 210, spectral_level_db: 50, directivity_db: 20, "
+                       "bandwidth_khz: 10}}"),
+              -140, 1e-9);
+  EXPECT_THAT(
+      complaints(minimal_config + "    acoustics: {physical: {noise_level_db: -140, noise_budget: {}}}\n"),
+      ElementsAre(HasSubstr("physical.noise_budget: sets noise_level_db, which is given too")));
+}
+
+TEST_F(Loader, refuses_ends_before_beginnings) {
+  const std::string begin = minimal_config + "    acoustics: {physical: ";
+  EXPECT_THAT(complaints(begin + "{ring_down: {on: true, peak_m: 0.5, end_m: 0.4}}}\n"),
+              ElementsAre(HasSubstr("ring_down.end_m: is not beyond peak_m")));
+  EXPECT_THAT(complaints(begin + "{interference: {least_db: 12}}}\n"),
+              ElementsAre(HasSubstr("interference.most_db: is less than least_db")));
+}
+
 TEST_F(Loader, refuses_numbers_out_of_range) {
   EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {near_field_blank_m: -0.5}}\n"),
               ElementsAre(HasSubstr(

@@ -141,6 +141,74 @@ TEST(ReceiverRules, BeamsThatShareNothingAreNotFiltered) {
   expect_within_bound(SkipRule::narrow_aperture, dense, 0);
 }
 
+// A row of speckle for every line with an echo, and one of noise for every line.
+TEST(ReceiverRules, LinesAsLongAsThePulseAreNotJoined) {
+  PingRequest request = request_of(64);
+  expect_within_bound(SkipRule::long_lines, request, lines + lines_with_echo);
+  request.settings.physical.range_cell_m = 0.02;
+  expect_within_bound(SkipRule::long_lines, request, 0);
+}
+
+// nu of 30 at 0.4 m: 20 are exceeded beyond 0.267 m, in the lines 27 to 49 of those with an echo.
+TEST(ReceiverRules, ManyScatterersAreNotTextured) {
+  PingRequest request = request_of(64);
+  request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
+  request.settings.physical.noise = false;
+  request.settings.physical.texture_nu = 30;
+  request.settings.physical.texture_range_m = 0.4;
+  EXPECT_EQ(two_pings(SkipRule::many_scatterers, {}, request).skipped, 23u);
+  const SkipSwitches off = SkipSwitches{}.turn_off(SkipRule::many_scatterers);
+  EXPECT_EQ(two_pings(SkipRule::many_scatterers, off, request).skipped, 0u);
+  // Index of the intensities where the rule holds, of an echo that is the same everywhere.
+  WorkerPool workers(2);
+  const auto index = [&](const SkipSwitches& skip) {
+    Receiver receiver(skip);
+    EchoImage even = echo_of(64);
+    std::fill(even.intensity.begin(), even.intensity.end(), 1e-3F);
+    double n = 0, sum = 0, square = 0;
+    for (request.ping_number = 0; request.ping_number < 400; ++request.ping_number) {
+      const std::vector<std::uint16_t> codes = receiver.receive(even, request, 0, workers).u16;
+      for (std::size_t i = 27 * 64; i < codes.size(); ++i, ++n) {
+        const double intensity = static_cast<double>(codes[i]) * codes[i];
+        sum += intensity;
+        square += intensity * intensity;
+      }
+    }
+    return square * n / (sum * sum) - 1;
+  };
+  const double with = index({});
+  const double without = index(off);
+  EXPECT_NEAR(with, 1, 0.01);
+  EXPECT_GT(without, with);
+  EXPECT_LE(without - with, entry_of(SkipRule::many_scatterers).bound);
+}
+
+// Lines of 1 cm: the ring-down ends behind the 60th.
+TEST(ReceiverRules, RingDownIsNotFollowedBeyondItsEnd) {
+  PingRequest request = request_of(64);
+  request.settings.physical.noise = false;
+  request.settings.physical.ring_down = {true, -3, 0.2, 0.6};
+  const Outcome on = two_pings(SkipRule::ring_down_over, {}, request);
+  EXPECT_EQ(on.skipped, 40u);
+  const Outcome off =
+      two_pings(SkipRule::ring_down_over, SkipSwitches{}.turn_off(SkipRule::ring_down_over), request);
+  EXPECT_EQ(off.skipped, 0u);
+  int worst = 0;
+  for (std::size_t i = 0; i < on.pings[1].size(); ++i) {
+    worst = std::max(worst, std::abs(on.pings[1][i] - off.pings[1][i]));
+  }
+  const int highest = *std::max_element(on.pings[1].begin(), on.pings[1].end());
+  EXPECT_GT(highest, 10'000);
+  EXPECT_LE(worst, entry_of(SkipRule::ring_down_over).bound * highest);
+}
+
+TEST(ReceiverRules, PingsThatAreNotHitAreLeftAlone) {
+  PingRequest request = request_of(64);
+  expect_within_bound(SkipRule::no_interference, request, 0);  // there is none to be hit by
+  request.settings.physical.interference.probability = 1e-12;
+  expect_within_bound(SkipRule::no_interference, request, lines);
+}
+
 TEST(ReceiverRules, TablesAreMadeOnce) {
   const Outcome on = two_pings(SkipRule::unchanged_settings, {}, request_of(64));
   EXPECT_EQ(on.skipped, 1u);

@@ -1,0 +1,271 @@
+// Statistics of speckle and noise on the 8-bit image as a client has it: the head's job makes the settings,
+// the receiver the samples, the head sends them, and a surface puts the image together (T12 of
+// docs/physics.md 3.2). Expected values are those of 2.8 and 2.16.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "protocol/gemini/device.hpp"
+#include "protocol/gemini/ping_settings.hpp"
+#include "protocol/gemini/surface.hpp"
+#include "renderer/acoustics/receiver.hpp"
+#include "server/config/config.hpp"
+#include "server/devices/gemini_settings.hpp"
+
+namespace sonard {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int beams = gemini::beam_count;
+
+struct Image {
+  int lines = 0;
+  double line_m = 0;
+  std::vector<std::uint8_t> codes;  ///< [line * beams + beam]
+
+  double at(int line, int beam) const { return codes[static_cast<std::size_t>(line * beams + beam)]; }
+};
+
+/// Head and surface with nothing lost between them; the world is an even echo.
+class Client {
+ public:
+  Client(const render::SonarSettings& acoustics, int native_lines, int compression_log2 = 0)
+      : acoustics_(acoustics), device_(device_config(), now_), surface_(gemini::SurfaceConfig{}) {
+    gemini::PingSettings wanted;
+    wanted.compression_log2 = compression_log2;
+    config_ = gemini::make_ping_config(wanted);
+    config_.end_range = static_cast<std::uint16_t>(native_lines);
+  }
+
+  std::vector<Image> images(int pings, float intensity) {
+    std::vector<Image> images;
+    surface_.start(now_, config_, static_cast<std::uint64_t>(pings));
+    while (!surface_.finished() && now_ < 1000s) {
+      step(intensity);
+      for (const gemini::ReceivedPing& ping : surface_.take_pings()) {
+        EXPECT_TRUE(ping.complete());
+        images.push_back({ping.lines, line_m_, ping.samples.u8});
+      }
+    }
+    EXPECT_EQ(images.size(), static_cast<std::size_t>(pings));
+    return images;
+  }
+
+ private:
+  static gemini::DeviceConfig device_config() {
+    gemini::DeviceConfig config;
+    config.alternate_address = head_address;
+    config.netmask = 0xFF000000;
+    return config;
+  }
+
+  void step(float intensity) {
+    device_.advance(now_);
+    surface_.advance(now_);
+    for (const auto& datagram : device_.take_outgoing()) {
+      surface_.on_datagram(now_, datagram.bytes);
+    }
+    for (const auto& datagram : surface_.take_outgoing()) {
+      device_.on_datagram(now_, surface_address, head_address, datagram.bytes);
+    }
+    if (const auto job = device_.take_job()) {
+      device_.on_image(now_, render(*job, intensity));
+    }
+    now_ += 200us;
+  }
+
+  gemini::PingImage render(const gemini::PingJob& job, float intensity) {
+    render::PingRequest request;
+    request.settings = server::to_sonar_settings(job, acoustics_);
+    request.ping_number = job.ping_number;
+    request.seed = 7;
+    line_m_ = job.line_step_m * (1 << job.compression_log2);
+    const render::EchoImage echo{
+        beams, job.native_lines,
+        std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(job.native_lines),
+                           intensity)};
+    return {job.ping_number, receiver_.receive(echo, request, 0, workers_).u8, {}};
+  }
+
+  static constexpr gemini::Ipv4 head_address = 0x7F000002;
+  static constexpr gemini::Ipv4 surface_address = 0x7F000001;
+
+  render::SonarSettings acoustics_;
+  gemini::TimePoint now_ = 0s;
+  gemini::Device device_;
+  gemini::Surface surface_;
+  gemini::PingConfig config_;
+  render::Receiver receiver_;
+  render::WorkerPool workers_{2};
+  double line_m_ = 0;
+};
+
+/// The head's own settings but for a gain that is the same at all ranges. Where the echo or the noise is the
+/// intensity `level` its root is 57 codes: 255 are exceeded once in 5e8, and rounding to whole codes adds
+/// 1e-4 to the variance.
+constexpr double level = 0.05;
+
+render::SonarSettings even_gain() {
+  render::SonarSettings settings = server::GeminiHeadConfig().acoustics;
+  settings.physical.tvg_log_coefficient = 0;
+  settings.physical.tvg_absorption_db_per_m = 0;
+  settings.physical.gain_db = 0;
+  settings.physical.noise_level_db = 10 * std::log10(level);
+  return settings;
+}
+
+/// A part of an image without the near field, which is 0, and without the stripe at broadside.
+struct Part {
+  const Image& image;
+  int first_line = 100;
+  int end_beam = 112;
+
+  template <class Each>
+  void for_each(int lag, const Each& each) const {
+    for (int line = first_line; line < image.lines; ++line) {
+      for (int beam = 0; beam + lag < end_beam; ++beam) {
+        each(image.at(line, beam), image.at(line, beam + lag));
+      }
+    }
+  }
+};
+
+double mean_of(const Part& part) {
+  double sum = 0, n = 0;
+  part.for_each(0, [&](double code, double) {
+    sum += code;
+    ++n;
+  });
+  return sum / n;
+}
+
+double covariance(const Part& part, int lag) {
+  const double mean = mean_of(part);
+  double sum = 0, n = 0;
+  part.for_each(lag, [&](double a, double b) {
+    sum += (a - mean) * (b - mean);
+    ++n;
+  });
+  return sum / n;
+}
+
+/// Largest distance between the distribution of codes and Rayleigh's with the same mean power; a code stands
+/// for the amplitudes up to half a code away.
+double distance_from_rayleigh(const Part& part) {
+  std::vector<double> count(256, 0.0);
+  double power = 0, n = 0;
+  part.for_each(0, [&](double code, double) {
+    ++count[static_cast<std::size_t>(code)];
+    power += code * code;
+    ++n;
+  });
+  double below = 0, worst = 0;
+  for (std::size_t code = 0; code < 255; ++code) {
+    below += count[code] / n;
+    const double edge = static_cast<double>(code) + 0.5;
+    worst = std::max(worst, std::abs(below - (1 - std::exp(-edge * edge * n / power))));
+  }
+  return worst;
+}
+
+// About 2000 lines of 112 beams, of which a fourth are independent: the standard error of CV is 0.002, of a
+// correlation 0.004.
+void expect_speckle_of_the_array(const Image& image) {
+  const Part part{image};
+  std::printf("CV %.4f, Kolmogorov-Smirnov %.4f, correlation %.3f %.3f %.3f\n",
+              std::sqrt(covariance(part, 0)) / mean_of(part), distance_from_rayleigh(part),
+              covariance(part, 1) / covariance(part, 0), covariance(part, 2) / covariance(part, 0),
+              covariance(part, 3) / covariance(part, 0));
+  EXPECT_NEAR(mean_of(part), 255 * 0.8862 * std::sqrt(level), 1);
+  const double variance = covariance(part, 0);
+  EXPECT_NEAR(std::sqrt(variance) / mean_of(part), 0.5227, 0.02 * 0.5227);
+  EXPECT_LT(distance_from_rayleigh(part), 0.02);
+  EXPECT_NEAR(covariance(part, 1) / variance, 0.75, 0.04);
+  EXPECT_NEAR(covariance(part, 2) / variance, 0.34, 0.04);
+  EXPECT_NEAR(covariance(part, 3) / variance, 0.08, 0.04);
+}
+
+TEST(GeminiImage, EchoOfAnEvenWallIsRayleighWithTheGrainOfTheArray) {
+  render::SonarSettings settings = even_gain();
+  settings.physical.noise = false;
+  expect_speckle_of_the_array(Client(settings, 2100).images(1, static_cast<float>(level)).front());
+}
+
+TEST(GeminiImage, NoiseOfEmptyWaterIsRayleighWithTheSameGrain) {
+  expect_speckle_of_the_array(Client(even_gain(), 2100).images(1, 0).front());
+}
+
+double correlation(const Image& a, const Image& b) {
+  const double mean_a = mean_of({a}), mean_b = mean_of({b});
+  double sum = 0, square_a = 0, square_b = 0;
+  for (int line = 100; line < a.lines; ++line) {
+    for (int beam = 0; beam < 112; ++beam) {
+      const double x = a.at(line, beam) - mean_a, y = b.at(line, beam) - mean_b;
+      sum += x * y;
+      square_a += x * x;
+      square_b += y * y;
+    }
+  }
+  return sum / std::sqrt(square_a * square_b);
+}
+
+// A sonar at rest before a scene at rest, noise 20 dB below the echo: the pattern stays, the noise does not.
+TEST(GeminiImage, EchoesOfASonarAtRestRepeatAndNoiseDoesNot) {
+  render::SonarSettings settings = even_gain();
+  settings.physical.noise_level_db -= 20;
+  const std::vector<Image> echo = Client(settings, 1100).images(3, static_cast<float>(level));
+  EXPECT_GE(correlation(echo[0], echo[1]), 0.95);
+  EXPECT_GE(correlation(echo[0], echo[2]), 0.95);
+  EXPECT_NE(echo[0].codes, echo[1].codes);
+  const std::vector<Image> noise = Client(even_gain(), 1100).images(3, 0);
+  EXPECT_LT(std::abs(correlation(noise[0], noise[1])), 0.05);
+  EXPECT_LT(std::abs(correlation(noise[0], noise[2])), 0.05);
+}
+
+double mean_level_db(const Image& image, double from_m, double to_m) {
+  double power = 0, n = 0;
+  for (int line = static_cast<int>(from_m / image.line_m); line < static_cast<int>(to_m / image.line_m);
+       ++line) {
+    for (int beam = 0; beam < 112; ++beam, ++n) {
+      power += std::pow(image.at(line, beam), 2);
+    }
+  }
+  return 10 * std::log10(power / n);
+}
+
+// The head as it comes, in empty water, at 50 m: noise rises by the law of the TVG, and then no more.
+TEST(GeminiImage, NoiseFloorRisesWithTheTvgAndIsFlatOverTheLastQuarterOf50m) {
+  const Image image = Client(server::GeminiHeadConfig().acoustics, 6028, 2).images(1, 0).front();
+  EXPECT_NEAR(image.lines * image.line_m, 50, 0.1);
+  std::vector<double> levels;
+  for (double from_m = 37.5; from_m < 49; from_m += 1.25) {
+    levels.push_back(mean_level_db(image, from_m, from_m + 1.25));
+  }
+  const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
+  EXPECT_LT(*most - *least, 1.0);
+  EXPECT_GT(*least, 20 * std::log10(10)) << "it is seen";
+  EXPECT_LT(*most, 20 * std::log10(128)) << "and leaves room for echoes";
+  const double absorption = server::GeminiHeadConfig().acoustics.physical.tvg_absorption_db_per_m;
+  EXPECT_NEAR(mean_level_db(image, 29.5, 30.5) - mean_level_db(image, 24.5, 25.5),
+              30 * std::log10(30.0 / 25) + 2 * absorption * 5, 0.5);
+}
+
+TEST(GeminiImage, TheSameSeedGivesTheSameBytes) {
+  const auto all = [] {
+    std::vector<std::uint8_t> codes;
+    for (const Image& image : Client(even_gain(), 300).images(3, static_cast<float>(level))) {
+      codes.insert(codes.end(), image.codes.begin(), image.codes.end());
+    }
+    return codes;
+  };
+  EXPECT_EQ(all(), all());
+}
+
+}  // namespace
+}  // namespace sonard
