@@ -22,7 +22,7 @@ PingRequest request_over_bed(double scattering_db, double range_m) {
   request.settings.sixteen_bit = true;
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   request.settings.physical.noise = false;
-  request.settings.physical.gain_db = 50;
+  request.settings.physical.gain_db = 40;
   request.settings.physical.volume_scattering_db = scattering_db;
   return request;
 }
