@@ -20,7 +20,7 @@ namespace {
 
 constexpr double line_rate_hz = 90'422;  // of a Gemini's native lines
 constexpr int micron_bins = 500;
-constexpr int micron_step = 16;  // 0.9 degrees
+constexpr int micron_step = 32;  // 1.8 degrees
 
 /// Where the vehicle of a configuration is at a time.
 class Vehicle {

@@ -26,10 +26,10 @@ struct View {
 
 /// The first head of a configuration in configs/, as it pings at that range from where its vehicle is
 /// `time_s` after the start (from the initial pose, or along the trajectory). A Gemini compresses two native
-/// lines to one; a Micron makes one full turn in steps of 0.9 degrees with 500 bins, `line_s` after each
+/// lines to one; a Micron makes one full turn in steps of 1.8 degrees with 500 bins, `line_s` after each
 /// other. Reads meshes in child processes: call it before there are threads.
 /// @throws what loading a configuration, a world or a trajectory throws
-View configured_view(const std::string& config, double range_m, double time_s = 0.0, double line_s = 0.04);
+View configured_view(const std::string& config, double range_m, double time_s = 0.0, double line_s = 0.05);
 
 /// A sonar alone in a world of shapes: 256 beams of equal angle over 120 degrees, 20 degrees high, 1000 lines
 /// to `range_m`; the settings are the defaults otherwise.

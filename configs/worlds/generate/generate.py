@@ -15,13 +15,13 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 from trajectories import trajectories  # noqa: E402
-from worlds import docking_station, grid, oil_and_gas, ssiv, tank  # noqa: E402
+from worlds import docking_station, grid, manifold, oil_and_gas, ssiv, tank  # noqa: E402
 
 
 def everything():
     """{path below configs/: bytes}."""
     files = {}
-    for world in (docking_station, ssiv, tank, grid, oil_and_gas):
+    for world in (docking_station, ssiv, manifold, tank, grid, oil_and_gas):
         files |= {f"worlds/{path}": data for path, data in world().items()}
     files |= {f"trajectories/{path}": data for path, data in trajectories().items()}
     return files

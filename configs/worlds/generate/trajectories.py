@@ -76,9 +76,12 @@ def trajectories():
                       lower_m=0.4, period_s=80.0)
     valve = arc_survey(target=(0.0, 0.0, -42.2), start_deg=-70.0, sweep_deg=-100.0, radius_m=13.5, closer_m=1.0, height_m=4.5,
                        lower_m=0.3, period_s=80.0)
+    manifold = arc_survey(target=(0.0, 0.0, -25.16), start_deg=-90.0, sweep_deg=70.0, radius_m=11.9, closer_m=0.8, height_m=5.5,
+                          lower_m=0.4, period_s=80.0)
     tank = out_and_back(start=(-1.0, -0.5, -4.0), end=(2.0, 1.5, -4.0), rest_s=20.0, move_s=20.0)
     grid = turn_and_back(position=(0.0, 0.0, -8.0), turn_deg=20.0, rest_s=10.0, turn_s=10.0)
     oil_and_gas = out_and_back(start=(0.0, 0.0, -24.5), end=(7.0, 0.0, -24.5), rest_s=20.0, move_s=20.0)
     return {"docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
-            "ssiv_demo.tum": tum_text(valve).encode("ascii"), "tank.csv": csv_text(tank).encode("ascii"),
+            "ssiv_demo.tum": tum_text(valve).encode("ascii"), "manifold_demo.csv": csv_text(manifold).encode("ascii"),
+            "tank.csv": csv_text(tank).encode("ascii"),
             "grid.csv": csv_text(grid, time_digits=2).encode("ascii"), "oil_and_gas.csv": csv_text(oil_and_gas).encode("ascii")}

@@ -5,6 +5,9 @@ import math
 from boulders import boulder
 from docking_station import rov_mesh, station_meshes, umbilical_mesh
 from grid import HALF, grid_mesh
+from manifold import FLOWLINE_RADIUS, cover_mesh, equipment_mesh
+from manifold import HALF as COVER_HALF
+from manifold import TIE_IN as FLOWLINE_TIE_IN
 from mesh import Mesh, placed, yawed
 from noise import smoothstep, uniform
 from normal_map import CONCRETE_TILE_M, SAND_TILE_M, concrete_normal_map, sand_normal_map
@@ -191,6 +194,61 @@ def ssiv():
                 pose=_pose(0.0, 0.0, level, 0.0), comment="7.2 x 5 m at the base, 3.2 m high; covers are glass-fibre plastic")
     _add_boulders(world, seabed, boulders)
     files["ssiv.sdf"] = world.text().encode("ascii")
+    return files
+
+
+def manifold():
+    folder = "meshes/manifold"
+    seabed = Seabed(seed=61, depth_m=25.0, undulation_m=0.55, ripple_height_m=0.13, ripple_length_m=2.1,
+                    ripple_heading_rad=math.radians(115.0))
+
+    def sway(x):
+        return 0.35 * math.sin(max(0.0, abs(x) - 8.0) / 7.0) * (1.0 if x > 0.0 else -1.0)
+
+    def burial(x):
+        # Negative: the flowlines come down from the ends of the cover.
+        at_end = 0.5 * (1.0 - FLOWLINE_TIE_IN / FLOWLINE_RADIUS)
+        t = smoothstep(COVER_HALF[0] + 0.5, 8.5, abs(x))
+        return at_end * (1.0 - t) + (0.20 + 0.06 * math.sin(x / 4.0)) * t
+
+    level = round(seabed.natural(0.0, 0.0), 3)
+    natural = seabed.natural
+
+    def natural_at_cover(x, y):
+        keep = smoothstep(3.5, 7.5, math.hypot(x, y))
+        return level * (1.0 - keep) + natural(x, y) * keep
+
+    seabed.natural = natural_at_cover
+    reach = COVER_HALF[0] + 0.5
+    west = Pipeline(seabed, sway, -27.0, -reach, 2.0 * FLOWLINE_RADIUS, burial)
+    east = Pipeline(seabed, sway, reach, 27.0, 2.0 * FLOWLINE_RADIUS, burial)
+    # The corridor of the installation: level under the cover and as far as its shadow reaches in the demo.
+    seabed.flatten((0.0, 3.9), (3.6, 6.9), level, 3.0)
+    for sx in (-1, 1):
+        seabed.scour((sx * 3.4, -1.8), 0.7, 0.08)
+    boulders = [("boulder_1", "d", -8.6, 4.4, 1.0, 0.6), ("boulder_2", "a", 8.3, 5.6, 1.0, 2.2), ("boulder_3", "b", 7.3, -3.6, 1.0, 4.0),
+                ("boulder_4", "c", -6.4, -2.9, 1.1, 1.2), ("boulder_5", "b", -11.5, 8.2, 1.2, 5.0), ("boulder_6", "c", 11.2, 2.3, 1.0, 3.1)]
+    _scour_boulders(seabed, boulders)
+    pipes, anodes = Mesh(), Mesh()
+    for line, places in ((west, (-16.0, -8.2)), (east, (9.3, 17.0))):
+        pipes.merge(line.pipe_mesh())
+        anodes.merge(line.anode_mesh(places))
+    files = _boulder_files("meshes/boulders")
+    files |= {
+        "textures/sand_normal.png": sand_normal_map(3),
+        f"{folder}/seabed.ply": seabed.mesh(28.0, 12.0, 0.36, 1.12).ply(SAND_TILE_M),
+        f"{folder}/flowlines.ply": pipes.ply(),
+        f"{folder}/anodes.ply": anodes.ply(),
+        f"{folder}/cover.ply": cover_mesh().ply(),
+        f"{folder}/equipment.ply": equipment_mesh().ply(),
+    }
+    world = World("manifold", "A manifold under its cover, with a flowline at each end, on an uneven seabed.")
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand", "textures/sand_normal.png")])
+    world.model("flowlines", [("pipes", f"{folder}/flowlines.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled")])
+    world.model("manifold", [("cover", f"{folder}/cover.ply", "steel_fouled"), ("equipment", f"{folder}/equipment.ply", "steel_fouled")],
+                pose=_pose(0.0, 0.0, level, 0.0), comment="6 x 2.8 m, 1.8 m high, open towards the south")
+    _add_boulders(world, seabed, boulders)
+    files["manifold.sdf"] = world.text().encode("ascii")
     return files
 
 

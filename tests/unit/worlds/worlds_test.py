@@ -17,7 +17,7 @@ SOURCE = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else pathlib.Path(__f
 CONFIGS = SOURCE / "configs"
 GENERATOR = CONFIGS / "worlds" / "generate" / "generate.py"
 # The least number of triangles in each: a tank has flat walls, a cage straight bars.
-WORLDS = {"docking_station": 40_000, "ssiv": 40_000, "tank": 3_000, "grid": 3_000, "oil_and_gas": 30_000}
+WORLDS = {"docking_station": 40_000, "ssiv": 40_000, "manifold": 20_000, "tank": 3_000, "grid": 3_000, "oil_and_gas": 30_000}
 
 
 def generate(*arguments):
@@ -154,12 +154,12 @@ class Geometry(unittest.TestCase):
             total = sum(len(read_ply(CONFIGS / "worlds" / element.text)[2]) for element in tree.iter("uri"))
             self.assertTrue(least < total < 120_000, f"{world}: {total} triangles")
         size = sum(p.stat().st_size for p in (CONFIGS / "worlds").rglob("*") if p.is_file())
-        self.assertLess(size, 6_000_000)
+        self.assertLess(size, 7_000_000)
 
 
 class Trajectories(unittest.TestCase):
     def test_poses_are_smooth_and_close_the_loop(self):
-        for name in ("docking_demo.csv", "ssiv_demo.csv", "tank.csv", "grid.csv", "oil_and_gas.csv"):
+        for name in ("docking_demo.csv", "ssiv_demo.csv", "manifold_demo.csv", "tank.csv", "grid.csv", "oil_and_gas.csv"):
             poses = rows(name)
             self.assertTrue(40.0 <= poses[-1]["t"] - poses[0]["t"] <= 90.0)
             for before, after in zip(poses, poses[1:]):
@@ -185,7 +185,8 @@ class Surveys(unittest.TestCase):
 
     def test_the_target_is_in_the_fan_all_the_way(self):
         # The middle of the base of each structure, at its pose in the SDF.
-        for name, point in (("docking_demo.csv", (0.0, 0.6, -29.6)), ("ssiv_demo.csv", (0.0, 0.0, -41.5))):
+        for name, point in (("docking_demo.csv", (0.0, 0.6, -29.6)), ("ssiv_demo.csv", (0.0, 0.0, -41.5)),
+                            ("manifold_demo.csv", (0.0, 0.0, -24.8))):
             for row in rows(name):
                 self.assertTrue(self.in_fan(row, point), f"{name} at t = {row['t']}")
 
@@ -199,6 +200,39 @@ class Surveys(unittest.TestCase):
         lines = (CONFIGS / "trajectories/ssiv_demo.tum").read_text().splitlines()
         poses = [[float(v) for v in line.split()] for line in lines if not line.startswith("#")]
         self.assertEqual(poses, [[row[k] for k in ("t", "x", "y", "z", "qx", "qy", "qz", "qw")] for row in rows("ssiv_demo.csv")])
+
+
+class Manifold(unittest.TestCase):
+    """The numbers of docs/worlds.md, which tests of its image start from."""
+
+    LEVEL = -25.16
+
+    def test_it_stands_on_the_level_that_the_sdf_says(self):
+        pose = ElementTree.parse(CONFIGS / "worlds/manifold.sdf").find(".//model[@name='manifold']/pose").text
+        self.assertEqual([float(v) for v in pose.split()], [0.0, 0.0, self.LEVEL, 0.0, 0.0, 0.0])
+        self.assertEqual(position(rows("manifold_demo.csv")[0]), (0.0, -11.9, self.LEVEL + 5.5))
+
+    def test_roof_is_flat_and_the_highest(self):
+        cover, _, _ = read_ply(CONFIGS / "worlds/meshes/manifold/cover.ply")
+        equipment, _, _ = read_ply(CONFIGS / "worlds/meshes/manifold/equipment.ply")
+        roof = [p for p in cover if abs(p[2] - 1.8) < 1e-6]
+        for axis, half in ((0, 3.0), (1, 1.4)):
+            self.assertAlmostEqual(min(p[axis] for p in roof), -half, delta=1e-6)
+            self.assertAlmostEqual(max(p[axis] for p in roof), half, delta=1e-6)
+        self.assertLessEqual(max(p[2] for p in cover + equipment), 1.8 + 1e-6)
+
+    def test_nothing_is_heard_through_the_back(self):
+        cover = corners("manifold/cover.ply")
+        for x in (-2.9, -1.3, 0.0, 1.7, 2.9):
+            for z in (0.1, 0.7, 1.3, 1.79):
+                self.assertAlmostEqual(first_hit((x, 5.0, z), (0.0, -1.0, 0.0), cover), 3.6, delta=1e-6)
+
+    def test_the_bed_is_level_where_the_shadow_ends(self):
+        bed, _, _ = read_ply(CONFIGS / "worlds/meshes/manifold/seabed.ply")
+        corridor = [p for p in bed if abs(p[0]) <= 3.6 and 1.4 < p[1] <= 10.8]
+        self.assertGreater(len(corridor), 300)
+        for point in corridor:
+            self.assertAlmostEqual(point[2], self.LEVEL, delta=0.002)
 
 
 class Tank(unittest.TestCase):

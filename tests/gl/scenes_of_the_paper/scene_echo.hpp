@@ -1,0 +1,48 @@
+// Mean echoes of the scenes of docs/gallery.md, effects off, and where in them something is.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "renderer/sonar_renderer.hpp"
+#include "tests/pictures/view.hpp"
+
+namespace sonard::test {
+
+/// A scene rendered by one backend, with preset `fast`: a fan, or a turn, whose lines stand for beams.
+class SceneEcho {
+ public:
+  /// @param every_line of a turn that is rendered; with 5, a fifth of them
+  SceneEcho(const std::string& name, const render::RendererOptions& options, std::size_t every_line = 1);
+
+  const pictures::View& view() const { return view_; }
+  int beams() const { return beams_; }
+  /// Middle of a beam of a fan, or of a line of a turn relative to the sonar at its time: positive to port.
+  double azimuth_rad(int beam) const;
+  /// The beam nearest to an azimuth.
+  int beam_at(double azimuth_rad) const;
+  double step_m() const { return step_m_; }
+
+  double at(int beam, int line) const;
+  /// Sum of the lines that begin in [from_m, to_m).
+  double energy(int beam, double from_m, double to_m) const;
+  /// Middle of the first line from `from_m` on with more than `threshold`; infinity if there is none.
+  double first_range_m(int beam, double from_m, double threshold) const;
+  /// Middle of the strongest line that begins in [from_m, to_m).
+  double strongest_range_m(int beam, double from_m, double to_m) const;
+  double strongest(int beam, double from_m, double to_m) const;
+  /// Of the lines that begin in [from_m, to_m).
+  double median(int beam, double from_m, double to_m) const;
+
+ private:
+  int line_at(double range_m) const;
+
+  pictures::View view_;
+  int beams_ = 0;
+  int lines_ = 0;
+  double step_m_ = 0.0;
+  std::vector<float> intensity_;  // [beam * lines_ + line]
+};
+
+}  // namespace sonard::test

@@ -1,0 +1,35 @@
+#include "tests/pictures/gallery/scenes.hpp"
+
+namespace sonard::pictures {
+
+const std::vector<GalleryScene>& gallery_scenes() {
+  static const std::vector<GalleryScene> all{
+      {.name = "docking_station", .config = "demo.yaml", .range_m = 20},
+      {.name = "manifold", .config = "manifold.yaml", .range_m = 25},
+      {.name = "ssiv", .config = "ssiv.yaml", .range_m = 20},
+      {.name = "tank", .config = "demo-micron.yaml", .range_m = 12},
+      {.name = "grid", .config = "grid-micron.yaml", .range_m = 8, .time_s = 10},  // the turn begins
+      {.name = "oil_and_gas", .config = "oil-and-gas-micron.yaml", .range_m = 12},
+  };
+  return all;
+}
+
+View view_of(const GalleryScene& scene) {
+  return configured_view(scene.config, scene.range_m, scene.time_s);
+}
+
+void take_effects_off(View& view) {
+  render::PhysicalModel& physical = view.settings.physical;
+  physical.noise = false;
+  physical.speckle = render::PhysicalModel::Speckle::off;
+  physical.side_lobe_floor_db = 0;
+  view.settings.aperture.elevation = render::Aperture::Elevation::top_hat;
+}
+
+void put_effects_on(View& view) {
+  render::PhysicalModel& physical = view.settings.physical;
+  physical.side_lobe_floor_db = -25;
+  view.settings.aperture.elevation = render::Aperture::Elevation::sinc;
+}
+
+}  // namespace sonard::pictures

@@ -1,0 +1,24 @@
+// The command line that the programs of this folder share.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/pictures/halves.hpp"
+
+namespace sonard::pictures {
+
+struct PictureProgram {
+  std::string name;
+  std::string description;
+  std::string folder;              ///< where pictures go by default
+  std::vector<std::string> names;  ///< of all pictures
+  /// Loads the views of these pictures.
+  std::function<std::vector<Halves>(const std::vector<std::string>& names)> halves;
+};
+
+/// NAMES, --out, --backend, --radius. @return the exit status.
+int run_picture_program(const PictureProgram& program, int argc, const char* const* argv);
+
+}  // namespace sonard::pictures
