@@ -1,3 +1,9 @@
+#include <memory>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "renderer/scene/primitives.hpp"
 #include "tests/pictures/effects/effects.hpp"
 
 namespace sonard::pictures {
@@ -7,6 +13,25 @@ using render::PhysicalModel;
 
 View docking_station() {
   return configured_view("demo.yaml", 20);
+}
+
+/// Lines of 3 mm over a bed.
+View close_bed() {
+  render::BodyPart bed;
+  bed.mesh = std::make_shared<const render::TriangleMesh>(render::make_plane({20, 20}, {0, 0, 1}));
+  bed.material.lambert_mu = 0.01;
+  render::World world;
+  world.bodies = {{"bed", {}, {bed}}};
+  View view = plain_view(std::move(world), {{0, 0, 1}, glm::angleAxis(0.5, glm::dvec3(0, 1, 0))}, 3);
+  view.settings.physical.gain_db += 6;
+  return view;
+}
+
+/// The tank of the Micron far beyond its walls, with more gain than it needs.
+View gained_tank() {
+  View view = configured_view("demo-micron.yaml", 60);
+  view.settings.physical.gain_db += 4;
+  return view;
 }
 
 }  // namespace
@@ -26,22 +51,17 @@ std::vector<EffectPicture> receiver_pictures() {
        .caption_after = "speckle: ou",
        .after = [](View& view) { view.settings.physical.speckle = PhysicalModel::Speckle::ou; }},
       {.name = "range_grain",
-       .view =
-           [] {
-             View view = configured_view("demo.yaml", 5);
-             view.settings.range = {1000, 0.005, 0, false};
-             return view;
-           },
+       .view = close_bed,
        .caption_before = "pulse: 0 mm",
        .before = [](View& view) { view.settings.physical.range_cell_m = 0; },
-       .caption_after = "pulse: 20 mm",
-       .after = [](View& view) { view.settings.physical.range_cell_m = 0.02; }},
+       .caption_after = "pulse: 40 mm",
+       .after = [](View& view) { view.settings.physical.range_cell_m = 0.04; }},
       {.name = "texture",
        .view = docking_station,
        .caption_before = "texture_nu: 0 (off)",
        .before = [](View& view) { view.settings.physical.texture_nu = 0; },
-       .caption_after = "texture_nu: 1",
-       .after = [](View& view) { view.settings.physical.texture_nu = 1; }},
+       .caption_after = "texture_nu: 0.5",
+       .after = [](View& view) { view.settings.physical.texture_nu = 0.5; }},
       {.name = "broadside_stripe",
        .view = [] { return configured_view("demo.yaml", 50); },
        .caption_before = "broadside_stripe_db: 0 (off)",
@@ -55,17 +75,23 @@ std::vector<EffectPicture> receiver_pictures() {
        .caption_after = "ring_down: on",
        .after = [](View& view) { view.settings.physical.ring_down.on = true; }},
       {.name = "interference",
-       .view = [] { return configured_view("demo-micron.yaml", 60); },
+       .view = gained_tank,
        .caption_before = "interference: 0",
        .before = [](View& view) { view.settings.physical.interference.probability = 0; },
        .caption_after = "interference: 0.07",
        .after = [](View& view) { view.settings.physical.interference.probability = 0.07; }},
       {.name = "volume_reverberation",
-       .view = [] { return configured_view("demo.yaml", 30); },
+       .view =
+           [] {
+             View view = configured_view("demo.yaml", 40);
+             view.settings.physical.noise = false;
+             view.settings.physical.gain_db += 12;
+             return view;
+           },
        .caption_before = "volume_scattering_db: off",
        .before = [](View&) {},
-       .caption_after = "volume_scattering_db: -55",
-       .after = [](View& view) { view.settings.physical.volume_scattering_db = -55; }},
+       .caption_after = "volume_scattering_db: -50",
+       .after = [](View& view) { view.settings.physical.volume_scattering_db = -50; }},
       {.name = "side_lobe_floor",
        .view = docking_station,
        .caption_before = "side_lobe_floor_db: 0 (off)",
