@@ -1,5 +1,7 @@
 #include "tests/pictures/gallery/scenes.hpp"
 
+#include <limits>
+
 namespace sonard::pictures {
 
 const std::vector<GalleryScene>& gallery_scenes() {
@@ -20,14 +22,22 @@ View view_of(const GalleryScene& scene) {
 
 void take_effects_off(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
-  physical.noise = false;
   physical.speckle = render::PhysicalModel::Speckle::off;
+  physical.noise = false;
+  physical.range_cell_m = 0;
+  physical.texture_nu = 0;
+  physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
+  physical.broadside_stripe_db = 0;
+  physical.ring_down.on = false;
+  physical.interference.probability = 0;
   physical.side_lobe_floor_db = 0;
   view.settings.aperture.elevation = render::Aperture::Elevation::top_hat;
 }
 
 void put_effects_on(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
+  physical.texture_nu = 10;
+  physical.volume_scattering_db = -65;
   physical.side_lobe_floor_db = -25;
   view.settings.aperture.elevation = render::Aperture::Elevation::sinc;
 }

@@ -1,0 +1,57 @@
+// What write_png() writes, read by OpenCV.
+#include "tests/pictures/png_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "clients/sonarview/amber.hpp"
+
+namespace sonard::pictures {
+namespace {
+
+std::filesystem::path some_file() {
+  return std::filesystem::path(testing::TempDir()) / "picture.png";
+}
+
+TEST(PngFile, KeepsTheColoursOfPictures) {
+  // The whole palette, and what lies between ground and labels: a step of 4 codes apart at most.
+  cv::Mat picture(3, 256, CV_8UC3);
+  client::amber::palette().copyTo(picture.row(0));
+  for (int x = 0; x < 256; ++x) {
+    const double part = x / 255.0;
+    const cv::Scalar label = client::amber::background() * (1 - part) + client::amber::label() * part;
+    const cv::Scalar grid = client::amber::background() * (1 - part) + client::amber::grid() * part;
+    picture.at<cv::Vec3b>(1, x) =
+        cv::Vec3b(cv::saturate_cast<uchar>(label[0]), cv::saturate_cast<uchar>(label[1]),
+                  cv::saturate_cast<uchar>(label[2]));
+    picture.at<cv::Vec3b>(2, x) =
+        cv::Vec3b(cv::saturate_cast<uchar>(grid[0]), cv::saturate_cast<uchar>(grid[1]),
+                  cv::saturate_cast<uchar>(grid[2]));
+  }
+  write_png(some_file(), picture);
+  const cv::Mat read = cv::imread(some_file().string());
+  ASSERT_EQ(read.size(), picture.size());
+  EXPECT_LE(cv::norm(read.row(0), picture.row(0), cv::NORM_INF), 12);
+  EXPECT_LE(cv::norm(read.rowRange(1, 3), picture.rowRange(1, 3), cv::NORM_INF), 3);
+  std::filesystem::remove(some_file());
+}
+
+TEST(PngFile, WidthsAndHeightsOfAnySize) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 3), cv::Size(1, 300), cv::Size(1594, 2)}) {
+    cv::Mat picture(size, CV_8UC3, client::amber::background());
+    picture.at<cv::Vec3b>(size.height - 1, size.width - 1) = client::amber::palette().at<cv::Vec3b>(0, 255);
+    write_png(some_file(), picture);
+    EXPECT_EQ(cv::norm(cv::imread(some_file().string()), picture, cv::NORM_INF), 0) << size;
+  }
+  std::filesystem::remove(some_file());
+}
+
+TEST(PngFile, NamesAFileThatCannotBeWritten) {
+  EXPECT_THROW(write_png("/no/such/folder/picture.png", cv::Mat(1, 1, CV_8UC3)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace sonard::pictures
