@@ -1,4 +1,5 @@
-// Which method finds the visible surfaces, on how many threads a ping is made, and what may be skipped.
+// Which method finds the visible surfaces, where samples are binned, on how many threads a ping is made, and
+// what may be skipped.
 #pragma once
 
 #include <string_view>
@@ -13,6 +14,14 @@ enum class Backend {
   ray,        ///< Embree on the CPU; never opens EGL
 };
 
+/// Whether the backend `raster` bins fixed grids on the GPU (docs/architecture.md). It does what it can: an
+/// image or a grid that is too large for OpenGL's buffers is binned on the CPU.
+enum class GpuBinning {
+  automatic,  ///< where OpenGL runs on hardware
+  on,
+  off,
+};
+
 /// As the key `backend` of a configuration spells it: "auto", "raster", "ray".
 std::string_view name_of(Backend backend);
 
@@ -20,6 +29,7 @@ struct RendererOptions {
   Backend backend = Backend::automatic;
   unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
   SkipSwitches skip{};   ///< all rules are on by default
+  GpuBinning gpu_binning = GpuBinning::automatic;
 };
 
 }  // namespace sonard::render

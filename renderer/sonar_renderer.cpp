@@ -8,6 +8,7 @@
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/binning/echo_binner.hpp"
+#include "renderer/binning/gpu_binner.hpp"
 #include "renderer/visibility/beam_refinement.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
@@ -179,14 +180,27 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   }
 }
 
+/// Null: samples are binned on the CPU. Adds to what the sampler says of itself.
+std::unique_ptr<GpuBinner> make_gpu_binner(GpuBinning wanted, ChosenSampler& chosen) {
+  const bool hardware = !is_software_gl(chosen.description);
+  if (chosen.raster == nullptr || wanted == GpuBinning::off ||
+      (wanted == GpuBinning::automatic && !hardware)) {
+    return nullptr;
+  }
+  auto binner = std::make_unique<GpuBinner>(*chosen.raster);
+  chosen.description += "; fixed grids are binned by it too";
+  return binner;
+}
+
 }  // namespace
 
 struct SonarRenderer::Impl {
   const SkipSwitches skip;
   WorkerPool workers;  // outlives the sampler, which uses it
   ChosenSampler chosen;
-  std::unique_ptr<SliceSampler> slices;  // of the backend `ray`
-  BeamRefinement refinement;             // of the backend `raster`
+  std::unique_ptr<GpuBinner> gpu_binner;  // null: all binning is the CPU's
+  std::unique_ptr<SliceSampler> slices;   // of the backend `ray`
+  BeamRefinement refinement;              // of the backend `raster`
   Receiver receiver;
   PingStatistics statistics;
   std::map<std::string, Pose> T_world_body;
@@ -197,6 +211,7 @@ struct SonarRenderer::Impl {
       : skip(options.skip),
         workers(options.threads),
         chosen(choose_sampler(world, options.backend, workers)),
+        gpu_binner(make_gpu_binner(options.gpu_binning, chosen)),
         refinement(*chosen.sampler, workers),
         receiver(options.skip) {
     for (const Body& body : world.bodies) {
@@ -247,12 +262,19 @@ struct SonarRenderer::Impl {
                                std::vector<float> memory) {
     Stopwatch watch;
     const SampleGrid& samples = grid_for(settings);
-    const auto views =
-        chosen.sampler->sample(T_world_sonar, samples, surface_model(settings), sampled_range_m(settings));
+    const SurfaceModel surface = surface_model(settings);
+    const BinningOptions options = binning_options(settings, skip);
+    if (gpu_binner) {
+      statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, options.mean);
+      if (statistics.gpu_binning_obstacle.empty()) {
+        const auto textures = chosen.raster->draw(T_world_sonar, samples, surface, sampled_range_m(settings));
+        statistics.visibility_s = watch.lap();
+        return counted(gpu_binner->bin(textures, settings.range, options, std::move(memory)), watch);
+      }
+    }
+    const auto views = chosen.sampler->sample(T_world_sonar, samples, surface, sampled_range_m(settings));
     statistics.visibility_s = watch.lap();
-    return counted(bin_echoes(samples, views, settings.range, binning_options(settings, skip), workers,
-                              std::move(memory)),
-                   watch);
+    return counted(bin_echoes(samples, views, settings.range, options, workers, std::move(memory)), watch);
   }
 
   BinningResult look_in_slices(const Pose& T_world_sonar, const SonarSettings& settings,
@@ -274,6 +296,7 @@ struct SonarRenderer::Impl {
     statistics.binning_s = watch.lap();
     statistics.samples = bins.samples;
     statistics.invalid_samples = bins.invalid_samples;
+    statistics.saturated_samples = bins.saturated_samples;
     return bins;
   }
 
@@ -305,6 +328,9 @@ struct SonarRenderer::Impl {
       grid = make_sample_grid(settings.aperture, settings.sampling, options);
       grid_key = settings;
       made_with = options;
+      if (gpu_binner) {
+        gpu_binner->set_grid(grid);
+      }
     }
     return grid;
   }

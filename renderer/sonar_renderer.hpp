@@ -51,6 +51,10 @@ struct PingStatistics {
   double receiver_s = 0.0;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
+  /// Echoes beyond what the sums of GpuBinner hold, taken as that: 2^14 times unit response or more.
+  std::uint64_t saturated_samples = 0;
+  /// Why a fixed grid that was to be binned on the GPU was binned on the CPU; empty otherwise. One line.
+  std::string gpu_binning_obstacle;
   SkipCounts skipped;                 ///< what was left out; stages that did not run have counted nothing
 };
 
@@ -90,8 +94,9 @@ class SonarRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2).
-/// @return the RMS error over bins above 1e-2 of the beam's maximum.
+/// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2), by the default preset and by a
+/// fixed grid.
+/// @return the larger RMS error over bins above 1e-2 of the beam's maximum.
 /// @throws RendererError when the backend fails, the image is empty or the error exceeds 5 %.
 double run_self_test(const RendererOptions& options = {});
 

@@ -42,12 +42,23 @@ class WorldRenderer final : public PingRenderer {
     return renderer_.set_body_pose(body, T_world_body);
   }
   render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
-    return renderer_.render_ping(request, stream);
+    render::PingSamples samples = renderer_.render_ping(request, stream);
+    tell_where_grids_are_binned();
+    return samples;
   }
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
  private:
+  void tell_where_grids_are_binned() {
+    const std::string& obstacle = renderer_.last_statistics().gpu_binning_obstacle;
+    if (obstacle != gpu_binning_obstacle_ && !obstacle.empty()) {
+      spdlog::warn("binning on the CPU: {}", obstacle);
+    }
+    gpu_binning_obstacle_ = obstacle;
+  }
+
   render::SonarRenderer renderer_;
+  std::string gpu_binning_obstacle_;  // of the last ping
 };
 
 // Runs on the render thread. The self-test comes first: a backend that draws nothing must not get as far as a
@@ -276,7 +287,7 @@ int run_daemon(const DaemonConfig& config) {
                        fmt::format("head '{}': {}", common(head).name, error.what()));
     }
   }
-  const render::RendererOptions options{config.backend, 0, config.skip};
+  const render::RendererOptions options{config.backend, 0, config.skip, config.gpu_binning};
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     if (!config.skip.on(entry.rule)) {
       spdlog::info("skip rule {} is off", entry.name);

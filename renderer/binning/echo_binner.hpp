@@ -33,6 +33,7 @@ struct BinningResult {
   std::vector<float> open_sr;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
+  std::uint64_t saturated_samples = 0;  ///< of GpuBinner: echoes beyond what its sums hold, taken as that
   SkipCounts skipped;
 };
 

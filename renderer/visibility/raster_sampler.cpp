@@ -249,7 +249,6 @@ ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* stat
   target.texture->setSourceType(GL_FLOAT);
   target.texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
   target.texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
-  target.samples.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
 
   target.scene_view = new osgUtil::SceneView;
   target.scene_view->setDefaults(osgUtil::SceneView::COMPILE_GLOBJECTS_AT_INIT);
@@ -419,18 +418,40 @@ struct RasterSampler::Impl {
     targets.pop_back();
   }
 
-  void draw(const std::vector<ViewTarget*>& views) const {
+  /// All views of a ping. Does not wait for the drawing to end.
+  std::vector<ViewTarget*> draw(const Pose& T_world_sonar, const SampleGrid& grid,
+                                const SurfaceModel& surface, double range_m) {
+    make_current();
+    std::vector<ViewTarget*> views = targets_for(grid.views);
+    set_surface(surface);
+    max_range_m = static_cast<float>(range_m);
+    const Pose T_sonar_world = inverse(T_world_sonar);
+    for (auto& [name, body] : bodies) {
+      body.transform->setMatrix(to_osg(T_sonar_world * body.T_world_body));
+    }
     for (const ViewTarget* target : views) {
       target->scene_view->cull();
       target->scene_view->draw();
     }
-    // All views are drawn before the first is read: reading waits for the drawing to end.
-    for (ViewTarget* target : views) {
-      target->texture->getTextureObject(context->getState()->getContextID())->bind();
-      glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target->samples.data());
-    }
+    check_errors();
+    return views;
+  }
+
+  osg::Texture::TextureObject& texture_of(const ViewTarget& target) const {
+    return *target.texture->getTextureObject(context->getState()->getContextID());
+  }
+
+  /// Waits for the drawing to end.
+  void read(ViewTarget& target) const {
+    target.samples.resize(static_cast<std::size_t>(target.columns) * static_cast<std::size_t>(target.rows));
+    texture_of(target).bind();
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target.samples.data());
     context->getState()->haveAppliedTextureAttribute(context->getState()->getActiveTextureUnit(),
                                                      osg::StateAttribute::TEXTURE);
+    check_errors();
+  }
+
+  static void check_errors() {
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
       throw RendererError("OpenGL error " + std::to_string(error) + " while drawing the scene");
     }
@@ -442,21 +463,28 @@ RasterSampler::~RasterSampler() = default;
 
 std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                         const SurfaceModel& surface, double max_range_m) {
-  impl_->make_current();
-  const std::vector<ViewTarget*> targets = impl_->targets_for(grid.views);
-  impl_->set_surface(surface);
-  impl_->max_range_m = static_cast<float>(max_range_m);
-  const Pose T_sonar_world = inverse(T_world_sonar);
-  for (auto& [name, body] : impl_->bodies) {
-    body.transform->setMatrix(to_osg(T_sonar_world * body.T_world_body));
-  }
-  impl_->draw(targets);
   static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
   std::vector<const SurfaceSample*> samples;
-  for (const ViewTarget* target : targets) {
+  // All views are drawn before the first is read.
+  for (ViewTarget* target : impl_->draw(T_world_sonar, grid, surface, max_range_m)) {
+    impl_->read(*target);
     samples.push_back(target->samples.data());
   }
   return samples;
+}
+
+std::vector<unsigned> RasterSampler::draw(const Pose& T_world_sonar, const SampleGrid& grid,
+                                          const SurfaceModel& surface, double max_range_m) {
+  std::vector<unsigned> textures;
+  for (const ViewTarget* target : impl_->draw(T_world_sonar, grid, surface, max_range_m)) {
+    textures.push_back(impl_->texture_of(*target).id());
+  }
+  return textures;
+}
+
+EglContext& RasterSampler::current_context() {
+  impl_->make_current();
+  return *impl_->context;
 }
 
 bool RasterSampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {

@@ -11,6 +11,8 @@
 
 namespace sonard::render {
 
+class EglContext;
+
 /// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar:
 /// the subtraction of world positions happens in double on the CPU, once per body and ping.
 class RasterSampler final : public Sampler {
@@ -23,6 +25,15 @@ class RasterSampler final : public Sampler {
                                            const SurfaceModel& surface, double max_range_m) override;
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body) override;
   const std::string& description() const override;
+
+  /// As sample(), but what is seen stays on the GPU.
+  /// @return names of textures, one for every view: RGBA32F, a SurfaceSample each texel, row by row upwards.
+  /// They stay valid until the next call of draw() or sample().
+  std::vector<unsigned> draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+                             double max_range_m);
+  /// Where these textures are, made current.
+  /// @throws RendererError when the context is lost.
+  EglContext& current_context();
 
  private:
   struct Impl;

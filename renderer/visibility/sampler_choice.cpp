@@ -61,7 +61,9 @@ ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& wor
   if (wanted == Backend::ray) {
     chosen.sampler = std::make_unique<RaySampler>(world, workers);
   } else {
-    chosen.sampler = std::make_unique<RasterSampler>(world);
+    auto raster = std::make_unique<RasterSampler>(world);
+    chosen.raster = raster.get();
+    chosen.sampler = std::move(raster);
   }
   chosen.description = chosen.sampler->description() + reason;
   return chosen;

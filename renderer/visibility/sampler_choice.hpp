@@ -7,6 +7,7 @@
 
 #include "renderer/backend.hpp"
 #include "renderer/scene/world.hpp"
+#include "renderer/visibility/raster_sampler.hpp"
 #include "renderer/visibility/sampler.hpp"
 #include "renderer/worker_pool.hpp"
 
@@ -14,7 +15,8 @@ namespace sonard::render {
 
 struct ChosenSampler {
   std::unique_ptr<Sampler> sampler;
-  Backend backend = Backend::ray;  ///< never `automatic`
+  RasterSampler* raster = nullptr;  ///< the same, where it is that
+  Backend backend = Backend::ray;   ///< never `automatic`
   /// What the sampler runs on and, where `automatic` chose it, what OpenGL there is.
   std::string description;
 };

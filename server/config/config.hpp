@@ -209,6 +209,7 @@ struct DaemonConfig {
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
   render::Backend backend = render::Backend::automatic;
+  render::GpuBinning gpu_binning = render::GpuBinning::automatic;
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;

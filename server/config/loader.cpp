@@ -170,6 +170,10 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
               {{"auto", render::Backend::automatic},
                {"raster", render::Backend::raster},
                {"ray", render::Backend::ray}});
+  root.choice("gpu_binning", config.gpu_binning,
+              {{"auto", render::GpuBinning::automatic},
+               {"on", render::GpuBinning::on},
+               {"off", render::GpuBinning::off}});
   root.section("skip", [&](YamlSection& section) { read_skip(section, config.skip); });
   root.section("water", [&](YamlSection& section) { read_water(section, context); });
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));

@@ -37,7 +37,8 @@ struct PlannedReceiver {
 struct Plan {
   std::vector<PlannedPoint> points;
   std::vector<PlannedReceiver> receivers;
-  unsigned threads = 0;  ///< as render::RendererOptions
+  unsigned threads = 0;                                            ///< as render::RendererOptions
+  render::GpuBinning gpu_binning = render::GpuBinning::automatic;  ///< the same
 };
 
 class Campaign {

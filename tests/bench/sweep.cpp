@@ -106,6 +106,21 @@ class Sweep {
     }
   }
 
+  /// What `raster` draws, read back and binned on the CPU, or binned where it is.
+  void binning() {
+    for (const auto& [where, choice] :
+         {std::pair{"cpu", render::GpuBinning::off}, {"gpu", render::GpuBinning::on}}) {
+      Plan plan;
+      plan.gpu_binning = choice;
+      for (const Point& point : {grid_point(2, 256), grid_point(4, 512), grid_point(8, 1024),
+                                 point_binning(4, 512), paper_point()}) {
+        plan.points.push_back({point, usual, render::Backend::raster});
+      }
+      const std::string name = fmt::format("swell100k@binning={}", where);
+      run(name, plan, [&] { return renamed(test::make_scene("swell100k"), name); });
+    }
+  }
+
  private:
   bool wanted(const std::string& name) const {
     return only_.empty() || std::any_of(only_.begin(), only_.end(),
@@ -125,6 +140,7 @@ void run_sweep(Campaign& campaign, const std::vector<std::string>& only) {
   sweep.beams();
   sweep.bins();
   sweep.cores();
+  sweep.binning();
 }
 
 }  // namespace sonard::bench

@@ -61,6 +61,13 @@ TEST_F(Loader, reads_the_backend) {
   EXPECT_EQ(load(minimal_config + "backend: ray\n").config.backend, render::Backend::ray);
 }
 
+TEST_F(Loader, reads_where_grids_are_binned) {
+  EXPECT_EQ(load(minimal_config).config.gpu_binning, render::GpuBinning::automatic);
+  EXPECT_EQ(load(minimal_config + "gpu_binning: auto\n").config.gpu_binning, render::GpuBinning::automatic);
+  EXPECT_EQ(load(minimal_config + "gpu_binning: on\n").config.gpu_binning, render::GpuBinning::on);
+  EXPECT_EQ(load(minimal_config + "gpu_binning: off\n").config.gpu_binning, render::GpuBinning::off);
+}
+
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
   const LoadedConfig loaded =
       load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");

@@ -1,0 +1,330 @@
+// Binning on the GPU against binning on the CPU of the same samples: both renderers draw with the same
+// OpenGL, so every sample is the same to the bit, and what differs is binning.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "renderer/binning/gpu_binner.hpp"
+#include "renderer/visibility/sampler_choice.hpp"
+#include "tests/gl/gpu_binning/double_binning.hpp"
+#include "tests/support/backend_test.hpp"
+
+namespace sonard::render {
+namespace {
+
+using test::make_body;
+using test::make_quad;
+using test::make_sphere;
+using test::make_world;
+
+constexpr double degree = std::numbers::pi / 180;
+
+Pose looking(const glm::dvec3& position_m, double yaw_deg, double down_deg) {
+  return {position_m, glm::angleAxis(yaw_deg * degree, glm::dvec3(0, 0, 1)) *
+                          glm::angleAxis(down_deg * degree, glm::dvec3(0, 1, 0))};
+}
+
+/// Over the whole fan.
+TriangleMesh wall(float distance_m) {
+  return make_quad({distance_m, -80, -80}, {0, 160, 0}, {0, 0, 160});
+}
+
+TriangleMesh bed(float altitude_m) {
+  return make_quad({-200, -200, -altitude_m}, {400, 0, 0}, {0, 400, 0});
+}
+
+/// The largest difference of a bin, over the strongest of its beam in `truth`.
+template <class A, class B>
+double worst_difference(const std::vector<A>& truth, const std::vector<B>& image, std::size_t lines) {
+  EXPECT_EQ(truth.size(), image.size());
+  double worst = 0;
+  for (std::size_t beam = 0; beam < truth.size() / lines; ++beam) {
+    double strongest = 0, difference = 0;
+    for (std::size_t i = beam * lines; i < (beam + 1) * lines; ++i) {
+      strongest = std::max(strongest, static_cast<double>(truth[i]));
+      difference =
+          std::max(difference, std::abs(static_cast<double>(truth[i]) - static_cast<double>(image[i])));
+    }
+    if (strongest > 0) {
+      worst = std::max(worst, difference / strongest);
+    } else {
+      EXPECT_EQ(difference, 0.0);
+    }
+  }
+  return worst;
+}
+
+/// One rasteriser; what it draws is binned in all three ways.
+class GpuBinningTest : public ::testing::Test {
+ protected:
+  void SetUp() override { test::require_raster(); }
+
+  struct Case {
+    std::string name;
+    World world;
+    Pose T_world_sonar{};
+    Aperture aperture{};
+    Sampling sampling = Sampling::of_grid(3, 256, 512);
+    RangeLines range{1000, 0.02, 0, false};
+    BinningOptions options{};
+    GridOptions grid_options{};
+    SurfaceModel surface{};
+  };
+
+  static RendererOptions with(GpuBinning where) {
+    RendererOptions options{Backend::raster, 0};
+    options.gpu_binning = where;
+    return options;
+  }
+
+  static void expect_agreement(Case c) {
+    if (c.aperture.beam_edges_rad.empty()) {
+      c.aperture.beam_edges_rad = equal_angle_edges(256, 120 * degree);
+    }
+    RasterSampler sampler(c.world);
+    GpuBinner binner(sampler);
+    WorkerPool workers;
+    const SampleGrid grid = make_sample_grid(c.aperture, c.sampling, c.grid_options);
+    const double max_range_m = c.range.max_range_m() * 1.05;
+    binner.set_grid(grid);
+    ASSERT_EQ(binner.make_room(c.range.count, c.options.mean), "");
+    const BinningResult gpu =
+        binner.bin(sampler.draw(c.T_world_sonar, grid, c.surface, max_range_m), c.range, c.options);
+    const auto samples = sampler.sample(c.T_world_sonar, grid, c.surface, max_range_m);
+    const BinningResult cpu = bin_echoes(grid, samples, c.range, c.options, workers);
+    const std::vector<double> exact = test::bin_in_double(grid, samples, c.range, c.options);
+
+    const auto lines = static_cast<std::size_t>(c.range.count);
+    const double from_cpu = worst_difference(cpu.echo, gpu.echo, lines);
+    const double from_exact = worst_difference(exact, gpu.echo, lines);
+    const double cpu_from_exact = worst_difference(exact, cpu.echo, lines);
+    const auto echoes = std::count_if(cpu.echo.begin(), cpu.echo.end(), [](float v) { return v > 0; });
+    std::printf("%-28s %7td echoes, worst bin: GPU - double %.1e, CPU - double %.1e, GPU - CPU %.1e\n",
+                c.name.c_str(), echoes, from_exact, cpu_from_exact, from_cpu);
+    EXPECT_GT(echoes, 0) << c.name;
+    EXPECT_LT(from_cpu, 1e-3) << c.name;
+    EXPECT_LT(from_exact, 1e-5) << c.name;
+    EXPECT_EQ(gpu.samples, cpu.samples) << c.name;
+    EXPECT_EQ(gpu.invalid_samples, cpu.invalid_samples) << c.name;
+    EXPECT_EQ(gpu.saturated_samples, 0U) << c.name;
+  }
+};
+
+TEST_F(GpuBinningTest, AgreesOnAPerpendicularWall) {
+  Case wall_at_10_m{"wall", make_world({make_body("wall", wall(10))})};
+  wall_at_10_m.range = {1500, 0.008, 0, false};
+  expect_agreement(wall_at_10_m);
+}
+
+TEST_F(GpuBinningTest, AgreesOnABedSeenAtGrazingIncidence) {
+  Case flat{"bed", make_world({make_body("bed", bed(2))})};
+  flat.range = {1000, 0.05, 0, false};
+  expect_agreement(flat);
+}
+
+TEST_F(GpuBinningTest, AgreesOnASlope) {
+  Case slope{"slope", make_world({make_body("slope", wall(0))})};
+  slope.world.bodies[0].T_world_body = looking({9, 0, 0}, 25, 35);
+  expect_agreement(slope);
+}
+
+TEST_F(GpuBinningTest, AgreesOnASphere) {
+  Case sphere{"sphere", make_world({make_body("sphere", make_sphere(0.5F, 64))})};
+  sphere.world.bodies[0].T_world_body.position_m = {8, 1, 0.1};
+  sphere.sampling = Sampling::of_grid(3, 512, 512);
+  expect_agreement(sphere);
+}
+
+/// Numbers of columns and rows that fit nothing, so that beams cut columns; the elevation pattern and its
+/// limit.
+TEST_F(GpuBinningTest, AgreesUnderATiltedSonarWithAnElevationPattern) {
+  Case tilted{"tilted, pattern, odd grid",
+              make_world({make_body("bed", bed(4)), make_body("wall", wall(15))})};
+  tilted.T_world_sonar = looking({0, 0, 0}, 3, 20);
+  tilted.sampling = Sampling::of_grid(5, 151, 301);
+  tilted.aperture.elevation = Aperture::Elevation::sinc;
+  tilted.aperture.beam_edges_rad = equal_sine_edges(240, 60 * degree);
+  expect_agreement(tilted);
+}
+
+TEST_F(GpuBinningTest, AgreesOnTheDockingStation) {
+  Case docking{"docking station",
+               load_world(std::string(SONARD_SOURCE_DIR) + "/configs/worlds/docking_station.sdf", {})};
+  docking.T_world_sonar = looking({-2.136, -11.913, -25.6}, 80, 20);
+  docking.range = {2411, 0.0083, 0, false};
+  expect_agreement(docking);
+}
+
+/// Lines of a millimetre: samples lie in lines that a float alone would know to a thousandth.
+TEST_F(GpuBinningTest, AgreesInLinesFarOut) {
+  Case far{"bed, 40,000 lines", make_world({make_body("bed", bed(8))})};
+  far.T_world_sonar = looking({0, 0, 0}, 0, 20);
+  far.range = {40'000, 0.001, 0, false};
+  far.aperture.beam_edges_rad = equal_angle_edges(24, 120 * degree);
+  far.sampling = Sampling::of_grid(3, 64, 512);
+  expect_agreement(far);
+}
+
+TEST_F(GpuBinningTest, AgreesOnOneBeam) {
+  Case scanning{"one beam of 3 x 35 degrees", make_world({make_body("bed", bed(3))})};
+  scanning.T_world_sonar = looking({0, 0, 0}, 0, 20);
+  scanning.aperture.vertical_beamwidth_rad = 35 * degree;
+  scanning.aperture.beam_edges_rad = equal_angle_edges(1, 3 * degree);
+  scanning.sampling = Sampling::of_grid(1, 8, 512);
+  expect_agreement(scanning);
+}
+
+/// Means, and every way in which the paper bins.
+TEST_F(GpuBinningTest, AgreesInModePaper) {
+  Case paper{"paper", make_world({make_body("bed", bed(4)), make_body("wall", wall(12))})};
+  paper.T_world_sonar = looking({0, 0, 0}, 0, 20);
+  paper.options.mean = true;
+  paper.surface.model = Model::paper;
+  paper.surface.sigmoid_slope = 5;  // steep ones leave few bins above 0
+  expect_agreement(paper);
+  paper.name = "paper, points";
+  paper.options.footprint = false;
+  expect_agreement(paper);
+  paper.name = "paper, points, legacy";
+  paper.options.legacy_bin_index = true;
+  paper.grid_options = {true, false};
+  paper.sampling = Sampling::of_grid(1, 1024, 512);
+  expect_agreement(paper);
+}
+
+/// S19: everything in one line.
+TEST_F(GpuBinningTest, AgreesWhereAllSamplesFallIntoOneLine) {
+  Case one{"one line", make_world({make_body("wall", wall(5))})};
+  one.range = {1, 20.0, 0, false};
+  one.aperture.beam_edges_rad = equal_angle_edges(2, 60 * degree);
+  one.sampling = Sampling::of_grid(1, 512, 512);
+  expect_agreement(one);
+}
+
+/// Neither the order of the samples in the grid nor that of threads and pings shows in the image.
+TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
+  const World world = make_world({make_body("bed", bed(4)), make_body("wall", wall(15))});
+  const Pose T_world_sonar = looking({0, 0, 0}, 3, 20);
+  Aperture aperture;
+  aperture.beam_edges_rad = equal_angle_edges(128, 120 * degree);
+  RasterSampler sampler(world);
+  GpuBinner binner(sampler);
+  SampleGrid grid = make_sample_grid(aperture, Sampling::of_grid(3, 256, 256));
+  const RangeLines range{1000, 0.02, 0, false};
+  const auto bin = [&](bool mean) {
+    BinningOptions options;
+    options.mean = mean;
+    EXPECT_EQ(binner.make_room(range.count, mean), "");
+    return binner.bin(sampler.draw(T_world_sonar, grid, {}, 21.0), range, options).echo;
+  };
+  binner.set_grid(grid);
+  const std::vector<float> echo = bin(false), mean = bin(true);
+  std::mt19937 random(1);
+  for (int i = 0; i < 10; ++i) {
+    for (std::size_t beam = 0; beam + 1 < grid.beam_parts.size(); ++beam) {
+      std::shuffle(grid.parts.begin() + grid.beam_parts[beam], grid.parts.begin() + grid.beam_parts[beam + 1],
+                   random);
+    }
+    binner.set_grid(grid);
+    ASSERT_EQ(bin(false), echo);
+    ASSERT_EQ(bin(true), mean);
+  }
+}
+
+/// Surfaces brighter than anything: sums stop short of wrapping around, and it is counted.
+TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
+  PingRequest request;
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(16, 60 * degree);
+  request.settings.range = {1, 20.0, 0, false};  // all of a beam in one line
+  request.settings.physical.absorption_db_per_m = 0;
+  request.settings.sampling = Sampling::of_grid(1, 64, 64);
+  const World bright = make_world({make_body("wall", wall(5), 1e30)});
+  const World plain = make_world({make_body("wall", wall(5), 1.0)});
+  SonarRenderer renderer(bright, with(GpuBinning::on));
+  const EchoImage image = renderer.render_echo(request);
+  const PingStatistics statistics = renderer.last_statistics();
+  EXPECT_GT(statistics.samples, 0U);
+  EXPECT_EQ(statistics.saturated_samples, statistics.samples);
+  EXPECT_EQ(statistics.invalid_samples, 0U);
+  // A sample takes at most 2^14 to 2^15 times its share of the fullest beam; response here is mu cos phi, mu
+  // = 1.
+  const EchoImage unit = SonarRenderer(plain, with(GpuBinning::on)).render_echo(request);
+  for (int beam = 0; beam < image.beams; ++beam) {
+    EXPECT_GT(image.at(beam, 0), 0x1p12F * unit.at(beam, 0));
+    EXPECT_LT(image.at(beam, 0), 0x1p17F * unit.at(beam, 0));
+  }
+}
+
+/// What the daemon does with an image that OpenGL's buffers cannot hold.
+TEST_F(GpuBinningTest, BinsOnTheCpuWhatIsTooLargeForOpenGl) {
+  RasterSampler sampler(World{});
+  GpuBinner binner(sampler);
+  Aperture aperture;
+  aperture.beam_edges_rad = equal_angle_edges(4096, 120 * degree);
+  binner.set_grid(make_sample_grid(aperture, Sampling::of_grid(3, 1500, 2)));
+  EXPECT_THAT(binner.make_room(65535, true), ::testing::HasSubstr("an image of 4096 MiB, but a buffer"));
+  EXPECT_EQ(binner.make_room(100, true), "");
+
+  PingRequest request;
+  request.settings.aperture = aperture;
+  request.settings.range = {4200, 0.005, 0, false};
+  request.settings.sampling = Sampling::of_grid(3, 1500, 2);
+  const World world = make_world({make_body("wall", wall(10))});
+  SonarRenderer renderer(world, with(GpuBinning::on));
+  const EchoImage image = renderer.render_echo(request);
+  if (renderer.last_statistics().gpu_binning_obstacle.empty()) {
+    GTEST_SKIP() << "this OpenGL has buffers for 131 MiB";
+  }
+  EXPECT_EQ(image.intensity, SonarRenderer(world, with(GpuBinning::off)).render_echo(request).intensity);
+  request.settings.range.count = 100;  // and the next one on the GPU again
+  request.settings.range.step_m = 0.2;
+  renderer.render_echo(request);
+  EXPECT_EQ(renderer.last_statistics().gpu_binning_obstacle, "");
+}
+
+/// Images of changing size and kind, one after the other: nothing of one is left in the next.
+TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
+  const World world = make_world({make_body("bed", bed(4)), make_body("wall", wall(15))});
+  SonarRenderer one(world, with(GpuBinning::on));
+  for (const int lines : {1000, 300, 1200, 300}) {
+    for (const Model model : {Model::physical, Model::paper}) {
+      for (const int beams : {64, 16}) {
+        PingRequest request;
+        request.T_world_sonar = looking({0, 0, 0}, 0, 15);
+        request.settings.model = model;
+        request.settings.aperture.beam_edges_rad = equal_angle_edges(beams, 90 * degree);
+        request.settings.range = {lines, 20.0 / lines, 0, false};
+        request.settings.sampling = Sampling::of_grid(2, 96, 96);
+        SonarRenderer fresh(world, with(GpuBinning::on));
+        ASSERT_EQ(one.render_echo(request).intensity, fresh.render_echo(request).intensity);
+      }
+    }
+  }
+}
+
+/// Presets are as they were: they judge beams by samples on the CPU (docs/architecture.md).
+TEST_F(GpuBinningTest, SaysWhereItBins) {
+  const std::string told = "fixed grids are binned by it too";
+  const auto description = [](GpuBinning where) {
+    return SonarRenderer(World{}, with(where)).backend_description();
+  };
+  EXPECT_THAT(description(GpuBinning::on), ::testing::HasSubstr(told));
+  EXPECT_THAT(description(GpuBinning::off), ::testing::Not(::testing::HasSubstr(told)));
+  const bool hardware = !is_software_gl(description(GpuBinning::off));
+  EXPECT_EQ(description(GpuBinning::automatic).find(told) != std::string::npos, hardware);
+  RendererOptions on_ray{Backend::ray, 0};
+  on_ray.gpu_binning = GpuBinning::on;
+  EXPECT_THAT(SonarRenderer(World{}, on_ray).backend_description(),
+              ::testing::Not(::testing::HasSubstr(told)));
+}
+
+TEST_F(GpuBinningTest, PassesTheSelfTest) {
+  EXPECT_LT(run_self_test(with(GpuBinning::on)), 0.05);
+}
+
+}  // namespace
+}  // namespace sonard::render
