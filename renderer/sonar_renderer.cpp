@@ -265,7 +265,7 @@ struct SonarRenderer::Impl {
     const SurfaceModel surface = surface_model(settings);
     const BinningOptions options = binning_options(settings, skip);
     if (gpu_binner) {
-      statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, options.mean);
+      statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, options);
       if (statistics.gpu_binning_obstacle.empty()) {
         const auto textures = chosen.raster->draw(T_world_sonar, samples, surface, sampled_range_m(settings));
         statistics.visibility_s = watch.lap();

@@ -1,6 +1,6 @@
-// The GLSL of GpuBinner: what grid_patches and RangeProfile do, for one texture of samples, and the sums of it.
-// Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the same
-// however the work is shared out (docs/physics.md 4.2).
+// The GLSL of GpuBinner: what grid_patches and RangeProfile do, for one texture of samples, and the sums of
+// it. Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the
+// same however the work is shared out (docs/physics.md 4.2).
 #pragma once
 
 namespace sonard::render {
@@ -12,7 +12,7 @@ inline constexpr char binning_shader_head[] = R"glsl(#version 430
 layout(std430, binding = 0) buffer Differences { uint differences[]; };
 layout(location = 0) uniform int lines;
 layout(location = 1) uniform int beams;
-layout(location = 2) uniform bool mean;
+layout(location = 2) uniform bool weighed;  // the weights are summed too
 
 uvec2 plus(uvec2 a, uvec2 b) {
   uint carry;
@@ -122,7 +122,7 @@ void step_to(int k, float share, inout uvec2 echo_before, inout uvec2 weight_bef
   uvec2 here = whole_units(echo_units * share);
   add(echo_lines + uint(k), minus(here, echo_before));
   echo_before = here;
-  if (mean) {
+  if (weighed) {
     here = whole_units(weight_units * share);
     add(weight_lines + uint(k), minus(here, weight_before));
     weight_before = here;
@@ -245,21 +245,21 @@ void main() {
 inline constexpr char sum_shader[] = R"glsl(
 layout(local_size_x = 256) in;
 
-layout(std430, binding = 4) writeonly buffer Echo { float echo[]; };  // [beam][line], BinningResult::echo
-layout(std430, binding = 5) readonly buffer LeastWeights { float least_weight[]; };  // of beams, steradians
+// [beam][line], as in BinningResult.
+layout(std430, binding = 4) writeonly buffer Echo { float echo[]; };
+layout(std430, binding = 5) writeonly buffer Open { float open_sr[]; };
+layout(std430, binding = 6) readonly buffer SolidAngles { float solid_angle[]; };  // of beams
 layout(location = 3) uniform float sr_per_unit;
+layout(location = 4) uniform bool mean;
+layout(location = 5) uniform bool open_water;
+layout(location = 6) uniform float least_share;
+layout(location = 7) uniform float least_open;
 
-shared uvec2 up_to[2][256];  // what the invocations up to this one have summed
+shared uvec2 up_to[2][256];
 
-uvec2 difference(uint line) {
-  return uvec2(differences[2u * line], differences[2u * line + 1u]);
-}
-
-// The sum of all lines before those of this invocation.
-uvec2 sum_before(uint first, int count) {
+// What the invocations before this one hold together.
+uvec2 sum_before(uvec2 own) {
   uint me = gl_LocalInvocationIndex;
-  uvec2 own = uvec2(0u);
-  for (int i = 0; i < count; ++i) own = plus(own, difference(first + uint(i)));
   int from = 0;
   up_to[from][me] = own;
   barrier();
@@ -275,8 +275,14 @@ uvec2 sum_before(uint first, int count) {
   return before;
 }
 
-float steradians(uvec2 units) {
-  return (float(units.y) * 4294967296.0 + float(units.x)) * sr_per_unit;
+uvec2 difference(uint line) {
+  return uvec2(differences[2u * line], differences[2u * line + 1u]);
+}
+
+uvec2 sum_of_differences(uint first, uint count) {
+  uvec2 sum = uvec2(0u);
+  for (uint i = 0u; i < count; ++i) sum = plus(sum, difference(first + i));
+  return sum;
 }
 
 uvec2 take(uint line) {
@@ -286,21 +292,41 @@ uvec2 take(uint line) {
   return units;
 }
 
+float steradians(uvec2 units) {
+  return (float(units.y) * 4294967296.0 + float(units.x)) * sr_per_unit;
+}
+
 void main() {
   int each = (lines + 255) / 256;
   int begin = min(int(gl_LocalInvocationIndex) * each, lines);
-  int count = min(each, lines - begin);
+  uint count = uint(min(each, lines - begin));
   uint first = gl_WorkGroupID.x * uint(lines) + uint(begin);
   uint first_weight = first + uint(beams) * uint(lines);
-  uvec2 echo_sum = sum_before(first, count);
-  uvec2 weight_sum = mean ? sum_before(first_weight, count) : uvec2(0u);
-  for (uint i = 0u; i < uint(count); ++i) {
-    echo_sum = plus(echo_sum, take(first + i));
-    float value = steradians(echo_sum);
-    if (mean) {
-      weight_sum = plus(weight_sum, take(first_weight + i));
-      float weight = steradians(weight_sum);
-      value = weight > least_weight[gl_WorkGroupID.x] ? min(1.0, value / weight) : 0.0;
+  float whole = solid_angle[gl_WorkGroupID.x];
+
+  uvec2 echo_units = sum_before(sum_of_differences(first, count));
+  uvec2 weight_units = uvec2(0u), blocked = uvec2(0u);
+  if (weighed) weight_units = sum_before(sum_of_differences(first_weight, count));
+  if (open_water) {
+    uvec2 here = weight_units;
+    for (uint i = 0u; i < count; ++i) {
+      here = plus(here, difference(first_weight + i));
+      blocked = plus(blocked, here);
+    }
+    blocked = sum_before(blocked);
+  }
+  for (uint i = 0u; i < count; ++i) {
+    echo_units = plus(echo_units, take(first + i));
+    float value = steradians(echo_units);
+    if (weighed) {
+      weight_units = plus(weight_units, take(first_weight + i));
+      float weight = steradians(weight_units);
+      if (mean) value = weight > least_share * whole ? min(1.0, value / weight) : 0.0;
+      if (open_water) {
+        float open = whole - steradians(blocked) - 0.5 * weight;
+        open_sr[first + i] = open > least_open * whole ? open : 0.0;
+        blocked = plus(blocked, weight_units);
+      }
     }
     echo[first + i] = value;
   }

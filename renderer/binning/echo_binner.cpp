@@ -13,11 +13,6 @@ namespace sonard::render {
 
 namespace {
 
-// Means are not taken where less than this share of a beam is seen: there the weights are mostly rounding.
-constexpr float least_share = 0x1p-32F;
-// A beam that is open to less than this share is blocked: what remains is the error of the solid angles.
-constexpr double least_open = 2e-3;
-
 /// One beam's accumulators, and the memory of one thread.
 class BeamSums {
  public:

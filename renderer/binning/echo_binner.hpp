@@ -21,6 +21,11 @@ struct BinningOptions {
   SkipSwitches skip{};            ///< for SkipRule::empty_beams, of slices
 };
 
+/// Means are not taken where less than this share of a beam is seen: there the weights are mostly rounding.
+inline constexpr float least_share = 0x1p-32F;
+/// A beam that is open to less than this share is blocked: what remains is the error of the solid angles.
+inline constexpr double least_open = 2e-3;
+
 struct BinningResult {
   int beams = 0;
   int lines = 0;

@@ -21,18 +21,16 @@ namespace sonard::render {
 namespace {
 
 // Bindings and locations of binning_shader.hpp.
-enum Binding : GLuint { at_differences, at_parts, at_weights, at_counts, at_echo, at_least_weights };
-constexpr GLint at_lines = 0, at_beams = 1, at_mean = 2;
+enum Binding : GLuint { at_differences, at_parts, at_weights, at_counts, at_echo, at_open, at_solid_angles };
+constexpr GLint at_lines = 0, at_beams = 1, at_weighed = 2;
 constexpr GLint at_first_part = 3, at_bottom = 4, at_pixel_height = 5, at_lines_per_m = 6,
                 at_units_per_sr = 7, at_most_units = 8, at_footprint = 9;
-constexpr GLint at_sr_per_unit = 3;
+constexpr GLint at_sr_per_unit = 3, at_mean = 4, at_open_water = 5, at_least_share = 6, at_least_open = 7;
 
 // A sum stays below 2^62 whatever the samples hold. That a beam full of unit response makes 2^48 leaves each
 // sample 2^14 times its share of that: specular facets need it, a bed at grazing incidence the digits.
 constexpr double units_of_fullest_beam = 0x1p48;
 constexpr double most_units_of_beam = 0x1p62;
-// Means are not taken where less than this share of a beam is seen, as by bin_echoes().
-constexpr double least_share = 0x1p-32;
 
 /// As the shader has it.
 struct GpuPart {
@@ -95,7 +93,16 @@ class StorageBuffer {
     gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_);
     gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(T)),
                      values.data(), usage);
+    words_ = values.size() * sizeof(T) / sizeof(std::uint32_t);
   }
+  /// If there are not so many words, makes as many, of zeros.
+  void hold(std::size_t words) {
+    if (words_ < words) {
+      fill(std::vector<std::uint32_t>(words), GL_DYNAMIC_COPY);
+    }
+  }
+  /// The next hold() begins anew.
+  void forget() { words_ = 0; }
   void bind() const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding_, name_); }
   void read(void* to, std::size_t bytes) const {
     gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_);
@@ -106,6 +113,7 @@ class StorageBuffer {
   osg::GLExtensions& gl_;
   Binding binding_;
   GLuint name_ = 0;
+  std::size_t words_ = 0;
 };
 
 /// Whether OpenGL has run out of memory since errors were asked for last.
@@ -123,7 +131,7 @@ struct GpuBinner::Impl {
   EglContext& context;
   osg::GLExtensions& gl;
   osg::ref_ptr<osg::Program> splat, sum;
-  StorageBuffer differences, parts, weights, counts, echo, least_weights;
+  StorageBuffer differences, parts, weights, counts, echo, open, solid_angles;
   std::size_t most_bytes = 0;  // of a buffer
 
   // Of the grid.
@@ -135,7 +143,7 @@ struct GpuBinner::Impl {
   std::string grid_obstacle;
   // Of the image.
   int lines = 0;
-  bool mean = false;
+  bool weighed = false;
 
   explicit Impl(EglContext& made_current)
       : context(made_current),
@@ -147,7 +155,8 @@ struct GpuBinner::Impl {
         weights(gl, at_weights),
         counts(gl, at_counts),
         echo(gl, at_echo),
-        least_weights(gl, at_least_weights) {
+        open(gl, at_open),
+        solid_angles(gl, at_solid_angles) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     // Shaders count words in 32 bits.
@@ -222,38 +231,39 @@ struct GpuBinner::Impl {
       all.insert(all.end(), some.begin(), some.end());
       view_parts.push_back(static_cast<int>(all.size()));
     }
-    std::vector<float> least(solid_angle.size());
-    std::transform(solid_angle.begin(), solid_angle.end(), least.begin(),
-                   [](double whole) { return static_cast<float>(least_share * whole); });
     parts.fill(all, GL_STATIC_DRAW);
     weights.fill(weight, GL_STATIC_DRAW);
-    least_weights.fill(least, GL_STATIC_DRAW);
+    solid_angles.fill(std::vector<float>(solid_angle.begin(), solid_angle.end()), GL_STATIC_DRAW);
     if (is_out_of_memory()) {
       grid_obstacle = "OpenGL has no memory for a grid of this size";
     }
   }
 
   /// Zeros, which every image leaves behind for the next one, whatever its layout.
-  std::string make_room(int wanted_lines, bool wanted_mean) {
-    const std::size_t bins = static_cast<std::size_t>(beams) * static_cast<std::size_t>(wanted_lines);
-    const std::size_t words = bins * (wanted_mean ? 4 : 2);
+  std::string make_room(int wanted_lines, const BinningOptions& options) {
+    lines = wanted_lines;
+    weighed = options.mean || options.open_water;
+    const std::size_t words = bins() * (weighed ? 4 : 2);
     std::string obstacle = grid_obstacle.empty()
                                ? obstacle_of("an image", static_cast<double>(words) * sizeof(std::uint32_t))
                                : grid_obstacle;
-    lines = wanted_lines;
-    mean = wanted_mean;
-    if (!obstacle.empty() || (room_words >= words && room_bins >= bins)) {
+    if (!obstacle.empty()) {
       return obstacle;
     }
-    room_words = 0;
-    differences.fill(std::vector<std::uint32_t>(words), GL_DYNAMIC_COPY);
-    echo.fill(std::vector<float>(bins), GL_DYNAMIC_READ);
+    differences.hold(words);
+    echo.hold(bins());
+    open.hold(options.open_water ? bins() : 0);
     if (is_out_of_memory()) {
+      forget_images();
       return "OpenGL has no memory for an image of this size";
     }
-    room_words = words;
-    room_bins = bins;
     return {};
+  }
+
+  void forget_images() {
+    for (StorageBuffer* buffer : {&differences, &echo, &open}) {
+      buffer->forget();
+    }
   }
 
   void splat_views(const std::vector<unsigned>& textures, const RangeLines& range,
@@ -279,9 +289,13 @@ struct GpuBinner::Impl {
     gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   }
 
-  void sum_beams() {
+  void sum_beams(const BinningOptions& options) {
     linked(*sum).useProgram();
     set_image_uniforms();
+    gl.glUniform1i(at_mean, options.mean ? 1 : 0);
+    gl.glUniform1i(at_open_water, options.open_water ? 1 : 0);
+    gl.glUniform1f(at_least_share, least_share);
+    gl.glUniform1f(at_least_open, static_cast<float>(least_open));
     gl.glUniform1f(at_sr_per_unit, static_cast<float>(1.0 / units_per_sr));
     gl.glDispatchCompute(static_cast<GLuint>(beams), 1, 1);
     gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -290,17 +304,18 @@ struct GpuBinner::Impl {
   void set_image_uniforms() const {
     gl.glUniform1i(at_lines, lines);
     gl.glUniform1i(at_beams, beams);
-    gl.glUniform1i(at_mean, mean ? 1 : 0);
+    gl.glUniform1i(at_weighed, weighed ? 1 : 0);
   }
 
   BinningResult bin(const std::vector<unsigned>& textures, const RangeLines& range,
                     const BinningOptions& options, std::vector<float> memory) {
     counts.fill(std::vector<GpuCounts>(1), GL_DYNAMIC_READ);
-    for (const StorageBuffer* buffer : {&differences, &parts, &weights, &counts, &echo, &least_weights}) {
+    for (const StorageBuffer* buffer :
+         {&differences, &parts, &weights, &counts, &echo, &open, &solid_angles}) {
       buffer->bind();
     }
     splat_views(textures, range, options);
-    sum_beams();
+    sum_beams(options);
     gl.glUseProgram(0);
     context.getState()->setLastAppliedProgramObject(nullptr);
 
@@ -308,22 +323,25 @@ struct GpuBinner::Impl {
     result.beams = beams;
     result.lines = lines;
     result.echo = std::move(memory);
-    result.echo.resize(static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines));
-    echo.read(result.echo.data(), result.echo.size() * sizeof(float));
+    result.echo.resize(bins());
+    echo.read(result.echo.data(), bins() * sizeof(float));
+    if (options.open_water) {
+      result.open_sr.resize(bins());
+      open.read(result.open_sr.data(), bins() * sizeof(float));
+    }
     GpuCounts counted;
     counts.read(&counted, sizeof counted);
     result.samples = counted.samples;
     result.invalid_samples = counted.invalid;
     result.saturated_samples = counted.saturated;
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-      room_words = 0;  // what is left in there is not known
+      forget_images();  // what is left in there is not known
       throw RendererError("OpenGL error " + std::to_string(error) + " while binning");
     }
     return result;
   }
 
- private:
-  std::size_t room_words = 0, room_bins = 0;
+  std::size_t bins() const { return static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines); }
 };
 
 GpuBinner::GpuBinner(RasterSampler& sampler) : impl_(std::make_unique<Impl>(sampler.current_context())) {}
@@ -340,9 +358,9 @@ void GpuBinner::set_grid(const SampleGrid& grid) {
   impl_->set_grid(grid);
 }
 
-std::string GpuBinner::make_room(int lines, bool mean) {
+std::string GpuBinner::make_room(int lines, const BinningOptions& options) {
   impl_->make_current();
-  return impl_->make_room(lines, mean);
+  return impl_->make_room(lines, options);
 }
 
 BinningResult GpuBinner::bin(const std::vector<unsigned>& textures, const RangeLines& range,

@@ -29,11 +29,11 @@ class GpuBinner {
   void set_grid(const SampleGrid& grid);
 
   /// Makes room for images of the grid's beams and so many lines.
-  /// @return why it cannot be had: one line, to be followed by bin_echoes(). Empty: it is there.
-  std::string make_room(int lines, bool mean);
+  /// @return why it cannot be had, in one line; then bin_echoes() is to be used. Empty: it is there.
+  std::string make_room(int lines, const BinningOptions& options);
 
   /// @param textures what RasterSampler::draw() returned for the grid.
-  /// @param range make_room() has been called for its lines.
+  /// @param range, options what make_room() has made room for.
   /// @param memory as of bin_echoes()
   /// @throws RendererError when OpenGL fails.
   BinningResult bin(const std::vector<unsigned>& textures, const RangeLines& range,

@@ -91,7 +91,7 @@ class GpuBinningTest : public ::testing::Test {
     const SampleGrid grid = make_sample_grid(c.aperture, c.sampling, c.grid_options);
     const double max_range_m = c.range.max_range_m() * 1.05;
     binner.set_grid(grid);
-    ASSERT_EQ(binner.make_room(c.range.count, c.options.mean), "");
+    ASSERT_EQ(binner.make_room(c.range.count, c.options), "");
     const BinningResult gpu =
         binner.bin(sampler.draw(c.T_world_sonar, grid, c.surface, max_range_m), c.range, c.options);
     const auto samples = sampler.sample(c.T_world_sonar, grid, c.surface, max_range_m);
@@ -108,6 +108,10 @@ class GpuBinningTest : public ::testing::Test {
     EXPECT_GT(echoes, 0) << c.name;
     EXPECT_LT(from_cpu, 1e-3) << c.name;
     EXPECT_LT(from_exact, 1e-5) << c.name;
+    if (c.options.open_water) {
+      EXPECT_LT(worst_difference(cpu.open_sr, gpu.open_sr, lines), 1e-4) << c.name;
+    }
+    EXPECT_EQ(gpu.open_sr.size(), cpu.open_sr.size()) << c.name;
     EXPECT_EQ(gpu.samples, cpu.samples) << c.name;
     EXPECT_EQ(gpu.invalid_samples, cpu.invalid_samples) << c.name;
     EXPECT_EQ(gpu.saturated_samples, 0U) << c.name;
@@ -178,6 +182,14 @@ TEST_F(GpuBinningTest, AgreesOnOneBeam) {
   expect_agreement(scanning);
 }
 
+/// What of each beam is still open, line by line: behind a wall, over a bed, and where nothing is seen.
+TEST_F(GpuBinningTest, AgreesOnOpenWater) {
+  Case open{"open water", make_world({make_body("bed", bed(2)),
+                                      make_body("wall", make_quad({7, 0, -80}, {0, 80, 0}, {0, 0, 160}))})};
+  open.options.open_water = true;
+  expect_agreement(open);
+}
+
 /// Means, and every way in which the paper bins.
 TEST_F(GpuBinningTest, AgreesInModePaper) {
   Case paper{"paper", make_world({make_body("bed", bed(4)), make_body("wall", wall(12))})};
@@ -218,7 +230,7 @@ TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
   const auto bin = [&](bool mean) {
     BinningOptions options;
     options.mean = mean;
-    EXPECT_EQ(binner.make_room(range.count, mean), "");
+    EXPECT_EQ(binner.make_room(range.count, options), "");
     return binner.bin(sampler.draw(T_world_sonar, grid, {}, 21.0), range, options).echo;
   };
   binner.set_grid(grid);
@@ -266,8 +278,10 @@ TEST_F(GpuBinningTest, BinsOnTheCpuWhatIsTooLargeForOpenGl) {
   Aperture aperture;
   aperture.beam_edges_rad = equal_angle_edges(4096, 120 * degree);
   binner.set_grid(make_sample_grid(aperture, Sampling::of_grid(3, 1500, 2)));
-  EXPECT_THAT(binner.make_room(65535, true), ::testing::HasSubstr("an image of 4096 MiB, but a buffer"));
-  EXPECT_EQ(binner.make_room(100, true), "");
+  BinningOptions paper;
+  paper.mean = true;
+  EXPECT_THAT(binner.make_room(65535, paper), ::testing::HasSubstr("an image of 4096 MiB, but a buffer"));
+  EXPECT_EQ(binner.make_room(100, paper), "");
 
   PingRequest request;
   request.settings.aperture = aperture;
@@ -290,18 +304,24 @@ TEST_F(GpuBinningTest, BinsOnTheCpuWhatIsTooLargeForOpenGl) {
 TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
   const World world = make_world({make_body("bed", bed(4)), make_body("wall", wall(15))});
   SonarRenderer one(world, with(GpuBinning::on));
+  const auto expect_as_fresh = [&](int beams, int lines, Model model, bool turbid) {
+    PingRequest request;
+    request.T_world_sonar = looking({0, 0, 0}, 0, 15);
+    request.settings.model = model;
+    request.settings.aperture.beam_edges_rad = equal_angle_edges(beams, 90 * degree);
+    request.settings.range = {lines, 20.0 / lines, 0, false};
+    request.settings.sampling = Sampling::of_grid(2, 96, 96);
+    if (turbid) {
+      request.settings.physical.volume_scattering_db = -60;
+    }
+    SonarRenderer fresh(world, with(GpuBinning::on));
+    EXPECT_EQ(one.render_echo(request).intensity, fresh.render_echo(request).intensity);
+  };
   for (const int lines : {1000, 300, 1200, 300}) {
-    for (const Model model : {Model::physical, Model::paper}) {
-      for (const int beams : {64, 16}) {
-        PingRequest request;
-        request.T_world_sonar = looking({0, 0, 0}, 0, 15);
-        request.settings.model = model;
-        request.settings.aperture.beam_edges_rad = equal_angle_edges(beams, 90 * degree);
-        request.settings.range = {lines, 20.0 / lines, 0, false};
-        request.settings.sampling = Sampling::of_grid(2, 96, 96);
-        SonarRenderer fresh(world, with(GpuBinning::on));
-        ASSERT_EQ(one.render_echo(request).intensity, fresh.render_echo(request).intensity);
-      }
+    for (const int beams : {64, 16}) {
+      expect_as_fresh(beams, lines, Model::physical, false);
+      expect_as_fresh(beams, lines, Model::physical, true);
+      expect_as_fresh(beams, lines, Model::paper, false);
     }
   }
 }
