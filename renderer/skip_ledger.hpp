@@ -31,6 +31,10 @@ enum class SkipRule : std::uint8_t {
   ring_down_over,
   no_interference,
   clear_water,
+  separate_beams,
+  even_lines,
+  perfect_elements,
+  short_pulse,
 };
 
 /// One line of the ledger. What a rule may change at most, in one ping with the rule on against the same ping
@@ -98,6 +102,16 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::clear_water, "clear_water",
                   "volume scattering below -75 dB/m^3, or a range of less than 20 m", "pings", 0.1,
                   "of the highest output code over a bed"},
+    SkipRuleEntry{SkipRule::separate_beams, "separate_beams",
+                  "no beam would hear other beams, or lose to them, more than 1 % of the strongest echo",
+                  "pings", 1e-2},
+    SkipRuleEntry{SkipRule::even_lines, "even_lines",
+                  "per angle all beams hear the same of 32 neighbouring lines, within 1 %, or nothing",
+                  "lines", 1e-2},
+    SkipRuleEntry{SkipRule::perfect_elements, "perfect_elements",
+                  "the elements of the array have no errors: beyond the lobes nothing leaks", "pings", 0},
+    SkipRuleEntry{SkipRule::short_pulse, "short_pulse",
+                  "of an echo no more than 0.5 % is heard outside of its line", "pings", 1e-2},
 };
 
 inline constexpr std::size_t skip_rule_count = skip_rules.size();

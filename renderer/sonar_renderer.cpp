@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "renderer/acoustics/echo_reception.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/binning/echo_binner.hpp"
@@ -131,26 +132,45 @@ PaperModel echo_part(PaperModel model) {
   return model;
 }
 
+/// Without what only the receiver looks at.
+PhysicalModel echo_part(const PhysicalModel& model) {
+  PhysicalModel part;
+  part.absorption_db_per_m = model.absorption_db_per_m;
+  part.pulse = model.pulse;
+  part.range_cell_m = model.range_cell_m;
+  part.volume_scattering_db = model.volume_scattering_db;
+  return part;
+}
+
 /// Whether all that the mean echo depends on is the same in both.
 bool same_echo(const SonarSettings& a, const SonarSettings& b) {
   if (a.transmit != b.transmit || a.model != b.model || a.range.count != b.range.count ||
       a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
     return false;
   }
-  return a.model == Model::physical ? a.physical.absorption_db_per_m == b.physical.absorption_db_per_m &&
-                                          a.physical.volume_scattering_db == b.physical.volume_scattering_db
+  return a.model == Model::physical ? echo_part(a.physical) == echo_part(b.physical)
                                     : echo_part(a.paper) == echo_part(b.paper);
+}
+
+/// Whether the echo goes with the seed, as errors of elements do.
+bool has_random_array(const SonarSettings& settings) {
+  const Aperture& aperture = settings.aperture;
+  return settings.model == Model::physical && aperture.azimuth == Aperture::Azimuth::array &&
+         (aperture.element_amplitude_sd > 0 || aperture.element_phase_sd_rad > 0);
 }
 
 /// The last mean echo of a stream, and what it was made of.
 struct KnownEcho {
   EchoImage image;
   SonarSettings settings;
+  std::uint64_t seed = 0;
   Pose T_world_sonar;
   std::uint64_t world_revision = 0;  ///< 0: there is none yet
 
-  bool fits(const SonarSettings& wanted, const Pose& T_world_sonar_wanted, std::uint64_t revision) const {
-    return world_revision == revision && T_world_sonar == T_world_sonar_wanted && same_echo(settings, wanted);
+  bool fits(const PingRequest& wanted, const Pose& T_world_sonar_wanted, std::uint64_t revision) const {
+    return world_revision == revision && T_world_sonar == T_world_sonar_wanted &&
+           same_echo(settings, wanted.settings) &&
+           (seed == wanted.seed || !has_random_array(wanted.settings));
   }
 };
 
@@ -204,8 +224,10 @@ struct SonarRenderer::Impl {
   Receiver receiver;
   PingStatistics statistics;
   std::map<std::string, Pose> T_world_body;
-  std::uint64_t world_revision = 1;       // counts the moves of bodies
-  std::map<int, KnownEcho> known_echoes;  // by stream
+  std::uint64_t world_revision = 1;         // counts the moves of bodies
+  std::map<int, KnownEcho> known_echoes;    // by stream
+  std::map<int, EchoReception> receptions;  // by stream
+  EchoImage fine_echo;                      // memory
 
   Impl(const World& world, const RendererOptions& options)
       : skip(options.skip),
@@ -222,7 +244,10 @@ struct SonarRenderer::Impl {
     }
   }
 
-  void render_echo(const SonarSettings& settings, const Pose& T_world_sonar, EchoImage& image) {
+  /// @param settings_and_seed of which the pose is not looked at
+  void render_echo(const PingRequest& settings_and_seed, int stream, const Pose& T_world_sonar,
+                   EchoImage& image) {
+    const SonarSettings& settings = settings_and_seed.settings;
     image.beams = settings.aperture.beam_count();
     image.lines = settings.range.count;
     if (!settings.transmit) {
@@ -230,6 +255,25 @@ struct SonarRenderer::Impl {
                              0.0F);
       return;
     }
+    EchoReception& reception = receptions[stream];
+    reception.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
+    if (reception.has_pattern()) {
+      sample_echo(EchoReception::sampled(settings), T_world_sonar, fine_echo);
+      Stopwatch watch;
+      reception.hear(fine_echo, image, workers, skip, statistics.skipped);
+      statistics.azimuth_pattern_s = watch.lap();
+    } else {
+      sample_echo(settings, T_world_sonar, image);
+    }
+    Stopwatch watch;
+    reception.spread(image, workers);
+    statistics.pulse_s = watch.lap();
+  }
+
+  /// The echo as it comes to the sonar.
+  void sample_echo(const SonarSettings& settings, const Pose& T_world_sonar, EchoImage& image) {
+    image.beams = settings.aperture.beam_count();
+    image.lines = settings.range.count;
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
@@ -393,13 +437,14 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   impl_->statistics = {};
   KnownEcho& known = impl_->known_echoes[stream];
   if (impl_->skip.on(SkipRule::unchanged_scene) &&
-      known.fits(request.settings, T_world_sonar, impl_->world_revision)) {
+      known.fits(request, T_world_sonar, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);
     return known.image;
   }
   known.world_revision = 0;  // until all of it is there
-  impl_->render_echo(request.settings, T_world_sonar, known.image);
+  impl_->render_echo(request, stream, T_world_sonar, known.image);
   known.settings = request.settings;
+  known.seed = request.seed;
   known.T_world_sonar = T_world_sonar;
   known.world_revision = impl_->world_revision;
   return known.image;

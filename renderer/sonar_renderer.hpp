@@ -16,8 +16,8 @@
 
 namespace sonard::render {
 
-/// Mean echo intensity before speckle, noise and gain. Linear; mode `physical`: re the source intensity at
-/// 1 m, per beam and native line; mode `paper`: the paper's I_bin in [0, 1].
+/// Mean echo intensity behind array and pulse, before speckle, noise and gain. Linear; mode `physical`: re
+/// the source intensity at 1 m, per beam and native line; mode `paper`: the paper's I_bin in [0, 1].
 struct EchoImage {
   int beams = 0;
   int lines = 0;
@@ -48,6 +48,8 @@ struct PingRequest {
 struct PingStatistics {
   double visibility_s = 0.0;
   double binning_s = 0.0;
+  double azimuth_pattern_s = 0.0;
+  double pulse_s = 0.0;
   double receiver_s = 0.0;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped

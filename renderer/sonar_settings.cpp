@@ -42,6 +42,34 @@ double Aperture::pattern_height() const {
   return sum * 2 * limit / (3 * steps);
 }
 
+namespace {
+
+/// What only a receive array needs.
+void check_array(const Aperture& aperture) {
+  constexpr int most_fine_beams = 16;
+  constexpr double quarter_turn_rad = std::numbers::pi / 2 + 1e-9;
+  if (aperture.beam_edges_rad.front() > quarter_turn_rad ||
+      aperture.beam_edges_rad.back() < -quarter_turn_rad) {
+    throw RequestError("aperture: a straight array hears no beams behind it");
+  }
+  if (aperture.fine_beams < 1 || aperture.fine_beams > most_fine_beams) {
+    throw RequestError("aperture: " + std::to_string(aperture.fine_beams) + " fine beams, expected 1 to " +
+                       std::to_string(most_fine_beams));
+  }
+  constexpr double narrowest_beam_rad = 1e-3;
+  if (!(aperture.receive_beamwidth_rad >= narrowest_beam_rad) ||
+      !(aperture.receive_beamwidth_rad <= std::numbers::pi)) {
+    throw RequestError("aperture: receive beamwidth out of range");
+  }
+  const double errors = aperture.element_amplitude_sd + aperture.element_phase_sd_rad;
+  if (!(aperture.element_amplitude_sd >= 0) || !(aperture.element_phase_sd_rad >= 0) ||
+      !std::isfinite(errors)) {
+    throw RequestError("aperture: the errors of the elements are not finite, or negative");
+  }
+}
+
+}  // namespace
+
 void check_aperture(const Aperture& aperture) {
   const auto& edges = aperture.beam_edges_rad;
   if (edges.size() < 2) {
@@ -61,6 +89,9 @@ void check_aperture(const Aperture& aperture) {
   const double limit = aperture.elevation_limit_rad();
   if (!(limit > 0) || !(limit < std::numbers::pi / 2 * 0.97)) {
     throw RequestError("aperture: vertical beamwidth out of range");
+  }
+  if (aperture.azimuth == Aperture::Azimuth::array) {
+    check_array(aperture);
   }
 }
 

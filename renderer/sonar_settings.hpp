@@ -16,8 +16,21 @@ struct Aperture {
   /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern
   /// (docs/physics.md 2.5), rendered out to 1.25 beamwidths.
   enum class Elevation { top_hat, sinc } elevation = Elevation::top_hat;
-  /// -3 dB width of one receive beam at broadside; sets the grain of speckle and noise across beams.
+  /// -3 dB width of one receive beam at broadside; sets the grain of speckle and noise across beams, and with
+  /// Azimuth::array the pattern of the beams.
   double receive_beamwidth_rad = 0.0174532925199433;  // 1 degree
+  /// Amplitude weights of the receive array's elements (docs/physics.md 2.5); `kaiser` has beta 2.5.
+  enum class Taper { uniform, kaiser, hann, hamming } taper = Taper::hamming;
+  /// Mode `physical`, two beams or more. `ideal`: a beam hears all that lies between its edges and nothing
+  /// else. `array`: it hears what a straight array steered to its middle does, side lobes and all; the fan
+  /// lies within 90 degrees of the axis then.
+  enum class Azimuth { ideal, array } azimuth = Azimuth::ideal;
+  /// With `array`: a bearing is known to one part in this many of a beam; 1 to 16.
+  int fine_beams = 2;
+  /// With `array`: errors of the elements, which the seed and the stream draw. Standard deviations of the
+  /// amplitude as a share of it, >= 0, and of the phase.
+  double element_amplitude_sd = 0.0;
+  double element_phase_sd_rad = 0.0;
 
   int beam_count() const { return beam_edges_rad.empty() ? 0 : static_cast<int>(beam_edges_rad.size()) - 1; }
   /// Half of the rendered elevation fan.
@@ -114,8 +127,10 @@ struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
   enum class Speckle { off, frozen, per_ping, ou } speckle = Speckle::ou;
   double aperture_m = 0.1;  ///< array length; sets over which motion speckle stays the same (`ou`)
-  /// Where the response of the pulse in range first falls to 0: c / 2B of a chirp of bandwidth B
-  /// (docs/physics.md 2.7). 0: a pulse without length.
+  /// Response of the pulse in range, as intensity (docs/physics.md 2.6). `chirp`: matched filter,
+  /// sinc^2. `windowed_chirp`: the same under a Hann window over the band. `tone`: a box. `point`: no length.
+  enum class Pulse { point, chirp, windowed_chirp, tone } pulse = Pulse::point;
+  /// Scale of those with a length: c / 2B of a chirp of bandwidth B, c tau / 2 of a tone of duration tau.
   double range_cell_m = 0.0;
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
@@ -137,8 +152,6 @@ struct PhysicalModel {
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   RingDown ring_down;
   Interference interference;
-  /// What leaks of the strongest echo of a range line into all its beams; negative, 0 = off. Real: about -25.
-  double side_lobe_floor_db = 0.0;
 
   bool operator==(const PhysicalModel&) const = default;
 };

@@ -20,6 +20,7 @@ struct PingJob {
   double line_step_m = 0.0;   ///< range of one native line: sound_speed_mps / (2 * 90422 Hz)
   double sound_speed_mps = 0.0;  ///< true speed in the water
   bool sixteen_bit = false;
+  double pulse_s = 0.0;  ///< duration of the tone that is transmitted
   bool transmit = true;  ///< false: the head only listens, there are no echoes but there is noise
   double gain_db = 0.0;  ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
 

@@ -7,6 +7,7 @@ namespace sonard::gemini {
 
 namespace {
 
+constexpr double carrier_hz = 723'380.0;  // docs/protocols/gemini.md 9
 constexpr int min_native_lines = 32;
 constexpr int max_native_lines_8_bit = 20'000;
 constexpr int max_native_lines_16_bit = 10'000;
@@ -38,6 +39,7 @@ PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   job.sound_speed_mps =
       device.water_sound_speed_mps > 0.0 ? device.water_sound_speed_mps : configured_speed_mps(config);
   job.line_step_m = job.sound_speed_mps / (2.0 * line_rate_hz);
+  job.pulse_s = config.tx_length / carrier_hz;
   job.transmit = config.tx_length != 0;
   job.gain_db = receive_gain_db(config.main_gain, config.spreading, device.gain);
   return job;

@@ -15,12 +15,12 @@ namespace {
 
 /// Envelope of echo, ring-down and noise.
 SONARD_SIMD_CLONES
-void envelope_row(const float* __restrict echo, float floor, const float* __restrict speckle_re,
+void envelope_row(const float* __restrict echo, const float* __restrict speckle_re,
                   const float* __restrict speckle_im, float ring_down, float noise,
                   const float* __restrict profile, const float* __restrict noise_re,
                   const float* __restrict noise_im, float gain, int beams, float* __restrict out) {
   for (int b = 0; b < beams; ++b) {
-    const float amplitude = std::sqrt(echo[b] + floor);
+    const float amplitude = std::sqrt(echo[b]);
     const float n = noise * profile[b];
     const float re = (amplitude * speckle_re[b] + ring_down) + n * noise_re[b];
     const float im = amplitude * speckle_im[b] + n * noise_im[b];
@@ -68,7 +68,7 @@ class PhysicalLines {
     const float level = noise_level_at(native);
     const bool silent = level == 0 && skips(SkipRule::no_noise);
     const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(native);
-    // No echo in any beam, and so no leak either: speckle would multiply 0. Later images get other random
+    // No echo in any beam: speckle would multiply 0. Later images get other random
     // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
     if (!(strongest > 0) && ring_down == 0 && skips(SkipRule::lines_without_echo)) {
       if (silent) {
@@ -78,8 +78,8 @@ class PhysicalLines {
                          codes_.data());
     } else {
       const Phasors phasors = speckle_of(native);
-      envelope_row(echo_of(native), tables.leak * strongest, phasors.real, phasors.imaginary, ring_down,
-                   level, tables.profile.data(), noise.real, noise.imaginary, gain, beams_, codes_.data());
+      envelope_row(echo_of(native), phasors.real, phasors.imaginary, ring_down, level, tables.profile.data(),
+                   noise.real, noise.imaginary, gain, beams_, codes_.data());
     }
     output.add(codes_.data());
   }

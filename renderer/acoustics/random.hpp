@@ -17,7 +17,8 @@ enum class RandomField : std::uint64_t {
   noise = 2,
   paper_speckle = 3,
   texture = 4,
-  interference = 5
+  interference = 5,
+  array_elements = 16
 };
 
 /// Mixes all inputs so that any difference gives an unrelated field.

@@ -11,24 +11,55 @@ namespace sonard::render {
 
 namespace {
 
+using Pulse = PhysicalModel::Pulse;
+
 constexpr double reach_cells = 16;
 constexpr int steps_per_cell = 32;  // of the integration
 
-double response(double cells) {
-  const double x = std::numbers::pi * cells;
-  return x == 0 ? 1.0 : std::pow(std::sin(x) / x, 2);
+double sinc_at(double x) {
+  const double y = std::numbers::pi * x;
+  return std::abs(y) < 1e-9 ? 1.0 : std::sin(y) / y;
+}
+
+/// Intensity `cells` away from the echo, of any scale.
+double response(Pulse pulse, double cells) {
+  switch (pulse) {
+    case Pulse::tone:
+      return std::abs(cells) <= 0.5 ? 1.0 : 0.0;
+    case Pulse::windowed_chirp: {
+      // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
+      const double amplitude = sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
+      return amplitude * amplitude;
+    }
+    case Pulse::point:
+    case Pulse::chirp:
+      break;
+  }
+  return sinc_at(cells) * sinc_at(cells);
 }
 
 /// Two points that lie evenly in lines `lines` apart are x apart with a density that falls to 0 a line to
 /// either side of that.
-double mean_response(int lines, double line_cells) {
+double mean_response(Pulse pulse, int lines, double line_cells) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(line_cells * steps_per_cell)));
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
     const double offset = 2 * (i + 0.5) / steps - 1;
-    sum += (1 - std::abs(offset)) * response((lines + offset) * line_cells);
+    sum += (1 - std::abs(offset)) * response(pulse, (lines + offset) * line_cells);
   }
   return sum * 2 / steps;
+}
+
+/// The same of a box, exactly: differences of the second integral of the box.
+double mean_tone(int lines, double line_cells) {
+  const auto second_integral = [](double x) {
+    const double inside = std::clamp(x, -0.5, 0.5);
+    return 0.5 * (inside + 0.5) * (inside + 0.5) + (x - inside) * (x > 0 ? 1.0 : 0.0);
+  };
+  const double middle = lines * line_cells;
+  return (second_integral(middle + line_cells) - 2 * second_integral(middle) +
+          second_integral(middle - line_cells)) /
+         (line_cells * line_cells);
 }
 
 SONARD_SIMD_CLONES
@@ -40,16 +71,18 @@ void add_scaled(const float* __restrict in, float share, std::size_t count, floa
 
 }  // namespace
 
-RangeResponse::RangeResponse(double cell_m, double step_m) {
-  if (!(cell_m > 0)) {
+RangeResponse::RangeResponse(Pulse pulse, double cell_m, double step_m) {
+  if (pulse == Pulse::point || !(cell_m > 0)) {
     return;
   }
   const double line_cells = step_m / cell_m;
-  const int reach = static_cast<int>(std::ceil(reach_cells / line_cells));
+  const double reach = pulse == Pulse::tone ? 0.5 : reach_cells;
+  const int farthest = static_cast<int>(std::ceil(reach / line_cells));
   std::vector<double> shares;
   double total = 0;
-  for (int lines = 0; lines <= reach; ++lines) {
-    shares.push_back(mean_response(lines, line_cells));
+  for (int lines = 0; lines <= farthest; ++lines) {
+    shares.push_back(pulse == Pulse::tone ? mean_tone(lines, line_cells)
+                                          : mean_response(pulse, lines, line_cells));
     total += lines == 0 ? shares.back() : 2 * shares.back();
   }
   for (const double share : shares) {
@@ -57,21 +90,26 @@ RangeResponse::RangeResponse(double cell_m, double step_m) {
   }
 }
 
-void RangeResponse::apply(const EchoImage& echo, EchoImage& out) const {
+void RangeResponse::apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const {
+  constexpr int beams_per_job = 8;
   const auto lines = static_cast<std::size_t>(echo.lines);
   out.beams = echo.beams;
   out.lines = echo.lines;
-  out.intensity.assign(echo.intensity.size(), 0.0F);
-  for (std::size_t begin = 0; begin < echo.intensity.size(); begin += lines) {
-    const float* in = &echo.intensity[begin];
-    float* spread = &out.intensity[begin];
-    for (std::size_t k = 0; k < std::min(share_.size(), lines); ++k) {
-      add_scaled(in, share_[k], lines - k, spread + k);
-      if (k > 0) {
-        add_scaled(in + k, share_[k], lines - k, spread);
+  out.intensity.resize(echo.intensity.size());
+  workers.run((echo.beams + beams_per_job - 1) / beams_per_job, [&](int job) {
+    const int end = std::min(echo.beams, (job + 1) * beams_per_job);
+    for (int beam = job * beams_per_job; beam < end; ++beam) {
+      const float* in = &echo.intensity[static_cast<std::size_t>(beam) * lines];
+      float* spread = &out.intensity[static_cast<std::size_t>(beam) * lines];
+      std::fill_n(spread, lines, 0.0F);
+      for (std::size_t k = 0; k < std::min(share_.size(), lines); ++k) {
+        add_scaled(in, share_[k], lines - k, spread + k);
+        if (k > 0) {
+          add_scaled(in + k, share_[k], lines - k, spread);
+        }
       }
     }
-  }
+  });
 }
 
 }  // namespace sonard::render

@@ -4,26 +4,33 @@
 #include <vector>
 
 #include "renderer/sonar_renderer.hpp"
+#include "renderer/sonar_settings.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
-/// Response of a matched chirp, sinc^2(x / cell) with the cell c / 2B, where an echo lies anywhere in its
-/// line: averaged over the line, and over that in which it is heard (docs/physics.md 2.7). Out to 16 cells to
-/// either side; of an echo nothing is lost.
+/// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
+/// over the line, and over that in which it is heard (docs/physics.md 2.6). Chirps are followed out to 16
+/// cells to either side; of an echo nothing is lost.
 class RangeResponse {
  public:
+  using Pulse = PhysicalModel::Pulse;
+
   /// Spreads nothing.
   RangeResponse() = default;
-  /// @param cell_m first zero of the response; 0: none
-  RangeResponse(double cell_m, double step_m);
+  /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
+  RangeResponse(Pulse pulse, double cell_m, double step_m);
 
   /// Shares of an echo in its own line and the lines to one side of it; 0: nothing is spread.
   int taps() const { return static_cast<int>(share_.size()); }
   /// Share that is heard `lines` away from where it is.
   double share(int lines) const { return static_cast<double>(share_[static_cast<std::size_t>(lines)]); }
 
-  /// What would be heard beyond the ends of the image is left out.
-  void apply(const EchoImage& echo, EchoImage& out) const;
+  /// Share that is heard outside of the line where the echo is.
+  double share_outside() const { return share_.empty() ? 0.0 : 1 - share(0); }
+
+  /// What would be heard beyond the ends of the image is left out. What `out` holds is used as memory.
+  void apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const;
 
  private:
   std::vector<float> share_;

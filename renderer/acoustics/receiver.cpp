@@ -65,11 +65,6 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
     state.tables = ReceiverTables(settings);
   }
   advance_speckle(request, state);
-  const EchoImage* heard = &echo;
-  if (state.tables.response.taps() > 0) {
-    state.tables.response.apply(echo, state.spread);
-    heard = &state.spread;
-  }
   // Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
   const std::uint64_t speckle_ping = state.kind == Speckle::frozen ? 0 : request.ping_number;
   const bool kept = state.kind == Speckle::ou || state.kind == Speckle::frozen;
@@ -82,7 +77,7 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
       draw_interference(settings.physical.interference, settings.range.count,
                         key(RandomField::interference, request.ping_number)),
       skip_};
-  return receive_physical(*heard, ping, settings, workers, skipped_);
+  return receive_physical(echo, ping, settings, workers, skipped_);
 }
 
 }  // namespace sonard::render

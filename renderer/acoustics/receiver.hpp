@@ -30,7 +30,6 @@ class Receiver {
  private:
   struct Stream {
     ReceiverTables tables;
-    EchoImage spread;  ///< the echo behind the response of the pulse in range
     SpeckleField speckle, texture;
     // What the field was made for; with another of these it is begun anew.
     PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;

@@ -31,8 +31,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       output_scale(settings.output_scale),
       rings(settings.transmit && model.ring_down.on),
       filter(receive_kernel(aperture), aperture.beam_count()),
-      response(model.range_cell_m, range.step_m),
-      range_grain(model.range_cell_m, range.step_m),
+      range_grain(model.pulse == PhysicalModel::Pulse::point ? 0.0 : model.range_cell_m, range.step_m),
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)),
       ring_down(ring_down_amplitudes(model.ring_down, range)),
@@ -43,9 +42,6 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
   }
   if (model.noise) {
     noise = static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db)));
-  }
-  if (model.side_lobe_floor_db < 0) {
-    leak = static_cast<float>(decibels_to_power(model.side_lobe_floor_db));
   }
 }
 

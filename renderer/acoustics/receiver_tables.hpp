@@ -5,7 +5,6 @@
 
 #include "renderer/acoustics/beam_filter.hpp"
 #include "renderer/acoustics/range_grain.hpp"
-#include "renderer/acoustics/range_response.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
@@ -20,14 +19,12 @@ struct ReceiverTables {
   bool rings = false;  ///< there is a ring-down to hear
 
   BeamFilter filter;
-  RangeResponse response;
   RangeGrain range_grain;
   std::vector<float> gain;       ///< per native line: amplitude to codes, TVG included
   std::vector<float> profile;    ///< per beam: noise amplitude relative to that away from broadside
   float noise = 0;               ///< amplitude before TVG; 0: off
   std::vector<float> ring_down;  ///< per native line: amplitude before TVG
   int ring_down_lines = 0;       ///< that the ring-down is heard in
-  float leak = 0;                ///< share of a line's strongest echo that all its beams get
 
   ReceiverTables() = default;
   explicit ReceiverTables(const SonarSettings& settings);

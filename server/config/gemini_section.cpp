@@ -138,10 +138,27 @@ void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
   section.number("nominal_main_gain_db", law.nominal_main_gain_db, Range::from(0.0, 100.0));
 }
 
+void read_receive_array(YamlSection& section, render::Aperture& aperture) {
+  using Taper = render::Aperture::Taper;
+  using Azimuth = render::Aperture::Azimuth;
+  section.choice("azimuth_pattern", aperture.azimuth, {{"array", Azimuth::array}, {"ideal", Azimuth::ideal}});
+  section.choice("taper", aperture.taper,
+                 {{"hamming", Taper::hamming},
+                  {"hann", Taper::hann},
+                  {"kaiser", Taper::kaiser},
+                  {"uniform", Taper::uniform}});
+  section.integer("fine_beams", aperture.fine_beams, 1, 16);
+  section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0));
+  section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0));
+}
+
 void read_gemini_acoustics(YamlSection& section, GeminiHeadConfig& head) {
   read_acoustics(section, carrier_hz, head);
+  read_receive_array(section, head.acoustics.aperture);
+  using Pulse = render::PhysicalModel::Pulse;
+  section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}});
   section.angle("receive_beamwidth_deg", head.acoustics.aperture.receive_beamwidth_rad,
-                Range::above(0.0, 60.0));
+                Range::from(0.1, 60.0));
   section.boolean("snap_sound_speed", head.device.snap_sound_speed);
   section.section("gain_law", [&](YamlSection& inner) { read_gain_law(inner, head.device.gain); });
 }

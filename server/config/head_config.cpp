@@ -4,6 +4,16 @@
 
 namespace sonard::server {
 
+// The errors of the elements stand for all that a real head has: they let as much leak as recordings show
+// (docs/physics.md 2.16).
+GeminiHeadConfig::GeminiHeadConfig() {
+  constexpr double degree = std::numbers::pi / 180.0;
+  acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
+  acoustics.aperture.element_amplitude_sd = 0.45;
+  acoustics.aperture.element_phase_sd_rad = 26 * degree;
+  acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
+}
+
 // Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
 // 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 60 dB, and one ping of fourteen is hit
 // by interference, as recordings show (docs/physics.md 2.16).
@@ -14,6 +24,7 @@ MicronHeadConfig::MicronHeadConfig() {
   acoustics.aperture.vertical_beamwidth_rad = 35 * degree;
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
   acoustics.output_scale = render::OutputScale::half_decibels;
+  acoustics.physical.pulse = render::PhysicalModel::Pulse::chirp;
   acoustics.physical.gain_db = -9.0;
   acoustics.physical.tvg_max_db = 75.0;
   acoustics.physical.noise_level_db = -141.0;

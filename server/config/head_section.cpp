@@ -79,7 +79,6 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
   section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0));
   section.section("ring_down", [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
   section.section("interference", [&](YamlSection& inner) { read_interference(inner, model.interference); });
-  section.number("side_lobe_floor_db", model.side_lobe_floor_db, Range::from(-200.0, 0.0));
 }
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {

@@ -55,6 +55,10 @@ void read_micron_acoustics(YamlSection& section, MicronHeadConfig& head) {
   head.acoustics.aperture.receive_beamwidth_rad = beamwidth_deg * degree;
   head.acoustics.aperture.beam_edges_rad = {beamwidth_deg * degree / 2, -beamwidth_deg * degree / 2};
   section.number("nominal_gain_db", head.nominal_gain_db, Range::from(0.0, 80.0));
+  using Pulse = render::PhysicalModel::Pulse;
+  section.choice(
+      "pulse", head.acoustics.physical.pulse,
+      {{"chirp", Pulse::chirp}, {"windowed_chirp", Pulse::windowed_chirp}, {"point", Pulse::point}});
   double chirp_bandwidth_khz = head.chirp_bandwidth_hz / 1000.0;
   section.number("chirp_bandwidth_khz", chirp_bandwidth_khz, Range::from(0.0, 10'000.0));
   head.chirp_bandwidth_hz = chirp_bandwidth_khz * 1000.0;

@@ -28,6 +28,7 @@ render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const render
                     .compression_peak = false};  // a 720i averages, whatever it is asked (5)
   settings.sixteen_bit = job.sixteen_bit;
   settings.transmit = job.transmit;
+  settings.physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
   settings.physical.gain_db += job.gain_db;
   return settings;
 }

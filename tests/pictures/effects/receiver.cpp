@@ -92,12 +92,6 @@ std::vector<EffectPicture> receiver_pictures() {
        .before = [](View&) {},
        .caption_after = "volume_scattering_db: -50",
        .after = [](View& view) { view.settings.physical.volume_scattering_db = -50; }},
-      {.name = "side_lobe_floor",
-       .view = docking_station,
-       .caption_before = "side_lobe_floor_db: 0 (off)",
-       .before = [](View& view) { view.settings.physical.side_lobe_floor_db = 0; },
-       .caption_after = "side_lobe_floor_db: -25",
-       .after = [](View& view) { view.settings.physical.side_lobe_floor_db = -25; }},
   };
 }
 

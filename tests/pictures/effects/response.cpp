@@ -1,10 +1,51 @@
+#include <numbers>
+
 #include "tests/pictures/effects/effects.hpp"
 
 namespace sonard::pictures {
+namespace {
+
+/// To 20 metres, the receive array without errors.
+View perfect_docking_station() {
+  View view = configured_view("demo.yaml", 20);
+  view.settings.aperture.element_amplitude_sd = 0;
+  view.settings.aperture.element_phase_sd_rad = 0;
+  return view;
+}
+
+}  // namespace
 
 std::vector<EffectPicture> response_pictures() {
+  using Azimuth = render::Aperture::Azimuth;
   using Elevation = render::Aperture::Elevation;
+  using Pulse = render::PhysicalModel::Pulse;
   return {
+      {.name = "azimuth_pattern",
+       .view = perfect_docking_station,
+       .caption_before = "azimuth_pattern: ideal",
+       .before = [](View& view) { view.settings.aperture.azimuth = Azimuth::ideal; },
+       .caption_after = "azimuth_pattern: array",
+       .after = [](View& view) { view.settings.aperture.azimuth = Azimuth::array; }},
+      {.name = "element_errors",
+       .view = perfect_docking_station,
+       .caption_before = "element_amplitude_sd: 0, element_phase_sd_deg: 0",
+       .before = [](View&) {},
+       .caption_after = "element_amplitude_sd: 0.45, element_phase_sd_deg: 26",
+       .after =
+           [](View& view) {
+             view.settings.aperture.element_amplitude_sd = 0.45;
+             view.settings.aperture.element_phase_sd_rad = 26 * std::numbers::pi / 180;
+           }},
+      {.name = "pulse",
+       .view = [] { return configured_view("demo.yaml", 20); },
+       .caption_before = "pulse: point",
+       .before = [](View& view) { view.settings.physical.pulse = Pulse::point; },
+       .caption_after = "pulse: tone, of 128 cycles",
+       .after =
+           [](View& view) {
+             view.settings.physical.pulse = Pulse::tone;
+             view.settings.physical.range_cell_m = 128 / 723380.0 * 1500 / 2;
+           }},
       {.name = "elevation_pattern",
        .view = [] { return configured_view("demo.yaml", 20); },
        .caption_before = "elevation_pattern: tophat",

@@ -3,10 +3,13 @@
 //   SONARD_SIMD_CLONES  the attribute that picks the instruction set (renderer/simd.hpp)
 //   sonard              the namespace, so that all versions fit into one program
 //   MAKE_PINGS          name of the function that the test calls
+#include "renderer/acoustics/azimuth_pattern.cpp"
 #include "renderer/acoustics/beam_filter.cpp"
 #include "renderer/acoustics/beam_kernel.cpp"
 #include "renderer/acoustics/echo_block.cpp"
+#include "renderer/acoustics/echo_reception.cpp"
 #include "renderer/acoustics/field_reader.cpp"
+#include "renderer/acoustics/line_array.cpp"
 #include "renderer/acoustics/noise.cpp"
 #include "renderer/acoustics/output_lines.cpp"
 #include "renderer/acoustics/paper_lines.cpp"
@@ -25,6 +28,6 @@
 #include "tests/unit/acoustics/several_pings.hpp"
 
 std::vector<std::uint16_t> MAKE_PINGS() {
-  return several_pings<sonard::render::Receiver, sonard::render::PingRequest, sonard::render::EchoImage,
-                       sonard::render::WorkerPool>();
+  return several_pings<sonard::render::Receiver, sonard::render::EchoReception, sonard::render::PingRequest,
+                       sonard::render::EchoImage, sonard::render::WorkerPool>();
 }

@@ -1,13 +1,14 @@
-// One set of pings, whichever version of the receiver makes them.
+// One set of pings, whichever version of array, pulse and receiver makes them.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 /// 16 bit samples of three pings of a moving sonar with all effects on, and of one in mode `paper`. Odd sizes
 /// leave remainders to every vector length.
-template <class Receiver, class PingRequest, class EchoImage, class WorkerPool>
+template <class Receiver, class EchoReception, class PingRequest, class EchoImage, class WorkerPool>
 std::vector<std::uint16_t> several_pings() {
   constexpr int beams = 203;
   constexpr int lines = 331;
@@ -21,9 +22,12 @@ std::vector<std::uint16_t> several_pings() {
     request.settings.aperture.beam_edges_rad.push_back(1 - 2.0 * i / beams);
   }
   request.settings.range = {lines, 0.02, 0, false};
+  request.settings.aperture.azimuth = decltype(request.settings.aperture.azimuth)::array;
+  request.settings.aperture.fine_beams = 1;
+  request.settings.aperture.element_phase_sd_rad = 0.4;
+  request.settings.physical.pulse = decltype(request.settings.physical.pulse)::chirp;
   request.settings.physical.range_cell_m = 0.03;
   request.settings.physical.noise_level_db = -100;
-  request.settings.physical.side_lobe_floor_db = -25;
   request.settings.physical.texture_nu = 1.5;
   request.settings.physical.texture_range_m = 3;
   request.settings.physical.ring_down.on = true;
@@ -31,6 +35,13 @@ std::vector<std::uint16_t> several_pings() {
   request.settings.sixteen_bit = true;
   WorkerPool workers(1);
   Receiver receiver;
+  EchoReception reception;
+  auto skipped = receiver.skipped();  // whatever it counts
+  reception.prepare(request.settings, 1, 0, {}, skipped);
+  EchoImage heard;
+  reception.hear(echo, heard, workers, {}, skipped);
+  reception.spread(heard, workers);
+  std::swap(echo, heard);
   std::vector<std::uint16_t> all;
   const auto add_ping = [&] {
     const std::vector<std::uint16_t> samples = receiver.receive(echo, request, 0, workers).u16;

@@ -1,0 +1,43 @@
+// The receive array: a straight line of elements half a wavelength apart.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "renderer/acoustics/random.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Weights of the elements from one end to the other, not yet normalised; symmetric, 1 at most
+/// (docs/physics.md 2.5). @param elements at least 2
+std::vector<double> taper_weights(Aperture::Taper taper, int elements);
+
+/// Elements that an array of the aperture's taper needs for its beamwidth at broadside, within 4 %; at
+/// least 2.
+int element_count(const Aperture& aperture);
+
+/// Weights of all elements with their errors, divided by their sum without errors: a source on the axis of a
+/// faultless array is heard with amplitude 1.
+class LineArray {
+ public:
+  /// Without errors.
+  explicit LineArray(const Aperture& aperture);
+  /// With the errors that the aperture asks for, which belong to `key`.
+  LineArray(const Aperture& aperture, RandomKey key);
+
+  int elements() const { return static_cast<int>(weights_.size()); }
+  /// Response to a source whose sine of bearing is `sine_offset` off that of the beam.
+  std::complex<double> amplitude(double sine_offset) const;
+  /// The same as power.
+  double power(double sine_offset) const { return std::norm(amplitude(sine_offset)); }
+  /// Mean power, re the axis of a faultless array, that the errors of many such arrays leave in all
+  /// directions (docs/physics.md 2.5); 0 without errors.
+  double mean_error_power() const { return mean_error_power_; }
+
+ private:
+  std::vector<std::complex<double>> weights_;
+  double mean_error_power_ = 0.0;
+};
+
+}  // namespace sonard::render
