@@ -31,7 +31,8 @@ bool HeadRendering::take(const RenderResult& result) {
   if (result.error.empty()) {
     ++counters_.pings_rendered;
     const render::PingStatistics& spent = result.statistics;
-    counters_.render_seconds += spent.visibility_s + spent.binning_s + spent.receiver_s;
+    counters_.render_seconds +=
+        spent.visibility_s + spent.binning_s + spent.azimuth_pattern_s + spent.pulse_s + spent.receiver_s;
     counters_.skipped += spent.skipped;
     return true;
   }
