@@ -49,6 +49,7 @@ double intensity_correlation(const PingSamples& samples, int lag) {
 PingRequest fine_request(int lines) {
   PingRequest request = bare_request(lines);
   request.settings.range.step_m = step_m;
+  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
   request.settings.physical.range_cell_m = cell_m;
   return request;
 }
@@ -99,6 +100,7 @@ TEST(RangeGrain, NoiseOfShortLinesHasTheSame) {
 TEST(RangeGrain, LinesOfACellShareNothing) {
   WorkerPool workers;
   PingRequest request = fine_request(3000);
+  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
   request.settings.physical.range_cell_m = step_m;
   EXPECT_NEAR(intensity_correlation(Receiver().receive(even_echo(request, 0.01), request, 0, workers), 1), 0,
               0.01);

@@ -145,6 +145,7 @@ TEST(ReceiverRules, BeamsThatShareNothingAreNotFiltered) {
 TEST(ReceiverRules, LinesAsLongAsThePulseAreNotJoined) {
   PingRequest request = request_of(64);
   expect_within_bound(SkipRule::long_lines, request, lines + lines_with_echo);
+  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
   request.settings.physical.range_cell_m = 0.02;
   expect_within_bound(SkipRule::long_lines, request, 0);
 }
