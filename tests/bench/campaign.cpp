@@ -61,6 +61,9 @@ void Campaign::run_in_renderer(render::Backend backend, const test::Scene& scene
       note(fmt::format("{} {} {}", scene.name, name, point.name), error);
     }
   }
+  if (plan.reception) {
+    run->measure_reception(preset_points().front(), *plan.reception);
+  }
   for (const PlannedReceiver& receiver : plan.receivers) {
     run->measure_receiver(default_point(), receiver.lines, receiver.metric, receiver.repetition,
                           receiver.change);

@@ -37,6 +37,7 @@ struct PlannedReceiver {
 struct Plan {
   std::vector<PlannedPoint> points;
   std::vector<PlannedReceiver> receivers;
+  std::optional<Repetition> reception = std::nullopt;              ///< of array and pulse, at preset `fast`
   unsigned threads = 0;                                            ///< as render::RendererOptions
   render::GpuBinning gpu_binning = render::GpuBinning::automatic;  ///< the same
 };

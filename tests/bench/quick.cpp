@@ -60,6 +60,9 @@ void run_quick(Campaign& campaign) {
     if (scene.name == "plane") {
       plan.receivers = receivers();
     }
+    if (scene.name == "swell100k") {
+      plan.reception = some;
+    }
     if (scene.name == "flat100k") {
       plan.points.push_back({paper_point(), some});
     }

@@ -115,6 +115,40 @@ void SceneRun::measure_receiver(const Point& point, int lines, const std::string
   results_.add(subject(point), metric + "_min", receiver_ms.min(), "ms");
 }
 
+void SceneRun::measure_reception(const Point& point, const Repetition& repetition) {
+  render::PingRequest ping = request(point);
+  ping.settings.aperture.azimuth = render::Aperture::Azimuth::array;
+  ping.settings.aperture.element_amplitude_sd = 0.45;
+  ping.settings.aperture.element_phase_sd_rad = 0.45;
+  ping.settings.physical.pulse = render::PhysicalModel::Pulse::chirp;
+  ping.settings.physical.range_cell_m = ping.settings.range.step_m;
+  const render::Pose start = ping.T_world_sonar;
+  for (const int fine_beams : {1, 2, 3}) {
+    ping.settings.aperture.fine_beams = fine_beams;
+    Timing sampling_ms, pattern_ms, pulse_ms;
+    const double start_s = now_s();
+    for (int i = -warm_up_pings; i < 0 || repetition.wants_more(i, start_s); ++i) {
+      move(ping, start, i + warm_up_pings);
+      renderer_.render_echo(ping);
+      if (i >= 0) {
+        const render::PingStatistics& spent = renderer_.last_statistics();
+        sampling_ms.add(ms_per_s * (spent.visibility_s + spent.binning_s));
+        pattern_ms.add(ms_per_s * spent.azimuth_pattern_s);
+        pulse_ms.add(ms_per_s * spent.pulse_s);
+      }
+    }
+    const std::string metric = "fine_beams_" + std::to_string(fine_beams) + "_ms";
+    results_.add(subject(point), "sampling_" + metric, sampling_ms.median(), "ms");
+    results_.add(subject(point), "pattern_" + metric, pattern_ms.median(), "ms");
+    if (fine_beams == render::Aperture{}.fine_beams) {
+      results_.add(subject(point), "azimuth_pattern_ms", pattern_ms.median(), "ms");
+      results_.add(subject(point), "azimuth_pattern_ms_min", pattern_ms.min(), "ms");
+      results_.add(subject(point), "pulse_ms", pulse_ms.median(), "ms");
+      results_.add(subject(point), "pulse_ms_min", pulse_ms.min(), "ms");
+    }
+  }
+}
+
 void SceneRun::add_times(const Subject& subject, const Stages& stages, const Timing& unchanged_ms) {
   results_.add(subject, "ping_ms", stages.ping_ms.median(), "ms");
   results_.add(subject, "ping_ms_p95", stages.ping_ms.p95(), "ms");

@@ -32,6 +32,10 @@ class SceneRun {
                         const Repetition& repetition,
                         const std::function<void(render::PhysicalModel&)>& change);
 
+  /// Times what array and pulse add to an echo: `azimuth_pattern_ms`, `pulse_ms`, and what finding it costs
+  /// in 1, 2 and 3 fine beams to a beam, as `sampling_fine_beams_N_ms`.
+  void measure_reception(const Point& point, const Repetition& repetition);
+
   render::Backend backend() const { return renderer_.backend(); }
   const std::string& backend_description() const { return renderer_.backend_description(); }
 
