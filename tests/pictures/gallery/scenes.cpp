@@ -24,13 +24,13 @@ void take_effects_off(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
   physical.speckle = render::PhysicalModel::Speckle::off;
   physical.noise = false;
-  physical.range_cell_m = 0;
   physical.texture_nu = 0;
   physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
   physical.broadside_stripe_db = 0;
   physical.ring_down.on = false;
   physical.interference.probability = 0;
-  physical.side_lobe_floor_db = 0;
+  physical.pulse = render::PhysicalModel::Pulse::point;
+  view.settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
   view.settings.aperture.elevation = render::Aperture::Elevation::top_hat;
 }
 
@@ -38,7 +38,6 @@ void put_effects_on(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
   physical.texture_nu = 10;
   physical.volume_scattering_db = -65;
-  physical.side_lobe_floor_db = -25;
   view.settings.aperture.elevation = render::Aperture::Elevation::sinc;
 }
 
