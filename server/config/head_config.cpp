@@ -12,7 +12,7 @@ MicronHeadConfig::MicronHeadConfig() {
   acoustics.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
   acoustics.aperture.receive_beamwidth_rad = 3 * degree;
   acoustics.aperture.vertical_beamwidth_rad = 35 * degree;
-  acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // one transducer sends and hears
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.gain_db = -9.0;
   acoustics.physical.tvg_max_db = 75.0;

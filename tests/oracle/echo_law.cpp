@@ -16,11 +16,12 @@ EchoLaw::EchoLaw(const render::SonarSettings& settings)
       sigmoid_slope_(settings.paper.sigmoid_slope),
       sigmoid_centre_(settings.paper.sigmoid_centre),
       attenuation_per_m_(settings.paper.attenuation_per_m) {
-  if (settings.aperture.elevation == render::Aperture::Elevation::sinc) {
+  if (settings.aperture.elevation != render::Aperture::Elevation::top_hat) {
     // The sine at which the one-way power is one half stands at 0.443 of the first zero; the pattern is
-    // followed to 1.25 times the -3 dB half width.
+    // followed to 1.25 times the -3 dB full width, on either side.
     pattern_scale_ = 0.443 * std::numbers::pi / std::sin(elevation_limit_rad_);
-    elevation_limit_rad_ *= 1.25;
+    elevation_limit_rad_ *= 2.5;
+    two_way_ = settings.aperture.elevation == render::Aperture::Elevation::sinc_two_way;
   }
   if (mean_) {
     two_sided_ = settings.paper.two_sided;
@@ -39,7 +40,7 @@ double EchoLaw::pattern(double sin_elevation) const {
     return 1.0;
   }
   const double amplitude = std::sin(x) / x;
-  return amplitude * amplitude;
+  return std::pow(amplitude, two_way_ ? 4 : 2);
 }
 
 double EchoLaw::loss(double range_m) const {

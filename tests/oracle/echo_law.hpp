@@ -51,6 +51,7 @@ class EchoLaw {
   double step_m_;
   double elevation_limit_rad_;
   double pattern_scale_ = 0.0;  // 0: top hat
+  bool two_way_ = false;
   double absorption_db_per_m_ = 0.0;
   bool mean_;
   bool two_sided_ = true;

@@ -115,6 +115,49 @@ struct ShadowTruth {
   }
 };
 
+/// Lambert's law and facets (docs/physics.md 2.4).
+struct FacetLaw {
+  double reflection;  ///< R
+  double slope;       ///< m
+  double lambert_mu;
+
+  /// Backscatter strength per area, s_b.
+  double strength(double cos_incidence) const {
+    const double c2 = cos_incidence * cos_incidence;
+    const double tan2 = 1 / c2 - 1;
+    const double m2 = slope * slope;
+    return lambert_mu * c2 + reflection * reflection / (8 * std::acos(-1.0) * m2 * c2 * c2) *
+                                 std::exp(-tan2 / (2 * m2));
+  }
+  /// What a surface echoes, relative to one of mu = 1.
+  double relative(double cos_incidence) const {
+    return strength(cos_incidence) / (cos_incidence * cos_incidence);
+  }
+};
+
+/// Echo of ranges [r1, r2) of a surface that meets sound of one range at one incidence, as a plane and a sphere
+/// do.
+/// @param echo of the same with mu = 1, of ranges [from, to)
+/// @param cosine of the incidence, of the range
+/// @param nearest_m range of normal incidence: tan phi goes as the root of what a range has beyond
+template <class Echo, class Cosine>
+double facet_echo(const FacetLaw& law, const Echo& echo, const Cosine& cosine, double nearest_m, double r1,
+                  double r2, int steps = 8) {
+  if (r2 <= nearest_m) {
+    return 0.0;
+  }
+  const double first = std::sqrt(std::max(0.0, r1 - nearest_m));
+  const double step = (std::sqrt(r2 - nearest_m) - first) / steps;
+  const auto range = [&](double i) { return nearest_m + std::pow(first + i * step, 2); };
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double heard = echo(range(i), range(i + 1));
+    const double c = cosine(range(i + 0.5));
+    sum += heard > 0 && c > 0 ? heard * law.relative(std::min(c, 1.0)) : 0.0;
+  }
+  return sum;
+}
+
 /// RMS relative error over all values above `threshold` times the largest truth (docs/physics.md 3.3).
 inline double rms_error(const std::vector<double>& truth, const std::vector<double>& measured,
                         double threshold) {
