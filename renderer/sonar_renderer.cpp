@@ -155,10 +155,11 @@ bool same_echo(const SonarSettings& a, const SonarSettings& b) {
       a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
     return false;
   }
-  return a.model == Model::physical ? a.physical.absorption_db_per_m == b.physical.absorption_db_per_m &&
-                                          a.physical.volume_scattering_db == b.physical.volume_scattering_db &&
-                                          a.physical.backscatter == b.physical.backscatter
-                                    : echo_part(a.paper) == echo_part(b.paper);
+  return a.model == Model::physical
+             ? a.physical.absorption_db_per_m == b.physical.absorption_db_per_m &&
+                   a.physical.volume_scattering_db == b.physical.volume_scattering_db &&
+                   a.physical.backscatter == b.physical.backscatter
+             : echo_part(a.paper) == echo_part(b.paper);
 }
 
 /// The last mean echo of a stream, and what it was made of.

@@ -13,9 +13,9 @@ struct Aperture {
   std::vector<double> beam_edges_rad;
   /// -3 dB full width of the vertical beam, one-way, in (0, pi).
   double vertical_beamwidth_rad = 0.349065850398866;  // 20 degrees
-  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern, `sinc_two_way`: its
-  /// square, where sending and hearing share the array's height (docs/physics.md 2.5); both are rendered to 1.25
-  /// beamwidths on either side.
+  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern, `sinc_two_way`:
+  /// its square, where sending and hearing share the array's height (docs/physics.md 2.5); both are rendered
+  /// to 1.25 beamwidths on either side.
   enum class Elevation { top_hat, sinc, sinc_two_way } elevation = Elevation::top_hat;
   /// -3 dB width of one receive beam at broadside; sets the grain of speckle and noise across beams.
   double receive_beamwidth_rad = 0.0174532925199433;  // 1 degree

@@ -172,6 +172,8 @@ struct HeadConfig {
 /// One Gemini 720i. The sonar's x axis is the acoustic axis, so a down tilt is in the mount. Its bearing
 /// table and the ping job fill in `aperture.beam_edges_rad` and `range` of the acoustics.
 struct GeminiHeadConfig : HeadConfig {
+  GeminiHeadConfig();
+
   /// Identity, addresses and timing. `water_sound_speed_mps` is already chosen (0: follow the ping
   /// configuration).
   gemini::DeviceConfig device;

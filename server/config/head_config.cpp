@@ -4,6 +4,12 @@
 
 namespace sonard::server {
 
+// Whether what sends and what hears share their height is not published: the pattern is taken once
+// (docs/physics.md 2.5).
+GeminiHeadConfig::GeminiHeadConfig() {
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
+}
+
 // Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
 // 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 60 dB, and one ping of fourteen is hit
 // by interference, as recordings show (docs/physics.md 2.16).

@@ -13,6 +13,7 @@ EchoLaw::EchoLaw(const render::SonarSettings& settings)
       step_m_(settings.range.step_m),
       elevation_limit_rad_(settings.aperture.vertical_beamwidth_rad / 2),
       mean_(settings.model == render::Model::paper),
+      facets_(settings.physical.backscatter == render::PhysicalModel::Backscatter::lambert_facet),
       sigmoid_slope_(settings.paper.sigmoid_slope),
       sigmoid_centre_(settings.paper.sigmoid_centre),
       attenuation_per_m_(settings.paper.attenuation_per_m) {
@@ -57,7 +58,15 @@ double EchoLaw::echo(const Material& material, double cos_incidence, double rang
         std::min(1.0, material.reflectance * cosine * std::exp(-2 * attenuation_per_m_ * range_m));
     return pattern(sin_elevation) / (1 + std::exp(-sigmoid_slope_ * (intensity - sigmoid_centre_)));
   }
-  return pattern(sin_elevation) * material.lambert_mu * cosine * loss(range_m);
+  // s_b / cos phi
+  double response = material.lambert_mu * cosine;
+  if (facets_ && material.pressure_reflection != 0 && cosine > 0) {
+    const double m2 = material.rms_slope * material.rms_slope;
+    response += std::pow(material.pressure_reflection, 2) /
+                (8 * std::numbers::pi * m2 * std::pow(cosine, 5)) *
+                std::exp(-(1 / (cosine * cosine) - 1) / (2 * m2));
+  }
+  return pattern(sin_elevation) * response * loss(range_m);
 }
 
 EchoLaw EchoLaw::with_loss_at_line_centre() const {

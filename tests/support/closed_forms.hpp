@@ -126,23 +126,24 @@ struct FacetLaw {
     const double c2 = cos_incidence * cos_incidence;
     const double tan2 = 1 / c2 - 1;
     const double m2 = slope * slope;
-    return lambert_mu * c2 + reflection * reflection / (8 * std::acos(-1.0) * m2 * c2 * c2) *
-                                 std::exp(-tan2 / (2 * m2));
+    return lambert_mu * c2 +
+           reflection * reflection / (8 * std::acos(-1.0) * m2 * c2 * c2) * std::exp(-tan2 / (2 * m2));
   }
   /// What a surface echoes, relative to one of mu = 1.
   double relative(double cos_incidence) const {
-    return strength(cos_incidence) / (cos_incidence * cos_incidence);
+    const double cosine = std::min(cos_incidence, 1.0);
+    return cosine > 0 ? strength(cosine) / (cosine * cosine) : 0.0;
   }
 };
 
-/// Echo of ranges [r1, r2) of a surface that meets sound of one range at one incidence, as a plane and a sphere
-/// do.
-/// @param echo of the same with mu = 1, of ranges [from, to)
-/// @param cosine of the incidence, of the range
-/// @param nearest_m range of normal incidence: tan phi goes as the root of what a range has beyond
-template <class Echo, class Cosine>
-double facet_echo(const FacetLaw& law, const Echo& echo, const Cosine& cosine, double nearest_m, double r1,
-                  double r2, int steps = 8) {
+/// Echo of ranges [r1, r2) of a surface that echoes a share which depends on the range alone, as where sound
+/// of one range meets it at one incidence.
+/// @param echo of ranges [from, to) without that share
+/// @param share of a range
+/// @param nearest_m the first range: shares are smooth in the root of what a range has beyond
+template <class Echo, class Share>
+double weighted_echo(const Echo& echo, const Share& share, double nearest_m, double r1, double r2,
+                     int steps) {
   if (r2 <= nearest_m) {
     return 0.0;
   }
@@ -152,8 +153,7 @@ double facet_echo(const FacetLaw& law, const Echo& echo, const Cosine& cosine, d
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
     const double heard = echo(range(i), range(i + 1));
-    const double c = cosine(range(i + 0.5));
-    sum += heard > 0 && c > 0 ? heard * law.relative(std::min(c, 1.0)) : 0.0;
+    sum += heard > 0 ? heard * share(range(i + 0.5)) : 0.0;
   }
   return sum;
 }

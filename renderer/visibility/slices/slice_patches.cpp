@@ -366,20 +366,27 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
     echo_tilt_[i] = (echo_tilt_[i] * plainly + 0.5F * (high.mean - low.mean)) / response_[i];
     // Both ends smear evenly over the wedge; where one side echoes more, their middle lies towards it.
     const float aside = (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6) / response_[i];
-    const float moved_m =
-        0.5F * (by_azimuth_low_[i] + by_azimuth_high_[i]) * request.slice.width_rad * aside;
+    const float moved_m = 0.5F * (by_azimuth_low_[i] + by_azimuth_high_[i]) * request.slice.width_rad * aside;
     range_low_[i] += moved_m;
     range_high_[i] += moved_m;
   }
   return true;
 }
 
-/// Mean over the piece, and how it rises.
+/// Mean over the echo of the piece, and how it rises. Solid angle and response change along the piece too.
 void SlicePatcher::weigh_by_pattern(const Request& request, std::size_t i) {
   const VisiblePiece& piece = (*pieces_)[i];
+  const auto solid_angle = [](float t) {
+    const float q = 1 + t * t;
+    return 1 / (q * std::sqrt(q));
+  };
+  const float t = 0.5F * (piece.low + piece.high);
   const float low = request.pattern.at(piece.low), high = request.pattern.at(piece.high);
-  const float middle = request.pattern.at(0.5F * (piece.low + piece.high));
-  const float weight = (low + 4 * middle + high) * (1.0F / 6);
+  const float by_low = solid_angle(piece.low) * (1 - echo_tilt_[i]);
+  const float by_middle = 4 * solid_angle(t);
+  const float by_high = solid_angle(piece.high) * (1 + echo_tilt_[i]);
+  const float weight =
+      (low * by_low + request.pattern.at(t) * by_middle + high * by_high) / (by_low + by_middle + by_high);
   solid_angle_[i] *= weight;
   if (range_tilt_[i] != 0.0F && weight > 0) {
     range_tilt_[i] += 0.5F * (high - low) / weight;
