@@ -20,11 +20,6 @@ constexpr float most_tilt = 1.1F;   // of a piece; 1 where the range turns round
 // Under a normal map pieces are no longer than this many lines, so that its bumps appear at their ranges.
 constexpr float mapped_lines = 2.0F;
 
-/// Of the fan's half height: over so much of it the elevation pattern is followed by a straight line.
-inline float pattern_share(float evenness) {
-  return 0.36F * std::sqrt(evenness);
-}
-
 /// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
 /// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
 /// nearly edge-on that the range is far from straight.
@@ -38,8 +33,9 @@ inline float bow_of_plane(float h, float s, float width) {
 }  // namespace
 
 ElevationPattern::ElevationPattern(const Aperture& aperture, bool tabled_if_flat)
-    : tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))) {
-  if (aperture.elevation == Aperture::Elevation::top_hat && !tabled_if_flat) {
+    : tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))),
+      varies_(aperture.elevation != Aperture::Elevation::top_hat) {
+  if (!varies_ && !tabled_if_flat) {
     return;
   }
   for (int i = 0; i <= pattern_steps; ++i) {
@@ -243,11 +239,19 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
   if (in_range && request.any_facets) {
     parts = std::max(parts, parts_for_facets(request, i, span_m));
   }
-  if (in_range && !request.pattern.flat()) {
-    const float length = seen_.high[i] - seen_.low[i];
-    parts = std::max(parts, std::ceil(length / (pattern_share(request.evenness) * request.tan_limit)));
+  if (in_range && request.pattern.varies()) {
+    parts = std::max(parts, parts_for_pattern(request, i, span_m));
   }
   return static_cast<int>(std::min(parts, static_cast<float>(most_divisions)));
+}
+
+/// So that over each part the elevation pattern is nearly a straight line, or its mean well known where a
+/// part is heard in one place.
+float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
+  const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
+  const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
+  const float share = one_place ? 0.25F : 0.36F * std::sqrt(request.evenness);  // of the fan's half height
+  return std::ceil((seen_.high[i] - seen_.low[i]) / (share * request.tan_limit));
 }
 
 /// So that over each part the echo of facets changes little: by less than would show if the part lies in one
@@ -268,7 +272,7 @@ float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, floa
 
 /// Divides the pieces whose echo runs otherwise in range than a patch can say.
 bool SlicePatcher::divide_uneven(const Request& request) {
-  if (!request.any_mapped && !request.any_facets && request.pattern.flat() &&
+  if (!request.any_mapped && !request.any_facets && !request.pattern.varies() &&
       all_even(request.evenness * request.line_m)) {
     return false;
   }

@@ -41,10 +41,12 @@ class ElevationPattern {
   /// @param tabled_if_flat a pattern that is 1 everywhere too (SkipRule::flat_elevation switched off)
   explicit ElevationPattern(const Aperture& aperture, bool tabled_if_flat = false);
   bool flat() const { return weight_.empty(); }
+  bool varies() const { return varies_; }
   float at(float t) const;
 
  private:
   float tan_limit_;
+  bool varies_;
   std::vector<float> weight_;  ///< empty: 1 everywhere
 };
 
@@ -79,6 +81,7 @@ class SlicePatcher {
   bool all_even(float allowed_m) const;
   int parts_of(const Request& request, std::size_t i) const;
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
+  float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
   float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
   std::uint64_t shade(const Request& request);
   float shade_plainly(const Request& request, std::size_t i);

@@ -35,7 +35,7 @@ struct SliceAccuracy {
   float bow_lines = 8e-4F;
   float evenness = 0.03F;      ///< see SlicePatcher::Request
   float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
-  float facet_turn = 0.75F;     ///< FacetTurn::across of what hears facets may be so many times their slope
+  float facet_turn = 0.75F;    ///< FacetTurn::across of what hears facets may be so many times their slope
   float facet_lines = 0.006F;  ///< FacetSight::displacement_m() of it may be so many lines
 };
 
