@@ -112,6 +112,9 @@ float most_bend_rad(const TriangleMesh& mesh) {
 }
 
 glm::vec3 interpolated_normal(const PartSurface& part, const FanTriangle& triangle, const glm::vec3& q) {
+  if (part.mesh->normals.empty()) {
+    return part.R_part_sonar * glm::normalize(triangle.across());
+  }
   constexpr float beyond = 16.0F;  // triangles: wedges may be wider than those of a finely meshed ball
   const glm::vec3 across = triangle.across();
   const SurfacePoint surface(triangle, q * (glm::dot(across, triangle.corner(0)) / glm::dot(across, q)));
