@@ -21,6 +21,7 @@ enum class SkipRule : std::uint8_t {
   absent_normal_map,
   coplanar_facets,
   flat_elevation,
+  facet_kernel,
   lines_without_echo,
   blanked_near_field,
   no_noise,
@@ -73,6 +74,10 @@ inline constexpr std::array skip_rules{
                   1e-2},
     SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", "pings",
                   1e-6},
+    SkipRuleEntry{
+        SkipRule::facet_kernel, "facet_kernel",
+        "the material has no facets, or they echo less than 0.1 % of its Lambert part at that incidence",
+        "pieces", 1e-3},
     SkipRuleEntry{SkipRule::lines_without_echo, "lines_without_echo",
                   "no beam has an echo in the line: before the first echo, between, beyond the last", "lines",
                   1, "output code"},

@@ -1,5 +1,6 @@
 #include "renderer/sonar_renderer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -62,9 +63,13 @@ Pose checked(const Pose& pose) {
   return {p, pose.orientation / norm};
 }
 
-SurfaceModel surface_model(const SonarSettings& settings) {
+SurfaceModel surface_model(const SonarSettings& settings, const SkipSwitches& skip) {
   SurfaceModel surface;
   surface.model = settings.model;
+  if (settings.model == Model::physical &&
+      settings.physical.backscatter == PhysicalModel::Backscatter::lambert_facet) {
+    surface.facets = skip.on(SkipRule::facet_kernel) ? Facets::near_normal : Facets::everywhere;
+  }
   if (settings.model == Model::paper) {
     surface.sigmoid_slope = settings.paper.sigmoid_slope;
     surface.sigmoid_centre = settings.paper.sigmoid_centre;
@@ -74,11 +79,24 @@ SurfaceModel surface_model(const SonarSettings& settings) {
   return surface;
 }
 
-BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches& skip) {
+/// Of all surfaces of a world, in either model: mu <= 1/pi, and the sigmoid is at most 1.
+float largest_response(const World& world) {
+  float largest = 1.0F;
+  for (const Body& body : world.bodies) {
+    for (const BodyPart& part : body.parts) {
+      largest = std::max(largest, Backscatter(part.material).largest_response());
+    }
+  }
+  return largest;
+}
+
+BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches& skip,
+                               float largest_response) {
   BinningOptions options;
   options.skip = skip;
   options.open_water =
       has_volume_reverberation(settings) && !(is_clear_water(settings) && skip.on(SkipRule::clear_water));
+  options.largest_response = largest_response;
   options.footprint = settings.sampling.footprint;
   if (settings.model == Model::paper) {
     options.mean = true;
@@ -136,6 +154,7 @@ PaperModel echo_part(PaperModel model) {
 PhysicalModel echo_part(const PhysicalModel& model) {
   PhysicalModel part;
   part.absorption_db_per_m = model.absorption_db_per_m;
+  part.backscatter = model.backscatter;
   part.pulse = model.pulse;
   part.range_cell_m = model.range_cell_m;
   part.volume_scattering_db = model.volume_scattering_db;
@@ -192,9 +211,9 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   const int slices = settings.model == Model::paper ? 2 : 1;
   switch (settings.sampling.preset) {
     case Sampling::Preset::fast:
-      return {slices, 25, 2.5e-2F, 3e-3F, 0.15F, 0.05F};
+      return {slices, 25, 2.5e-2F, 3e-3F, 0.15F, 0.05F, 1.5F, 0.03F};
     case Sampling::Preset::reference:
-      return {9, 125, 1e-4F, 5e-5F, 0.005F, 0.001F};
+      return {9, 125, 1e-4F, 5e-5F, 0.005F, 0.001F, 0.25F, 0.001F};
     default:
       return {.slices_per_beam = slices};
   }
@@ -216,6 +235,7 @@ std::unique_ptr<GpuBinner> make_gpu_binner(GpuBinning wanted, ChosenSampler& cho
 
 struct SonarRenderer::Impl {
   const SkipSwitches skip;
+  const float largest_response;
   WorkerPool workers;  // outlives the sampler, which uses it
   ChosenSampler chosen;
   std::unique_ptr<GpuBinner> gpu_binner;  // null: all binning is the CPU's
@@ -231,6 +251,7 @@ struct SonarRenderer::Impl {
 
   Impl(const World& world, const RendererOptions& options)
       : skip(options.skip),
+        largest_response(render::largest_response(world)),
         workers(options.threads),
         chosen(choose_sampler(world, options.backend, workers)),
         gpu_binner(make_gpu_binner(options.gpu_binning, chosen)),
@@ -306,8 +327,8 @@ struct SonarRenderer::Impl {
                                std::vector<float> memory) {
     Stopwatch watch;
     const SampleGrid& samples = grid_for(settings);
-    const SurfaceModel surface = surface_model(settings);
-    const BinningOptions options = binning_options(settings, skip);
+    const SurfaceModel surface = surface_model(settings, skip);
+    const BinningOptions options = binning_options(settings, skip, largest_response);
     if (gpu_binner) {
       statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, options);
       if (statistics.gpu_binning_obstacle.empty()) {
@@ -326,11 +347,11 @@ struct SonarRenderer::Impl {
     Stopwatch watch;
     const auto cells =
         slices->sample(T_world_sonar, settings.aperture, settings.range, sampled_range_m(settings),
-                       surface_model(settings), slice_accuracy(settings));
+                       surface_model(settings, skip), slice_accuracy(settings));
     statistics.visibility_s = watch.lap();
     statistics.skipped += slices->skipped();
-    return counted(bin_echoes(cells, settings.aperture, settings.range, binning_options(settings, skip),
-                              workers, std::move(memory)),
+    return counted(bin_echoes(cells, settings.aperture, settings.range,
+                              binning_options(settings, skip, largest_response), workers, std::move(memory)),
                    watch);
   }
 
@@ -347,8 +368,8 @@ struct SonarRenderer::Impl {
   BinningResult look_until_close(const Pose& T_world_sonar, const SonarSettings& settings,
                                  const std::vector<float>& line_weight) {
     Stopwatch watch;
-    const SurfaceModel surface = surface_model(settings);
-    const BinningOptions options = binning_options(settings, skip);
+    const SurfaceModel surface = surface_model(settings, skip);
+    const BinningOptions options = binning_options(settings, skip, largest_response);
     BeamRefinement::Result found =
         refinement.look({T_world_sonar, settings, surface, sampled_range_m(settings), options, line_weight},
                         skip.on(SkipRule::unchanged_settings));

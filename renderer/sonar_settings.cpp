@@ -1,5 +1,6 @@
 #include "renderer/sonar_settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -9,7 +10,9 @@
 namespace sonard::render {
 
 namespace {
-constexpr double sinc_fan_widening = 1.25;  // the pattern is followed to this multiple of the half width
+constexpr double followed_beamwidths = 1.25;  // on either side: a little beyond the first null
+// No wider: planes of constant elevation must end clear of the vertical. Wide beams have their null beyond.
+constexpr double highest_followed_rad = 80 * std::numbers::pi / 180;
 
 double sinc(double x) {
   const double y = std::numbers::pi * x;
@@ -19,7 +22,9 @@ double sinc(double x) {
 
 double Aperture::elevation_limit_rad() const {
   const double half = vertical_beamwidth_rad / 2;
-  return elevation == Elevation::sinc ? sinc_fan_widening * half : half;
+  return elevation == Elevation::top_hat
+             ? half
+             : std::max(half, std::min(followed_beamwidths * vertical_beamwidth_rad, highest_followed_rad));
 }
 
 double Aperture::elevation_weight(double elevation_rad) const {
@@ -28,7 +33,8 @@ double Aperture::elevation_weight(double elevation_rad) const {
   }
   // docs/physics.md 2.5: 0.443 makes the squared sinc one half at half the -3 dB width.
   const double amplitude = sinc(0.443 * std::sin(elevation_rad) / std::sin(vertical_beamwidth_rad / 2));
-  return amplitude * amplitude;
+  const double one_way = amplitude * amplitude;
+  return elevation == Elevation::sinc_two_way ? one_way * one_way : one_way;
 }
 
 double Aperture::pattern_height() const {

@@ -11,11 +11,12 @@ struct Aperture {
   /// Edges of the beams: beam_count + 1 azimuths psi, strictly falling from port (psi > 0) to starboard,
   /// so beam 0 is the port-most. Inside (-pi, pi].
   std::vector<double> beam_edges_rad;
-  /// -3 dB full width of the vertical beam, in (0, pi).
+  /// -3 dB full width of the vertical beam, one-way, in (0, pi).
   double vertical_beamwidth_rad = 0.349065850398866;  // 20 degrees
-  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern
-  /// (docs/physics.md 2.5), rendered out to 1.25 beamwidths.
-  enum class Elevation { top_hat, sinc } elevation = Elevation::top_hat;
+  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern, `sinc_two_way`:
+  /// its square, where sending and hearing share the array's height (docs/physics.md 2.5); both are rendered
+  /// to 1.25 beamwidths on either side.
+  enum class Elevation { top_hat, sinc, sinc_two_way } elevation = Elevation::top_hat;
   /// -3 dB width of one receive beam at broadside; sets the grain of speckle and noise across beams, and with
   /// Azimuth::array the pattern of the beams.
   double receive_beamwidth_rad = 0.0174532925199433;  // 1 degree
@@ -35,7 +36,7 @@ struct Aperture {
   int beam_count() const { return beam_edges_rad.empty() ? 0 : static_cast<int>(beam_edges_rad.size()) - 1; }
   /// Half of the rendered elevation fan.
   double elevation_limit_rad() const;
-  /// One-way power pattern at an elevation; 1 on the axis.
+  /// Power pattern at an elevation; 1 on the axis.
   double elevation_weight(double elevation_rad) const;
   /// Integral of the pattern over the sine of the rendered elevations: steradians per radian of azimuth.
   double pattern_height() const;
@@ -125,6 +126,9 @@ struct Interference {
 /// Mode `physical`: water, source and receiver (docs/physics.md 2.1-2.9, 2.16). Levels are intensities in dB.
 struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
+  /// Whether surfaces show their facets near normal incidence, where their material has some, or are plain
+  /// Lambert surfaces (docs/physics.md 2.4).
+  enum class Backscatter { lambert, lambert_facet } backscatter = Backscatter::lambert_facet;
   enum class Speckle { off, frozen, per_ping, ou } speckle = Speckle::ou;
   double aperture_m = 0.1;  ///< array length; sets over which motion speckle stays the same (`ou`)
   /// Response of the pulse in range, as intensity (docs/physics.md 2.6). `chirp`: matched filter,

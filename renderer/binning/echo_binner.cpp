@@ -191,7 +191,7 @@ BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const Surface
       grid.beam_count(), range, options, workers, std::move(memory), [](std::size_t) { return false; },
       [&](std::size_t beam) {
         const double solid_angle = solid_angle_of(grid, beam);
-        return BeamContent{solid_angle, solid_angle};  // responses are at most 1: mu <= 1/pi, sigmoid <= 1
+        return BeamContent{solid_angle, solid_angle * static_cast<double>(options.largest_response)};
       },
       fill);
 }

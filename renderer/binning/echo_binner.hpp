@@ -18,6 +18,7 @@ struct BinningOptions {
   bool footprint = true;          ///< false: a sample is a point in range
   bool legacy_bin_index = false;  ///< docs/physics.md 1.2, A4; only with footprint = false
   bool open_water = false;        ///< fill BinningResult::open_sr; not with `mean`
+  float largest_response = 1.0F;  ///< of any sample of a grid; sets how fine the sums are
   SkipSwitches skip{};            ///< for SkipRule::empty_beams, of slices
 };
 

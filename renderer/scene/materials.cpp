@@ -56,7 +56,7 @@ constexpr double huge_reflectance = 10.0;
 constexpr double retro_reference_rho = 0.35;
 constexpr double retro_reference_mu_db = -22.0;
 constexpr double least_rms_slope = 0.01;  // 0.6 degrees
-constexpr double most_rms_slope = 1.0;
+constexpr double most_rms_slope = 0.5;    // steeper, the law of facets grows away from normal incidence
 constexpr double most_rms_height_mm = 1000.0;
 
 double linear(double level_db) {

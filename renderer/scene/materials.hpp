@@ -26,7 +26,7 @@ struct MaterialRequest {
   std::optional<double> reflectance{};          ///< rho, >= 0
   std::optional<double> lambert_mu_db{};        ///< 10 log10 mu
   std::optional<double> pressure_reflection{};  ///< R, in [-1, 1]
-  std::optional<double> rms_slope{};            ///< m, in [0.01, 1]
+  std::optional<double> rms_slope{};            ///< m, in [0.01, 0.5]
   std::optional<double> rms_height_mm{};        ///< sigma, in [0, 1000]
 };
 

@@ -31,7 +31,8 @@ struct AcousticMaterial {
   /// Pressure reflection coefficient R of a plane, smooth surface, (Z2 - Z1) / (Z2 + Z1), in [-1, 1]
   /// (docs/physics.md 2.4): the strength of facets and of mirror images. 0: neither.
   double pressure_reflection = 0.0;
-  /// Rms slope m of the facets of the surface along each of its two axes, > 0: how wide their echo is.
+  /// Rms slope m of the facets of the surface along each of its two axes, in [0.01, 0.5]: how wide their echo
+  /// is.
   double rms_slope = 0.2;
   /// Rms height sigma of the surface, >= 0: how much of a mirror image survives (docs/physics.md 2.11).
   double rms_height_m = 0.002;

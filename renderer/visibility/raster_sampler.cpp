@@ -222,7 +222,11 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
   }
   state->addUniform(new osg::Uniform("shading", static_cast<int>(shading)));
   state->addUniform(new osg::Uniform("reflectance", static_cast<float>(part.material.reflectance)));
-  state->addUniform(new osg::Uniform("lambert_mu", static_cast<float>(part.material.lambert_mu)));
+  const Backscatter backscatter(part.material);
+  state->addUniform(new osg::Uniform("lambert_mu", backscatter.lambert_mu));
+  state->addUniform(new osg::Uniform("facet_strength", backscatter.facet_strength));
+  state->addUniform(new osg::Uniform("slope_variance", backscatter.slope_variance));
+  state->addUniform(new osg::Uniform("facets_least_cosine", backscatter.least_cosine));
   return node;
 }
 
@@ -369,6 +373,7 @@ struct RasterSampler::Impl {
   void set_surface(const SurfaceModel& surface) const {
     osg::StateSet& state = *scene->getStateSet();
     state.getOrCreateUniform("model", osg::Uniform::INT)->set(surface.model == Model::physical ? 1 : 0);
+    state.getOrCreateUniform("facets", osg::Uniform::INT)->set(static_cast<int>(surface.facets));
     state.getOrCreateUniform("sigmoid", osg::Uniform::FLOAT_VEC2)
         ->set(
             osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));

@@ -30,7 +30,7 @@ SurfaceShader::SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalP
     : mesh_(part.mesh),
       map_(std::move(map)),
       reflectance_(static_cast<float>(part.material.reflectance)),
-      lambert_mu_(static_cast<float>(part.material.lambert_mu)) {
+      backscatter_(part.material) {
   const bool mapped = map_ && mesh_->can_be_mapped();
   normals_ = mapped ? Normals::of_map : mesh_->normals.empty() ? Normals::of_triangles : Normals::of_vertices;
 }
@@ -131,7 +131,7 @@ SONARD_SIMD_CLONES void SurfaceShader::shade(const RayPacket& rays, const RayHit
     cosine[i] = ratio > 1.0F ? 1.0F : ratio;  // not a number stays so
   }
   const bool physical = model.model == Model::physical;
-  const float gain = physical ? lambert_mu_ : 1.0F;
+  const float gain = physical ? backscatter_.lambert_mu : 1.0F;
   for (std::size_t i = 0; i < packet_size; ++i) {
     const bool mine = hits.part[i] == part;
     const float nx = hits.normal_x[i];
@@ -144,6 +144,27 @@ SONARD_SIMD_CLONES void SurfaceShader::shade(const RayPacket& rays, const RayHit
   }
   if (!physical) {
     apply_paper(rays, hits, part, model, surfaces);
+  } else if (model.facets == Facets::everywhere ||
+             (model.facets == Facets::near_normal && backscatter_.facet_strength > 0)) {
+    add_facets(hits, part, model.facets, normals, cosine, surfaces);
+  }
+}
+
+/// Facets need a direction; what is missing of the length of a mean normal widens their slopes.
+void SurfaceShader::add_facets(const RayHits& hits, std::uint32_t part, Facets which,
+                               const ShadingNormals& normals, const Lanes<float>& cosine,
+                               SurfacePacket& surfaces) const {
+  const bool mapped = normals_ == Normals::of_map;
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    if (hits.part[i] != part) {
+      continue;
+    }
+    const glm::vec3 n(normals.x[i], normals.y[i], normals.z[i]);
+    const float mean_length = mapped ? std::sqrt(glm::dot(n, n) / normals.squared_length[i]) : 1.0F;
+    const float to_facets = std::min(cosine[i] / mean_length, 1.0F);
+    if (mapped || backscatter_.has_facets(which, to_facets)) {
+      surfaces.response[i] += backscatter_.facets(to_facets, variance_of_mean_normal(mean_length));
+    }
   }
 }
 

@@ -37,6 +37,8 @@ class SurfaceShader {
                        ShadingNormals& normals) const;
   void apply_paper(const RayPacket& rays, const RayHits& hits, std::uint32_t part, const SurfaceModel& model,
                    SurfacePacket& surfaces) const;
+  void add_facets(const RayHits& hits, std::uint32_t part, Facets which, const ShadingNormals& normals,
+                  const Lanes<float>& cosine, SurfacePacket& surfaces) const;
   glm::vec3 vertex_normal(std::uint32_t triangle, float u, float v) const;
   glm::vec3 mapped_normal(const RayPacket& rays, const RayHits& hits, std::size_t lane) const;
   float map_level(const RayPacket& rays, const RayHits& hits, std::size_t lane) const;
@@ -46,7 +48,7 @@ class SurfaceShader {
   std::shared_ptr<const NormalPyramid> map_;
   Normals normals_;
   float reflectance_;
-  float lambert_mu_;
+  Backscatter backscatter_;
   std::array<glm::vec3, 3> axes_{};  // of the part, in the world
 };
 

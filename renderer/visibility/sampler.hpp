@@ -8,6 +8,7 @@
 
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
+#include "renderer/visibility/backscatter.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 
 namespace sonard::render {
@@ -30,7 +31,8 @@ inline constexpr float nearest_depth_m = 0.02F;
 /// How a surface turns incidence into `SurfaceSample::response`.
 struct SurfaceModel {
   Model model = Model::physical;
-  /// `physical`: response = s_b / cos phi = mu cos phi (Lambert).
+  Facets facets = Facets::none;  ///< only with `physical`
+  /// `physical`: response = s_b / cos phi; Lambert's mu cos phi, and what Backscatter says of facets.
   /// `paper`: response = sigmoid(min(1, rho |cos phi| exp(-2 a r))).
   double sigmoid_slope = 18.0;
   double sigmoid_centre = 2.0 / 3.0;

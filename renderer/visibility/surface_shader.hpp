@@ -36,6 +36,10 @@ uniform ivec3 map_levels[16];    // width, height, first texel
 uniform int map_level_count;
 uniform float reflectance;
 uniform float lambert_mu;
+uniform float facet_strength;   // see Backscatter
+uniform float slope_variance;
+uniform float facets_least_cosine;
+uniform int facets;             // 0 none, 1 near normal incidence, 2 everywhere
 uniform int model;            // 0 paper, 1 physical
 uniform vec2 sigmoid;         // slope, centre
 uniform float attenuation_per_m;
@@ -93,6 +97,26 @@ vec3 shading_normal(vec3 plane, float level) {
   return any(isnan(n)) ? plane : n;
 }
 
+// Backscatter::facets() and variance_of_mean_normal(), term by term.
+float facet_response(float cos_phi, float added_variance) {
+  float variance = min(slope_variance + added_variance, 0.25);
+  float c2 = cos_phi * cos_phi;
+  float exponent = (1.0 - c2) / (2.0 * variance * c2);
+  return exponent < 80.0 ? facet_strength / (variance * c2 * c2 * cos_phi) * exp(-exponent) : 0.0;
+}
+
+float variance_of_mean_normal(float mean_length) {
+  return mean_length < 1.0 ? (1.0 - mean_length) / max(mean_length, 0.1) : 0.0;
+}
+
+// Facets need a direction; what is missing of the length of a mean normal widens their slopes.
+float facet_response(vec3 n, float cos_phi) {
+  float mean_length = shading == 2 ? length(n) : 1.0;
+  float cosine = min(cos_phi / mean_length, 1.0);
+  bool heard = facets == 2 || (facets == 1 && (shading == 2 ? facet_strength > 0.0 : cosine > facets_least_cosine));
+  return heard ? facet_response(cosine, variance_of_mean_normal(mean_length)) : 0.0;
+}
+
 void main() {
   vec2 t = (gl_FragCoord.xy / pixels * 2.0 - 1.0) * tan_half;
   vec2 pixel = 2.0 * tan_half / pixels;
@@ -106,10 +130,11 @@ void main() {
 
   vec3 plane = normalize(vec3(slope, dot(slope, t) - inverse_depth));
   float level = shading == 2 ? map_level(inverse_depth, step) : 0.0;
-  float cos_phi = clamp(abs(dot(shading_normal(plane, level), q)) * inversesqrt(qq), 0.0, 1.0);
+  vec3 n = shading_normal(plane, level);
+  float cos_phi = clamp(abs(dot(n, q)) * inversesqrt(qq), 0.0, 1.0);
   float response;
   if (model == 1) {
-    response = lambert_mu * cos_phi;
+    response = lambert_mu * cos_phi + facet_response(n, cos_phi);
   } else {
     float echo = min(1.0, reflectance * cos_phi * exp(-2.0 * attenuation_per_m * range));
     response = 1.0 / (1.0 + exp(-sigmoid.x * (echo - sigmoid.y)));

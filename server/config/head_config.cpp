@@ -12,6 +12,9 @@ GeminiHeadConfig::GeminiHeadConfig() {
   acoustics.aperture.element_amplitude_sd = 0.45;
   acoustics.aperture.element_phase_sd_rad = 26 * degree;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
+  // Whether what sends and what hears share their height is not published: the pattern is taken once
+  // (docs/physics.md 2.5).
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
 }
 
 // Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
@@ -22,7 +25,7 @@ MicronHeadConfig::MicronHeadConfig() {
   acoustics.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
   acoustics.aperture.receive_beamwidth_rad = 3 * degree;
   acoustics.aperture.vertical_beamwidth_rad = 35 * degree;
-  acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // one transducer sends and hears
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::chirp;
   acoustics.physical.gain_db = -9.0;

@@ -58,6 +58,9 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                   {"per_ping", Speckle::per_ping},
                   {"off", Speckle::off}});
   section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0));
+  using Backscatter = render::PhysicalModel::Backscatter;
+  section.choice("backscatter", model.backscatter,
+                 {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}});
   section.boolean("noise", model.noise);
   if (section.has("noise_budget") && section.has("noise_level_db")) {
     section.report("noise_budget", "sets noise_level_db, which is given too (expected one of the two)");
@@ -152,7 +155,9 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   section.angle("vertical_beamwidth_deg", settings.aperture.vertical_beamwidth_rad, Range::above(0.0, 170.0));
   using Elevation = render::Aperture::Elevation;
   section.choice("elevation_pattern", settings.aperture.elevation,
-                 {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}});
+                 {{"top_hat", Elevation::top_hat},
+                  {"sinc", Elevation::sinc},
+                  {"sinc_two_way", Elevation::sinc_two_way}});
   section.section("physical",
                   [&](YamlSection& inner) { read_physical_model(inner, carrier_hz, settings.physical); });
   section.section("paper", [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });

@@ -32,8 +32,8 @@ AnyHeadConfig read_head(YamlSection& section, const HeadContext& context,
 
 /// Name, mount and dump of any head, and the sampling that it takes from the document.
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head);
-/// What the acoustics of all heads have. What stands in `head` is the default; the frequency gives that of the
-/// noise budget.
+/// What the acoustics of all heads have. What stands in `head` is the default; the frequency gives that of
+/// the noise budget.
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head);
 /// Absorption at the frequency of the head. To be called before the acoustics are read.
 void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,

@@ -13,14 +13,16 @@ EchoLaw::EchoLaw(const render::SonarSettings& settings)
       step_m_(settings.range.step_m),
       elevation_limit_rad_(settings.aperture.vertical_beamwidth_rad / 2),
       mean_(settings.model == render::Model::paper),
+      facets_(settings.physical.backscatter == render::PhysicalModel::Backscatter::lambert_facet),
       sigmoid_slope_(settings.paper.sigmoid_slope),
       sigmoid_centre_(settings.paper.sigmoid_centre),
       attenuation_per_m_(settings.paper.attenuation_per_m) {
-  if (settings.aperture.elevation == render::Aperture::Elevation::sinc) {
+  if (settings.aperture.elevation != render::Aperture::Elevation::top_hat) {
     // The sine at which the one-way power is one half stands at 0.443 of the first zero; the pattern is
-    // followed to 1.25 times the -3 dB half width.
+    // followed to 1.25 times the -3 dB full width, on either side.
     pattern_scale_ = 0.443 * std::numbers::pi / std::sin(elevation_limit_rad_);
-    elevation_limit_rad_ *= 1.25;
+    elevation_limit_rad_ *= 2.5;
+    two_way_ = settings.aperture.elevation == render::Aperture::Elevation::sinc_two_way;
   }
   if (mean_) {
     two_sided_ = settings.paper.two_sided;
@@ -39,7 +41,7 @@ double EchoLaw::pattern(double sin_elevation) const {
     return 1.0;
   }
   const double amplitude = std::sin(x) / x;
-  return amplitude * amplitude;
+  return std::pow(amplitude, two_way_ ? 4 : 2);
 }
 
 double EchoLaw::loss(double range_m) const {
@@ -56,7 +58,15 @@ double EchoLaw::echo(const Material& material, double cos_incidence, double rang
         std::min(1.0, material.reflectance * cosine * std::exp(-2 * attenuation_per_m_ * range_m));
     return pattern(sin_elevation) / (1 + std::exp(-sigmoid_slope_ * (intensity - sigmoid_centre_)));
   }
-  return pattern(sin_elevation) * material.lambert_mu * cosine * loss(range_m);
+  // s_b / cos phi
+  double response = material.lambert_mu * cosine;
+  if (facets_ && material.pressure_reflection != 0 && cosine > 0) {
+    const double m2 = material.rms_slope * material.rms_slope;
+    response += std::pow(material.pressure_reflection, 2) /
+                (8 * std::numbers::pi * m2 * std::pow(cosine, 5)) *
+                std::exp(-(1 / (cosine * cosine) - 1) / (2 * m2));
+  }
+  return pattern(sin_elevation) * response * loss(range_m);
 }
 
 EchoLaw EchoLaw::with_loss_at_line_centre() const {

@@ -1,6 +1,6 @@
 // What the oracle integrates: the echo of a surface seen from the origin of the sonar frame, per steradian.
-// docs/physics.md 2.1 equation (1), 2.4 Lambert, 2.5 elevation pattern, 1.1 mode `paper`. Written from the
-// formulas; no code is shared with the renderer, only its plain data types are read.
+// docs/physics.md 2.1 equation (1), 2.4 Lambert and facets, 2.5 elevation pattern, 1.1 mode `paper`. Written
+// from the formulas; no code is shared with the renderer, only its plain data types are read.
 #pragma once
 
 #include <vector>
@@ -13,6 +13,8 @@ namespace sonard::oracle {
 struct Material {
   double lambert_mu = 1.0;
   double reflectance = 1.0;
+  double pressure_reflection = 0.0;  ///< 0: no facets
+  double rms_slope = 0.2;
 };
 
 /// The integrand of one ping. Spreading and absorption are taken at the range of every point, not at the
@@ -51,8 +53,10 @@ class EchoLaw {
   double step_m_;
   double elevation_limit_rad_;
   double pattern_scale_ = 0.0;  // 0: top hat
+  bool two_way_ = false;
   double absorption_db_per_m_ = 0.0;
   bool mean_;
+  bool facets_;
   bool two_sided_ = true;
   bool loss_at_line_centre_ = false;
   double sigmoid_slope_, sigmoid_centre_, attenuation_per_m_;

@@ -92,7 +92,8 @@ void Facets::add_part(const render::BodyPart& part, const render::Pose& T_sonar_
   const render::TriangleMesh& mesh = *part.mesh;
   const bool mapped = part.normal_map && !mesh.normals.empty() && !mesh.tangents.empty();
   parts_.push_back({part.mesh, part.normal_map, glm::mat3_cast(T_sonar_part.orientation),
-                    Material{part.material.lambert_mu, part.material.reflectance},
+                    Material{part.material.lambert_mu, part.material.reflectance,
+                             part.material.pressure_reflection, part.material.rms_slope},
                     mapped                 ? Shading::normal_map
                     : mesh.normals.empty() ? Shading::geometric
                                            : Shading::vertex_normals});

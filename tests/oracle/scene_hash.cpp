@@ -57,7 +57,7 @@ class Fingerprint {
       fine(edge);
     }
     fine(settings.aperture.vertical_beamwidth_rad);
-    exact(settings.aperture.elevation == render::Aperture::Elevation::sinc ? 1 : 0);
+    exact(static_cast<int>(settings.aperture.elevation));
     exact(settings.range.count);
     fine(settings.range.step_m);
     const bool paper = settings.model == render::Model::paper;
@@ -88,6 +88,10 @@ std::string scene_hash(const render::World& world, const render::Pose& T_world_s
     for (const render::BodyPart& part : body.parts) {
       fingerprint.pose(part.T_body_part);
       fingerprint.fine(part.material.lambert_mu);
+      if (part.material.pressure_reflection != 0) {
+        fingerprint.fine(part.material.pressure_reflection);
+        fingerprint.fine(part.material.rms_slope);
+      }
       fingerprint.fine(part.material.reflectance);
       fingerprint.mesh(*part.mesh);
       fingerprint.normal_map(part.normal_map.get());

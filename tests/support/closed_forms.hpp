@@ -115,6 +115,49 @@ struct ShadowTruth {
   }
 };
 
+/// Lambert's law and facets (docs/physics.md 2.4).
+struct FacetLaw {
+  double reflection;  ///< R
+  double slope;       ///< m
+  double lambert_mu;
+
+  /// Backscatter strength per area, s_b.
+  double strength(double cos_incidence) const {
+    const double c2 = cos_incidence * cos_incidence;
+    const double tan2 = 1 / c2 - 1;
+    const double m2 = slope * slope;
+    return lambert_mu * c2 +
+           reflection * reflection / (8 * std::acos(-1.0) * m2 * c2 * c2) * std::exp(-tan2 / (2 * m2));
+  }
+  /// What a surface echoes, relative to one of mu = 1.
+  double relative(double cos_incidence) const {
+    const double cosine = std::min(cos_incidence, 1.0);
+    return cosine > 0 ? strength(cosine) / (cosine * cosine) : 0.0;
+  }
+};
+
+/// Echo of ranges [r1, r2) of a surface that echoes a share which depends on the range alone, as where sound
+/// of one range meets it at one incidence.
+/// @param echo of ranges [from, to) without that share
+/// @param share of a range
+/// @param nearest_m the first range: shares are smooth in the root of what a range has beyond
+template <class Echo, class Share>
+double weighted_echo(const Echo& echo, const Share& share, double nearest_m, double r1, double r2,
+                     int steps) {
+  if (r2 <= nearest_m) {
+    return 0.0;
+  }
+  const double first = std::sqrt(std::max(0.0, r1 - nearest_m));
+  const double step = (std::sqrt(r2 - nearest_m) - first) / steps;
+  const auto range = [&](double i) { return nearest_m + std::pow(first + i * step, 2); };
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double heard = echo(range(i), range(i + 1));
+    sum += heard > 0 ? heard * share(range(i + 0.5)) : 0.0;
+  }
+  return sum;
+}
+
 /// RMS relative error over all values above `threshold` times the largest truth (docs/physics.md 3.3).
 inline double rms_error(const std::vector<double>& truth, const std::vector<double>& measured,
                         double threshold) {

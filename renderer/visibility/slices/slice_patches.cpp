@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "renderer/simd.hpp"
+#include "renderer/visibility/slices/slice_facets.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
 
 namespace sonard::render {
@@ -32,8 +33,9 @@ inline float bow_of_plane(float h, float s, float width) {
 }  // namespace
 
 ElevationPattern::ElevationPattern(const Aperture& aperture, bool tabled_if_flat)
-    : tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))) {
-  if (aperture.elevation == Aperture::Elevation::top_hat && !tabled_if_flat) {
+    : tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))),
+      varies_(aperture.elevation != Aperture::Elevation::top_hat) {
+  if (!varies_ && !tabled_if_flat) {
     return;
   }
   for (int i = 0; i <= pattern_steps; ++i) {
@@ -52,7 +54,7 @@ float ElevationPattern::at(float t) const {
   return weight_[step] * (1 - rest) + weight_[step + 1] * rest;
 }
 
-void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
+std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = &request.pieces;
   int rounds = 0;
   do {
@@ -61,7 +63,7 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
     measure(request);
     find_tilts(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
-  shade(request);
+  const std::uint64_t without_facets = shade(request);
   const std::size_t begin = patches.size();
   patches.resize(begin + pieces_->size());
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
@@ -69,16 +71,18 @@ void SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches)
         range_low_[i],   range_high_[i], smear_low_[i], smear_high_[i], response_[i] * solid_angle_[i],
         solid_angle_[i], echo_tilt_[i],  range_tilt_[i]};
   }
+  return without_facets;
 }
 
 void SlicePatcher::lay_out(const Request& request) {
   seen_.lay_out(*pieces_);
   if (seen_.size() > plain_.size()) {
-    for (auto* array :
-         {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
-          &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_}) {
+    for (auto* array : {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_,
+                        &solid_angle_, &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_,
+                        &echo_tilt_, &displaced_, &by_azimuth_low_, &by_azimuth_high_}) {
       array->resize(seen_.size());
     }
+    shaded_.resize(seen_.size());
   }
   const bool as_cosine = request.surface.model == Model::physical;
   for (std::size_t i = 0; i < seen_.count; ++i) {
@@ -107,6 +111,8 @@ void SlicePatcher::measure(const Request& request) {
   float* __restrict range_high = range_high_.data();
   float* __restrict smear_low = smear_low_.data();
   float* __restrict smear_high = smear_high_.data();
+  float* __restrict by_azimuth_low = by_azimuth_low_.data();
+  float* __restrict by_azimuth_high = by_azimuth_high_.data();
   float* __restrict range_mid = range_mid_.data();
   float* __restrict cos_phi = cosine_.data();
   float* __restrict solid_angle = solid_angle_.data();
@@ -128,8 +134,10 @@ void SlicePatcher::measure(const Request& request) {
     range_low[i] = r1;
     range_mid[i] = rm;
     range_high[i] = r2;
-    smear_low[i] = std::abs(by_azimuth1 + by_t1 * low_drift[i]) * width;
-    smear_high[i] = std::abs(by_azimuth2 + by_t2 * high_drift[i]) * width;
+    by_azimuth_low[i] = by_azimuth1 + by_t1 * low_drift[i];
+    by_azimuth_high[i] = by_azimuth2 + by_t2 * high_drift[i];
+    smear_low[i] = std::abs(by_azimuth_low[i]) * width;
+    smear_high[i] = std::abs(by_azimuth_high[i]) * width;
     const float c1 = std::abs(n1) / g1, c2 = std::abs(n2) / g2, cm = std::abs(nm) / gm;
     const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
     cos_phi[i] = cosine < 1 ? cosine : 1.0F;
@@ -228,12 +236,44 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
       is_mapped(request, (*pieces_)[i])) {
     parts = std::max(parts, 1.0F + std::floor(span_m / (mapped_lines * request.line_m)));
   }
+  if (in_range && request.any_facets) {
+    parts = std::max(parts, parts_for_facets(request, i, span_m));
+  }
+  if (in_range && request.pattern.varies()) {
+    parts = std::max(parts, parts_for_pattern(request, i, span_m));
+  }
   return static_cast<int>(std::min(parts, static_cast<float>(most_divisions)));
+}
+
+/// So that over each part the elevation pattern is nearly a straight line, or its mean well known where a
+/// part is heard in one place.
+float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
+  const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
+  const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
+  const float share = one_place ? 0.25F : 0.36F * std::sqrt(request.evenness);  // of the fan's half height
+  return std::ceil((seen_.high[i] - seen_.low[i]) / (share * request.tan_limit));
+}
+
+/// So that over each part the echo of facets changes little: by less than would show if the part lies in one
+/// line, and by about as much as a straight line follows if it spreads over more.
+float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
+  const VisiblePiece& piece = (*pieces_)[i];
+  const PartSurface& part = request.parts[piece.triangle->part];
+  if (!(part.backscatter.facet_strength > 0) || part.normal_map) {
+    return 1.0F;
+  }
+  const FacetSight sight(part, piece, request.slice);
+  if (!sight.may_hear()) {
+    return 1.0F;
+  }
+  const float share = span_m < 0.5F * request.line_m ? 1.0F : std::sqrt(request.evenness);
+  return std::ceil(sight.turn().along / (share * std::sqrt(part.backscatter.slope_variance)));
 }
 
 /// Divides the pieces whose echo runs otherwise in range than a patch can say.
 bool SlicePatcher::divide_uneven(const Request& request) {
-  if (!request.any_mapped && all_even(request.evenness * request.line_m)) {
+  if (!request.any_mapped && !request.any_facets && !request.pattern.varies() &&
+      all_even(request.evenness * request.line_m)) {
     return false;
   }
   bool any = false;
@@ -266,31 +306,94 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   return any;
 }
 
-void SlicePatcher::shade(const Request& request) {
+/// @return of how many pieces facets were not looked at.
+std::uint64_t SlicePatcher::shade(const Request& request) {
+  std::uint64_t without_facets = 0;
+  const bool any_facets = request.any_facets;
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
-    const VisiblePiece& piece = (*pieces_)[i];
-    const FanTriangle& triangle = *piece.triangle;
-    const PartSurface& part = request.parts[triangle.part];
-    const float t = 0.5F * (piece.low + piece.high);
-    float cosine = cosine_[i];
-    if (part.vertex_normals || part.normal_map) {
-      const float h = 1.0F / (seen_.w_at_0[i] + seen_.w_slope[i] * t);
-      const PiecePlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
-      // In the middle; that the mean differs from the middle is a matter of geometry.
-      const float middle = cosine_mid_[i];
-      cosine = middle > 0 ? shaded_cosine(part, triangle, place, middle) * (cosine / middle) : cosine;
-    }
-    response_[i] = surface_response(part, request.surface, cosine, range_mid_[i]);
+    response_[i] = shade_plainly(request, i);
+    echo_tilt_[i] = cosine_tilt_[i] * plain_[i];
+    without_facets += any_facets && add_facets(request, i) ? 0 : 1;
     const bool tilts = range_tilt_[i] != 0.0F;
     if (!request.pattern.flat()) {
-      const float weight = request.pattern.at(t);
-      solid_angle_[i] *= weight;
-      if (tilts && weight > 0) {
-        range_tilt_[i] += 0.5F * (request.pattern.at(piece.high) - request.pattern.at(piece.low)) / weight;
-      }
+      weigh_by_pattern(request, i);
     }
-    echo_tilt_[i] = tilts ? std::clamp(range_tilt_[i] + plain_[i] * cosine_tilt_[i], -1.0F, 1.0F) : 0.0F;
+    echo_tilt_[i] = tilts ? std::clamp(range_tilt_[i] + echo_tilt_[i], -1.0F, 1.0F) : 0.0F;
     range_tilt_[i] = std::clamp(range_tilt_[i], -1.0F, 1.0F);
+  }
+  return without_facets;
+}
+
+/// What a piece answers without facets.
+float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
+  const VisiblePiece& piece = (*pieces_)[i];
+  const PartSurface& part = request.parts[piece.triangle->part];
+  float cosine = cosine_[i];
+  shaded_[i] = {cosine, 1.0F};
+  if (part.vertex_normals || part.normal_map) {
+    const float t = 0.5F * (piece.low + piece.high);
+    const float h = 1.0F / (seen_.w_at_0[i] + seen_.w_slope[i] * t);
+    const PiecePlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
+    // In the middle; that the mean differs from the middle is a matter of geometry.
+    const float middle = cosine_mid_[i];
+    if (middle > 0) {
+      shaded_[i] = shaded_incidence(part, *piece.triangle, place, middle);
+      cosine = shaded_[i].cosine * (cosine / middle);
+    }
+  }
+  return surface_response(part, request.surface, cosine, range_mid_[i]);
+}
+
+/// @return false where they are not heard.
+bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
+  const VisiblePiece& piece = (*pieces_)[i];
+  const PartSurface& part = request.parts[piece.triangle->part];
+  const bool everywhere = request.surface.facets == Facets::everywhere;
+  if (!everywhere && !(part.backscatter.facet_strength > 0)) {
+    return false;
+  }
+  if (part.normal_map) {
+    const float length = shaded_[i].mean_length;
+    response_[i] +=
+        part.backscatter.facets(std::min(shaded_[i].cosine / length, 1.0F), variance_of_mean_normal(length));
+    return true;
+  }
+  const FacetSight sight(part, piece, request.slice);
+  if (!everywhere && !sight.may_hear()) {
+    return false;
+  }
+  const float plainly = response_[i];
+  const FacetResponse low = sight.response(piece.low), high = sight.response(piece.high);
+  const FacetResponse middle = sight.response(0.5F * (piece.low + piece.high));
+  response_[i] += (low.mean + 4 * middle.mean + high.mean) * (1.0F / 6);
+  if (response_[i] > 0) {
+    echo_tilt_[i] = (echo_tilt_[i] * plainly + 0.5F * (high.mean - low.mean)) / response_[i];
+    // Both ends smear evenly over the wedge; where one side echoes more, their middle lies towards it.
+    const float aside = (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6) / response_[i];
+    const float moved_m = 0.5F * (by_azimuth_low_[i] + by_azimuth_high_[i]) * request.slice.width_rad * aside;
+    range_low_[i] += moved_m;
+    range_high_[i] += moved_m;
+  }
+  return true;
+}
+
+/// Mean over the echo of the piece, and how it rises. Solid angle and response change along the piece too.
+void SlicePatcher::weigh_by_pattern(const Request& request, std::size_t i) {
+  const VisiblePiece& piece = (*pieces_)[i];
+  const auto solid_angle = [](float t) {
+    const float q = 1 + t * t;
+    return 1 / (q * std::sqrt(q));
+  };
+  const float t = 0.5F * (piece.low + piece.high);
+  const float low = request.pattern.at(piece.low), high = request.pattern.at(piece.high);
+  const float by_low = solid_angle(piece.low) * (1 - echo_tilt_[i]);
+  const float by_middle = 4 * solid_angle(t);
+  const float by_high = solid_angle(piece.high) * (1 + echo_tilt_[i]);
+  const float weight =
+      (low * by_low + request.pattern.at(t) * by_middle + high * by_high) / (by_low + by_middle + by_high);
+  solid_angle_[i] *= weight;
+  if (range_tilt_[i] != 0.0F && weight > 0) {
+    range_tilt_[i] += 0.5F * (high - low) / weight;
   }
 }
 

@@ -22,21 +22,31 @@ struct PartSurface {
   std::shared_ptr<const TriangleMesh> mesh;
   std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
   bool vertex_normals = false;                      ///< whether shading interpolates them
-  float lambert_mu = 0.0F;
+  Backscatter backscatter;
+  float facet_reach_rad = -1e3F;  ///< from normal incidence; farther off facets are not heard
+  float bend_rad = 0.0F;          ///< at most so much vertex normals are away from their facet's
   float reflectance = 0.0F;
   glm::mat3 R_part_sonar{1.0F};  ///< for this ping
 };
 
-/// One-way elevation pattern as a function of t, tabled.
+/// How sound meets the normal that shades.
+struct ShadedIncidence {
+  float cosine;       ///< |n . d|, with the mean of a map's normals as it is
+  float mean_length;  ///< of that mean; 1 without a map
+};
+
+/// Elevation pattern as a function of t, tabled.
 class ElevationPattern {
  public:
   /// @param tabled_if_flat a pattern that is 1 everywhere too (SkipRule::flat_elevation switched off)
   explicit ElevationPattern(const Aperture& aperture, bool tabled_if_flat = false);
   bool flat() const { return weight_.empty(); }
+  bool varies() const { return varies_; }
   float at(float t) const;
 
  private:
   float tan_limit_;
+  bool varies_;
   std::vector<float> weight_;  ///< empty: 1 everywhere
 };
 
@@ -54,12 +64,14 @@ class SlicePatcher {
     /// until that displaces it by no more than this many lines.
     float evenness;
     bool any_mapped;  ///< whether any of the parts has a normal map
+    bool any_facets;  ///< whether facets have to be looked at, of any of the parts
     float line_m;
     float max_range_m;  ///< what is wholly beyond is left as it is
   };
 
   /// @param patches is appended to.
-  void make(const Request& request, std::vector<EchoPatch>& patches);
+  /// @return of how many patches facets were not looked at (SkipRule::facet_kernel).
+  std::uint64_t make(const Request& request, std::vector<EchoPatch>& patches);
 
  private:
   void lay_out(const Request& request);
@@ -69,7 +81,12 @@ class SlicePatcher {
   bool all_even(float allowed_m) const;
   int parts_of(const Request& request, std::size_t i) const;
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
-  void shade(const Request& request);
+  float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
+  float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
+  std::uint64_t shade(const Request& request);
+  float shade_plainly(const Request& request, std::size_t i);
+  bool add_facets(const Request& request, std::size_t i);
+  void weigh_by_pattern(const Request& request, std::size_t i);
 
   /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
@@ -77,6 +94,7 @@ class SlicePatcher {
   PieceArrays seen_;
   PieceEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
+  std::vector<float> by_azimuth_low_, by_azimuth_high_;  ///< change of the ends' ranges with the azimuth
   std::vector<float> plain_;        ///< 1 where the response is the cosine to the facet, else 0
   std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used
   std::vector<float> cosine_tilt_;  ///< of cosine_, the mean of a piece
@@ -84,6 +102,7 @@ class SlicePatcher {
   std::vector<float> echo_tilt_;    ///< of both
   std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_;
+  std::vector<ShadedIncidence> shaded_;  ///< in its middle
 };
 
 }  // namespace sonard::render

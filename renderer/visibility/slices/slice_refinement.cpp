@@ -111,8 +111,8 @@ std::vector<float> SliceSampler::heard_by_beams(const Setting& setting) const {
 }
 
 /// Into how many parts each slice is to be divided: those on both sides of every border at which they
-/// disagree too much, those that miss something thin, and those in which the range ends. All is measured by
-/// what the beam hears.
+/// disagree too much, those that miss something thin, those in which the range ends, and those across which
+/// the echo of facets changes too much. All is measured by what the beam hears.
 std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   compare_neighbours(setting);
   const std::vector<float> heard = heard_by_beams(setting);
@@ -132,7 +132,7 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
         cell.sides.one_sided * cell.sides.one_sided / std::max(cell.sides.heard, least_heard);
     if (cell.misses_something || std::max(port.apart, starboard.apart) > most) {
       parts[i] = parts_at_edges;
-    } else if (bent > bows_per_edge * most || ending > ends_per_edge * most) {
+    } else if (bent > bows_per_edge * most || ending > ends_per_edge * most || cell.blurs_facets) {
       parts[i] = parts_of_bows;
     }
   }

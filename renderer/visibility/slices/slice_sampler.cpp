@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "renderer/visibility/slices/coplanar_facets.hpp"
+#include "renderer/visibility/slices/slice_facets.hpp"
 #include "renderer/visibility/slices/slice_sampler_impl.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
 
@@ -78,8 +79,13 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSw
 /// Of the body that is added next.
 void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   PartSurface surface;
-  surface.lambert_mu = static_cast<float>(part.material.lambert_mu);
+  surface.backscatter = Backscatter(part.material);
   surface.reflectance = static_cast<float>(part.material.reflectance);
+  if (surface.backscatter.facet_strength > 0) {
+    surface.facet_reach_rad = std::acos(std::min(surface.backscatter.least_cosine, 1.0F));
+    surface.bend_rad = most_bend_rad(*part.mesh);
+    any_facets_ = true;
+  }
   const bool plain_facets = has_plain_facets(*part.mesh);
   surface.vertex_normals = !(skip_.on(SkipRule::geometric_normals) && plain_facets);
   skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
@@ -163,6 +169,7 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
       accuracy,
       surfaces_,
       any_mapped_,
+      surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
       static_cast<float>(range.step_m),
       SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))};
   triangles_.find(placed_, setting.fan, workers_, skip_.on(SkipRule::culled_clusters));
@@ -179,6 +186,11 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   skipped_ = skipped_parts_;
   skipped_.add(SkipRule::culled_clusters, triangles_.clusters_culled());
   skipped_.add(SkipRule::flat_elevation, setting.pattern.flat() ? 1 : 0);
+  if (surface.facets == Facets::near_normal) {
+    for (const SliceCell* cell : cells) {
+      skipped_.add(SkipRule::facet_kernel, cell->without_facets);
+    }
+  }
   return cells;
 }
 
@@ -209,6 +221,21 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
   });
 }
 
+/// See SliceCell.
+bool SliceSampler::blurs_facets(const Setting& setting, const SliceCell& cell) {
+  const SliceAccuracy& accuracy = setting.accuracy;
+  return std::any_of(cell.pieces.begin(), cell.pieces.end(), [&](const VisiblePiece& piece) {
+    const PartSurface& part = setting.parts[piece.triangle->part];
+    if (!(part.backscatter.facet_strength > 0) || part.normal_map) {
+      return false;
+    }
+    const FacetSight sight(part, piece, cell.slice);
+    return sight.may_hear() &&
+           (sight.turn().across > accuracy.facet_turn * std::sqrt(part.backscatter.slope_variance) ||
+            sight.displacement_m() > accuracy.facet_lines * setting.line_m);
+  });
+}
+
 void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell) {
   if (!cell.seen) {
     scratch.cutter.cut(cell.slice, setting.fan.tan_limit(), scratch.segments);
@@ -218,6 +245,7 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   if (setting.accuracy.most_divisions == 1) {
     return;
   }
+  cell.blurs_facets = setting.any_facets && blurs_facets(setting, cell);
   cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
   scratch.cutter.find_upright_edges(cell.slice, cell.edges);
   scratch.expectation.find(cell.pieces, cell.slice.width_rad, setting.side_view, cell.sides);
@@ -232,10 +260,11 @@ void SliceSampler::make_patches(const Setting& setting) {
     for (std::size_t i = begin; i < std::min(order_.size(), begin + cells_per_job); ++i) {
       SliceCell& cell = *cells_[order_[i]];
       cell.patches.clear();
-      patcher.make(
-          {cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern, setting.fan.tan_limit(),
-           setting.accuracy.evenness, setting.any_mapped, setting.line_m, setting.fan.max_range_m()},
-          cell.patches);
+      cell.without_facets =
+          patcher.make({cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern,
+                        setting.fan.tan_limit(), setting.accuracy.evenness, setting.any_mapped,
+                        setting.any_facets, setting.line_m, setting.fan.max_range_m()},
+                       cell.patches);
     }
   });
 }

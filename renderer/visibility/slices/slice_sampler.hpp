@@ -33,8 +33,10 @@ struct SliceAccuracy {
   /// A slice that hears n range lines may be bent by this times n lines: what a bow displaces are the first
   /// and last of them, the fewer there are the more it matters.
   float bow_lines = 8e-4F;
-  float evenness = 0.03F;  ///< see SlicePatcher::Request
-  float change = 0.005F;   ///< share by which a wall's echo may change within a first slice, RMS
+  float evenness = 0.03F;      ///< see SlicePatcher::Request
+  float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
+  float facet_turn = 0.75F;    ///< FacetTurn::across of what hears facets may be so many times their slope
+  float facet_lines = 0.006F;  ///< FacetSight::displacement_m() of it may be so many lines
 };
 
 /// A wedge of the fan and what is seen in it.
@@ -44,6 +46,8 @@ struct SliceCell {
   std::vector<VisiblePiece> pieces;  ///< seen along its azimuth, whatever its width
   std::vector<EchoPatch> patches;
   SliceSides sides;
+  bool blurs_facets = false;                 ///< some piece is beyond facet_turn or facet_lines
+  std::uint64_t without_facets = 0;          ///< patches, see SkipRule::facet_kernel
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
   bool seen = false;                         ///< its pieces are known
   bool fresh = true;                         ///< not yet compared with its neighbours
@@ -90,6 +94,7 @@ class SliceSampler {
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
   static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
+  static bool blurs_facets(const Setting& setting, const SliceCell& cell);
   void make_patches(const Setting& setting);
   std::size_t new_cell(const Slice& slice, int beam);
 
@@ -110,6 +115,7 @@ class SliceSampler {
   std::vector<PlacedPart> placed_;
   std::vector<PartSurface> surfaces_;
   bool any_mapped_ = false;
+  bool any_facets_ = false;  ///< whether any material has them
   FanTriangles triangles_;
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;

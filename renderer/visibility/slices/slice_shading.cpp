@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
@@ -90,22 +91,43 @@ glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, co
 
 bool has_plain_facets(const TriangleMesh& mesh) {
   constexpr float plain_rad = 1e-4F;
+  return most_bend_rad(mesh) < plain_rad;
+}
+
+float most_bend_rad(const TriangleMesh& mesh) {
+  float most = 0.0F;  // sine
   for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.normals.empty(); i += 3) {
     const std::uint32_t* corner = &mesh.indices[i];
     const glm::vec3 edge_b = mesh.positions[corner[1]] - mesh.positions[corner[0]];
     const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
     const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!(glm::length(glm::cross(facet, mesh.normals[corner[k]])) < plain_rad)) {
-        return false;
-      }
+      // What is not a number, or turned round, is as far away as can be.
+      const glm::vec3& normal = mesh.normals[corner[k]];
+      const float sine = glm::length(glm::cross(facet, normal));
+      most = sine < 1 ? std::max(most, sine) : 1.0F;
     }
   }
-  return true;
+  return std::asin(most);
 }
 
-float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const PiecePlace& place,
-                    float geometric) {
+glm::vec3 interpolated_normal(const PartSurface& part, const FanTriangle& triangle, const glm::vec3& q) {
+  if (part.mesh->normals.empty()) {
+    return part.R_part_sonar * glm::normalize(triangle.across());
+  }
+  constexpr float beyond = 16.0F;  // triangles: wedges may be wider than those of a finely meshed ball
+  const glm::vec3 across = triangle.across();
+  const SurfacePoint surface(triangle, q * (glm::dot(across, triangle.corner(0)) / glm::dot(across, q)));
+  const glm::vec2 weights =
+      glm::clamp(surface.weights(surface.p - surface.corner), glm::vec2(-beyond), glm::vec2(1 + beyond));
+  const glm::vec3 n =
+      interpolate(part.mesh->normals, &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3], weights);
+  const float length = glm::length(n);
+  return length > 0 ? n / length : part.R_part_sonar * glm::normalize(across);
+}
+
+ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& triangle,
+                                 const PiecePlace& place, float geometric) {
   const SurfacePoint surface(triangle,
                              {place.h_m * place.slice.cosine, place.h_m * place.slice.sine, place.z_m});
   const glm::vec2 weights = surface.weights(surface.p - surface.corner);
@@ -114,17 +136,22 @@ float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const 
                                       ? part.R_part_sonar * glm::normalize(surface.normal)
                                       : interpolate(part.mesh->normals, corner, weights);
   const glm::vec3 d = part.R_part_sonar * glm::normalize(surface.p);
-  float product;
+  float product, mean_length = 1.0F;
   if (part.normal_map) {
-    product = glm::dot(mapped_normal(part, surface, corner, weights, vertex_normal, place), d);
+    const glm::vec3 n = mapped_normal(part, surface, corner, weights, vertex_normal, place);
+    product = glm::dot(n, d);
+    mean_length = glm::length(n);
   } else {
     product = glm::dot(vertex_normal, d) / glm::length(vertex_normal);
   }
-  return std::isfinite(product) ? std::min(1.0F, std::abs(product)) : geometric;
+  if (!std::isfinite(product)) {
+    return {geometric, 1.0F};
+  }
+  return {std::min(1.0F, std::abs(product)), mean_length};
 }
 
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m) {
-  return model.model == Model::physical ? part.lambert_mu * cosine
+  return model.model == Model::physical ? part.backscatter.lambert(cosine)
                                         : paper_response(model, part.reflectance, cosine, range_m);
 }
 

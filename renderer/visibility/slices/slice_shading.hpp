@@ -12,16 +12,23 @@ struct PiecePlace {
   float range_extent_m;
 };
 
-/// cos phi with the normal that shades there.
+/// In the middle of a piece.
 /// @param geometric cos phi of the triangle itself; the answer where the shading normal is no direction.
-float shaded_cosine(const PartSurface& part, const FanTriangle& triangle, const PiecePlace& place,
-                    float geometric);
+ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& triangle,
+                                 const PiecePlace& place, float geometric);
+
+/// The normal that the corners of the triangle give to the point of its plane along the ray q of the sonar
+/// frame, unit, in the part's axes. Beside the triangle it goes on as within, for some of its widths.
+glm::vec3 interpolated_normal(const PartSurface& part, const FanTriangle& triangle, const glm::vec3& q);
+
+/// How far any vertex normal is away from that of its facet, radians.
+float most_bend_rad(const TriangleMesh& mesh);
 
 /// Whether all vertex normals are those of their facets, to 1e-4 rad, as where there are none: then there is
 /// nothing to interpolate.
 bool has_plain_facets(const TriangleMesh& mesh);
 
-/// SurfaceSample::response of a surface seen under `cosine` at a range.
+/// SurfaceSample::response of a surface seen under `cosine` at a range, without its facets.
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m);
 
 }  // namespace sonard::render

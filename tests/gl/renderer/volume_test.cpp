@@ -65,13 +65,13 @@ TEST_P(VolumeReverberation, FillsEmptyWaterByItsClosedForm) {
 
 TEST_P(VolumeReverberation, WeighsTheWaterWithTheElevationPattern) {
   const PingRequest request = turbid_request(Aperture::Elevation::sinc);
-  // docs/physics.md 2.5: sinc^2(0.443 sin theta / sin 10 degrees), out to 1.25 beamwidths.
+  // docs/physics.md 2.5: sinc^2(0.443 sin theta / sin 10 degrees), to 1.25 beamwidths on either side.
   double height = 0;
   constexpr int steps = 20'000;
   for (int i = 0; i < steps; ++i) {
-    const double theta = 12.5 * degree * (2 * (i + 0.5) / steps - 1);
+    const double theta = 25 * degree * (2 * (i + 0.5) / steps - 1);
     const double x = std::numbers::pi * 0.443 * std::sin(theta) / std::sin(10 * degree);
-    height += std::pow(std::sin(x) / x, 2) * std::cos(theta) * 25 * degree / steps;
+    height += std::pow(std::sin(x) / x, 2) * std::cos(theta) * 50 * degree / steps;
   }
   SonarRenderer renderer(World{}, options());
   const EchoImage& image = renderer.render_echo(request);

@@ -163,6 +163,31 @@ TEST(SliceRules, ClustersOutsideTheFanAreCulled) {
             0u);
 }
 
+// A ball of clean steel on a bed without facets: facets are looked at near the ball's nearest point only. Of
+// rough stone they are heard nearly everywhere, and of a bed seen under 70 degrees nowhere.
+TEST(SliceRules, FacetsAreLookedAtNearNormalIncidence) {
+  World world = bed_and_ball();
+  EXPECT_GT(compare(SkipRule::facet_kernel, world, small_request()).skipped, 100u);
+  for (const auto& [m, mu] : {std::pair{0.05, 0.003}, std::pair{0.4, 0.03}}) {
+    AcousticMaterial& ball = world.bodies[1].parts[0].material;
+    ball.pressure_reflection = 0.9;
+    ball.rms_slope = m;
+    ball.lambert_mu = mu;
+    AcousticMaterial& bed = world.bodies[0].parts[0].material;
+    bed.pressure_reflection = 0.4;
+    bed.rms_slope = 0.2;
+    bed.lambert_mu = 0.006;
+    const Comparison found = compare(SkipRule::facet_kernel, world, small_request());
+    std::printf("facets, m = %.2f: %llu pieces, %.2e of the maximum\n", m,
+                static_cast<unsigned long long>(found.skipped), found.worst_of_maximum);
+    EXPECT_GT(found.skipped, 100u);
+    EXPECT_GT(found.worst_of_maximum, 0.0) << "the rule leaves something out";
+  }
+  PingRequest plain = small_request();
+  plain.settings.physical.backscatter = PhysicalModel::Backscatter::lambert;
+  EXPECT_EQ(compare(SkipRule::facet_kernel, world, plain).skipped, 0u) << "there is nothing to skip";
+}
+
 // A scanning sonar looks at one sector only.
 TEST(SliceRules, NarrowFanLooksAtItsSectorOnly) {
   World world = bed_and_ball();

@@ -18,8 +18,15 @@ View perfect_docking_station() {
 std::vector<EffectPicture> response_pictures() {
   using Azimuth = render::Aperture::Azimuth;
   using Elevation = render::Aperture::Elevation;
+  using Backscatter = render::PhysicalModel::Backscatter;
   using Pulse = render::PhysicalModel::Pulse;
   return {
+      {.name = "facets",
+       .view = [] { return configured_view("demo-micron.yaml", 12); },
+       .caption_before = "backscatter: lambert",
+       .before = [](View& view) { view.settings.physical.backscatter = Backscatter::lambert; },
+       .caption_after = "backscatter: lambert_facet",
+       .after = [](View& view) { view.settings.physical.backscatter = Backscatter::lambert_facet; }},
       {.name = "azimuth_pattern",
        .view = perfect_docking_station,
        .caption_before = "azimuth_pattern: ideal",
@@ -48,7 +55,7 @@ std::vector<EffectPicture> response_pictures() {
            }},
       {.name = "elevation_pattern",
        .view = [] { return configured_view("demo.yaml", 20); },
-       .caption_before = "elevation_pattern: tophat",
+       .caption_before = "elevation_pattern: top_hat",
        .before = [](View& view) { view.settings.aperture.elevation = Elevation::top_hat; },
        .caption_after = "elevation_pattern: sinc",
        .after = [](View& view) { view.settings.aperture.elevation = Elevation::sinc; }},

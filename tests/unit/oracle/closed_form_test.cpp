@@ -261,7 +261,7 @@ TEST(OracleClosedForm, SincPatternWeighsTheElevations) {
     return x == 0 ? 1.0 : std::pow(std::sin(x) / x, 2);
   };
   EXPECT_NEAR(10 * std::log10(pattern(10 * degree)), -3, 0.02);
-  const double limit = 12.5 * degree;  // rendered out to 1.25 beamwidths
+  const double limit = 25 * degree;  // rendered to 1.25 beamwidths on either side
   const double expected = test::azimuth_integral(
       [&](double theta) { return pattern(theta) * std::pow(std::cos(theta), 4) / 100; }, -limit, limit, 4000);
   EXPECT_NEAR(total(slices_of(plane_world({10, 0, 0}), law, {0})) / (1e-3 * degree) / expected, 1.0, 1e-6);

@@ -89,7 +89,7 @@ TEST(SampleGrid, NonsenseIsRefused) {
   EXPECT_THROW(make_sample_grid(aperture, Sampling{}), RequestError);
 }
 
-// docs/physics.md 2.5: 0 / -0.7 / -3 / -7.5 dB at 0 / 5 / 10 / 15 degrees for a 20 degree beam.
+// docs/physics.md 2.5, for a 20 degree beam.
 TEST(Aperture, SincPatternHasTheDocumentedLevels) {
   Aperture aperture;
   aperture.elevation = Aperture::Elevation::sinc;
@@ -100,7 +100,35 @@ TEST(Aperture, SincPatternHasTheDocumentedLevels) {
   EXPECT_NEAR(level_db(5), -0.7, 0.05);
   EXPECT_NEAR(level_db(10), -3.0, 0.05);
   EXPECT_NEAR(level_db(15), -7.5, 0.1);
-  EXPECT_NEAR(aperture.elevation_limit_rad(), 12.5 * degree, 1e-12);
+  EXPECT_NEAR(level_db(20), -16.9, 0.1);
+  EXPECT_NEAR(level_db(30), -14.4, 0.1);
+  EXPECT_NEAR(aperture.elevation_limit_rad(), 25 * degree, 1e-12);
+}
+
+TEST(Aperture, TwoWayPatternIsTheSquareOfTheOneWay) {
+  Aperture one_way, two_way;
+  one_way.elevation = Aperture::Elevation::sinc;
+  two_way.elevation = Aperture::Elevation::sinc_two_way;
+  one_way.vertical_beamwidth_rad = two_way.vertical_beamwidth_rad = 35 * degree;  // of a Micron
+  for (const double angle_deg : {-40.0, 0.0, 3.0, 17.5, 35.0, 43.0}) {
+    const double one = one_way.elevation_weight(angle_deg * degree);
+    EXPECT_NEAR(two_way.elevation_weight(angle_deg * degree), one * one, 1e-15) << angle_deg;
+  }
+  EXPECT_NEAR(10 * std::log10(two_way.elevation_weight(17.5 * degree)), -6.0, 0.1);
+  EXPECT_EQ(two_way.elevation_limit_rad(), one_way.elevation_limit_rad());
+}
+
+// Beyond some 70 degrees the first null is behind the vertical.
+TEST(Aperture, PatternOfAWideBeamIsFollowedClearOfTheVertical) {
+  Aperture aperture;
+  aperture.beam_edges_rad = {0.1, -0.1};
+  aperture.elevation = Aperture::Elevation::sinc;
+  for (const double width_deg : {60.0, 64.0, 100.0, 165.0}) {
+    aperture.vertical_beamwidth_rad = width_deg * degree;
+    EXPECT_NO_THROW(check_aperture(aperture)) << width_deg;
+    EXPECT_GE(aperture.elevation_limit_rad(), width_deg / 2 * degree);
+    EXPECT_LE(aperture.elevation_limit_rad(), std::max(80.0, width_deg / 2) * degree + 1e-12);
+  }
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ const std::vector<Case> cases{
      {"world.sdf:4: m::l::v: reflectance 'high': expected a number"}},
     {"rms_slope_out_of_range",
      model(shape + "<sonard:material rms_slope=\"2\">steel</sonard:material>"),
-     {"world.sdf:4: m::l::v: rms_slope is 2: expected a number from 0.01 to 1"}},
+     {"world.sdf:4: m::l::v: rms_slope is 2: expected a number from 0.01 to 0.5"}},
     {"misspelt_attribute",
      model(shape + "<sonard:material refletance=\"1\">steel</sonard:material>"),
      {"world.sdf:4: <sonard:material> has no attribute 'refletance'"}},
