@@ -21,6 +21,7 @@ enum class SkipRule : std::uint8_t {
   absent_normal_map,
   coplanar_facets,
   flat_elevation,
+  multipath,
   lines_without_echo,
   blanked_near_field,
   no_noise,
@@ -69,6 +70,11 @@ inline constexpr std::array skip_rules{
                   1e-2},
     SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", "pings",
                   1e-6},
+    SkipRuleEntry{
+        SkipRule::multipath, "multipath",
+        "nothing in range mirrors more than -15 dB, R^2 exp(-P^2), at the least grazing angle it is "
+        "seen at",
+        "pings", 0.13, "of the echo of what would be mirrored"},
     SkipRuleEntry{SkipRule::lines_without_echo, "lines_without_echo",
                   "no beam has an echo in the line: before the first echo, between, beyond the last", "lines",
                   1, "output code"},

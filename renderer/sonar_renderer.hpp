@@ -48,6 +48,7 @@ struct PingRequest {
 struct PingStatistics {
   double visibility_s = 0.0;
   double binning_s = 0.0;
+  double multipath_s = 0.0;
   double receiver_s = 0.0;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
