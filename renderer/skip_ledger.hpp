@@ -22,6 +22,7 @@ enum class SkipRule : std::uint8_t {
   coplanar_facets,
   flat_elevation,
   facet_kernel,
+  multipath,
   lines_without_echo,
   blanked_near_field,
   no_noise,
@@ -78,6 +79,11 @@ inline constexpr std::array skip_rules{
         SkipRule::facet_kernel, "facet_kernel",
         "the material has no facets, or they echo less than 0.1 % of its Lambert part at that incidence",
         "pieces", 1e-3},
+    SkipRuleEntry{
+        SkipRule::multipath, "multipath",
+        "nothing in range mirrors more than -15 dB, R^2 exp(-P^2), at the least grazing angle it is "
+        "seen at",
+        "pings", 0.13, "of the echo of what would be mirrored"},
     SkipRuleEntry{SkipRule::lines_without_echo, "lines_without_echo",
                   "no beam has an echo in the line: before the first echo, between, beyond the last", "lines",
                   1, "output code"},

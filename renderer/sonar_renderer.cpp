@@ -11,6 +11,7 @@
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/binning/gpu_binner.hpp"
+#include "renderer/multipath/multipath.hpp"
 #include "renderer/visibility/beam_refinement.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
@@ -155,6 +156,7 @@ PhysicalModel echo_part(const PhysicalModel& model) {
   PhysicalModel part;
   part.absorption_db_per_m = model.absorption_db_per_m;
   part.backscatter = model.backscatter;
+  part.multipath = model.multipath;
   part.pulse = model.pulse;
   part.range_cell_m = model.range_cell_m;
   part.volume_scattering_db = model.volume_scattering_db;
@@ -241,6 +243,7 @@ struct SonarRenderer::Impl {
   std::unique_ptr<GpuBinner> gpu_binner;  // null: all binning is the CPU's
   std::unique_ptr<SliceSampler> slices;   // of the backend `ray`
   BeamRefinement refinement;              // of the backend `raster`
+  Multipath multipath;
   Receiver receiver;
   PingStatistics statistics;
   std::map<std::string, Pose> T_world_body;
@@ -256,6 +259,7 @@ struct SonarRenderer::Impl {
         chosen(choose_sampler(world, options.backend, workers)),
         gpu_binner(make_gpu_binner(options.gpu_binning, chosen)),
         refinement(*chosen.sampler, workers),
+        multipath(world, workers, options.skip),
         receiver(options.skip) {
     for (const Body& body : world.bodies) {
       T_world_body[body.name] = body.T_world_body;
@@ -301,6 +305,8 @@ struct SonarRenderer::Impl {
     BinningResult bins = look(settings, T_world_sonar, line_weight, std::move(image.intensity));
     image.intensity = std::move(bins.echo);
     Stopwatch watch;
+    multipath.add_to(image.intensity, settings, T_world_sonar, statistics.skipped);
+    statistics.multipath_s = watch.lap();
     if (settings.model == Model::physical) {
       add_volume_reverberation(bins.open_sr, settings, image);
       if (has_volume_reverberation(settings) && bins.open_sr.empty()) {
@@ -449,6 +455,7 @@ bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_wo
   if (impl_->slices) {
     impl_->slices->set_body_pose(body_name, pose);
   }
+  impl_->multipath.set_body_pose(body_name, pose);
   return impl_->chosen.sampler->set_body_pose(body_name, pose);
 }
 

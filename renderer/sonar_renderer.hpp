@@ -48,6 +48,7 @@ struct PingRequest {
 struct PingStatistics {
   double visibility_s = 0.0;
   double binning_s = 0.0;
+  double multipath_s = 0.0;
   double azimuth_pattern_s = 0.0;
   double pulse_s = 0.0;
   double receiver_s = 0.0;

@@ -123,6 +123,22 @@ struct Interference {
   bool operator==(const Interference&) const = default;
 };
 
+/// What arrives by way of smooth surfaces, of mode `physical` (docs/physics.md 2.11). Where nothing in range
+/// is smooth enough, SkipRule::multipath spares it.
+struct MultipathSettings {
+  enum class Level {
+    off,      ///< nothing
+    surface,  ///< ghosts in the water surface (World::water_surface_z_m)
+    full,     ///< ghosts in every surface that mirrors, and glints of corners
+  } level = Level::full;
+  double wavelength_m = 0.0020833;  ///< at the middle of the band; > 0
+  /// Rms height of the water surface: 0 is a mirror; rippled by a light breeze some 0.02; with wind it has no
+  /// image.
+  double water_surface_rms_height_m = 0.02;
+
+  bool operator==(const MultipathSettings&) const = default;
+};
+
 /// Mode `physical`: water, source and receiver (docs/physics.md 2.1-2.9, 2.16). Levels are intensities in dB.
 struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
@@ -151,6 +167,7 @@ struct PhysicalModel {
   /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it. Full
   /// scale of OutputScale::half_decibels is 80 dB.
   double gain_db = 60.0;
+  MultipathSettings multipath;
   // What recordings of Gemini-class heads show (docs/physics.md 2.16).
   double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off

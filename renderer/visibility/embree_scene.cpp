@@ -79,6 +79,19 @@ void intersect_by_4(const RayPacket& rays, RTCScene scene, RTCIntersectContext& 
   intersect_by<RTCRayHit4, 4, &rtcIntersect4>(rays, scene, context, max_depth, hits);
 }
 
+RTCRay ray_of(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m) {
+  RTCRay ray{};
+  ray.org_x = origin_m.x;
+  ray.org_y = origin_m.y;
+  ray.org_z = origin_m.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tfar = farthest_m;
+  ray.mask = ~0U;
+  return ray;
+}
+
 /// Lets rays pass through triangles that they meet from behind.
 void pass_back_faces(const RTCFilterFunctionNArguments* arguments) {
   for (unsigned i = 0; i < arguments->N; ++i) {
@@ -275,6 +288,33 @@ SONARD_SIMD_CLONES void EmbreeScene::trace(const RayPacket& rays, const SurfaceM
       waiting[i] = waiting[i] == part ? no_part : waiting[i];
     }
   }
+}
+
+bool EmbreeScene::trace_one(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m,
+                            SurfaceHit& hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray = ray_of(origin_m, direction, farthest_m);
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    return false;
+  }
+  const auto& [x, y, z] = impl_->parts[query.hit.instID[0]].shader.axes();
+  hit.distance_m = query.ray.tfar;
+  hit.normal = x * query.hit.Ng_x + y * query.hit.Ng_y + z * query.hit.Ng_z;
+  hit.part = query.hit.instID[0];
+  hit.triangle = query.hit.primID;
+  return true;
+}
+
+bool EmbreeScene::is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = ray_of(origin_m, direction, distance_m);
+  rtcOccluded1(impl_->scene.get(), &context, &ray);
+  return ray.tfar >= 0;  // minus infinity where something was met
 }
 
 const std::string& EmbreeScene::description() const {

@@ -14,6 +14,14 @@
 
 namespace sonard::render {
 
+/// What a single ray meets.
+struct SurfaceHit {
+  float distance_m = 0.0F;
+  glm::vec3 normal{0.0F};        ///< geometric, in world axes, neither of unit length nor turned
+  std::uint32_t part = no_part;  ///< counts the parts of all bodies in the order of the world
+  std::uint32_t triangle = 0;    ///< of the part's mesh
+};
+
 /// Holds one acceleration structure per mesh and, above them, one over the parts. Rays and normals are in
 /// world axes with the sonar at the origin: world positions are subtracted in double, once per part and
 /// place, and the boxes of things that stand upright in the world stay tight however the sonar turns. place()
@@ -38,6 +46,15 @@ class EmbreeScene {
   /// The first surface along each ray between the depths nearest_depth_m and `max_depth`, in lengths of q.
   void trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,
              SurfacePacket& surfaces) const;
+
+  /// The first surface along one ray from anywhere, relative to the sonar as all positions are.
+  /// @param direction unit.
+  /// @return false when there is none within `farthest_m`.
+  bool trace_one(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m,
+                 SurfaceHit& hit) const;
+
+  /// Whether nothing lies on the way from a point along a unit direction.
+  bool is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const;
 
   /// "Embree 3.13.5, packets of 16".
   const std::string& description() const;

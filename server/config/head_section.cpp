@@ -50,6 +50,15 @@ void read_interference(YamlSection& section, render::Interference& interference)
   }
 }
 
+void read_multipath(YamlSection& section, render::MultipathSettings& multipath) {
+  using Level = render::MultipathSettings::Level;
+  section.choice("level", multipath.level,
+                 {{"full", Level::full}, {"surface", Level::surface}, {"off", Level::off}});
+  double rms_height_mm = multipath.water_surface_rms_height_m * 1000.0;
+  section.number("water_surface_rms_height_mm", rms_height_mm, Range::from(0.0, 10'000.0));
+  multipath.water_surface_rms_height_m = rms_height_mm / 1000.0;
+}
+
 void read_physical_model(YamlSection& section, double carrier_hz, render::PhysicalModel& model) {
   using Speckle = render::PhysicalModel::Speckle;
   section.choice("speckle", model.speckle,
@@ -82,6 +91,7 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
   section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0));
   section.section("ring_down", [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
   section.section("interference", [&](YamlSection& inner) { read_interference(inner, model.interference); });
+  section.section("multipath", [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
 }
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {
@@ -175,6 +185,7 @@ void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head
     }
   }
   head.acoustics.physical.absorption_db_per_m = absorption;
+  head.acoustics.physical.multipath.wavelength_m = render::sound_speed_mps(water) / carrier_hz;
   // The device's own absorption setting matches the water unless the user says otherwise.
   head.acoustics.physical.tvg_absorption_db_per_m = absorption;
 }

@@ -26,6 +26,10 @@ bool same_bits(const render::EchoImage& a, const render::EchoImage& b) {
          std::memcmp(a.intensity.data(), b.intensity.data(), a.intensity.size() * sizeof(float)) == 0;
 }
 
+bool has_multipath(const test::Scene& scene) {
+  return scene.settings.physical.multipath.level != render::MultipathSettings::Level::off;
+}
+
 bool is_scanning(const test::Scene& scene) {
   return scene.settings.aperture.beam_count() == 1;
 }
@@ -78,6 +82,7 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
     stages.ping_ms.add(ms_per_s * (now_s() - from_s));
     stages.visibility_ms.add(ms_per_s * renderer_.last_statistics().visibility_s);
     stages.binning_ms.add(ms_per_s * renderer_.last_statistics().binning_s);
+    stages.multipath_ms.add(ms_per_s * renderer_.last_statistics().multipath_s);
   }
   return stages;
 }
@@ -155,6 +160,9 @@ void SceneRun::add_times(const Subject& subject, const Stages& stages, const Tim
   results_.add(subject, "ping_ms_min", stages.ping_ms.min(), "ms");
   results_.add(subject, "visibility_ms", stages.visibility_ms.median(), "ms");
   results_.add(subject, "binning_ms", stages.binning_ms.median(), "ms");
+  if (has_multipath(scene_)) {
+    results_.add(subject, "multipath_ms", stages.multipath_ms.median(), "ms");
+  }
   results_.add(subject, "unchanged_ms", unchanged_ms.median(), "ms");
   results_.add(subject, "ping_over_visibility", stages.ping_ms.median() / stages.visibility_ms.median(), "1");
   results_.add(subject, "unchanged_over_ping", unchanged_ms.median() / stages.ping_ms.median(), "1");

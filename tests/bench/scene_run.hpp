@@ -41,7 +41,7 @@ class SceneRun {
 
  private:
   struct Stages {
-    Timing ping_ms, visibility_ms, binning_ms;
+    Timing ping_ms, visibility_ms, binning_ms, multipath_ms;
   };
 
   Subject subject(const Point& point) const;

@@ -69,6 +69,7 @@ render::SonarSettings fan(int beams, double width_rad, double height_rad, int li
   settings.aperture.vertical_beamwidth_rad = height_rad;
   settings.range = {lines, range_m / lines, 0, false};
   settings.physical.absorption_db_per_m = 0;
+  settings.physical.multipath.level = render::MultipathSettings::Level::off;  // truth is of straight ways
   return settings;
 }
 
@@ -156,6 +157,18 @@ Scene make_b5(const std::string& name) {
               forward_looking(1000, 8));
 }
 
+/// The same tank with walls of smooth concrete and calm water over it: everything mirrors everything.
+Scene make_b5_smooth(const std::string& name) {
+  Scene scene = make_b5(name);
+  render::AcousticMaterial& walls = scene.world.bodies[0].parts[0].material;
+  walls.pressure_reflection = 0.68;
+  walls.rms_height_m = 1e-4;
+  scene.world.water_surface_z_m = 2.9;
+  scene.settings.physical.multipath.level = render::MultipathSettings::Level::full;
+  scene.settings.physical.multipath.water_surface_rms_height_m = 0;
+  return scene;
+}
+
 /// Pipes of 2, 5, 10 and 20 cm at 5, 10, 20, 40 and 80 m, each upright (2 m, shorter where the fan is) and
 /// lying across its bearing (2 degrees wide), one every 3 degrees.
 Scene make_b7(const std::string& name) {
@@ -223,6 +236,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"b2_seabed_10m", b2(10)},
       {"b3_cluster", make_b3},
       {"b5_tank", make_b5},
+      {"b5_tank_smooth", make_b5_smooth},
       {"b6_water", [](const std::string& name) { return make(name, {}, {}, forward_looking(1000, 20)); }},
       {"b7_pipes", make_b7},
       {"docking", make_docking},

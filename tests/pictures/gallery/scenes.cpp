@@ -26,6 +26,7 @@ void take_effects_off(View& view) {
   physical.noise = false;
   physical.texture_nu = 0;
   physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
+  physical.multipath.level = render::MultipathSettings::Level::off;
   physical.broadside_stripe_db = 0;
   physical.ring_down.on = false;
   physical.interference.probability = 0;

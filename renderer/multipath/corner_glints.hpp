@@ -1,0 +1,37 @@
+// Echoes straight back from corners: two or three mirrors that meet at right angles (docs/physics.md 2.11).
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/multipath/ghost_paths.hpp"
+#include "renderer/multipath/path_scene.hpp"
+
+namespace sonard::render {
+
+/// What a corner sends back.
+struct CornerGlint {
+  glm::dvec3 position_m{0.0};  ///< relative to the sonar, in world axes
+  double intensity = 0.0;      ///< at the sonar, re that of the source at 1 m; no absorption, no patterns
+};
+
+/// Works out the corner that sends sound back as if it came from `candidate.image_m`. Diffraction is that of
+/// the corner's aperture, all directions whose rays the mirrors send to that image. With rho the distance
+/// from the line to the image, in the plane through the corner at range r, and a path that is longer than
+/// this line by rho^2 / r, Kirchhoff's integral (Fresnel's approximation) is
+///
+///     pressure = 1 / (lambda r^2) | sum over the aperture of R1 R2 (R3) exp(i k rho^2 / r) dA |
+///
+/// A corner small against sqrt(lambda r / 2) has the target strength A^2 / lambda^2: of a trihedral of three
+/// triangles with edges L, A = L^2 / sqrt(3), so L^4 / (3 lambda^2). One large against it returns the image
+/// of the source in a mirror, 1 / (2 r) in pressure.
+CornerGlint corner_glint(const PathScene& scene, const CornerCandidate& candidate, const PathLimits& limits);
+
+/// The candidates without repetitions, in the order in which they first occur: two images nearer to one
+/// another than their own inaccuracy are the same.
+std::vector<CornerCandidate> distinct_corners(const std::vector<GhostPaths::Result>& results,
+                                              const GhostPaths::Result& more, const PathLimits& limits);
+
+}  // namespace sonard::render

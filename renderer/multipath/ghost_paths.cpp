@@ -1,0 +1,282 @@
+#include "renderer/multipath/ghost_paths.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace sonard::render {
+
+namespace {
+
+constexpr int divisions = 4;           // of a cell at an edge, along both of its sides
+constexpr double corner_reach = 1.5;   // of a cell's diagonal: how near a ray must pass to find a corner
+constexpr double least_cosine = 1e-3;  // surfaces seen edge-on have no end in range, and no energy
+constexpr double nearest_m = 0.02;     // what is nearer to the sonar does not hide it
+
+/// The two range and bearing slopes of a path over its cell.
+struct Slopes {
+  double range_m = 0.0, bearing_rad = 0.0;
+};
+
+/// What neighbours that met the same surface share: its number, and of a flat one the direction of its
+/// normal, coarsely, so that two walls of one part are told apart. The facets of a curved one are one
+/// surface.
+std::uint64_t surface_code(const PathScene& scene, const PathHit& hit) {
+  if (!scene.is_flat(hit)) {
+    return hit.surface;
+  }
+  const auto part = [](double x) { return static_cast<std::uint64_t>(std::lround(4 * x) + 4); };
+  const std::uint64_t direction = 1 + part(hit.normal.x) + 9 * (part(hit.normal.y) + 9 * part(hit.normal.z));
+  return (direction << 32U) + hit.surface;
+}
+
+std::uint64_t mixed(std::uint64_t key, std::uint64_t next) {
+  key = (key ^ next) * 0x9E3779B97F4A7C15U;
+  return key ^ (key >> 29U);
+}
+
+/// Something that is spread over `a` and over `b`, one independent of the other, around a range.
+EchoPatch spread_patch(double range_m, double a_m, double b_m, double echo) {
+  const auto wide = static_cast<float>(std::max(std::abs(a_m), std::abs(b_m)));
+  const auto narrow = static_cast<float>(std::min(std::abs(a_m), std::abs(b_m)));
+  EchoPatch patch;
+  patch.range_a_m = static_cast<float>(range_m) - 0.5F * wide;
+  patch.range_b_m = static_cast<float>(range_m) + 0.5F * wide;
+  patch.smear_a_m = patch.smear_b_m = narrow;
+  patch.echo = static_cast<float>(echo);
+  return patch;
+}
+
+}  // namespace
+
+struct GhostPaths::Ping {
+  const PathScene& scene;
+  const PathFan& fan;
+  glm::dquat R_world_sonar, R_sonar_world;
+  PathLimits limits;
+
+  double elevation_weight(const glm::dvec3& direction) const {
+    return fan.aperture().elevation_weight(std::asin(std::clamp(direction.z, -1.0, 1.0)));
+  }
+  double mirror_gain(const PathHit& hit) const {
+    if (!limits.meshes_mirror && hit.surface != no_part) {
+      return 0.0;
+    }
+    const double gain = scene.mirror(hit).gain(hit.cosine, limits.wavelength_m);
+    return gain > limits.least_gain ? gain : 0.0;
+  }
+};
+
+const std::vector<GhostPaths::Result>& GhostPaths::follow(const PathScene& scene, const PathFan& fan,
+                                                          const Pose& T_world_sonar,
+                                                          const PathLimits& limits) {
+  const Ping ping{scene, fan, T_world_sonar.orientation, glm::conjugate(T_world_sonar.orientation), limits};
+  const auto columns = static_cast<std::size_t>(fan.columns());
+  const auto rows = static_cast<std::size_t>(fan.rows());
+  keys_.resize(columns * rows);
+  paths_.resize(columns);
+  results_.resize(columns);
+  workers_.run(fan.columns(), [&](int column) {
+    const auto c = static_cast<std::size_t>(column);
+    paths_[c].clear();
+    results_[c].patches.clear();
+    results_[c].corners.clear();
+    for (int row = 0; row < fan.rows(); ++row) {
+      Path path;
+      path.row = row;
+      keys_[c * rows + static_cast<std::size_t>(row)] =
+          follow_one(ping, fan.cell(column, row), path, results_[c]);
+      if (path.target.distance_m > 0) {
+        paths_[c].push_back(path);
+      }
+    }
+  });
+  workers_.run(fan.columns(), [&](int column) { refine_column(ping, column); });
+  return results_;
+}
+
+GhostPaths::Result GhostPaths::search(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
+                                      const PathLimits& limits, const std::vector<FanCell>& cells) {
+  const Ping ping{scene, fan, T_world_sonar.orientation, glm::conjugate(T_world_sonar.orientation), limits};
+  Result result;
+  for (const FanCell& cell : cells) {
+    Path path;
+    follow_one(ping, cell, path, result);
+  }
+  return result;
+}
+
+void GhostPaths::refine_column(const Ping& ping, int column) {
+  Result& result = results_[static_cast<std::size_t>(column)];
+  auto path = paths_[static_cast<std::size_t>(column)].cbegin();
+  const auto end = paths_[static_cast<std::size_t>(column)].cend();
+  for (int row = 0; row < ping.fan.rows(); ++row) {
+    const FanCell cell = ping.fan.cell(column, row);
+    const bool has_path = path != end && path->row == row;
+    if (differs_from_neighbours(ping, column, row)) {
+      for (int i = 0; i < divisions * divisions; ++i) {
+        const FanCell part = cell.part(i % divisions, i / divisions, divisions);
+        Path part_path;
+        follow_one(ping, part, part_path, result);
+        add_echoes(ping, part, part_path, result);
+      }
+    } else if (has_path) {
+      add_echoes(ping, cell, *path, result);
+    }
+    path += has_path ? 1 : 0;
+  }
+}
+
+bool GhostPaths::differs_from_neighbours(const Ping& ping, int column, int row) const {
+  const auto key = [&](int c, int r) {
+    return keys_[static_cast<std::size_t>(c) * static_cast<std::size_t>(ping.fan.rows()) +
+                 static_cast<std::size_t>(r)];
+  };
+  const std::uint64_t own = key(column, row);
+  return (row > 0 && key(column, row - 1) != own) ||
+         (row + 1 < ping.fan.rows() && key(column, row + 1) != own) ||
+         (column > 0 && key(column - 1, row) != own) ||
+         (column + 1 < ping.fan.columns() && key(column + 1, row) != own);
+}
+
+/// @return a number for the surfaces that were met; 0: no flat mirror.
+std::uint64_t GhostPaths::follow_one(const Ping& ping, const FanCell& cell, Path& path, Result& result) {
+  const glm::dvec3 direction = ping.R_world_sonar * cell.direction();
+  if (!ping.scene.trace({}, {}, direction, ping.limits.max_range_m, path.mirror)) {
+    return 0;
+  }
+  path.gain = ping.mirror_gain(path.mirror);
+  if (!(path.gain > 0)) {
+    return 0;
+  }
+  // What a curved mirror shows is spread wide and has no edges worth the rays.
+  const bool is_flat = ping.scene.is_flat(path.mirror);
+  const std::uint64_t key = is_flat ? mixed(1, surface_code(ping.scene, path.mirror)) : 0;
+  // Back by the straight way the path is no longer than twice the range.
+  const double farthest_m = 2 * ping.limits.max_range_m - path.mirror.distance_m;
+  PathHit target;
+  if (!ping.scene.trace(path.mirror.position_m, path.mirror.normal, reflected(direction, path.mirror.normal),
+                        farthest_m, target)) {
+    return key;
+  }
+  path.target = target;
+  path.target_seen = sees_sonar(ping, target);
+  find_corners(ping, direction, path, result);
+  return !is_flat ? 0 : mixed(mixed(key, surface_code(ping.scene, target)), path.target_seen ? 1 : 2);
+}
+
+bool GhostPaths::sees_sonar(const Ping& ping, const PathHit& target) {
+  const double range_m = glm::length(target.position_m);
+  if (!(range_m > nearest_m)) {
+    return false;
+  }
+  const glm::dvec3 back = target.position_m / -range_m;
+  // Seen from the side that the mirror lights.
+  return glm::dot(target.normal, back) > 0 && ping.fan.contains(ping.R_sonar_world * -back) &&
+         ping.scene.is_free(target.position_m, target.normal, back, range_m - nearest_m);
+}
+
+/// The path goes straight back to the sonar where the image of the sonar in its mirrors lies ahead.
+void GhostPaths::find_corners(const Ping& ping, const glm::dvec3& direction, const Path& path,
+                              Result& result) {
+  if (!(ping.mirror_gain(path.target) > 0) || !ping.scene.is_flat(path.mirror) ||
+      !ping.scene.is_flat(path.target)) {
+    return;
+  }
+  const double reach = std::cos(corner_reach * ping.fan.diagonal_rad());
+  const auto try_image = [&](const glm::dvec3& image_m) {
+    const double distance_m = glm::length(image_m);
+    if (distance_m < 2 * ping.limits.max_range_m && glm::dot(image_m, direction) > reach * distance_m) {
+      result.corners.push_back({image_m});
+    }
+  };
+  try_image(mirrored(mirrored({}, path.target), path.mirror));
+  const glm::dvec3 second = reflected(direction, path.mirror.normal);
+  PathHit third;
+  if (ping.scene.trace(path.target.position_m, path.target.normal, reflected(second, path.target.normal),
+                       2 * ping.limits.max_range_m, third) &&
+      ping.mirror_gain(third) > 0 && ping.scene.is_flat(third)) {
+    try_image(mirrored(mirrored(mirrored({}, third), path.target), path.mirror));
+  }
+}
+
+/// The ways out by the mirror and straight back, straight out and back by the mirror, and both by the mirror.
+void GhostPaths::add_echoes(const Ping& ping, const FanCell& cell, const Path& path, Result& result) {
+  if (!(path.target.distance_m > 0)) {
+    return;
+  }
+  const glm::dvec3& mirror_normal = path.mirror.normal;
+  const glm::dvec3& target_normal = path.target.normal;
+  const double by_mirror_m = path.mirror.distance_m + path.target.distance_m;
+  const double straight_m = glm::length(path.target.position_m);
+  const glm::dvec3 out = reflected(ping.R_world_sonar * cell.direction(), mirror_normal);
+  const glm::dvec3 straight = path.target.position_m / straight_m;
+  const glm::dvec3 p = ping.R_sonar_world * path.target.position_m;
+  const double cosine = std::max(path.target.cosine, least_cosine);
+
+  // How the two ranges and the bearing of the target change over the cell: the mirror's plane turns the rays,
+  // and the target's plane sets where they end (docs/physics.md 2.3, equation 2).
+  const auto slopes = [&](const glm::dvec3& step, double& by_mirror_step_m) {
+    const glm::dvec3 turned = reflected(ping.R_world_sonar * step, mirror_normal);
+    by_mirror_step_m = by_mirror_m * glm::dot(target_normal, turned) / cosine;
+    const glm::dvec3 moved = by_mirror_step_m * out + by_mirror_m * turned;
+    const glm::dvec3 in_sonar = ping.R_sonar_world * moved;
+    return Slopes{0.5 * (by_mirror_step_m + glm::dot(straight, moved)),
+                  (p.x * in_sonar.y - p.y * in_sonar.x) / (p.x * p.x + p.y * p.y)};
+  };
+  double by_mirror_width_m = 0.0, by_mirror_height_m = 0.0;
+  const Slopes along_width = slopes(cell.along_width(), by_mirror_width_m);
+  const Slopes along_height = slopes(cell.along_height(), by_mirror_height_m);
+
+  const double mu = ping.scene.lambert_mu(path.target);
+  const double out_weight = ping.fan.aperture().elevation_weight(cell.elevation_rad);
+  // By the mirror both ways: what is seen in it, at the range at which it seems to be.
+  if (ping.scene.is_flat(path.mirror)) {
+    result.patches.push_back({cell.beam, spread_patch(by_mirror_m, by_mirror_width_m, by_mirror_height_m,
+                                                      mu * path.target.cosine * cell.solid_angle() *
+                                                          path.gain * path.gain * out_weight)});
+  }
+  if (!path.target_seen) {
+    return;
+  }
+  // By the mirror one way. Its range is the mean of both, and so is the loss that each line is given; what is
+  // spread over the straight way is spread over that.
+  const double range_m = 0.5 * (by_mirror_m + straight_m);
+  const double back_weight = ping.elevation_weight(p / straight_m);
+  const double echo = mu * -glm::dot(target_normal, straight) * cell.solid_angle() * path.gain *
+                      std::sqrt(out_weight * back_weight) * (range_m / straight_m) * (range_m / straight_m);
+  const bool across = std::abs(along_width.bearing_rad) >= std::abs(along_height.bearing_rad);
+  const Slopes& turning = across ? along_width : along_height;
+  const Slopes& other = across ? along_height : along_width;
+  const double half_rad = std::max(1e-9, 0.5 * (std::abs(turning.bearing_rad) + std::abs(other.bearing_rad)));
+  const double bearing_rad = std::atan2(p.y, p.x);
+  const auto& edges = ping.fan.aperture().beam_edges_rad;
+  const auto beam_at = [&](double azimuth_rad) {
+    return *ping.fan.beam_of(std::clamp(azimuth_rad, edges.back(), edges.front()));
+  };
+  for (int beam = beam_at(bearing_rad + half_rad); beam <= beam_at(bearing_rad - half_rad); ++beam) {
+    const double from = std::min(bearing_rad + half_rad, edges[static_cast<std::size_t>(beam)]);
+    const double to = std::max(bearing_rad - half_rad, edges[static_cast<std::size_t>(beam) + 1]);
+    if (!(from > to)) {
+      continue;
+    }
+    const double share = (from - to) / (2 * half_rad);
+    const double offset =
+        turning.bearing_rad == 0.0
+            ? 0.0
+            : std::clamp((0.5 * (from + to) - bearing_rad) / turning.bearing_rad, -0.5, 0.5);
+    EchoPatch patch = spread_patch(range_m + turning.range_m * offset, turning.range_m * share, other.range_m,
+                                   echo * share);
+    if (beam == cell.beam) {
+      patch.echo *= 4.0F;  // the way and its reverse are equally long: their pressures add up
+      result.patches.push_back({beam, patch});
+    } else {
+      result.patches.push_back({beam, patch});
+      result.patches.push_back({cell.beam, patch});
+    }
+  }
+}
+
+}  // namespace sonard::render

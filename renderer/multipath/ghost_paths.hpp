@@ -1,0 +1,91 @@
+// Echoes by way of a mirror: a ray leaves the sonar, is mirrored by a smooth surface and meets a rough one
+// (docs/physics.md 2.11).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/binning/echo_patch.hpp"
+#include "renderer/multipath/path_fan.hpp"
+#include "renderer/multipath/path_scene.hpp"
+#include "renderer/pose.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// What paths are followed, and how far.
+struct PathLimits {
+  double wavelength_m = 0.0;
+  double max_range_m = 0.0;
+  double least_gain = 0.0;    ///< a mirror weaker than this is none
+  bool meshes_mirror = true;  ///< false: only the water surface does
+};
+
+/// A bit of echo and the beam it is heard in. EchoPatch::echo is, as that of what is seen directly, yet to be
+/// multiplied with spreading and absorption of its range.
+struct BeamPatch {
+  int beam;
+  EchoPatch patch;
+};
+
+/// A place that two or three mirrors in turn send sound straight back from: the image of the sonar in them.
+struct CornerCandidate {
+  glm::dvec3 image_m{0.0};  ///< relative to the sonar, in world axes; the corner is half way to it
+};
+
+/// The image of a point in the plane of a hit.
+inline glm::dvec3 mirrored(const glm::dvec3& point_m, const PathHit& mirror) {
+  return point_m - 2 * glm::dot(point_m - mirror.position_m, mirror.normal) * mirror.normal;
+}
+
+/// The direction that a mirror sends a leg on in.
+inline glm::dvec3 reflected(const glm::dvec3& direction, const glm::dvec3& normal) {
+  return direction - 2 * glm::dot(direction, normal) * normal;
+}
+
+/// Follows rays over the whole fan. The fan is first cut into even cells; those whose path differs from a
+/// neighbour's, at the edge of a flat mirror or of what is seen in it, are cut again. What is found depends
+/// on neither the number of threads nor their order.
+class GhostPaths {
+ public:
+  struct Result {
+    std::vector<BeamPatch> patches;
+    std::vector<CornerCandidate> corners;
+  };
+
+  explicit GhostPaths(WorkerPool& workers) : workers_(workers) {}
+
+  /// @return the results of all columns of the fan, from port to starboard; valid until the next call.
+  const std::vector<Result>& follow(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
+                                    const PathLimits& limits);
+
+  /// Looks for corners with rays in the cells given alone.
+  static Result search(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
+                       const PathLimits& limits, const std::vector<FanCell>& cells);
+
+ private:
+  /// From the sonar by way of a mirror to a target.
+  struct Path {
+    int row = 0;
+    PathHit mirror, target;
+    double gain = 0.0;         ///< of the mirror
+    bool target_seen = false;  ///< the straight way from the target to the sonar is free, and in the fan
+  };
+  struct Ping;
+
+  static std::uint64_t follow_one(const Ping& ping, const FanCell& cell, Path& path, Result& result);
+  static bool sees_sonar(const Ping& ping, const PathHit& target);
+  static void find_corners(const Ping& ping, const glm::dvec3& direction, const Path& path, Result& result);
+  static void add_echoes(const Ping& ping, const FanCell& cell, const Path& path, Result& result);
+  void refine_column(const Ping& ping, int column);
+  bool differs_from_neighbours(const Ping& ping, int column, int row) const;
+
+  WorkerPool& workers_;
+  std::vector<std::uint64_t> keys_;       // what the path of every cell met, column after column
+  std::vector<std::vector<Path>> paths_;  // of the cells of every column that have one
+  std::vector<Result> results_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,175 @@
+#include "renderer/multipath/multipath.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/binning/range_profile.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr double small_parts_in_cells = 2.0;  // that many diagonals of a cell across: a grid may miss it
+constexpr int search_rays = 8;                // along each side of a part that is so small
+
+Mirror water_surface_of(const MultipathSettings& settings) {
+  return {-1.0, settings.water_surface_rms_height_m};
+}
+
+bool is_finite(const EchoPatch& patch) {
+  return std::isfinite(patch.range_a_m + patch.range_b_m + patch.smear_a_m + patch.smear_b_m + patch.echo);
+}
+
+void add(const EchoPatch& patch, double step_m, RangeProfile& profile) {
+  const double a = static_cast<double>(patch.range_a_m) / step_m;
+  const double b = static_cast<double>(patch.range_b_m) / step_m;
+  if (a == b) {  // a glint is heard in one line, also where two meet
+    profile.add_point(a, patch.echo);
+    return;
+  }
+  const auto lines_per_m = static_cast<float>(1.0 / step_m);
+  profile.add(a, patch.smear_a_m * lines_per_m, b, patch.smear_b_m * lines_per_m, patch.echo, 0.0F);
+}
+
+}  // namespace
+
+Multipath::Multipath(const World& world, WorkerPool& workers, const SkipSwitches& skip)
+    : world_(world), workers_(workers), skip_(skip), survey_(world), ghosts_(workers) {}
+
+void Multipath::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  for (Body& body : world_.bodies) {
+    if (body.name == body_name) {
+      body.T_world_body = T_world_body;
+    }
+  }
+  if (scene_) {
+    scene_->set_body_pose(body_name, T_world_body);
+  }
+}
+
+bool Multipath::is_needed(const MultipathSettings& settings, double max_range_m,
+                          const Pose& T_world_sonar) const {
+  const glm::dvec3& at = T_world_sonar.position_m;
+  return (world_.water_surface_z_m &&
+          water_surface_mirrors(water_surface_of(settings), *world_.water_surface_z_m - at.z, max_range_m,
+                                settings.wavelength_m)) ||
+         (settings.level == MultipathSettings::Level::full &&
+          survey_.has_mirror(world_, at, max_range_m, settings.wavelength_m));
+}
+
+void Multipath::add_to(std::vector<float>& echo, const SonarSettings& settings, const Pose& T_world_sonar,
+                       SkipCounts& skipped) {
+  const MultipathSettings& multipath = settings.physical.multipath;
+  if (settings.model != Model::physical || multipath.level == MultipathSettings::Level::off) {
+    return;
+  }
+  const bool may_skip = skip_.on(SkipRule::multipath);
+  const double max_range_m = settings.range.max_range_m();
+  if (may_skip && !is_needed(multipath, max_range_m, T_world_sonar)) {
+    skipped.add(SkipRule::multipath);
+    return;
+  }
+  if (!scene_) {
+    scene_ = std::make_unique<PathScene>(world_, workers_);
+  }
+  scene_->place(T_world_sonar.position_m, water_surface_of(multipath));
+  collect(settings, T_world_sonar,
+          {multipath.wavelength_m, max_range_m, may_skip ? least_mirror_gain : 0.0,
+           multipath.level == MultipathSettings::Level::full});
+  sum(settings.range, echo);
+}
+
+void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar, const PathLimits& limits) {
+  if (!fan_ || fan_->aperture() != settings.aperture) {
+    fan_ = std::make_unique<PathFan>(settings.aperture);
+  }
+  patches_of_beam_.resize(static_cast<std::size_t>(settings.aperture.beam_count()));
+  for (std::vector<EchoPatch>& patches : patches_of_beam_) {
+    patches.clear();
+  }
+  const std::vector<GhostPaths::Result>& results = ghosts_.follow(*scene_, *fan_, T_world_sonar, limits);
+  for (const GhostPaths::Result& column : results) {
+    for (const BeamPatch& ghost : column.patches) {
+      if (is_finite(ghost.patch)) {
+        patches_of_beam_[static_cast<std::size_t>(ghost.beam)].push_back(ghost.patch);
+      }
+    }
+  }
+  if (limits.meshes_mirror) {
+    const GhostPaths::Result of_small_parts = search_small_parts(T_world_sonar, limits);
+    collect_glints(distinct_corners(results, of_small_parts, limits), settings, T_world_sonar, limits);
+  }
+}
+
+/// A corner reflector far away is smaller than a cell of the fan: rays are aimed at what is.
+GhostPaths::Result Multipath::search_small_parts(const Pose& T_world_sonar, const PathLimits& limits) const {
+  const glm::dquat R_sonar_world = glm::conjugate(T_world_sonar.orientation);
+  std::vector<FanCell> cells;
+  for (const MirrorSurvey::Ball& ball :
+       survey_.small_parts(world_, T_world_sonar.position_m, limits.max_range_m,
+                           small_parts_in_cells * fan_->diagonal_rad())) {
+    const glm::dvec3 p = R_sonar_world * ball.centre_m;
+    if (!fan_->contains(p)) {
+      continue;
+    }
+    const double elevation_rad = std::atan2(p.z, std::hypot(p.x, p.y));
+    const double height_rad = 2 * ball.radius_m / glm::length(p);
+    const FanCell around{0, std::atan2(p.y, p.x), elevation_rad, height_rad / std::cos(elevation_rad),
+                         height_rad};
+    for (int i = 0; i < search_rays * search_rays; ++i) {
+      cells.push_back(around.part(i % search_rays, i / search_rays, search_rays));
+    }
+  }
+  return GhostPaths::search(*scene_, *fan_, T_world_sonar, limits, cells);
+}
+
+void Multipath::collect_glints(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
+                               const Pose& T_world_sonar, const PathLimits& limits) {
+  std::vector<CornerGlint> glints(corners.size());
+  workers_.run(static_cast<int>(corners.size()), [&](int i) {
+    glints[static_cast<std::size_t>(i)] = corner_glint(*scene_, corners[static_cast<std::size_t>(i)], limits);
+  });
+  const glm::dquat R_sonar_world = glm::conjugate(T_world_sonar.orientation);
+  for (const CornerGlint& glint : glints) {
+    const glm::dvec3 p = R_sonar_world * glint.position_m;
+    const double range_m = glm::length(p);
+    if (!(glint.intensity > 0) || !fan_->contains(p)) {
+      continue;
+    }
+    EchoPatch patch;
+    patch.range_a_m = patch.range_b_m = static_cast<float>(range_m);
+    patch.echo = static_cast<float>(glint.intensity * range_m * range_m *
+                                    settings.aperture.elevation_weight(std::asin(p.z / range_m)));
+    patches_of_beam_[static_cast<std::size_t>(*fan_->beam_of(std::atan2(p.y, p.x)))].push_back(patch);
+  }
+}
+
+/// Sums are exact (RangeProfile), so they depend on the order of patches as little as on threads.
+void Multipath::sum(const RangeLines& range, std::vector<float>& echo) {
+  const auto lines = static_cast<std::size_t>(range.count);
+  workers_.run(static_cast<int>(patches_of_beam_.size()), [&](int beam) {
+    const std::vector<EchoPatch>& patches = patches_of_beam_[static_cast<std::size_t>(beam)];
+    if (patches.empty()) {
+      return;
+    }
+    double all = 0.0;
+    for (const EchoPatch& patch : patches) {
+      all += static_cast<double>(patch.echo);
+    }
+    thread_local RangeProfile profile;
+    thread_local std::vector<float> sums;
+    profile.reset(lines, all);
+    for (const EchoPatch& patch : patches) {
+      add(patch, range.step_m, profile);
+    }
+    profile.finish();
+    sums.resize(lines);
+    profile.read(sums.data());
+    float* to = &echo[static_cast<std::size_t>(beam) * lines];
+    for (std::size_t k = 0; k < lines; ++k) {
+      to[k] += sums[k];
+    }
+  });
+}
+
+}  // namespace sonard::render

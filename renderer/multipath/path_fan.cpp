@@ -1,0 +1,81 @@
+#include "renderer/multipath/path_fan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace sonard::render {
+
+namespace {
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double widest_column_rad = 0.25 * degree;
+constexpr double highest_row_rad = 0.08 * degree;
+}  // namespace
+
+double FanCell::solid_angle() const {
+  return width_rad *
+         (std::sin(elevation_rad + 0.5 * height_rad) - std::sin(elevation_rad - 0.5 * height_rad));
+}
+
+glm::dvec3 FanCell::direction() const {
+  const double level = std::cos(elevation_rad);
+  return {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), std::sin(elevation_rad)};
+}
+
+glm::dvec3 FanCell::along_width() const {
+  const double level = width_rad * std::cos(elevation_rad);
+  return {-level * std::sin(azimuth_rad), level * std::cos(azimuth_rad), 0.0};
+}
+
+glm::dvec3 FanCell::along_height() const {
+  const double upright = height_rad * std::sin(elevation_rad);
+  return {-upright * std::cos(azimuth_rad), -upright * std::sin(azimuth_rad),
+          height_rad * std::cos(elevation_rad)};
+}
+
+FanCell FanCell::part(int column, int row, int divisions) const {
+  const auto offset = [divisions](int i) { return (i + 0.5) / divisions - 0.5; };
+  return {beam, azimuth_rad + width_rad * offset(column), elevation_rad + height_rad * offset(row),
+          width_rad / divisions, height_rad / divisions};
+}
+
+PathFan::PathFan(const Aperture& aperture) : aperture_(aperture) {
+  for (int beam = 0; beam < aperture.beam_count(); ++beam) {
+    const double from = aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
+    const double width = from - aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
+    const int columns = std::max(1, static_cast<int>(std::ceil(width / widest_column_rad - 1e-6)));
+    for (int i = 0; i < columns; ++i) {
+      columns_.push_back({beam, from - width * (i + 0.5) / columns, width / columns});
+      diagonal_rad_ = std::max(diagonal_rad_, width / columns);
+    }
+  }
+  const double height = 2 * aperture.elevation_limit_rad();
+  rows_ = std::max(1, static_cast<int>(std::ceil(height / highest_row_rad - 1e-6)));
+  row_height_rad_ = height / rows_;
+  lowest_rad_ = -0.5 * height;
+  diagonal_rad_ = std::hypot(diagonal_rad_, row_height_rad_);
+}
+
+FanCell PathFan::cell(int column, int row) const {
+  const Column& at = columns_[static_cast<std::size_t>(column)];
+  return {at.beam, at.azimuth_rad, lowest_rad_ + (row + 0.5) * row_height_rad_, at.width_rad,
+          row_height_rad_};
+}
+
+std::optional<int> PathFan::beam_of(double azimuth_rad) const {
+  const auto& edges = aperture_.beam_edges_rad;  // falling
+  const auto after = std::lower_bound(edges.begin(), edges.end(), azimuth_rad, std::greater<>());
+  if (after == edges.end() || (after == edges.begin() && *after != azimuth_rad)) {
+    return std::nullopt;
+  }
+  return std::max(0, static_cast<int>(after - edges.begin()) - 1);
+}
+
+bool PathFan::contains(const glm::dvec3& direction) const {
+  const double elevation_rad = std::atan2(direction.z, std::hypot(direction.x, direction.y));
+  return std::abs(elevation_rad) <= aperture_.elevation_limit_rad() &&
+         beam_of(std::atan2(direction.y, direction.x)).has_value();
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,55 @@
+// The directions that sound leaves in and comes back from: the fan as cells for the rays of multipath.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// A patch of directions within one beam, in the sonar frame. Angles as in docs/physics.md 0.
+struct FanCell {
+  int beam = 0;
+  double azimuth_rad = 0.0, elevation_rad = 0.0;  ///< of the middle
+  double width_rad = 0.0, height_rad = 0.0;
+
+  double solid_angle() const;
+  glm::dvec3 direction() const;     ///< unit
+  glm::dvec3 along_width() const;   ///< by how much it changes from one side of the cell to the other
+  glm::dvec3 along_height() const;  ///< the same, from its lower to its upper end
+  /// One of divisions x divisions parts of the cell.
+  FanCell part(int column, int row, int divisions) const;
+};
+
+/// A grid of such cells over the fan: columns that divide beams, rows of equal elevation.
+class PathFan {
+ public:
+  explicit PathFan(const Aperture& aperture);
+
+  int columns() const { return static_cast<int>(columns_.size()); }
+  int rows() const { return rows_; }
+  FanCell cell(int column, int row) const;
+  /// The angle across a cell from corner to corner, of the largest one.
+  double diagonal_rad() const { return diagonal_rad_; }
+
+  /// The beam of an azimuth; nullopt outside of the fan.
+  std::optional<int> beam_of(double azimuth_rad) const;
+  /// Whether sound is sent and heard in this direction, in the sonar frame.
+  bool contains(const glm::dvec3& direction) const;
+  const Aperture& aperture() const { return aperture_; }
+
+ private:
+  struct Column {
+    int beam;
+    double azimuth_rad, width_rad;
+  };
+  Aperture aperture_;
+  std::vector<Column> columns_;
+  int rows_ = 0;
+  double lowest_rad_ = 0.0, row_height_rad_ = 0.0, diagonal_rad_ = 0.0;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,100 @@
+#include "renderer/multipath/path_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace sonard::render {
+
+namespace {
+
+/// A leg begins off its surface by this share of the distance to the sonar, ten times what rounding makes of
+/// it, so that it does not meet that surface again. Nearer than that to an edge, a leg is lost.
+constexpr double lift = 1e-6;
+
+/// A mesh of the water surface, less than this share of the way behind it, is met before it.
+constexpr double same_surface = 1e-5;
+
+constexpr float flat_cosine = 0.99999F;  // 0.26 degrees
+
+glm::vec3 lifted(const glm::dvec3& origin_m, const glm::dvec3& normal) {
+  return glm::vec3(origin_m + normal * (lift * (1.0 + glm::length(origin_m))));
+}
+
+}  // namespace
+
+PathScene::PathScene(const World& world, WorkerPool& workers)
+    : meshes_(world, workers), water_surface_z_m_(world.water_surface_z_m) {
+  for (const Body& body : world.bodies) {
+    for (const BodyPart& part : body.parts) {
+      surfaces_.push_back({Mirror(part.material), part.material.lambert_mu, part.mesh});
+    }
+  }
+}
+
+bool PathScene::is_flat(const PathHit& hit) const {
+  if (hit.surface == no_part || surfaces_[hit.surface].mesh->normals.empty()) {
+    return true;
+  }
+  const TriangleMesh& mesh = *surfaces_[hit.surface].mesh;
+  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{hit.triangle}];
+  const glm::vec3 n = glm::normalize(glm::cross(mesh.positions[corner[1]] - mesh.positions[corner[0]],
+                                                mesh.positions[corner[2]] - mesh.positions[corner[0]]));
+  const auto along = [&](std::size_t i) { return glm::dot(n, mesh.normals[corner[i]]) > flat_cosine; };
+  return along(0) && along(1) && along(2);
+}
+
+void PathScene::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  meshes_.set_body_pose(body_name, T_world_body);
+}
+
+void PathScene::place(const glm::dvec3& sonar_position_m, const Mirror& water_surface) {
+  meshes_.place(sonar_position_m);
+  water_surface_ = water_surface;
+  water_above_m_.reset();
+  if (water_surface_z_m_ && *water_surface_z_m_ > sonar_position_m.z) {
+    water_above_m_ = *water_surface_z_m_ - sonar_position_m.z;
+  }
+}
+
+bool PathScene::trace(const glm::dvec3& origin_m, const glm::dvec3& normal, const glm::dvec3& direction,
+                      double farthest_m, PathHit& hit) const {
+  const glm::vec3 start_m = lifted(origin_m, normal);
+  SurfaceHit met;
+  hit.distance_m = farthest_m;
+  if (meshes_.trace_one(start_m, glm::vec3(direction), static_cast<float>(farthest_m), met)) {
+    hit.distance_m = static_cast<double>(met.distance_m);
+    hit.surface = met.part;
+    hit.triangle = met.triangle;
+    hit.normal = glm::dvec3(met.normal);
+  }
+  if (water_above_m_ && direction.z > 0) {
+    const double to_water_m = (*water_above_m_ - static_cast<double>(start_m.z)) / direction.z;
+    // A mesh of the surface itself comes first, whatever the rounding.
+    if (to_water_m > 0 && to_water_m * (1 + same_surface) < hit.distance_m) {
+      hit.distance_m = to_water_m;
+      hit.surface = no_part;
+      hit.normal = glm::dvec3(0, 0, -1);
+    }
+  }
+  if (hit.distance_m >= farthest_m) {
+    return false;
+  }
+  hit.position_m = glm::dvec3(start_m) + hit.distance_m * direction;
+  hit.normal = glm::normalize(hit.normal);
+  hit.cosine = -glm::dot(hit.normal, direction);
+  if (hit.cosine < 0) {
+    hit.cosine = -hit.cosine;
+    hit.normal = -hit.normal;
+  }
+  hit.cosine = std::min(1.0, hit.cosine);
+  return std::isfinite(hit.cosine);
+}
+
+bool PathScene::is_free(const glm::dvec3& origin_m, const glm::dvec3& normal, const glm::dvec3& direction,
+                        double distance_m) const {
+  return meshes_.is_free(lifted(origin_m, normal), glm::vec3(direction), static_cast<float>(distance_m));
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,79 @@
+// Worlds and sums for tests of multipath. Truth is worked out in each test from docs/physics.md 2.11.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/support/backend_test.hpp"
+
+namespace sonard::test {
+
+inline constexpr double degree = std::numbers::pi / 180.0;
+
+/// A Gemini-like fan of `beams` equal angles over 120 degrees; no absorption, no pattern.
+inline render::PingRequest fan_request(int beams, double height_deg, double range_m, double step_m) {
+  render::PingRequest request;
+  request.settings.aperture.beam_edges_rad = render::equal_angle_edges(beams, 120 * degree);
+  request.settings.aperture.vertical_beamwidth_rad = height_deg * degree;
+  request.settings.range = {static_cast<int>(std::lround(range_m / step_m)), step_m, 0, false};
+  request.settings.physical.absorption_db_per_m = 0;
+  request.settings.physical.multipath.water_surface_rms_height_m = 0;
+  return request;
+}
+
+inline render::Body smooth_body(const std::string& name, render::TriangleMesh mesh, double reflection = 1.0,
+                                double rms_height_m = 0.0, double lambert_mu = 0.0) {
+  render::Body body = make_body(name, std::move(mesh), lambert_mu);
+  body.parts[0].material.pressure_reflection = reflection;
+  body.parts[0].material.rms_height_m = rms_height_m;
+  return body;
+}
+
+/// Reflects nothing but what it scatters: no facets, no mirror.
+inline render::Body rough_body(const std::string& name, render::TriangleMesh mesh, double lambert_mu = 0.1) {
+  return smooth_body(name, std::move(mesh), 0.0, 0.0, lambert_mu);
+}
+
+/// Sum over bins of lines that touch [from_m, to_m] in the beams whose middle is within (from_deg, to_deg).
+inline double energy(const render::EchoImage& image, const render::SonarSettings& settings, double from_m,
+                     double to_m, double from_deg = -60, double to_deg = 60) {
+  const auto& edges = settings.aperture.beam_edges_rad;
+  double sum = 0.0;
+  for (int beam = 0; beam < image.beams; ++beam) {
+    const auto b = static_cast<std::size_t>(beam);
+    const double middle_deg = 0.5 * (edges[b] + edges[b + 1]) / degree;
+    if (middle_deg < from_deg || middle_deg > to_deg) {
+      continue;
+    }
+    for (int line = 0; line < image.lines; ++line) {
+      if ((line + 1) * settings.range.step_m > from_m && line * settings.range.step_m <= to_m) {
+        sum += static_cast<double>(image.at(beam, line));
+      }
+    }
+  }
+  return sum;
+}
+
+/// The line with most echo of those beams, summed over them.
+inline int strongest_line(const render::EchoImage& image, const render::SonarSettings& settings,
+                          double from_m, double to_m, double from_deg = -60, double to_deg = 60) {
+  int strongest = -1;
+  double most = 0.0;
+  const double step_m = settings.range.step_m;
+  for (int line = static_cast<int>(from_m / step_m); line <= static_cast<int>(to_m / step_m); ++line) {
+    const double middle_m = (line + 0.5) * step_m;
+    const double sum = energy(image, settings, middle_m, middle_m, from_deg, to_deg);
+    if (sum > most) {
+      most = sum;
+      strongest = line;
+    }
+  }
+  return strongest;
+}
+
+inline double decibels(double ratio) {
+  return 10 * std::log10(ratio);
+}
+
+}  // namespace sonard::test
