@@ -44,7 +44,12 @@ std::vector<EffectPicture> response_pictures() {
              view.settings.aperture.element_phase_sd_rad = 26 * std::numbers::pi / 180;
            }},
       {.name = "pulse",
-       .view = [] { return configured_view("demo.yaml", 20); },
+       .view =
+           [] {
+             View view = configured_view("demo.yaml", 20);
+             view.settings.physical.noise = false;  // with it the picture is large
+             return view;
+           },
        .caption_before = "pulse: point",
        .before = [](View& view) { view.settings.physical.pulse = Pulse::point; },
        .caption_after = "pulse: tone, of 128 cycles",
