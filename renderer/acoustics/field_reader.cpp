@@ -25,6 +25,9 @@ FieldReader::FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& 
 }
 
 Phasors FieldReader::line(int native) {
+  if (field_.beam.real != nullptr) {
+    return {field_.beam.real + native, field_.beam.imaginary + native};
+  }
   const int reach = tables_.range_grain.reach();
   if (reach == 0) {
     if (field_.kept != nullptr) {

@@ -15,6 +15,8 @@ namespace sonard::render {
 struct RandomFieldOfPing {
   RandomKey key;
   SpeckleField* kept = nullptr;  ///< keeps it from ping to ping; null: it is drawn anew
+  /// Of a single beam: the whole field is there, line by line; null: it is not.
+  Phasors beam{nullptr, nullptr};
 };
 
 /// Reads one field. Each thread has one of its own. Where lines share a pulse a kept field has to be evolved

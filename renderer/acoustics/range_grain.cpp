@@ -12,9 +12,27 @@ namespace {
 
 constexpr int most_lines_each_side = 32;
 
-double pulse_amplitude(double cells) {
+using Pulse = PhysicalModel::Pulse;
+
+double sinc_at(double cells) {
   const double x = std::numbers::pi * cells;
   return x == 0 ? 1.0 : std::sin(x) / x;
+}
+
+/// Amplitude that is heard `lines` away from an echo, of any scale; 0 beyond the main lobe.
+double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
+  const double cells = lines * line_cells;
+  switch (pulse) {
+    case Pulse::point:
+      return lines == 0 ? 1.0 : 0.0;
+    case Pulse::chirp:
+      return cells < 1 ? sinc_at(cells) : 0.0;
+    case Pulse::windowed_chirp:  // the transform of a Hann window
+      return cells < 2 ? sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1)) : 0.0;
+    case Pulse::tone:
+      return std::max(0.0, std::min(0.5, cells + line_cells / 2) - std::max(-0.5, cells - line_cells / 2));
+  }
+  return 0.0;
 }
 
 SONARD_SIMD_CLONES
@@ -33,12 +51,19 @@ void add_pair(const float* before, const float* after, float weight, int width, 
 
 }  // namespace
 
-RangeGrain::RangeGrain(double cell_m, double step_m) {
-  std::vector<double> amplitudes{1.0};
-  double power = 1.0;
-  for (int j = 1; j <= most_lines_each_side && j * step_m < cell_m; ++j) {
-    amplitudes.push_back(pulse_amplitude(j * step_m / cell_m));
-    power += 2 * amplitudes.back() * amplitudes.back();
+RangeGrain::RangeGrain(Pulse pulse, double cell_m, double step_m) {
+  if (!(cell_m > 0)) {
+    return;
+  }
+  std::vector<double> amplitudes;
+  double power = 0;
+  for (int j = 0; j <= most_lines_each_side; ++j) {
+    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m);
+    if (!(amplitude > 0)) {
+      break;
+    }
+    amplitudes.push_back(amplitude);
+    power += (j == 0 ? 1 : 2) * amplitude * amplitude;
   }
   weights_.clear();
   std::transform(amplitudes.begin(), amplitudes.end(), std::back_inserter(weights_),

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "renderer/sonar_settings.hpp"
+
 namespace sonard::render {
 
 /// Lines shorter than the pulse hear the same scatterers, and noise behind the same matched filter: their
@@ -12,9 +14,9 @@ class RangeGrain {
  public:
   /// Lines share nothing.
   RangeGrain() = default;
-  /// The main lobe of a matched chirp, sinc(x / cell). @param cell_m where it first falls to 0; 0: a pulse
-  /// without length.
-  RangeGrain(double cell_m, double step_m);
+  /// Of a chirp the main lobe, of a tone its share of each line. @param cell_m PhysicalModel::range_cell_m;
+  /// 0: a pulse without length.
+  RangeGrain(PhysicalModel::Pulse pulse, double cell_m, double step_m);
 
   /// Lines to either side that one line shares its field with; 0: none.
   int reach() const { return static_cast<int>(weights_.size()) - 1; }

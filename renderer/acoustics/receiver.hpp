@@ -1,13 +1,10 @@
 // From mean echo to device samples: speckle, noise, gain, range compression, quantiser.
 #pragma once
 
-#include <cstdint>
 #include <map>
 
-#include "renderer/acoustics/beam_filter.hpp"
 #include "renderer/acoustics/receiver_tables.hpp"
-#include "renderer/acoustics/speckle_field.hpp"
-#include "renderer/pose.hpp"
+#include "renderer/acoustics/stream_fields.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
@@ -30,16 +27,8 @@ class Receiver {
  private:
   struct Stream {
     ReceiverTables tables;
-    SpeckleField speckle, texture;
-    // What the field was made for; with another of these it is begun anew.
-    PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
-    BeamFilter grain;
-    RangeGrain range_grain;
-    std::uint64_t seed = 0;
-    Pose T_world_sonar;  ///< at the last ping
+    StreamFields fields;
   };
-
-  static void advance_speckle(const PingRequest& request, Stream& state);
 
   SkipSwitches skip_;
   SkipCounts skipped_;

@@ -31,7 +31,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       output_scale(settings.output_scale),
       rings(settings.transmit && model.ring_down.on),
       filter(receive_kernel(aperture), aperture.beam_count()),
-      range_grain(model.pulse == PhysicalModel::Pulse::point ? 0.0 : model.range_cell_m, range.step_m),
+      range_grain(model.pulse, model.range_cell_m, range.step_m),
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)),
       ring_down(ring_down_amplitudes(model.ring_down, range)),

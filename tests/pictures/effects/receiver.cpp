@@ -52,10 +52,14 @@ std::vector<EffectPicture> receiver_pictures() {
        .after = [](View& view) { view.settings.physical.speckle = PhysicalModel::Speckle::ou; }},
       {.name = "range_grain",
        .view = close_bed,
-       .caption_before = "pulse: 0 mm",
-       .before = [](View& view) { view.settings.physical.range_cell_m = 0; },
-       .caption_after = "pulse: 40 mm",
-       .after = [](View& view) { view.settings.physical.range_cell_m = 0.04; }},
+       .caption_before = "pulse: point",
+       .before = [](View&) {},
+       .caption_after = "pulse: chirp, with a cell of 40 mm",
+       .after =
+           [](View& view) {
+             view.settings.physical.pulse = PhysicalModel::Pulse::chirp;
+             view.settings.physical.range_cell_m = 0.04;
+           }},
       {.name = "texture",
        .view = docking_station,
        .caption_before = "texture_nu: 0 (off)",

@@ -13,6 +13,7 @@
 namespace sonard::render {
 namespace {
 
+constexpr auto chirp = PhysicalModel::Pulse::chirp;
 constexpr double step_m = 0.01;
 constexpr double cell_m = 0.035;  // three and a half lines
 
@@ -68,15 +69,30 @@ void expect_grain(const PingSamples& samples, double power) {
 }
 
 TEST(RangeGrain, SquaresOfItsWeightsAddUpToOne) {
-  const RangeGrain grain(cell_m, step_m);
+  const RangeGrain grain(chirp, cell_m, step_m);
   EXPECT_EQ(grain.reach(), 3);
   double sum = std::pow(grain.weight(0), 2);
   for (int j = 1; j <= 3; ++j) {
     sum += 2 * std::pow(grain.weight(j), 2);
   }
   EXPECT_NEAR(sum, 1, 1e-6);
-  EXPECT_EQ(RangeGrain(step_m, step_m).reach(), 0);
-  EXPECT_EQ(RangeGrain(0, step_m).reach(), 0);
+  EXPECT_EQ(RangeGrain(chirp, step_m, step_m).reach(), 0);
+  EXPECT_EQ(RangeGrain(chirp, 0, step_m).reach(), 0);
+}
+
+// A box three lines long: [1 1 1]. One of two and a half, in the middle of a line: [3/4 1 3/4]. Under a Hann
+// window the main lobe is twice as wide, 1/2 where a bare chirp is 0.
+TEST(RangeGrain, EveryPulseHasItsShape) {
+  const RangeGrain three(PhysicalModel::Pulse::tone, 3 * step_m, step_m);
+  EXPECT_EQ(three.reach(), 1);
+  EXPECT_NEAR(three.weight(1), three.weight(0), 1e-6);
+  const RangeGrain two_and_a_half(PhysicalModel::Pulse::tone, 2.5 * step_m, step_m);
+  EXPECT_NEAR(two_and_a_half.weight(1) / two_and_a_half.weight(0), 0.75, 1e-6);
+  EXPECT_EQ(RangeGrain(PhysicalModel::Pulse::tone, step_m, step_m).reach(), 0);
+  const RangeGrain windowed(PhysicalModel::Pulse::windowed_chirp, 2 * step_m, step_m);
+  EXPECT_EQ(windowed.reach(), 3);
+  EXPECT_NEAR(windowed.weight(2) / windowed.weight(0), 0.5, 1e-6);
+  EXPECT_EQ(RangeGrain(PhysicalModel::Pulse::point, 3 * step_m, step_m).reach(), 0);
 }
 
 TEST(RangeGrain, SpeckleOfShortLinesHasTheGrainOfThePulse) {

@@ -113,6 +113,7 @@ constexpr double level = 0.05;
 
 render::SonarSettings even_gain() {
   render::SonarSettings settings = server::GeminiHeadConfig().acoustics;
+  settings.physical.pulse = render::PhysicalModel::Pulse::point;  // lines are independent
   settings.physical.tvg_log_coefficient = 0;
   settings.physical.tvg_absorption_db_per_m = 0;
   settings.physical.gain_db = 0;

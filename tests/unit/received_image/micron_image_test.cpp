@@ -25,8 +25,9 @@ class MicronClient {
   explicit MicronClient(const server::MicronHeadConfig& head) : head_(head) {}
 
   /// The next line, as decoded.
-  std::vector<std::uint8_t> line(float intensity, bool transmit = true) {
+  std::vector<std::uint8_t> line(float intensity, bool transmit = true, double bearing_rad = 0) {
     micron::MicronJob job;
+    job.bearing_rad = bearing_rad;
     job.bins = bins;
     job.bin_length_m = range_m / bins;
     job.sound_speed_mps = 1500;
@@ -34,6 +35,7 @@ class MicronClient {
     job.transmit = transmit;
     render::PingRequest request;
     request.settings = server::to_sonar_settings(job, head_);
+    request.T_world_sonar = server::T_world_transducer({}, job);
     request.ping_number = ping_number_++;
     request.seed = 3;
     const render::EchoImage echo{1, bins, std::vector<float>(bins, intensity)};
@@ -101,6 +103,49 @@ TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
 TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
   MicronClient client{server::MicronHeadConfig()};
   EXPECT_EQ(client.line(0, false)[bin_at(0.3)], 0);
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double mean_a = 0, mean_b = 0, sum = 0, square_a = 0, square_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    mean_a += a[i] / static_cast<double>(a.size());
+    mean_b += b[i] / static_cast<double>(a.size());
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += (a[i] - mean_a) * (b[i] - mean_b);
+    square_a += std::pow(a[i] - mean_a, 2);
+    square_b += std::pow(b[i] - mean_b, 2);
+  }
+  return sum / std::sqrt(square_a * square_b);
+}
+
+// docs/physics.md 2.16: from sweep to sweep of a vehicle at rest echoes repeat by about 0.95, noise does not.
+// An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
+TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
+  server::MicronHeadConfig head;
+  head.acoustics.physical.tvg_log_coefficient = 0;
+  head.acoustics.physical.tvg_absorption_db_per_m = 0;
+  head.acoustics.physical.noise_level_db = 40 - 80 + 9 - 20;
+  head.acoustics.physical.interference.probability = 0;
+  const auto sweep = [](MicronClient& client, float intensity) {
+    std::vector<double> levels;
+    for (double bearing = -3; bearing < 3; bearing += 0.05) {
+      const std::vector<std::uint8_t> line = client.line(intensity, true, bearing);
+      for (std::size_t bin = bin_at(2); bin < line.size(); ++bin) {
+        levels.push_back(std::pow(10, decibels_of(line[bin]) / 20));
+      }
+    }
+    return levels;
+  };
+  const auto echo = static_cast<float>(std::pow(10, (40 - 80 + 9) / 10.0));
+  MicronClient client{head};
+  const double of_echo = correlation(sweep(client, echo), sweep(client, echo));
+  head.acoustics.physical.noise_level_db += 20;
+  MicronClient hearing_noise{head};
+  const double of_noise = correlation(sweep(hearing_noise, 0), sweep(hearing_noise, 0));
+  std::printf("echo %.3f, noise %.3f\n", of_echo, of_noise);
+  EXPECT_GE(of_echo, 0.95);
+  EXPECT_LT(std::abs(of_noise), 0.05);
 }
 
 // Noise of 40 dB in every bin, so that rises are seen: 7 % of 3000 pings are 210 +-14, and their raise is
