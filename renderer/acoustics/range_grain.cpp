@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "renderer/acoustics/sinc.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -13,11 +13,6 @@ namespace {
 constexpr int most_lines_each_side = 32;
 
 using Pulse = PhysicalModel::Pulse;
-
-double sinc_at(double cells) {
-  const double x = std::numbers::pi * cells;
-  return x == 0 ? 1.0 : std::sin(x) / x;
-}
 
 /// Amplitude that is heard `lines` away from an echo, of any scale; 0 beyond the main lobe.
 double pulse_amplitude(Pulse pulse, int lines, double line_cells) {

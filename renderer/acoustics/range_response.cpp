@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
+#include "renderer/acoustics/sinc.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -15,11 +15,6 @@ using Pulse = PhysicalModel::Pulse;
 
 constexpr double reach_cells = 16;
 constexpr int steps_per_cell = 32;  // of the integration
-
-double sinc_at(double x) {
-  const double y = std::numbers::pi * x;
-  return std::abs(y) < 1e-9 ? 1.0 : std::sin(y) / y;
-}
 
 /// Intensity `cells` away from the echo, of any scale.
 double response(Pulse pulse, double cells) {
