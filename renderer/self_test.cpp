@@ -94,8 +94,10 @@ double run_self_test(const RendererOptions& options) {
     settings.sampling = sampling;
     const double error = error_of(renderer.render_echo(request), settings);
     if (!(error < worst_error)) {
-      throw RendererError(fmt::format("self test: the echo of a wall is off by {:.1f} % RMS on {}",
-                                      error * 100, renderer.backend_description()));
+      throw RendererError(
+          fmt::format("self test: the echo of a wall, by {}, is off by {:.1f} % RMS on {}",
+                      sampling.preset == Sampling::Preset::grid ? "a fixed grid" : "the default preset",
+                      error * 100, renderer.backend_description()));
     }
     worst = std::max(worst, error);
   }

@@ -228,9 +228,17 @@ std::unique_ptr<GpuBinner> make_gpu_binner(GpuBinning wanted, ChosenSampler& cho
       (wanted == GpuBinning::automatic && !hardware)) {
     return nullptr;
   }
-  auto binner = std::make_unique<GpuBinner>(*chosen.raster);
-  chosen.description += "; fixed grids are binned by it too";
-  return binner;
+  try {
+    auto binner = std::make_unique<GpuBinner>(*chosen.raster);
+    chosen.description += "; fixed grids are binned by it too";
+    return binner;
+  } catch (const RendererError& error) {
+    if (wanted == GpuBinning::on) {
+      throw;
+    }
+    chosen.description += std::string("; it cannot bin: ") + error.what();
+    return nullptr;
+  }
 }
 
 }  // namespace

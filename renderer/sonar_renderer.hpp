@@ -58,7 +58,7 @@ struct PingStatistics {
   std::uint64_t saturated_samples = 0;
   /// Why a fixed grid that was to be binned on the GPU was binned on the CPU; empty otherwise. One line.
   std::string gpu_binning_obstacle;
-  SkipCounts skipped;                 ///< what was left out; stages that did not run have counted nothing
+  SkipCounts skipped;  ///< what was left out; stages that did not run have counted nothing
 };
 
 /// Renders pings of one world. Every call, construction and destruction included, comes from one thread,
@@ -66,7 +66,8 @@ struct PingStatistics {
 /// `stream` number, which keeps their speckle apart.
 class SonarRenderer {
  public:
-  /// @throws RendererError when the backend asked for cannot be had: `raster` without OpenGL 4.5.
+  /// @throws RendererError when what was asked for cannot be had: `raster` without OpenGL 4.5, or binning on
+  /// the GPU where its shaders do not build.
   explicit SonarRenderer(const World& world, const RendererOptions& options = {});
   ~SonarRenderer();
   SonarRenderer(const SonarRenderer&) = delete;
