@@ -11,6 +11,21 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double widest_column_rad = 0.25 * degree;
 constexpr double highest_row_rad = 0.08 * degree;
+constexpr double low_weight = 0.25;  // of the elevation pattern
+
+/// Where the pattern has fallen to low_weight, between the axis and the end of the fan.
+double well_heard_rad(const Aperture& aperture) {
+  double heard = 0.0;
+  double end = aperture.elevation_limit_rad();
+  if (aperture.elevation_weight(end) >= low_weight) {
+    return end;
+  }
+  while (end - heard > highest_row_rad) {
+    const double middle = 0.5 * (heard + end);
+    (aperture.elevation_weight(middle) >= low_weight ? heard : end) = middle;
+  }
+  return heard;
+}
 }  // namespace
 
 double FanCell::solid_angle() const {
@@ -41,26 +56,38 @@ FanCell FanCell::part(int column, int row, int divisions) const {
 }
 
 PathFan::PathFan(const Aperture& aperture) : aperture_(aperture) {
+  double widest = 0.0;
   for (int beam = 0; beam < aperture.beam_count(); ++beam) {
     const double from = aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
     const double width = from - aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
     const int columns = std::max(1, static_cast<int>(std::ceil(width / widest_column_rad - 1e-6)));
     for (int i = 0; i < columns; ++i) {
       columns_.push_back({beam, from - width * (i + 0.5) / columns, width / columns});
-      diagonal_rad_ = std::max(diagonal_rad_, width / columns);
+      widest = std::max(widest, width / columns);
     }
   }
-  const double height = 2 * aperture.elevation_limit_rad();
-  rows_ = std::max(1, static_cast<int>(std::ceil(height / highest_row_rad - 1e-6)));
-  row_height_rad_ = height / rows_;
-  lowest_rad_ = -0.5 * height;
-  diagonal_rad_ = std::hypot(diagonal_rad_, row_height_rad_);
+  const double limit = aperture.elevation_limit_rad();
+  const double heard = well_heard_rad(aperture);
+  add_rows(-limit, -heard, 2 * highest_row_rad);
+  add_rows(-heard, heard, highest_row_rad);
+  add_rows(heard, limit, 2 * highest_row_rad);
+  for (const Row& row : rows_) {
+    diagonal_rad_ = std::max(diagonal_rad_, std::hypot(widest, row.height_rad));
+  }
+}
+
+void PathFan::add_rows(double from_rad, double to_rad, double highest_rad) {
+  const int rows = static_cast<int>(std::ceil((to_rad - from_rad) / highest_rad - 1e-6));
+  for (int i = 0; i < rows; ++i) {
+    const double height = (to_rad - from_rad) / rows;
+    rows_.push_back({from_rad + (i + 0.5) * height, height});
+  }
 }
 
 FanCell PathFan::cell(int column, int row) const {
   const Column& at = columns_[static_cast<std::size_t>(column)];
-  return {at.beam, at.azimuth_rad, lowest_rad_ + (row + 0.5) * row_height_rad_, at.width_rad,
-          row_height_rad_};
+  const Row& level = rows_[static_cast<std::size_t>(row)];
+  return {at.beam, at.azimuth_rad, level.elevation_rad, at.width_rad, level.height_rad};
 }
 
 std::optional<int> PathFan::beam_of(double azimuth_rad) const {

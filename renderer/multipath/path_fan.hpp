@@ -24,13 +24,14 @@ struct FanCell {
   FanCell part(int column, int row, int divisions) const;
 };
 
-/// A grid of such cells over the fan: columns that divide beams, rows of equal elevation.
+/// A grid of such cells over the fan: columns that divide beams, rows of equal elevation, twice as high where
+/// the elevation pattern is low.
 class PathFan {
  public:
   explicit PathFan(const Aperture& aperture);
 
   int columns() const { return static_cast<int>(columns_.size()); }
-  int rows() const { return rows_; }
+  int rows() const { return static_cast<int>(rows_.size()); }
   FanCell cell(int column, int row) const;
   /// The angle across a cell from corner to corner, of the largest one.
   double diagonal_rad() const { return diagonal_rad_; }
@@ -46,10 +47,15 @@ class PathFan {
     int beam;
     double azimuth_rad, width_rad;
   };
+  struct Row {
+    double elevation_rad, height_rad;
+  };
+  void add_rows(double from_rad, double to_rad, double highest_rad);
+
   Aperture aperture_;
   std::vector<Column> columns_;
-  int rows_ = 0;
-  double lowest_rad_ = 0.0, row_height_rad_ = 0.0, diagonal_rad_ = 0.0;
+  std::vector<Row> rows_;
+  double diagonal_rad_ = 0.0;
 };
 
 }  // namespace sonard::render

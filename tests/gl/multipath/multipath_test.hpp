@@ -18,6 +18,7 @@ inline render::PingRequest fan_request(int beams, double height_deg, double rang
   request.settings.aperture.vertical_beamwidth_rad = height_deg * degree;
   request.settings.range = {static_cast<int>(std::lround(range_m / step_m)), step_m, 0, false};
   request.settings.physical.absorption_db_per_m = 0;
+  request.settings.physical.backscatter = render::PhysicalModel::Backscatter::lambert;
   request.settings.physical.multipath.water_surface_rms_height_m = 0;
   return request;
 }

@@ -58,6 +58,22 @@ TEST(PathFan, CellsFillTheFanOnce) {
   EXPECT_NEAR(parts, cell.solid_angle(), 1e-15);
 }
 
+TEST(PathFan, RowsAreTwiceAsHighWhereLittleIsHeard) {
+  Aperture aperture;
+  aperture.beam_edges_rad = {0.001, -0.001};
+  aperture.elevation = Aperture::Elevation::sinc;
+  const PathFan fan(aperture);
+  double height = 0.0;
+  for (int row = 0; row < fan.rows(); ++row) {
+    const FanCell cell = fan.cell(0, row);
+    EXPECT_NEAR(cell.elevation_rad, -aperture.elevation_limit_rad() + height + cell.height_rad / 2, 1e-12);
+    EXPECT_LE(cell.height_rad,
+              (aperture.elevation_weight(cell.elevation_rad) > 0.26 ? 0.0801 : 0.1601) * degree);
+    height += cell.height_rad;
+  }
+  EXPECT_NEAR(height, 2 * aperture.elevation_limit_rad(), 1e-12);
+}
+
 TEST(PathFan, BeamsAreFoundByTheirEdges) {
   Aperture aperture;
   aperture.beam_edges_rad = {0.3, 0.1, -0.2};
