@@ -30,6 +30,9 @@ struct RendererOptions {
   unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
   SkipSwitches skip{};   ///< all rules are on by default
   GpuBinning gpu_binning = GpuBinning::automatic;
+  /// g / c: how much faster sound gets per metre upwards, over its speed at the sonar. Positive where rays
+  /// sink, their radius of curvature is 1 / this; 0: rays are straight (docs/physics.md 2.12).
+  double ray_curvature_per_m = 0.0;
 };
 
 }  // namespace sonard::render

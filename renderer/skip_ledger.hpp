@@ -37,6 +37,8 @@ enum class SkipRule : std::uint8_t {
   even_lines,
   perfect_elements,
   short_pulse,
+  motion_within_ping,
+  straight_rays,
 };
 
 /// One line of the ledger. What a rule may change at most, in one ping with the rule on against the same ping
@@ -123,6 +125,12 @@ inline constexpr std::array skip_rules{
                   "the elements of the array have no errors: beyond the lobes nothing leaks", "pings", 0},
     SkipRuleEntry{SkipRule::short_pulse, "short_pulse",
                   "of an echo no more than 0.5 % is heard outside of its line", "pings", 1e-2},
+    SkipRuleEntry{SkipRule::motion_within_ping, "motion_within_ping",
+                  "while it listens the sonar turns by no more than half of a receive beam", "pings", 0.5,
+                  "receive beamwidths of bearing"},
+    SkipRuleEntry{SkipRule::straight_rays, "straight_rays",
+                  "at the end of the range refraction bends rays by less than a quarter of the vertical beam",
+                  "pings", 0.25, "vertical beamwidths of elevation"},
 };
 
 inline constexpr std::size_t skip_rule_count = skip_rules.size();

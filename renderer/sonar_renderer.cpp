@@ -12,7 +12,10 @@
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/binning/gpu_binner.hpp"
 #include "renderer/multipath/multipath.hpp"
+#include "renderer/ping_motion.hpp"
 #include "renderer/visibility/beam_refinement.hpp"
+#include "renderer/visibility/bent_world.hpp"
+#include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
 #include "renderer/visibility/slices/slice_sampler.hpp"
@@ -180,17 +183,23 @@ bool has_random_array(const SonarSettings& settings) {
          (aperture.element_amplitude_sd > 0 || aperture.element_phase_sd_rad > 0);
 }
 
+/// Where the sonar is while it pings.
+struct SonarMotion {
+  Pose T_world_sonar;          ///< when the ping is sent
+  std::optional<Pose> at_end;  ///< when its last line is heard; nullopt: as if at rest
+  bool operator==(const SonarMotion&) const = default;
+};
+
 /// The last mean echo of a stream, and what it was made of.
 struct KnownEcho {
   EchoImage image;
   SonarSettings settings;
   std::uint64_t seed = 0;
-  Pose T_world_sonar;
+  SonarMotion motion;
   std::uint64_t world_revision = 0;  ///< 0: there is none yet
 
-  bool fits(const PingRequest& wanted, const Pose& T_world_sonar_wanted, std::uint64_t revision) const {
-    return world_revision == revision && T_world_sonar == T_world_sonar_wanted &&
-           same_echo(settings, wanted.settings) &&
+  bool fits(const PingRequest& wanted, const SonarMotion& motion_wanted, std::uint64_t revision) const {
+    return world_revision == revision && motion == motion_wanted && same_echo(settings, wanted.settings) &&
            (seed == wanted.seed || !has_random_array(wanted.settings));
   }
 };
@@ -254,31 +263,75 @@ struct SonarRenderer::Impl {
   Multipath multipath;
   Receiver receiver;
   PingStatistics statistics;
+  const double ray_curvature_per_m;
   std::map<std::string, Pose> T_world_body;
   std::uint64_t world_revision = 1;         // counts the moves of bodies
   std::map<int, KnownEcho> known_echoes;    // by stream
   std::map<int, EchoReception> receptions;  // by stream
   EchoImage fine_echo;                      // memory
 
-  Impl(const World& world, const RendererOptions& options)
+  /// @param surfaces the same world, for whatever finds its surfaces along rays that may bend.
+  Impl(const World& world, const World& surfaces, const RendererOptions& options)
       : skip(options.skip),
         largest_response(render::largest_response(world)),
         workers(options.threads),
-        chosen(choose_sampler(world, options.backend, workers)),
+        chosen(choose_sampler(surfaces, options.backend, workers)),
         gpu_binner(make_gpu_binner(options.gpu_binning, chosen)),
         refinement(*chosen.sampler, workers),
         multipath(world, workers, options.skip),
-        receiver(options.skip) {
+        receiver(options.skip),
+        ray_curvature_per_m(options.ray_curvature_per_m) {
     for (const Body& body : world.bodies) {
       T_world_body[body.name] = body.T_world_body;
     }
     if (chosen.backend == Backend::ray) {
-      slices = std::make_unique<SliceSampler>(world, workers, skip);
+      slices = std::make_unique<SliceSampler>(surfaces, workers, slice_switches(options));
+    }
+  }
+
+  /// Facets that were divided so that they bend with the rays are not to be merged again.
+  static SkipSwitches slice_switches(const RendererOptions& options) {
+    SkipSwitches switches = options.skip;
+    return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);
+  }
+
+  /// SkipRule::motion_within_ping. @throws RequestError
+  SonarMotion motion_of(const PingRequest& request) {
+    SonarMotion motion{checked(request.T_world_sonar), std::nullopt};
+    const SonarSettings& settings = request.settings;
+    if (!request.T_world_sonar_at_end || settings.model != Model::physical ||
+        !settings.physical.motion_within_ping) {
+      return motion;
+    }
+    const Pose at_end = checked(*request.T_world_sonar_at_end);
+    if (at_end == motion.T_world_sonar) {
+      return motion;
+    }
+    if (skip.on(SkipRule::motion_within_ping) && !turns_beams(turn_between_rad(motion.T_world_sonar, at_end),
+                                                              settings.aperture.receive_beamwidth_rad)) {
+      statistics.skipped.add(SkipRule::motion_within_ping);
+      return motion;
+    }
+    motion.at_end = at_end;
+    return motion;
+  }
+
+  /// SkipRule::straight_rays.
+  void bend_rays(const SonarSettings& settings) {
+    double bend_per_m = settings.model == Model::physical ? ray_curvature_per_m / 2 : 0.0;
+    if (bend_per_m != 0.0 && skip.on(SkipRule::straight_rays) &&
+        !bends_beams(bend_per_m, settings.range.max_range_m(), settings.aperture.vertical_beamwidth_rad)) {
+      statistics.skipped.add(SkipRule::straight_rays);
+      bend_per_m = 0.0;
+    }
+    chosen.sampler->set_ray_bend(bend_per_m);
+    if (slices) {
+      slices->set_ray_bend(bend_per_m);
     }
   }
 
   /// @param settings_and_seed of which the pose is not looked at
-  void render_echo(const PingRequest& settings_and_seed, int stream, const Pose& T_world_sonar,
+  void render_echo(const PingRequest& settings_and_seed, int stream, const SonarMotion& motion,
                    EchoImage& image) {
     const SonarSettings& settings = settings_and_seed.settings;
     image.beams = settings.aperture.beam_count();
@@ -291,12 +344,12 @@ struct SonarRenderer::Impl {
     EchoReception& reception = receptions[stream];
     reception.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
     if (reception.has_pattern()) {
-      sample_echo(EchoReception::sampled(settings), T_world_sonar, fine_echo);
+      sample_echo(EchoReception::sampled(settings), motion, fine_echo);
       Stopwatch watch;
       reception.hear(fine_echo, image, workers, skip, statistics.skipped);
       statistics.azimuth_pattern_s = watch.lap();
     } else {
-      sample_echo(settings, T_world_sonar, image);
+      sample_echo(settings, motion, image);
     }
     Stopwatch watch;
     reception.spread(image, workers);
@@ -304,16 +357,20 @@ struct SonarRenderer::Impl {
   }
 
   /// The echo as it comes to the sonar.
-  void sample_echo(const SonarSettings& settings, const Pose& T_world_sonar, EchoImage& image) {
+  void sample_echo(const SonarSettings& settings, const SonarMotion& motion, EchoImage& image) {
     image.beams = settings.aperture.beam_count();
     image.lines = settings.range.count;
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
-    BinningResult bins = look(settings, T_world_sonar, line_weight, std::move(image.intensity));
+    bend_rays(settings);
+    const Summing summing{line_weight, binning_options(settings, skip, largest_response)};
+    BinningResult bins = motion.at_end
+                             ? look_in_spans(settings, motion, summing, std::move(image.intensity))
+                             : look(settings, motion.T_world_sonar, summing, std::move(image.intensity));
     image.intensity = std::move(bins.echo);
     Stopwatch watch;
-    multipath.add_to(image.intensity, settings, T_world_sonar, statistics.skipped);
+    multipath.add_to(image.intensity, settings, motion.T_world_sonar, statistics.skipped);
     statistics.multipath_s = watch.lap();
     if (settings.model == Model::physical) {
       add_volume_reverberation(bins.open_sr, settings, image);
@@ -325,73 +382,110 @@ struct SonarRenderer::Impl {
     statistics.binning_s += watch.lap();
   }
 
-  /// Finds what is visible and bins it; fills the statistics of both.
-  /// @param line_weight what the lines are yet to be multiplied with; empty: 1.
-  /// @param memory for the result
-  BinningResult look(const SonarSettings& settings, const Pose& T_world_sonar,
-                     const std::vector<float>& line_weight, std::vector<float> memory) {
-    if (needs_grid(settings)) {
-      return look_with_grid(T_world_sonar, settings, std::move(memory));
+  /// How what is seen becomes an image; the same in all looks of a ping.
+  struct Summing {
+    const std::vector<float>& line_weight;  ///< what lines are yet to be multiplied with; empty: 1
+    BinningOptions options;
+  };
+
+  /// Every line from the pose of its span. Nothing is blended, so a line is heard whole, and once.
+  BinningResult look_in_spans(const SonarSettings& settings, const SonarMotion& motion,
+                              const Summing& summing, std::vector<float> memory) {
+    BinningResult joined;
+    joined.beams = settings.aperture.beam_count();
+    joined.lines = settings.range.count;
+    joined.echo = std::move(memory);
+    joined.echo.resize(static_cast<std::size_t>(joined.beams) * static_cast<std::size_t>(joined.lines));
+    joined.open_sr.resize(summing.options.open_water ? joined.echo.size() : 0);
+    SonarSettings up_to_end = settings;
+    BinningResult bins;
+    for (const RangeSpan& span : range_spans(motion.T_world_sonar, *motion.at_end, settings.range.count,
+                                             settings.aperture.receive_beamwidth_rad)) {
+      up_to_end.range.count = span.end_line;
+      bins = look(up_to_end, span.T_world_sonar, summing, std::move(bins.echo));
+      copy_lines(bins.echo, span, joined.beams, joined.echo);
+      copy_lines(bins.open_sr, span, joined.beams, joined.open_sr);
     }
-    return slices ? look_in_slices(T_world_sonar, settings, std::move(memory))
-                  : look_until_close(T_world_sonar, settings, line_weight);
+    return joined;
+  }
+
+  /// From an image that ends with the span.
+  static void copy_lines(const std::vector<float>& from, const RangeSpan& span, int beams,
+                         std::vector<float>& to) {
+    const std::size_t lines_from = from.size() / static_cast<std::size_t>(beams);
+    const std::size_t lines_to = to.size() / static_cast<std::size_t>(beams);
+    for (std::size_t beam = 0; beam < static_cast<std::size_t>(beams) && lines_from > 0; ++beam) {
+      const auto first = static_cast<std::size_t>(span.first_line);
+      std::copy(&from[beam * lines_from] + first, &from[beam * lines_from] + lines_from,
+                &to[beam * lines_to] + first);
+    }
+  }
+
+  /// Finds what is visible and bins it; adds to the statistics of both.
+  /// @param memory for the result
+  BinningResult look(const SonarSettings& settings, const Pose& T_world_sonar, const Summing& summing,
+                     std::vector<float> memory) {
+    if (needs_grid(settings)) {
+      return look_with_grid(T_world_sonar, settings, summing, std::move(memory));
+    }
+    return slices ? look_in_slices(T_world_sonar, settings, summing, std::move(memory))
+                  : look_until_close(T_world_sonar, settings, summing);
   }
 
   BinningResult look_with_grid(const Pose& T_world_sonar, const SonarSettings& settings,
-                               std::vector<float> memory) {
+                               const Summing& summing, std::vector<float> memory) {
     Stopwatch watch;
     const SampleGrid& samples = grid_for(settings);
     const SurfaceModel surface = surface_model(settings, skip);
-    const BinningOptions options = binning_options(settings, skip, largest_response);
     if (gpu_binner) {
-      statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, options);
+      statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, summing.options);
       if (statistics.gpu_binning_obstacle.empty()) {
         const auto textures = chosen.raster->draw(T_world_sonar, samples, surface, sampled_range_m(settings));
-        statistics.visibility_s = watch.lap();
-        return counted(gpu_binner->bin(textures, settings.range, options, std::move(memory)), watch);
+        statistics.visibility_s += watch.lap();
+        return counted(gpu_binner->bin(textures, settings.range, summing.options, std::move(memory)), watch);
       }
     }
     const auto views = chosen.sampler->sample(T_world_sonar, samples, surface, sampled_range_m(settings));
-    statistics.visibility_s = watch.lap();
-    return counted(bin_echoes(samples, views, settings.range, options, workers, std::move(memory)), watch);
+    statistics.visibility_s += watch.lap();
+    return counted(bin_echoes(samples, views, settings.range, summing.options, workers, std::move(memory)),
+                   watch);
   }
 
   BinningResult look_in_slices(const Pose& T_world_sonar, const SonarSettings& settings,
-                               std::vector<float> memory) {
+                               const Summing& summing, std::vector<float> memory) {
     Stopwatch watch;
     const auto cells =
         slices->sample(T_world_sonar, settings.aperture, settings.range, sampled_range_m(settings),
                        surface_model(settings, skip), slice_accuracy(settings));
-    statistics.visibility_s = watch.lap();
+    statistics.visibility_s += watch.lap();
     statistics.skipped += slices->skipped();
-    return counted(bin_echoes(cells, settings.aperture, settings.range,
-                              binning_options(settings, skip, largest_response), workers, std::move(memory)),
-                   watch);
+    return counted(
+        bin_echoes(cells, settings.aperture, settings.range, summing.options, workers, std::move(memory)),
+        watch);
   }
 
   /// Adds what binning has counted and taken to the statistics.
   BinningResult counted(BinningResult bins, Stopwatch& watch) {
     statistics.skipped += bins.skipped;
-    statistics.binning_s = watch.lap();
-    statistics.samples = bins.samples;
-    statistics.invalid_samples = bins.invalid_samples;
-    statistics.saturated_samples = bins.saturated_samples;
+    statistics.binning_s += watch.lap();
+    statistics.samples += bins.samples;
+    statistics.invalid_samples += bins.invalid_samples;
+    statistics.saturated_samples += bins.saturated_samples;
     return bins;
   }
 
   BinningResult look_until_close(const Pose& T_world_sonar, const SonarSettings& settings,
-                                 const std::vector<float>& line_weight) {
+                                 const Summing& summing) {
     Stopwatch watch;
     const SurfaceModel surface = surface_model(settings, skip);
-    const BinningOptions options = binning_options(settings, skip, largest_response);
-    BeamRefinement::Result found =
-        refinement.look({T_world_sonar, settings, surface, sampled_range_m(settings), options, line_weight},
-                        skip.on(SkipRule::unchanged_settings));
+    BeamRefinement::Result found = refinement.look(
+        {T_world_sonar, settings, surface, sampled_range_m(settings), summing.options, summing.line_weight},
+        skip.on(SkipRule::unchanged_settings));
     if (found.known_grid) {
       statistics.skipped.add(SkipRule::unchanged_settings);
     }
     BinningResult bins = counted(std::move(found.bins), watch);
-    statistics.visibility_s = found.visibility_s;
+    statistics.visibility_s += found.visibility_s;
     statistics.binning_s -= found.visibility_s;
     return bins;
   }
@@ -438,7 +532,9 @@ struct SonarRenderer::Impl {
 };
 
 SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
-    : impl_(std::make_unique<Impl>(world, options)) {}
+    : impl_(options.ray_curvature_per_m == 0.0
+                ? std::make_unique<Impl>(world, world, options)
+                : std::make_unique<Impl>(world, bendable(world, options.ray_curvature_per_m), options)) {}
 SonarRenderer::~SonarRenderer() = default;
 
 Backend SonarRenderer::backend() const {
@@ -469,19 +565,18 @@ bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_wo
 
 const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stream) {
   check(request.settings);
-  const Pose T_world_sonar = checked(request.T_world_sonar);
   impl_->statistics = {};
+  const SonarMotion motion = impl_->motion_of(request);
   KnownEcho& known = impl_->known_echoes[stream];
-  if (impl_->skip.on(SkipRule::unchanged_scene) &&
-      known.fits(request, T_world_sonar, impl_->world_revision)) {
+  if (impl_->skip.on(SkipRule::unchanged_scene) && known.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);
     return known.image;
   }
   known.world_revision = 0;  // until all of it is there
-  impl_->render_echo(request, stream, T_world_sonar, known.image);
+  impl_->render_echo(request, stream, motion, known.image);
   known.settings = request.settings;
   known.seed = request.seed;
-  known.T_world_sonar = T_world_sonar;
+  known.motion = motion;
   known.world_revision = impl_->world_revision;
   return known.image;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,10 +39,13 @@ struct PingSamples {
 };
 
 struct PingRequest {
-  Pose T_world_sonar;
+  Pose T_world_sonar;  ///< when the ping is sent
   SonarSettings settings;
   std::uint64_t ping_number = 0;  ///< enters the random numbers; never wraps
   std::uint64_t seed = 0;
+  /// When the echo of the last line returns, 2 R / c later; nullopt: the sonar is at rest
+  /// (docs/physics.md 2.14).
+  std::optional<Pose> T_world_sonar_at_end{};
 };
 
 /// Seconds spent, and how much work there was. For logs, metrics and the benchmark.

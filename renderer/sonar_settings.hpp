@@ -173,6 +173,9 @@ struct PhysicalModel {
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   RingDown ring_down;
   Interference interference;
+  /// Whether receive beams turn with the sonar while echoes return (docs/physics.md 2.14). false: the whole
+  /// ping is heard from where it was sent.
+  bool motion_within_ping = true;
 
   bool operator==(const PhysicalModel&) const = default;
 };

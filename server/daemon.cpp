@@ -287,7 +287,9 @@ int run_daemon(const DaemonConfig& config) {
                        fmt::format("head '{}': {}", common(head).name, error.what()));
     }
   }
-  const render::RendererOptions options{config.backend, 0, config.skip, config.gpu_binning};
+  const render::RendererOptions options{
+      config.backend, 0, config.skip, config.gpu_binning,
+      config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     if (!config.skip.on(entry.rule)) {
       spdlog::info("skip rule {} is off", entry.name);

@@ -19,6 +19,9 @@ struct PingJob {
   int compression_log2 = 0;   ///< 2^n native lines are averaged into one line of the image; 0..4
   double line_step_m = 0.0;   ///< range of one native line: sound_speed_mps / (2 * 90422 Hz)
   double sound_speed_mps = 0.0;  ///< true speed in the water
+  /// What the head reckons with, and forms its beams by: that of the configuration, or its velocimeter's,
+  /// which is true.
+  double assumed_sound_speed_mps = 0.0;
   bool sixteen_bit = false;
   double pulse_s = 0.0;  ///< duration of the tone that is transmitted
   bool transmit = true;  ///< false: the head only listens, there are no echoes but there is noise

@@ -38,6 +38,8 @@ PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   job.compression_log2 = config.compression_log2();
   job.sound_speed_mps =
       device.water_sound_speed_mps > 0.0 ? device.water_sound_speed_mps : configured_speed_mps(config);
+  job.assumed_sound_speed_mps =
+      config.uses_configured_sound_speed() ? configured_speed_mps(config) : job.sound_speed_mps;
   job.line_step_m = job.sound_speed_mps / (2.0 * line_rate_hz);
   job.pulse_s = config.tx_length / carrier_hz;
   job.transmit = config.tx_length != 0;

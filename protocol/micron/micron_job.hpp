@@ -1,6 +1,7 @@
 // What goes between the head, which decides when and where to ping, and whoever renders.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct MicronJob {
   bool transmit = true;   ///< false: the head only listens, there are no echoes but there is noise
 
   double range_m() const { return bins * bin_length_m; }
+  /// Until the echo of the last bin is in.
+  std::chrono::nanoseconds listening_time() const {
+    return std::chrono::nanoseconds{static_cast<std::int64_t>(1e9 * bins * bin_time_s)};
+  }
 };
 
 /// The rendered samples of a job: MicronJob::bins of them, from near to far, 0..255 = 0..80 dB of receiver

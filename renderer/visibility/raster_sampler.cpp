@@ -28,6 +28,7 @@
 #include "renderer/errors.hpp"
 #include "renderer/visibility/egl_context.hpp"
 #include "renderer/visibility/normal_pyramid.hpp"
+#include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/surface_shader.hpp"
 
 namespace sonard::render {
@@ -236,6 +237,7 @@ struct ViewTarget {
   osg::ref_ptr<osgUtil::SceneView> scene_view;
   osg::ref_ptr<osg::Texture2D> texture;
   osg::ref_ptr<osg::Uniform> tan_half;
+  osg::ref_ptr<osg::Uniform> ray_bend;
   std::vector<SurfaceSample> samples;
   std::uint64_t used = 0;  ///< number of the call that used it last
 
@@ -273,21 +275,30 @@ ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* stat
   osg::StateSet* state_set = target.scene_view->getGlobalStateSet();
   target.tan_half = new osg::Uniform("tan_half", osg::Vec2());
   state_set->addUniform(target.tan_half);
+  target.ray_bend = new osg::Uniform("ray_bend", osg::Vec4());
+  state_set->addUniform(target.ray_bend);
   state_set->addUniform(
       new osg::Uniform("pixels", osg::Vec2(static_cast<float>(columns), static_cast<float>(rows))));
-  // Only the sides cull: there is no far plane, and small features are echoes too.
-  target.scene_view->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING);
   target.scene_view->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-  camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING);
   camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
   return target;
 }
 
-void aim(const ViewTarget& target, const SubView& view) {
+/// @param bend in the sonar frame
+void aim(const ViewTarget& target, const SubView& view, const RayBend& bend) {
   target.scene_view->getCamera()->setViewMatrix(view_matrix(view));
   target.scene_view->getCamera()->setProjectionMatrix(projection_matrix(view));
   target.tan_half->set(
       osg::Vec2(static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height)));
+  const osg::Vec3 up =
+      osg::Matrixd::transform3x3(osg::Vec3(bend.up.x, bend.up.y, bend.up.z), view_matrix(view));
+  target.ray_bend->set(osg::Vec4(up, bend.per_m));
+  // Only the sides cull: there is no far plane, and small features are echoes too. Boxes are not bent, so
+  // with refraction none of them is dropped; their ranges stay what they are.
+  const osg::CullSettings::CullingMode culling =
+      bend.straight() ? osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING : osg::CullSettings::NO_CULLING;
+  target.scene_view->setCullingMode(culling);
+  target.scene_view->getCamera()->setCullingMode(culling);
 }
 
 // Making a target takes as long as drawing into it, so those of earlier calls are kept: so many pixels in all
@@ -311,6 +322,7 @@ struct RasterSampler::Impl {
   double target_pixels = 0;       // of all of them
   std::uint64_t calls = 0;        // of sample()
   float max_range_m = 0.0F;
+  float bend_per_m = 0.0F;
   int max_texture_px = 0;
 
   explicit Impl(const World& world) : context(new EglContext) {
@@ -383,7 +395,7 @@ struct RasterSampler::Impl {
   }
 
   /// A target for every view, aimed at it.
-  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views) {
+  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views, const RayBend& bend) {
     ++calls;
     std::vector<ViewTarget*> found;
     for (const SubView& view : views) {
@@ -392,7 +404,7 @@ struct RasterSampler::Impl {
                            " pixels");
       }
       found.push_back(&target_for(view));
-      aim(*found.back(), view);
+      aim(*found.back(), view, bend);
     }
     while (targets.back().used != calls &&
            (target_pixels > most_kept_pixels || targets.size() > most_kept_targets)) {
@@ -427,7 +439,9 @@ struct RasterSampler::Impl {
   std::vector<ViewTarget*> draw(const Pose& T_world_sonar, const SampleGrid& grid,
                                 const SurfaceModel& surface, double range_m) {
     make_current();
-    std::vector<ViewTarget*> views = targets_for(grid.views);
+    const RayBend bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
+                       bend_per_m};
+    std::vector<ViewTarget*> views = targets_for(grid.views, bend);
     set_surface(surface);
     max_range_m = static_cast<float>(range_m);
     const Pose T_sonar_world = inverse(T_world_sonar);
@@ -499,6 +513,10 @@ bool RasterSampler::set_body_pose(const std::string& body_name, const Pose& T_wo
   }
   body->second.T_world_body = T_world_body;
   return true;
+}
+
+void RasterSampler::set_ray_bend(double bend_per_m) {
+  impl_->bend_per_m = static_cast<float>(bend_per_m);
 }
 
 const std::string& RasterSampler::description() const {

@@ -24,6 +24,7 @@ class RasterSampler final : public Sampler {
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m) override;
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body) override;
+  void set_ray_bend(double bend_per_m) override;
   const std::string& description() const override;
 
   /// As sample(), but what is seen stays on the GPU.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "renderer/simd.hpp"
+#include "renderer/visibility/bent_world.hpp"
 
 namespace sonard::render {
 
@@ -68,10 +70,18 @@ void RaySampler::View::turn(const glm::dquat& R_world_sonar) {
 
 RaySampler::RaySampler(const World& world, WorkerPool& workers, const std::string& embree_settings)
     : workers_(workers),
+      embree_settings_(embree_settings),
+      world_(world),
       scene_(world, workers, embree_settings),
       description_("ray, " + scene_.description()) {}
 
 bool RaySampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  const auto body = std::find_if(world_.bodies.begin(), world_.bodies.end(),
+                                 [&](const Body& candidate) { return candidate.name == body_name; });
+  if (body == world_.bodies.end()) {
+    return false;
+  }
+  body->T_world_body = T_world_body;
   return scene_.set_body_pose(body_name, T_world_body);
 }
 
@@ -120,7 +130,14 @@ void RaySampler::prepare(const SampleGrid& grid) {
 std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                      const SurfaceModel& surface, double max_range_m) {
   prepare(grid);
-  scene_.place(T_world_sonar.position_m);
+  std::optional<EmbreeScene> bent;
+  if (bend_per_m_ == 0.0) {
+    scene_.place(T_world_sonar.position_m);
+  } else {
+    bent.emplace(bent_world(world_, T_world_sonar.position_m, bend_per_m_), workers_, embree_settings_);
+    bent->place(glm::dvec3(0.0));
+  }
+  const EmbreeScene& scene = bent ? *bent : scene_;
   for (View& view : views_) {
     view.turn(T_world_sonar.orientation);
   }
@@ -129,7 +146,7 @@ std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, 
     const std::size_t begin = static_cast<std::size_t>(job) * tiles_per_job;
     const std::size_t end = std::min(begin + tiles_per_job, tiles_.size());
     for (std::size_t i = begin; i < end; ++i) {
-      trace(tiles_[i], surface, static_cast<float>(max_range_m));
+      trace(scene, tiles_[i], surface, static_cast<float>(max_range_m));
     }
   });
   std::vector<const SurfaceSample*> samples;
@@ -139,7 +156,8 @@ std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, 
   return samples;
 }
 
-SONARD_SIMD_CLONES void RaySampler::trace(const Tile& tile, const SurfaceModel& surface, float max_range_m) {
+SONARD_SIMD_CLONES void RaySampler::trace(const EmbreeScene& scene, const Tile& tile,
+                                          const SurfaceModel& surface, float max_range_m) {
   View& view = views_[tile.view];
   const glm::vec3 starboard = view.starboard;
   const glm::vec3 up = view.up;
@@ -155,7 +173,7 @@ SONARD_SIMD_CLONES void RaySampler::trace(const Tile& tile, const SurfaceModel& 
   }
   // No ray of a view is shorter than its axis: the depth reaches no less far than the range.
   SurfacePacket surfaces;
-  scene_.trace(rays, surface, max_range_m, surfaces);
+  scene.trace(rays, surface, max_range_m, surfaces);
 
   alignas(64) Lanes<float> range, range_dx, range_dy, response;
   for (std::size_t i = 0; i < packet_size; ++i) {

@@ -25,6 +25,8 @@ class RaySampler final : public Sampler {
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m) override;
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body) override;
+  /// The trees of the world are made anew for every ping then: several times the cost of a ping.
+  void set_ray_bend(double bend_per_m) override { bend_per_m_ = bend_per_m; }
   const std::string& description() const override { return description_; }
 
  private:
@@ -53,11 +55,14 @@ class RaySampler final : public Sampler {
   };
 
   void prepare(const SampleGrid& grid);
-  void trace(const Tile& tile, const SurfaceModel& surface, float max_range_m);
+  void trace(const EmbreeScene& scene, const Tile& tile, const SurfaceModel& surface, float max_range_m);
   static void store(const Lanes<SurfaceSample>& samples, const Tile& tile, View& view);
 
   WorkerPool& workers_;
+  std::string embree_settings_;
+  World world_;  ///< its bodies where they are now
   EmbreeScene scene_;
+  double bend_per_m_ = 0.0;
   std::string description_;
   std::vector<View> views_;
   std::vector<std::vector<Rows>> used_;  // by view and column of tiles: the rows that parts of the grid use

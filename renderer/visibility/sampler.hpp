@@ -70,6 +70,10 @@ class Sampler {
   /// @return false when the world has no body of that name.
   virtual bool set_body_pose(const std::string& body_name, const Pose& T_world_body) = 0;
 
+  /// From the next call on level rays sink by `bend_per_m` * x^2 over the horizontal distance x (RayBend); 0,
+  /// as at the beginning: they are straight.
+  virtual void set_ray_bend(double bend_per_m) = 0;
+
   /// The method and what it runs on, for logs: "raster, vendor / renderer / version".
   virtual const std::string& description() const = 0;
 };

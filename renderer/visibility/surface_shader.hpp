@@ -6,6 +6,7 @@ namespace sonard::render {
 
 inline constexpr char surface_vertex_shader[] = R"glsl(#version 450 compatibility
 layout(location = 6) in vec4 tangent;  // xyz unit, w handedness
+uniform vec4 ray_bend;                 // RayBend in eye coordinates: up, per_m
 out vec3 normal_eye;
 out vec4 tangent_eye;
 out vec2 texcoord;
@@ -13,6 +14,14 @@ out vec2 texcoord;
 void main() {
   gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
   normal_eye = gl_NormalMatrix * gl_Normal;
+  if (ray_bend.w != 0.0) {  // RayBend::point() and normal(), term by term
+    vec3 p = (gl_ModelViewMatrix * gl_Vertex).xyz;
+    float height = dot(p, ray_bend.xyz);
+    float squared = dot(p, p);
+    vec3 lifted = p + ray_bend.xyz * (ray_bend.w * (squared - height * height));
+    gl_Position = gl_ProjectionMatrix * vec4(lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30)), 1.0);
+    normal_eye -= (p - ray_bend.xyz * height) * (2.0 * ray_bend.w * dot(normal_eye, ray_bend.xyz));
+  }
   tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
   texcoord = gl_MultiTexCoord0.xy;
 }

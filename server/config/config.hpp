@@ -58,6 +58,8 @@ struct WaterConfig {
   double depth_m = 10.0;
   double ph = 8.0;
   double sound_speed_mps = 0.0;  ///< of this water (Mackenzie or Medwin), whether or not the heads use it
+  /// By how much sound gets faster per metre upwards, 1/s: positive where rays sink; 0: they are straight.
+  double sound_speed_gradient_per_s = 0.0;
 };
 
 /// A UDP socket that takes one pose message per datagram (docs/poses.md).
@@ -177,6 +179,9 @@ struct GeminiHeadConfig : HeadConfig {
   /// Identity, addresses and timing. `water_sound_speed_mps` is already chosen (0: follow the ping
   /// configuration).
   gemini::DeviceConfig device;
+  /// Whether beams point elsewhere in water of another sound speed than the head assumes, as those of a flat
+  /// array do (docs/physics.md 2.12).
+  bool steering_error = false;
   /// Address of the command socket: one of this machine, or 0 for all of them.
   Ipv4 bind_address = 0x7F000002;
   std::uint16_t command_port = 52901;  ///< the head listens here and sends from here

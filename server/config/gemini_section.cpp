@@ -160,6 +160,7 @@ void read_gemini_acoustics(YamlSection& section, GeminiHeadConfig& head) {
   section.angle("receive_beamwidth_deg", head.acoustics.aperture.receive_beamwidth_rad,
                 Range::from(0.1, 60.0));
   section.boolean("snap_sound_speed", head.device.snap_sound_speed);
+  section.boolean("steering_error", head.steering_error);
   section.section("gain_law", [&](YamlSection& inner) { read_gain_law(inner, head.device.gain); });
 }
 

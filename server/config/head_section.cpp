@@ -92,6 +92,7 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
   section.section("ring_down", [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
   section.section("interference", [&](YamlSection& inner) { read_interference(inner, model.interference); });
   section.section("multipath", [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
+  section.boolean("motion_within_ping", model.motion_within_ping);
 }
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {

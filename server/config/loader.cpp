@@ -77,6 +77,7 @@ void read_water(YamlSection& section, HeadContext& context) {
   section.number_or_word(
       "sound_speed_mps", context.water_sound_speed_mps, Range::from(1000.0, 2000.0),
       {{"ping_configuration", 0.0}, {"computed", render::sound_speed_mps(properties(water))}});
+  section.number("sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0));
 }
 
 void read_trajectory(YamlSection& section, const std::filesystem::path& folder, TrajectoryInput& trajectory) {

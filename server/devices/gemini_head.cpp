@@ -9,6 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/gemini/device.hpp"
+#include "protocol/gemini/ping_plan.hpp"
 #include "server/config/addresses.hpp"
 #include "server/devices/deadline_timer.hpp"
 #include "server/devices/faulty_link.hpp"
@@ -360,7 +361,8 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   const std::uint64_t transmit_us = device.clock_us(job.transmit_time);
   log.ping(job, transmit_us, *T_world_sonar);
   rendering.submit({job.ping_number, job.transmit_time, transmit_us, *T_world_sonar,
-                    to_sonar_settings(job, config.acoustics)},
+                    rendering.T_world_mount(job.transmit_time + gemini::acoustic_time(job.native_lines)),
+                    to_sonar_settings(job, config)},
                    [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
                      if (const auto self = weak.lock()) {
                        self->on_rendered(number, std::move(result));

@@ -1,5 +1,6 @@
 #include "server/devices/gemini_settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -8,20 +9,32 @@
 namespace sonard::server {
 namespace {
 
+// No beam is steered further than this: c / c_d up to 1.15 is followed, more is not found in water.
+constexpr double widest_sin = 0.9962;  // of 85 degrees
+
 // Device bearings are positive to starboard, azimuths of the renderer to port.
-std::vector<double> beam_edges_rad() {
+// `steering`: the ratio c / c_d of the true sound speed to that which delays are reckoned with. A beam meant
+// for the bearing b hears sin b * c / c_d (docs/physics.md 2.12).
+std::vector<double> beam_edges_rad(double steering) {
   std::vector<double> edges = gemini::beam_edges_sin();
+  const double ratio = std::min(steering, widest_sin / std::abs(edges.front()));
   for (double& edge : edges) {
-    edge = -std::asin(edge);
+    edge = -std::asin(ratio * edge);
   }
   return edges;
 }
 
+double steering(const gemini::PingJob& job, const GeminiHeadConfig& head) {
+  return head.steering_error && job.assumed_sound_speed_mps > 0.0
+             ? job.sound_speed_mps / job.assumed_sound_speed_mps
+             : 1.0;
+}
+
 }  // namespace
 
-render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const render::SonarSettings& acoustics) {
-  render::SonarSettings settings = acoustics;
-  settings.aperture.beam_edges_rad = beam_edges_rad();
+render::SonarSettings to_sonar_settings(const gemini::PingJob& job, const GeminiHeadConfig& head) {
+  render::SonarSettings settings = head.acoustics;
+  settings.aperture.beam_edges_rad = beam_edges_rad(steering(job, head));
   settings.range = {.count = job.native_lines,
                     .step_m = job.line_step_m,
                     .compression_log2 = job.compression_log2,

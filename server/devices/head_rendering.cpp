@@ -22,7 +22,8 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) const {
   job.stream = stream_;
   job.head = config_.name;
   job.transmit_us = ping.transmit_us;
-  job.request = {ping.T_world_sonar, std::move(ping.settings), ping.number, config_.seed};
+  job.request = {ping.T_world_sonar, std::move(ping.settings), ping.number, config_.seed,
+                 ping.T_world_sonar_at_end};
   job.bodies = services_.poses.bodies_at(ping.transmit_time);
   services_.renderer.submit(std::move(job), std::move(done));
 }

@@ -29,6 +29,7 @@ struct HeadPing {
   TimePoint transmit_time{};
   std::uint64_t transmit_us = 0;  ///< of the clock of the head
   render::Pose T_world_sonar;
+  std::optional<render::Pose> T_world_sonar_at_end;  ///< when the last echo is heard; nullopt: not known
   render::SonarSettings settings;
 };
 
@@ -38,7 +39,8 @@ class HeadRendering {
   HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
       : config_(config), stream_(stream), services_(services) {}
 
-  /// Where the mount of the head is. nullopt: there is no pose, or only a stale one that is not to be used.
+  /// Where the mount of the head is; of a time to come, as far as the twist of the newest pose says. nullopt:
+  /// there is no pose, or only a stale one that is not to be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
 
   void submit(HeadPing ping, RenderService::Done done) const;

@@ -12,7 +12,7 @@ namespace sonard::server {
 namespace {
 
 render::SonarSettings any_ping_of(const GeminiHeadConfig& head) {
-  return to_sonar_settings(gemini::PingJob{}, head.acoustics);
+  return to_sonar_settings(gemini::PingJob{}, head);
 }
 
 render::SonarSettings any_ping_of(const MicronHeadConfig& head) {

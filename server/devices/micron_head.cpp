@@ -182,8 +182,17 @@ bool MicronHead::Impl::render(const micron::MicronJob& job) {
   }
   const auto since_power_up =
       std::chrono::duration_cast<std::chrono::microseconds>(job.transmit_time - power_up);
-  HeadPing ping{job.ping_number, job.transmit_time, static_cast<std::uint64_t>(since_power_up.count()),
-                T_world_transducer(*T_world_mount, job), to_sonar_settings(job, config)};
+  std::optional<render::Pose> T_world_at_end =
+      rendering.T_world_mount(job.transmit_time + job.listening_time());
+  if (T_world_at_end) {  // the motor rests meanwhile
+    T_world_at_end = T_world_transducer(*T_world_at_end, job);
+  }
+  HeadPing ping{job.ping_number,
+                job.transmit_time,
+                static_cast<std::uint64_t>(since_power_up.count()),
+                T_world_transducer(*T_world_mount, job),
+                T_world_at_end,
+                to_sonar_settings(job, config)};
   log.ping(job, ping);
   rendering.submit(std::move(ping), [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
     if (const auto self = weak.lock()) {

@@ -11,22 +11,23 @@
 namespace sonard::pictures {
 namespace {
 
-client::FanShape shape_of(const render::SonarSettings& settings) {
+client::FanShape shape_of(const View& view) {
+  const render::SonarSettings& settings = view.settings;
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   client::FanShape shape;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     shape.bearings_rad.push_back(-0.5 * (edges[b] + edges[b + 1]));  // pictures count to starboard
   }
   shape.lines = settings.range.output_count();
-  shape.line_step_m = settings.range.step_m * (1 << settings.range.compression_log2);
+  shape.line_step_m = view.display_scale * settings.range.step_m * (1 << settings.range.compression_log2);
   return shape;
 }
 
 cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const client::FanLook& look,
                  const std::string& caption) {
-  render::PingSamples samples = renderer.render_ping({view.T_world_sonar, view.settings, 0, 1});
+  render::PingSamples samples = renderer.render_ping({view.T_world_sonar, view.settings, 0, 1, view.T_world_sonar_at_end});
   const cv::Mat polar(samples.lines, samples.beams, CV_8UC1, samples.u8.data());
-  return client::FanImage(shape_of(view.settings), look).draw(polar, caption);
+  return client::FanImage(shape_of(view), look).draw(polar, caption);
 }
 
 cv::Mat draw_turn(render::SonarRenderer& renderer, const View& view, const client::FanLook& look,
@@ -49,6 +50,7 @@ cv::Mat draw_turn(render::SonarRenderer& renderer, const View& view, const clien
 cv::Mat draw_view(const View& view, render::Backend backend, int radius_px, const std::string& caption) {
   render::RendererOptions options;
   options.backend = backend;
+  options.ray_curvature_per_m = view.ray_curvature_per_m;
   render::SonarRenderer renderer(view.world, options);
   const client::FanLook look{radius_px, true};
   return view.scan.empty() ? draw_fan(renderer, view, look, caption)

@@ -57,7 +57,7 @@ void aim(View& view, const server::GeminiHeadConfig& head, const Vehicle& vehicl
   job.line_step_m = sound_speed_mps / (2 * line_rate_hz);
   job.native_lines = static_cast<int>(range_m / job.line_step_m);
   job.compression_log2 = 1;
-  view.settings = server::to_sonar_settings(job, head.acoustics);
+  view.settings = server::to_sonar_settings(job, head);
   view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
 }
 

@@ -1,6 +1,7 @@
 // What a picture is of: a world, a sonar in it, and what is asked of the renderer.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,10 @@ struct ScanLine {
 struct View {
   render::World world;
   render::Pose T_world_sonar;  ///< of a fan
+  std::optional<render::Pose> T_world_sonar_at_end{};  ///< of a fan that moves while it listens
   render::SonarSettings settings;
+  double ray_curvature_per_m = 0.0;  ///< RendererOptions
+  double display_scale = 1.0;        ///< ranges as a client shows them, over what they are
   std::vector<ScanLine> scan;  ///< of a scanning head, in steps of `scan_step`; empty: a fan
   int scan_step = 0;           ///< 1/16 gradian
 };

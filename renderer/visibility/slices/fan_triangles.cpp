@@ -46,6 +46,28 @@ void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Cor
   }
 }
 
+/// Moves the vertices to where they are seen.
+void bend_corners(const RayBend& bend, std::uint32_t count, Corners& at) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 p = bend.point({at.x[i], at.y[i], at.z[i]});
+    at.x[i] = p.x;
+    at.y[i] = p.y;
+    at.z[i] = p.z;
+    at.azimuth[i] = fast_azimuth(p.y, p.x);
+    at.horizontal_squared[i] = p.x * p.x + p.y * p.y;
+    at.tangent[i] = p.z / std::sqrt(at.horizontal_squared[i] + 1e-30F);
+  }
+}
+
+/// Whether a cluster is wholly out of the fan, wherever its rays bend to.
+bool is_out(const Fan& fan, const RayBend& bend, const PlacedPart& part,
+            const MeshClusters::Cluster& cluster) {
+  const glm::vec3 centre = part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m;
+  return bend.straight()
+             ? fan.misses(centre, cluster.radius_m)
+             : fan.misses(bend.point(centre), cluster.radius_m + bend.spread_m(centre, cluster.radius_m));
+}
+
 /// Whether all of a cluster lies to one side of the fan, by less than half a turn.
 SONARD_SIMD_CLONES
 bool lies_aside(const Fan& fan, std::uint32_t count, const Corners& at) {
@@ -136,8 +158,8 @@ std::uint64_t FanTriangles::clusters_culled() const {
   return culled;
 }
 
-void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers,
-                        bool cull) {
+void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend,
+                        WorkerPool& workers, bool cull) {
   cull_ = cull;
   part_starts_.assign(1, 0);
   for (const PlacedPart& part : parts) {
@@ -153,14 +175,15 @@ void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, Wo
     share.beams.clear();
     share.per_beam.assign(beams, 0);
     share.culled = 0;
-    collect(parts, fan, cluster_count_ * j / share_count, cluster_count_ * (j + 1) / share_count, share);
+    collect(parts, fan, bend, cluster_count_ * j / share_count, cluster_count_ * (j + 1) / share_count,
+            share);
   });
   make_room_for_lists(beams);
   workers.run(share_count, [&](int job) { list(shares_[static_cast<std::size_t>(job)]); });
 }
 
-void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, std::size_t begin,
-                           std::size_t end, Share& share) const {
+void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend,
+                           std::size_t begin, std::size_t end, Share& share) const {
   Corners at;
   Bounds bounds;
   std::size_t part_number = 0;
@@ -170,12 +193,15 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     }
     const PlacedPart& part = parts[part_number];
     const MeshClusters::Cluster& cluster = part.clusters->clusters[c - part_starts_[part_number]];
-    const bool out = fan.misses(part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m, cluster.radius_m);
+    const bool out = is_out(fan, bend, part, cluster);
     if (out && cull_) {
       ++share.culled;
       continue;
     }
     transform(part, cluster, at);
+    if (!bend.straight()) {
+      bend_corners(bend, cluster.vertex_count, at);
+    }
     if (lies_aside(fan, cluster.vertex_count, at) && cull_) {
       ++share.culled;
       continue;

@@ -11,6 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/slices/fan.hpp"
 #include "renderer/visibility/slices/mesh_clusters.hpp"
 #include "renderer/worker_pool.hpp"
@@ -55,7 +56,8 @@ class FanTriangles {
  public:
   /// Lists are the same for any number of threads.
   /// @param cull false: no cluster is dropped, all their triangles are looked at.
-  void find(const std::vector<PlacedPart>& parts, const Fan& fan, WorkerPool& workers, bool cull = true);
+  void find(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend, WorkerPool& workers,
+            bool cull = true);
 
   /// In the order of the world, which decides between surfaces in the same place.
   std::span<const ListedTriangle> of_beam(int beam) const {
@@ -75,8 +77,8 @@ class FanTriangles {
     void add(const FanTriangle& triangle, Fan::BeamRange range);
   };
 
-  void collect(const std::vector<PlacedPart>& parts, const Fan& fan, std::size_t begin, std::size_t end,
-               Share& share) const;
+  void collect(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend, std::size_t begin,
+               std::size_t end, Share& share) const;
   static void add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
                   Share& share);
   void make_room_for_lists(std::size_t beams);

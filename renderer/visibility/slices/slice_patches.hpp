@@ -26,7 +26,9 @@ struct PartSurface {
   float facet_reach_rad = -1e3F;  ///< from normal incidence; farther off facets are not heard
   float bend_rad = 0.0F;          ///< at most so much vertex normals are away from their facet's
   float reflectance = 0.0F;
-  glm::mat3 R_part_sonar{1.0F};  ///< for this ping
+  // For this ping:
+  glm::mat3 R_part_sonar{1.0F};
+  RayBend bend_in_part;  ///< `up` in the axes of the part
 };
 
 /// How sound meets the normal that shades.

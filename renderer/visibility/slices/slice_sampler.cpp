@@ -117,11 +117,13 @@ bool SliceSampler::set_body_pose(const std::string& body_name, const Pose& T_wor
 /// In doubles up to here: no world coordinate reaches a float.
 void SliceSampler::place_parts(const Pose& T_world_sonar) {
   const Pose T_sonar_world = inverse(T_world_sonar);
+  bend_.up = glm::vec3(T_sonar_world.orientation * glm::dvec3(0, 0, 1));
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Pose T_sonar_part = T_sonar_world * T_world_body_[parts_[i].body] * parts_[i].T_body_part;
     placed_[i].R_sonar_part = glm::mat3(glm::mat3_cast(T_sonar_part.orientation));
     placed_[i].t_sonar_part_m = glm::vec3(T_sonar_part.position_m);
     surfaces_[i].R_part_sonar = glm::transpose(placed_[i].R_sonar_part);
+    surfaces_[i].bend_in_part = {surfaces_[i].R_part_sonar * bend_.up, bend_.per_m};
   }
 }
 
@@ -172,7 +174,7 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
       surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
       static_cast<float>(range.step_m),
       SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))};
-  triangles_.find(placed_, setting.fan, workers_, skip_.on(SkipRule::culled_clusters));
+  triangles_.find(placed_, setting.fan, bend_, workers_, skip_.on(SkipRule::culled_clusters));
   lay_first_slices(setting);
   std::vector<std::size_t> fresh = order_;
   do {

@@ -13,6 +13,7 @@
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/skip_ledger.hpp"
+#include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/slices/fan_triangles.hpp"
 #include "renderer/visibility/slices/slice_patches.hpp"
 #include "renderer/visibility/slices/slice_sides.hpp"
@@ -77,6 +78,9 @@ class SliceSampler {
   /// @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
 
+  /// As Sampler::set_ray_bend().
+  void set_ray_bend(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
+
   /// Of the last call.
   const SkipCounts& skipped() const { return skipped_; }
 
@@ -116,6 +120,7 @@ class SliceSampler {
   std::vector<PartSurface> surfaces_;
   bool any_mapped_ = false;
   bool any_facets_ = false;  ///< whether any material has them
+  RayBend bend_;  ///< in the sonar frame of this ping
   FanTriangles triangles_;
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;

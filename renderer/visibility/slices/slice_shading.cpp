@@ -120,8 +120,9 @@ glm::vec3 interpolated_normal(const PartSurface& part, const FanTriangle& triang
   const SurfacePoint surface(triangle, q * (glm::dot(across, triangle.corner(0)) / glm::dot(across, q)));
   const glm::vec2 weights =
       glm::clamp(surface.weights(surface.p - surface.corner), glm::vec2(-beyond), glm::vec2(1 + beyond));
-  const glm::vec3 n =
-      interpolate(part.mesh->normals, &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3], weights);
+  const glm::vec3 n = part.bend_in_part.normal(
+      interpolate(part.mesh->normals, &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3], weights),
+      part.R_part_sonar * surface.p);
   const float length = glm::length(n);
   return length > 0 ? n / length : part.R_part_sonar * glm::normalize(across);
 }
@@ -132,9 +133,10 @@ ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& tri
                              {place.h_m * place.slice.cosine, place.h_m * place.slice.sine, place.z_m});
   const glm::vec2 weights = surface.weights(surface.p - surface.corner);
   const std::uint32_t* corner = &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3];
-  const glm::vec3 vertex_normal = part.mesh->normals.empty()
-                                      ? part.R_part_sonar * glm::normalize(surface.normal)
-                                      : interpolate(part.mesh->normals, corner, weights);
+  const glm::vec3 vertex_normal =
+      part.mesh->normals.empty() ? part.R_part_sonar * glm::normalize(surface.normal)
+                                 : part.bend_in_part.normal(interpolate(part.mesh->normals, corner, weights),
+                                                            part.R_part_sonar * surface.p);
   const glm::vec3 d = part.R_part_sonar * glm::normalize(surface.p);
   float product, mean_length = 1.0F;
   if (part.normal_map) {

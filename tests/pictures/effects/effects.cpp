@@ -6,7 +6,8 @@ namespace sonard::pictures {
 
 std::vector<EffectPicture> effect_pictures() {
   std::vector<EffectPicture> all;
-  for (const auto& family : {receiver_pictures, multipath_pictures, response_pictures, water_pictures}) {
+  for (const auto& family :
+       {receiver_pictures, multipath_pictures, response_pictures, water_pictures, propagation_pictures}) {
     for (EffectPicture& picture : family()) {
       all.push_back(std::move(picture));
     }

@@ -256,19 +256,21 @@ struct Speed {
   int configured;  // 0.1 m/s
   bool use_configured;
   double job_mps;
+  double assumed_mps;
   int velocimeter;  // 0.1 m/s, in the ping head
   int used;
 };
 
 TEST(PingContent, SpeedOfSoundComesFromTheConfigurationOrTheWater) {
   for (const Speed& s : {
-           Speed{0.0, false, 15000, true, 1500.0, 15000, 0x8000 | 15000},  // the water follows
-           Speed{0.0, false, 14800, false, 1480.0, 14800, 14800},
-           Speed{1480.0, false, 15000, true, 1480.0, 14800, 0x8000 | 15000},  // mismatch on purpose
-           Speed{1480.0, false, 15000, false, 1480.0, 14800, 14800},
-           Speed{0.0, true, 15000, true, 1500.0, 14992, 0x8000 | 14992},  // the device's grid: 1499.2 m/s
-           Speed{0.0, false, 0, true, 1400.0, 14000, 0x8000 | 14000},
-           Speed{0.0, false, 65535, true, 1588.8, 15888, 0x8000 | 15888},
+           Speed{0.0, false, 15000, true, 1500.0, 1500.0, 15000, 0x8000 | 15000},  // the water follows
+           Speed{0.0, false, 14800, false, 1480.0, 1480.0, 14800, 14800},
+           Speed{1480.0, false, 15000, true, 1480.0, 1500.0, 14800, 0x8000 | 15000},  // mismatch on purpose
+           Speed{1480.0, false, 15000, false, 1480.0, 1480.0, 14800, 14800},
+           Speed{0.0, true, 15000, true, 1500.0, 1500.0, 14992,
+                 0x8000 | 14992},  // the device's grid: 1499.2 m/s
+           Speed{0.0, false, 0, true, 1400.0, 1400.0, 14000, 0x8000 | 14000},
+           Speed{0.0, false, 65535, true, 1588.8, 1588.8, 15888, 0x8000 | 15888},
        }) {
     DeviceConfig device = example_config();
     device.water_sound_speed_mps = s.water_mps;
@@ -279,6 +281,7 @@ TEST(PingContent, SpeedOfSoundComesFromTheConfigurationOrTheWater) {
     config.velocimeter_mode = s.use_configured ? 1 : 0;
     ping(bench, config);
     EXPECT_NEAR(bench.jobs[0].sound_speed_mps, s.job_mps, 1e-9);
+    EXPECT_NEAR(bench.jobs[0].assumed_sound_speed_mps, s.assumed_mps, 1e-9);
     EXPECT_NEAR(bench.jobs[0].line_step_m, s.job_mps / 180844.0, 1e-12);
     EXPECT_EQ(bench.all<PingHead>()[0].second.velocimeter_speed, s.velocimeter);
     EXPECT_EQ(bench.all<PingHead>()[0].second.sound_speed_used, s.used);

@@ -185,6 +185,32 @@ TEST_F(GeminiHeadTest, RendersFromVehiclePoseTimesMount) {
   EXPECT_EQ(request.settings.range.count, config_lines);
 }
 
+// 483 lines of 2 / 180844 s: the twist of the newest pose says where the vehicle is by then.
+TEST_F(GeminiHeadTest, SaysWhereTheSonarIsWhenTheLastEchoIsHeard) {
+  start();
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  sample.twist = pose::Velocity{{2, 0, 0}, {0, 0, 0.5}};
+  poses->insert(sample, clock.now());
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  const render::PingRequest request = renderer->recorded().at(0);
+  ASSERT_TRUE(request.T_world_sonar_at_end);
+  const double listening_s = config_lines / 90'422.0;
+  const render::Pose moved = render::inverse(request.T_world_sonar) * *request.T_world_sonar_at_end;
+  EXPECT_NEAR(glm::angle(moved.orientation), 0.5 * listening_s, 1e-7);
+  EXPECT_GT(moved.orientation.z, 0) << "to port";
+  EXPECT_NEAR(moved.position_m.x, 2 * listening_s, 1e-6);
+}
+
+TEST_F(GeminiHeadTest, AtRestItEndsAPingWhereItBegan) {
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  const render::PingRequest request = renderer->recorded().at(0);
+  EXPECT_EQ(request.T_world_sonar_at_end, request.T_world_sonar);
+}
+
 TEST_F(GeminiHeadTest, ForwardsPosesOfBodies) {
   std::vector<std::string> moved;
   start();

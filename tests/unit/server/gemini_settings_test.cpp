@@ -69,13 +69,14 @@ TEST(GeminiSettings, HeadThatOnlyListensTransmitsNothing) {
 }
 
 TEST(GeminiSettings, GainIsAddedAndTheRestComesFromTheHead) {
-  render::SonarSettings acoustics;
+  GeminiHeadConfig head;
+  render::SonarSettings& acoustics = head.acoustics;
   acoustics.model = render::Model::physical;
   acoustics.physical.gain_db = 50.0;
   acoustics.physical.absorption_db_per_m = 0.123;
   acoustics.aperture.vertical_beamwidth_rad = 0.2;
   acoustics.sampling.rows = 77;
-  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), acoustics);
+  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), head);
   EXPECT_DOUBLE_EQ(settings.physical.gain_db, 45.5);
   EXPECT_DOUBLE_EQ(settings.physical.absorption_db_per_m, 0.123);
   EXPECT_DOUBLE_EQ(settings.aperture.vertical_beamwidth_rad, 0.2);

@@ -164,6 +164,24 @@ TEST_F(MicronHeadTest, RendersOneBeamWhereTheVehicleTheMountAndTheHeadPoint) {
   }
 }
 
+// 20 bins of 100 x 640 ns.
+TEST_F(MicronHeadTest, SaysWhereTheTransducerIsWhenTheLastEchoIsHeard) {
+  pose_config.extrapolation_limit = 60s;
+  start();
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  sample.twist = pose::Velocity{{0, 0, 0}, {0, 0, 1.5}};
+  poses->insert(sample, clock.now());
+  connect();
+  host->start(clock.now(), quick_scan(), 3);
+  ASSERT_TRUE(run_until_lines(3));
+  const render::PingRequest request = renderer->recorded().at(2);
+  ASSERT_TRUE(request.T_world_sonar_at_end);
+  const render::Pose moved = render::inverse(request.T_world_sonar) * *request.T_world_sonar_at_end;
+  EXPECT_NEAR(glm::angle(moved.orientation), 1.5 * 20 * 100 * 640e-9, 1e-7);
+  EXPECT_GT(moved.orientation.z, 0) << "to port";
+}
+
 TEST_F(MicronHeadTest, TheClientsGainMovesTheLevel) {
   start();
   connect();

@@ -1,0 +1,104 @@
+// Water of another sound speed than the client reckons with (docs/physics.md 2.12): a range r is displayed as
+// r c_d / c. From the client's settings by way of the head's job to the image.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "protocol/gemini/ping_plan.hpp"
+#include "protocol/gemini/ping_settings.hpp"
+#include "server/devices/gemini_settings.hpp"
+#include "server/devices/micron_settings.hpp"
+#include "tests/support/backend_test.hpp"
+
+namespace sonard::server {
+namespace {
+
+using namespace test;
+
+constexpr double assumed_mps = 1500.0;
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+/// What a client that counts 20 m at 1500 m/s makes the head ask for, in water of another speed.
+gemini::PingJob gemini_job(double water_mps) {
+  gemini::PingSettings settings;
+  settings.range_m = 20.0;
+  settings.sound_speed_mps = assumed_mps;
+  gemini::DeviceConfig device;
+  device.water_sound_speed_mps = water_mps;
+  return gemini::plan_ping(gemini::make_ping_config(settings), device)->job;
+}
+
+/// As a client shows it: lines times the speed that it assumes.
+double shown_m(double lines, double line_rate_hz) {
+  return lines * assumed_mps / (2 * line_rate_hz);
+}
+
+int first_line(const render::EchoImage& image, int beam) {
+  int line = 0;
+  while (line < image.lines && image.at(beam, line) == 0.0F) {
+    ++line;
+  }
+  return line;
+}
+
+class SoundSpeed : public BackendTest {
+ protected:
+  static render::EchoImage image_of(const render::World& world, render::SonarSettings settings) {
+    settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
+    settings.physical.range_cell_m = 0;  // a pulse is heard before and behind where it came back from
+    render::SonarRenderer renderer(world, options());
+    return renderer.render_echo({{}, settings});
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Propagation, SoundSpeed, all_backends(), backend_name);
+
+TEST_P(SoundSpeed, GeminiShowsAWallAtTheRatioOfTheSpeeds) {
+  const render::World wall =
+      make_world({make_body("wall", make_quad({12, -30, -5}, {0, 60, 0}, {0, 0, 10}))});
+  for (const double water_mps : {1500.0, 1450.0, 1545.0}) {
+    render::SonarSettings settings = to_sonar_settings(gemini_job(water_mps), GeminiHeadConfig{});
+    settings.aperture.beam_edges_rad = render::equal_angle_edges(2, 1 * degree);
+    const render::EchoImage image = image_of(wall, settings);
+    const double line_m = shown_m(1, 90'422.0);
+    const int expected = static_cast<int>(12.0 * assumed_mps / water_mps / line_m);
+    EXPECT_NEAR(first_line(image, 0), expected, 1) << water_mps;
+  }
+}
+
+TEST_P(SoundSpeed, MicronToo) {
+  const render::World wall = make_world({make_body("wall", make_quad({6, -5, -5}, {0, 10, 0}, {0, 0, 10}))});
+  for (const double water_mps : {1500.0, 1450.0, 1545.0}) {
+    micron::MicronJob job;
+    job.bins = 400;
+    job.bin_time_s = 52 * 640e-9;
+    job.sound_speed_mps = water_mps;
+    job.bin_length_m = job.bin_time_s * water_mps / 2;
+    const render::EchoImage image = image_of(wall, to_sonar_settings(job, MicronHeadConfig{}));
+    const double bin_m = shown_m(1, 1 / job.bin_time_s);
+    EXPECT_NEAR(first_line(image, 0), static_cast<int>(6.0 * assumed_mps / water_mps / bin_m), 1)
+        << water_mps;
+  }
+}
+
+// sin psi' = sin psi c_d / c: in slow water a post to port is heard farther to port.
+TEST_P(SoundSpeed, FlatArrayHearsAPostWhereItsDelaysPoint) {
+  const double bearing = 35 * degree;
+  const auto at = static_cast<float>(10 * std::sin(bearing));
+  const render::World post = make_world(
+      {make_body("post", make_quad({10 * std::cos(bearing), at - 0.015F, -0.5F}, {0, 0.03F, 0}, {0, 0, 1}))});
+  GeminiHeadConfig head;
+  for (const bool error : {false, true}) {
+    head.steering_error = error;
+    const render::EchoImage image = image_of(post, to_sonar_settings(gemini_job(1450.0), head));
+    const auto loudest = std::max_element(image.intensity.begin(), image.intensity.end());
+    ASSERT_GT(*loudest, 0.0F);
+    const auto beam = (loudest - image.intensity.begin()) / image.lines;
+    // Beam b of 256 stands for the sines of bearing to port from that of 60 degrees downwards.
+    const double shown_sin = std::sin(bearing) * (error ? assumed_mps / 1450.0 : 1.0);
+    EXPECT_EQ(beam, static_cast<int>(128 - 128 * shown_sin / std::sin(60 * degree))) << error;
+  }
+}
+
+}  // namespace
+}  // namespace sonard::server
