@@ -136,6 +136,7 @@ std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
   cell.beam = beam;
   cell.seen = false;
   cell.fresh = true;
+  cell.to_starboard = {};
   cell.edge_at_port.reset();
   cell.edge_at_starboard.reset();
   return cells_used_++;

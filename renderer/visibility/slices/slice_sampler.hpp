@@ -27,17 +27,31 @@ struct SliceAccuracy {
   /// No slice is narrower than a beam divided by this, unless it lies between upright edges; 1: the first
   /// slices stay.
   int most_divisions = 125;
-  /// Where neighbouring slices disagree they are divided, until (share of elevations at which they disagree)
-  /// * (width / beam width) is below this times the share at which the beam hears anything: the part of a
-  /// beam's echo that is in doubt.
-  float disagreement = 1.5e-3F;
+  /// A first slice at whose sides neighbours disagree is divided in five, even if three would do: where much
+  /// is left in doubt, the ends of shadows then still reach their lines.
+  bool first_in_five = false;
+  /// Where neighbouring slices disagree they are divided, until of the elevations at which a beam hears
+  /// anything this is the share in doubt: (share of elevations at which a slice disagrees) * (width / beam
+  /// width), summed over the beam as independent errors are.
+  float disagreement = 1.3e-3F;
+  /// A few elevations may hold much of an echo, far from its middle: they are in doubt too while they might
+  /// move the middle of the beam's echo by more than this.
+  float shift_lines = 0.2F;
   /// A slice that hears n range lines may be bent by this times n lines: what a bow displaces are the first
   /// and last of them, the fewer there are the more it matters.
-  float bow_lines = 8e-4F;
+  float bow_lines = 6e-4F;
   float evenness = 0.03F;      ///< see SlicePatcher::Request
   float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
   float facet_turn = 0.75F;    ///< FacetTurn::across of what hears facets may be so many times their slope
   float facet_lines = 0.006F;  ///< FacetSight::displacement_m() of it may be so many lines
+};
+
+/// Shares of the elevations at which neighbouring slices do not agree.
+struct SliceBorder {
+  float apart = 0.0F;  ///< they expect ranges more than a line apart on the border
+  float bent = 0.0F;   ///< their surfaces are bent, so that a straight line across one of them is too far off
+  /// By so many lines the echoes of either differ in their middle for what is apart.
+  float shift_lines = 0.0F;
 };
 
 /// A wedge of the fan and what is seen in it.
@@ -47,6 +61,7 @@ struct SliceCell {
   std::vector<VisiblePiece> pieces;  ///< seen along its azimuth, whatever its width
   std::vector<EchoPatch> patches;
   SliceSides sides;
+  SliceBorder to_starboard;                  ///< between this slice and the next one
   bool blurs_facets = false;                 ///< some piece is beyond facet_turn or facet_lines
   std::uint64_t without_facets = 0;          ///< patches, see SkipRule::facet_kernel
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
@@ -54,12 +69,6 @@ struct SliceCell {
   bool fresh = true;                         ///< not yet compared with its neighbours
   std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard
   ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge for which the slice ends there
-};
-
-/// Shares of the elevations at which neighbouring slices do not agree.
-struct SliceBorder {
-  float apart = 0.0F;  ///< they expect ranges more than a line apart on the border
-  float bent = 0.0F;   ///< their surfaces are bent, so that a straight line across one of them is too far off
 };
 
 /// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
@@ -105,6 +114,7 @@ class SliceSampler {
   // slice_refinement.cpp
   void compare_neighbours(const Setting& setting);
   std::vector<float> heard_by_beams(const Setting& setting) const;
+  std::vector<float> doubtful_slices(const Setting& setting) const;
   std::vector<int> choose_parts(const Setting& setting);
   void divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
               std::vector<std::size_t>& fresh);
@@ -124,8 +134,7 @@ class SliceSampler {
   FanTriangles triangles_;
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;
-  std::vector<std::size_t> order_;    ///< cells from port to starboard
-  std::vector<SliceBorder> borders_;  ///< between cells i and i + 1 of order_
+  std::vector<std::size_t> order_;  ///< cells from port to starboard
   SkipCounts skipped_;
 };
 
