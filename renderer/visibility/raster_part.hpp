@@ -1,0 +1,21 @@
+// A part of a body as RasterSampler draws it: chunks of its mesh in OpenSceneGraph, and what
+// surface_shader.hpp wants to know of its surface.
+#pragma once
+
+#include <osg/MatrixTransform>
+#include <osg/Matrixd>
+
+#include "renderer/pose.hpp"
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+/// Texture unit of normal maps.
+inline constexpr int normal_map_unit = 0;
+
+osg::Matrixd to_osg(const Pose& T_a_b);
+
+/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
+osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* max_range_m);
+
+}  // namespace sonard::render
