@@ -19,6 +19,14 @@ render::BodyPart part_of(render::TriangleMesh mesh, double lambert_mu) {
   return part;
 }
 
+/// Without grain, which says nothing of ranges.
+View smooth_view() {
+  View view = configured_view("demo.yaml", 20);
+  view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
+  view.settings.physical.noise = false;
+  return view;
+}
+
 /// Five boxes on a flat bed, seen from 5 m above it with a narrow beam that looks level.
 View long_view() {
   render::World world;
@@ -35,6 +43,8 @@ View long_view() {
   }
   View view = plain_view(std::move(world), {{0, 0, 5}, {1, 0, 0, 0}}, 100);
   view.settings.aperture.vertical_beamwidth_rad = 8 * degree;
+  view.settings.physical.noise = false;
+  view.settings.physical.gain_db += 10;
   return view;
 }
 
@@ -43,7 +53,7 @@ View long_view() {
 std::vector<EffectPicture> propagation_pictures() {
   return {
       {.name = "sound_speed",
-       .view = [] { return configured_view("demo.yaml", 20); },
+       .view = smooth_view,
        .caption_before = "sound as fast as assumed",
        .before = [](View&) {},
        .caption_after = "7 % slower",
