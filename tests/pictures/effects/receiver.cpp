@@ -15,6 +15,14 @@ View docking_station() {
   return configured_view("demo.yaml", 20);
 }
 
+/// As a perfect array would hear it, with sharp beams: nothing but the effect fills shadows.
+View sharp_docking_station(double range_m) {
+  View view = configured_view("demo.yaml", range_m);
+  view.settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
+  view.settings.aperture.elevation = render::Aperture::Elevation::top_hat;
+  return view;
+}
+
 /// Lines of 3 mm over a bed.
 View close_bed() {
   render::BodyPart bed;
@@ -61,7 +69,7 @@ std::vector<EffectPicture> receiver_pictures() {
              view.settings.physical.range_cell_m = 0.04;
            }},
       {.name = "texture",
-       .view = docking_station,
+       .view = [] { return sharp_docking_station(20); },
        .caption_before = "texture_nu: 0 (off)",
        .before = [](View& view) { view.settings.physical.texture_nu = 0; },
        .caption_after = "texture_nu: 0.5",
@@ -87,7 +95,7 @@ std::vector<EffectPicture> receiver_pictures() {
       {.name = "volume_reverberation",
        .view =
            [] {
-             View view = configured_view("demo.yaml", 40);
+             View view = sharp_docking_station(40);
              view.settings.physical.noise = false;
              view.settings.physical.gain_db += 12;
              return view;
