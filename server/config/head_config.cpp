@@ -9,8 +9,8 @@ namespace sonard::server {
 GeminiHeadConfig::GeminiHeadConfig() {
   constexpr double degree = std::numbers::pi / 180.0;
   acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
-  acoustics.aperture.element_amplitude_sd = 0.45;
-  acoustics.aperture.element_phase_sd_rad = 26 * degree;
+  acoustics.aperture.element_amplitude_sd = 0.35;
+  acoustics.aperture.element_phase_sd_rad = 20 * degree;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
   // Whether what sends and what hears share their height is not published: the pattern is taken once
   // (docs/physics.md 2.5).

@@ -37,11 +37,11 @@ std::vector<EffectPicture> response_pictures() {
        .view = perfect_docking_station,
        .caption_before = "element_amplitude_sd: 0, element_phase_sd_deg: 0",
        .before = [](View&) {},
-       .caption_after = "element_amplitude_sd: 0.45, element_phase_sd_deg: 26",
+       .caption_after = "element_amplitude_sd: 0.35, element_phase_sd_deg: 20",
        .after =
            [](View& view) {
-             view.settings.aperture.element_amplitude_sd = 0.45;
-             view.settings.aperture.element_phase_sd_rad = 26 * std::numbers::pi / 180;
+             view.settings.aperture.element_amplitude_sd = 0.35;
+             view.settings.aperture.element_phase_sd_rad = 20 * std::numbers::pi / 180;
            }},
       {.name = "pulse",
        .view =
