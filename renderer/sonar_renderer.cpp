@@ -94,6 +94,13 @@ float largest_response(const World& world) {
   return largest;
 }
 
+/// Whether the beams are cones around a straight array.
+bool hears_cones(const SonarSettings& settings) {
+  const Aperture& aperture = settings.aperture;
+  return settings.model == Model::physical && aperture.azimuth == Aperture::Azimuth::array &&
+         aperture.beam_count() > 1 && aperture.bearing == Aperture::Bearing::conical;
+}
+
 BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches& skip,
                                float largest_response) {
   BinningOptions options;
@@ -107,6 +114,7 @@ BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches
     options.footprint = options.footprint && settings.paper.footprint;
     options.legacy_bin_index = settings.paper.legacy_bin_index && !options.footprint;
   }
+  options.cone_aperture = hears_cones(settings) ? &settings.aperture : nullptr;
   return options;
 }
 
@@ -428,6 +436,15 @@ struct SonarRenderer::Impl {
     if (needs_grid(settings)) {
       return look_with_grid(T_world_sonar, settings, summing, std::move(memory));
     }
+    if (!slices && hears_cones(settings)) {
+      // Beams that are sampled again by themselves would miss what their neighbours saw for them.
+      constexpr int views = 3;
+      constexpr int columns = 512;
+      constexpr int rows = 512;
+      SonarSettings even = settings;
+      even.sampling = Sampling::of_grid(views, columns, rows);
+      return look_with_grid(T_world_sonar, even, summing, std::move(memory));
+    }
     return slices ? look_in_slices(T_world_sonar, settings, summing, std::move(memory))
                   : look_until_close(T_world_sonar, settings, summing);
   }
@@ -437,7 +454,7 @@ struct SonarRenderer::Impl {
     Stopwatch watch;
     const SampleGrid& samples = grid_for(settings);
     const SurfaceModel surface = surface_model(settings, skip);
-    if (gpu_binner) {
+    if (gpu_binner && summing.options.cone_aperture == nullptr) {
       statistics.gpu_binning_obstacle = gpu_binner->make_room(settings.range.count, summing.options);
       if (statistics.gpu_binning_obstacle.empty()) {
         const auto textures = chosen.raster->draw(T_world_sonar, samples, surface, sampled_range_m(settings));

@@ -136,9 +136,33 @@ struct AzimuthPattern::Span {
   bool even = false;
 };
 
+namespace {
+constexpr double farthest_sine = 0.9998;  // 89 degrees
+}  // namespace
+
+int fine_beams_beyond(const Aperture& aperture) {
+  const std::vector<double>& edges = aperture.beam_edges_rad;
+  const double end = std::max(std::sin(edges.front()), -std::sin(edges.back()));
+  if (aperture.bearing == Aperture::Bearing::planar || !(end > 0)) {
+    return 0;
+  }
+  const double farthest = std::min(end / std::cos(aperture.elevation_limit_rad()), farthest_sine);
+  const double spacing = (std::sin(edges.front()) - std::sin(edges.back())) /
+                         static_cast<double>(edges.size() - 1) / aperture.fine_beams;
+  const double room = farthest_sine - std::max(std::sin(edges.front()), -std::sin(edges.back()));
+  return std::max(
+      0, std::min(static_cast<int>(std::ceil((farthest - end) / spacing)), static_cast<int>(room / spacing)));
+}
+
 std::vector<double> fine_beam_edges(const Aperture& aperture) {
   const std::vector<double>& edges = aperture.beam_edges_rad;
+  const int beyond = fine_beams_beyond(aperture);
+  const double spacing = (std::sin(edges.front()) - std::sin(edges.back())) /
+                         static_cast<double>(edges.size() - 1) / aperture.fine_beams;
   std::vector<double> fine;
+  for (int i = beyond; i > 0; --i) {
+    fine.push_back(std::asin(std::sin(edges.front()) + i * spacing));
+  }
   for (std::size_t beam = 0; beam + 1 < edges.size(); ++beam) {
     const double port = std::sin(edges[beam]);
     const double starboard = std::sin(edges[beam + 1]);
@@ -148,11 +172,14 @@ std::vector<double> fine_beam_edges(const Aperture& aperture) {
     }
   }
   fine.push_back(edges.back());
+  for (int i = 1; i <= beyond; ++i) {
+    fine.push_back(std::asin(std::sin(edges.back()) - i * spacing));
+  }
   return fine;
 }
 
 AzimuthPattern::AzimuthPattern(const Aperture& aperture, RandomKey elements)
-    : fine_per_beam_(aperture.fine_beams) {
+    : fine_per_beam_(aperture.fine_beams), beyond_(fine_beams_beyond(aperture)) {
   const PatternTable table(aperture, elements);
   leaks_ = table.floor() > 0;
   const std::vector<double> edges = fine_beam_edges(aperture);
@@ -194,9 +221,11 @@ void AzimuthPattern::add_band(const Aperture& aperture, int beam, const std::vec
   for (std::size_t f = first; f <= last; ++f) {
     weights_.push_back(static_cast<float>(scale * over_floor[f]));
   }
+  const int first_of_beam = beyond_ + beam * fine_per_beam_;
   double change = 0;
   for (int f = 0; f < this->fine_beams(); ++f) {
-    change += std::abs(share(beam, f) - (f / fine_per_beam_ == beam ? 1.0 : 0.0));
+    change +=
+        std::abs(share(beam, f) - (f >= first_of_beam && f < first_of_beam + fine_per_beam_ ? 1.0 : 0.0));
   }
   change_ = std::max(change_, change);
 }
@@ -257,9 +286,10 @@ void AzimuthPattern::hear(const EchoImage& fine, int beam, const Span& span, con
     return &fine.intensity[static_cast<std::size_t>(f) * lines + static_cast<std::size_t>(span.begin)];
   };
   if (span.even) {
-    set_row(row(beam * fine_per_beam_), 1.0F, count, out);
+    const int first = beyond_ + beam * fine_per_beam_;
+    set_row(row(first), 1.0F, count, out);
     for (int f = 1; f < fine_per_beam_; ++f) {
-      add_row(row(beam * fine_per_beam_ + f), 1.0F, count, out);
+      add_row(row(first + f), 1.0F, count, out);
     }
     return;
   }

@@ -14,8 +14,12 @@ namespace sonard::render {
 
 class PatternTable;
 
-/// The edges of the fine beams that the fan is sampled in: each beam of the aperture in `fine_beams` parts of
-/// equal sine.
+/// Fine beams that are sampled beyond either end of the fan: with Bearing::conical what lies there off the
+/// horizontal is heard inside.
+int fine_beams_beyond(const Aperture& aperture);
+
+/// The edges of the fine beams that are sampled: each beam of the aperture in `fine_beams` parts of equal
+/// sine, and those beyond.
 std::vector<double> fine_beam_edges(const Aperture& aperture);
 
 /// Power pattern P of the receive array over fine beams, incoherent (docs/physics.md 2.5):
@@ -64,6 +68,7 @@ class AzimuthPattern {
   void hear(const EchoImage& fine, int beam, const Span& span, const float* leaks, float* out) const;
 
   int fine_per_beam_ = 1;
+  int beyond_ = 0;  ///< fine beams before those of the first beam
   std::vector<Band> bands_;
   std::vector<float> weights_;
   std::vector<float> inverse_width_;  ///< of fine beams, 1 / rad

@@ -30,7 +30,9 @@ void EchoReception::prepare_pattern(const SonarSettings& settings, std::uint64_t
     seed_ = seed;
   }
   uses_pattern_ = true;
-  if (pattern_->change() <= entry_of(SkipRule::separate_beams).bound && skip.on(SkipRule::separate_beams)) {
+  const bool planar = settings.aperture.bearing == Aperture::Bearing::planar;
+  if (planar && pattern_->change() <= entry_of(SkipRule::separate_beams).bound &&
+      skip.on(SkipRule::separate_beams)) {
     skipped.add(SkipRule::separate_beams);
     uses_pattern_ = false;
   }
@@ -59,7 +61,6 @@ void EchoReception::prepare_pulse(const SonarSettings& settings, const SkipSwitc
 SonarSettings EchoReception::sampled(const SonarSettings& settings) {
   SonarSettings fine = settings;
   fine.aperture.beam_edges_rad = fine_beam_edges(settings.aperture);
-  fine.aperture.azimuth = Aperture::Azimuth::ideal;
   return fine;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "renderer/binning/cone_bearing.hpp"
 #include "renderer/binning/grid_patches.hpp"
 #include "renderer/binning/range_profile.hpp"
 
@@ -167,11 +168,86 @@ double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
                      : 0.0;
 }
 
+/// Memory of the thread for the one beam that it is at.
+std::vector<EchoPatch>& patches_of_this_beam() {
+  thread_local std::vector<EchoPatch> patches;
+  return patches;
+}
+
+/// What lies in `columns`, told apart by cones.
+BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
+                           const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
+  const Aperture& aperture = *options.cone_aperture;
+  const ConeBearings bearings(aperture, std::move(columns));
+  const double height =
+      options.open_water ? aperture.pattern_height() : 2 * std::sin(aperture.elevation_limit_rad());
+  return bin_beams(
+      aperture.beam_count(), range, options, workers, std::move(memory), [](std::size_t) { return false; },
+      [&](std::size_t beam) {
+        std::vector<EchoPatch>& patches = patches_of_this_beam();
+        bearings.patches_of(static_cast<int>(beam), patches);
+        double echo = 0.0;
+        for (const EchoPatch& patch : patches) {
+          echo += std::isfinite(patch.echo) ? static_cast<double>(patch.echo) : 0.0;
+        }
+        return BeamContent{height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]),
+                           echo};
+      },
+      [&](std::size_t, BeamSums& sums) {
+        for (const EchoPatch& patch : patches_of_this_beam()) {
+          sums.add(patch);
+        }
+      });
+}
+
+/// The part of a column, with its patches.
+PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std::vector<EchoPatch>& patches) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const double middle =
+      -view.tan_half_width + (part.column + 0.5) * view.pixel_width() + static_cast<double>(part.x_offset);
+  const double half = static_cast<double>(part.width) / 2;
+  return {view.azimuth_rad - std::atan(middle - half), view.azimuth_rad - std::atan(middle + half),
+          patches.data(), patches.data() + patches.size()};
+}
+
+BinningResult bin_grid_by_cones(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                                const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                                std::vector<float> memory) {
+  std::vector<std::vector<EchoPatch>> patches(grid.parts.size());
+  std::atomic<std::uint64_t> invalid{0};
+  workers.run(static_cast<int>(grid.parts.size()), [&](int p) {
+    const auto part = static_cast<std::size_t>(p);
+    invalid += make_grid_patches(grid, views, grid.parts[part], patches[part]);
+  });
+  std::vector<PatchColumn> columns;
+  for (std::size_t part = 0; part < grid.parts.size(); ++part) {
+    columns.push_back(column_of(grid, grid.parts[part], patches[part]));
+  }
+  BinningResult result = bin_by_cones(std::move(columns), range, options, workers, std::move(memory));
+  result.invalid_samples += invalid;
+  return result;
+}
+
+BinningResult bin_slices_by_cones(const std::vector<const SliceCell*>& cells, const RangeLines& range,
+                                  const BinningOptions& options, WorkerPool& workers,
+                                  std::vector<float> memory) {
+  std::vector<PatchColumn> columns;
+  for (const SliceCell* cell : cells) {
+    const double half = static_cast<double>(cell->slice.width_rad) / 2;
+    columns.push_back({cell->slice.azimuth_rad + half, cell->slice.azimuth_rad - half, cell->patches.data(),
+                       cell->patches.data() + cell->patches.size()});
+  }
+  return bin_by_cones(std::move(columns), range, options, workers, std::move(memory));
+}
+
 }  // namespace
 
 BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
                          const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
                          std::vector<float> memory) {
+  if (options.cone_aperture != nullptr) {
+    return bin_grid_by_cones(grid, views, range, options, workers, std::move(memory));
+  }
   const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
   const auto fill = [&](std::size_t beam, BeamSums& sums) {
     for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
@@ -199,6 +275,9 @@ BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const Surface
 BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Aperture& aperture,
                          const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
                          std::vector<float> memory) {
+  if (options.cone_aperture != nullptr) {
+    return bin_slices_by_cones(cells, range, options, workers, std::move(memory));
+  }
   const int beams = aperture.beam_count();
   std::vector<std::size_t> begins(static_cast<std::size_t>(beams) + 1, cells.size());
   for (std::size_t i = cells.size(); i-- > 0;) {

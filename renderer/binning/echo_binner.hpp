@@ -19,7 +19,10 @@ struct BinningOptions {
   bool legacy_bin_index = false;  ///< docs/physics.md 1.2, A4; only with footprint = false
   bool open_water = false;        ///< fill BinningResult::open_sr; not with `mean`
   float largest_response = 1.0F;  ///< of any sample of a grid; sets how fine the sums are
-  SkipSwitches skip{};            ///< for SkipRule::empty_beams, of slices
+  /// Beams are told apart by cones, and these are the beams (ConeBearings); null: by azimuth. With
+  /// footprints.
+  const Aperture* cone_aperture = nullptr;
+  SkipSwitches skip{};  ///< for SkipRule::empty_beams, of slices
 };
 
 /// Means are not taken where less than this share of a beam is seen: there the weights are mostly rounding.

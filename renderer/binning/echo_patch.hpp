@@ -14,6 +14,7 @@ struct EchoPatch {
   float weight = 0.0F;                       ///< solid angle * elevation pattern, steradians
   /// Echo and weight per metre at end a and b are the mean times (1 - tilt) and (1 + tilt).
   float echo_tilt = 0.0F, weight_tilt = 0.0F;
+  float tangent_a = 0.0F, tangent_b = 0.0F;  ///< of the elevations of the ends
 };
 
 }  // namespace sonard::render

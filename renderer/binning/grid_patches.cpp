@@ -24,6 +24,8 @@ EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& ce
   const float across = std::abs(plane.dx + cell.slope * plane.dy) * cell.width;
   const float along = std::abs(plane.dy) * cell.height;
   const float spread = std::max(across, along);
+  const float side = x + cell.x_offset;
+  const float tangent = (y + cell.y_offset) / std::sqrt(1 + side * side);
   const float smear = std::min(across, along);
   return {plane.range - 0.5F * spread,
           plane.range + 0.5F * spread,
@@ -32,7 +34,9 @@ EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& ce
           weight * sample.response,
           weight,
           0.0F,
-          0.0F};
+          0.0F,
+          tangent,
+          tangent};
 }
 
 }  // namespace

@@ -147,6 +147,8 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
                   {"hann", Taper::hann},
                   {"kaiser", Taper::kaiser},
                   {"uniform", Taper::uniform}});
+  using Bearing = render::Aperture::Bearing;
+  section.choice("bearing", aperture.bearing, {{"planar", Bearing::planar}, {"conical", Bearing::conical}});
   section.integer("fine_beams", aperture.fine_beams, 1, 16);
   section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0));
   section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0));

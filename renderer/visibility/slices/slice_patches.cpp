@@ -68,8 +68,8 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
   patches.resize(begin + pieces_->size());
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
     patches[begin + i] = {
-        range_low_[i],   range_high_[i], smear_low_[i], smear_high_[i], response_[i] * solid_angle_[i],
-        solid_angle_[i], echo_tilt_[i],  range_tilt_[i]};
+        range_low_[i],   range_high_[i], smear_low_[i],  smear_high_[i], response_[i] * solid_angle_[i],
+        solid_angle_[i], echo_tilt_[i],  range_tilt_[i], seen_.low[i],   seen_.high[i]};
   }
   return without_facets;
 }

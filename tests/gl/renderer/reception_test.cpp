@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "tests/support/backend_test.hpp"
@@ -153,6 +154,76 @@ TEST_P(Reception, AWallKeepsItsLevel) {
   for (std::size_t b = 4; b < 252; ++b) {  // the outermost have neighbours on one side only
     EXPECT_NEAR(array[b] / ideal[b], 1, 0.02) << b;
   }
+}
+
+/// Sine of the bearing at which the echo has its centre, and the whole echo.
+std::pair<double, double> centre_and_sum(const EchoImage& echo, const std::vector<double>& edges_rad) {
+  double sum = 0;
+  double moment = 0;
+  for (int b = 0; b < echo.beams; ++b) {
+    const auto beam = static_cast<std::size_t>(b);
+    const auto* row = &echo.intensity[beam * static_cast<std::size_t>(echo.lines)];
+    const double heard = std::accumulate(row, row + echo.lines, 0.0);
+    sum += heard;
+    moment += heard * (std::sin(edges_rad[beam]) + std::sin(edges_rad[beam + 1])) / 2;
+  }
+  return {moment / sum, sum};
+}
+
+// docs/physics.md 2.5: sin psi_c = sin psi cos theta. Two degrees at psi = 50 and theta = 15.
+TEST_P(Reception, AStraightArrayMeasuresConeAngles) {
+  PingRequest request;
+  request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
+  request.settings.aperture.vertical_beamwidth_rad = 40 * degree;
+  request.settings.aperture.azimuth = Aperture::Azimuth::array;
+  request.settings.physical.absorption_db_per_m = 0;
+  request.settings.range = {120, 0.1, 0, false};
+  request.settings.sampling = GetParam() == Backend::ray ? Sampling{} : Sampling::of_grid(3, 512, 512);
+  for (const double elevation : {15.0, -8.0}) {
+    const double psi = 50 * degree;
+    const double theta = elevation * degree;
+    World world = ball_at(10, 0, 0.1);
+    world.bodies[0].T_world_body.position_m = {10 * std::cos(theta) * std::cos(psi),
+                                               10 * std::cos(theta) * std::sin(psi), 10 * std::sin(theta)};
+    SonarRenderer renderer(world, options());
+    request.settings.aperture.bearing = Aperture::Bearing::planar;
+    const auto [planar, whole] =
+        centre_and_sum(renderer.render_echo(request), request.settings.aperture.beam_edges_rad);
+    request.settings.aperture.bearing = Aperture::Bearing::conical;
+    const auto [conical, same] =
+        centre_and_sum(renderer.render_echo(request), request.settings.aperture.beam_edges_rad);
+    // A fine beam is 0.0034 wide.
+    EXPECT_NEAR(planar, std::sin(psi), 4e-4);
+    EXPECT_NEAR(conical, std::sin(psi) * std::cos(theta), 4e-4);
+    EXPECT_NEAR(same / whole, 1, 0.02);
+  }
+}
+
+// Dead ahead both are the same, and what lies beyond the end of the fan is heard inside of it.
+TEST_P(Reception, ConesReachBeyondTheFan) {
+  PingRequest request;
+  request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
+  request.settings.aperture.azimuth = Aperture::Azimuth::array;
+  request.settings.aperture.bearing = Aperture::Bearing::conical;
+  request.settings.physical.absorption_db_per_m = 0;
+  request.settings.range = {120, 0.1, 0, false};
+  request.settings.sampling = GetParam() == Backend::ray ? Sampling{} : Sampling::of_grid(3, 512, 512);
+  const double psi = 60.6 * degree;
+  const double theta = 9 * degree;
+  World world = ball_at(10, 0, 0.04);
+  world.bodies[0].T_world_body.position_m = {10 * std::cos(theta) * std::cos(psi),
+                                             10 * std::cos(theta) * std::sin(psi), 10 * std::sin(theta)};
+  SonarRenderer renderer(world, options());
+  const EchoImage& echo = renderer.render_echo(request);
+  const double sine = std::sin(psi) * std::cos(theta);  // 0.8605, of 0.8660
+  const int beam = static_cast<int>((std::sin(60 * degree) - sine) / gemini_spacing);
+  std::vector<double> sums;
+  for (int b = 0; b < 6; ++b) {
+    const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.lines)];
+    sums.push_back(std::accumulate(row, row + echo.lines, 0.0));
+  }
+  EXPECT_GT(sums[static_cast<std::size_t>(beam)], 0);
+  EXPECT_EQ(std::max_element(sums.begin(), sums.end()) - sums.begin(), beam);
 }
 
 // docs/physics.md 2.16, as a client gets it: the median of a row beyond 60 beams from a strong target is -24

@@ -10,6 +10,7 @@ View perfect_docking_station() {
   View view = configured_view("demo.yaml", 20);
   view.settings.aperture.element_amplitude_sd = 0;
   view.settings.aperture.element_phase_sd_rad = 0;
+  view.settings.physical.noise = false;  // with it pictures are large
   return view;
 }
 
@@ -47,7 +48,8 @@ std::vector<EffectPicture> response_pictures() {
        .view =
            [] {
              View view = configured_view("demo.yaml", 20);
-             view.settings.physical.noise = false;  // with it the picture is large
+             view.settings.physical.noise = false;  // with grain the picture is large
+             view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
              return view;
            },
        .caption_before = "pulse: point",
