@@ -35,7 +35,12 @@ std::vector<EffectPicture> response_pictures() {
        .caption_after = "azimuth_pattern: array",
        .after = [](View& view) { view.settings.aperture.azimuth = Azimuth::array; }},
       {.name = "element_errors",
-       .view = perfect_docking_station,
+       .view =
+           [] {
+             View view = perfect_docking_station();
+             view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
+             return view;
+           },
        .caption_before = "element_amplitude_sd: 0, element_phase_sd_deg: 0",
        .before = [](View&) {},
        .caption_after = "element_amplitude_sd: 0.35, element_phase_sd_deg: 20",
