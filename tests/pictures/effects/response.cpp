@@ -66,7 +66,13 @@ std::vector<EffectPicture> response_pictures() {
              view.settings.physical.range_cell_m = 128 / 723380.0 * 1500 / 2;
            }},
       {.name = "elevation_pattern",
-       .view = [] { return configured_view("demo.yaml", 20); },
+       .view =
+           [] {
+             View view = configured_view("demo.yaml", 20);
+             view.settings.physical.speckle =
+                 render::PhysicalModel::Speckle::off;  // its grain hides what fades
+             return view;
+           },
        .caption_before = "elevation_pattern: top_hat",
        .before = [](View& view) { view.settings.aperture.elevation = Elevation::top_hat; },
        .caption_after = "elevation_pattern: sinc",
