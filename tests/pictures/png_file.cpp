@@ -21,11 +21,11 @@ namespace amber = client::amber;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// 64 colours of echoes; 64 more from the ground to the grid, to labels, and from the grid to labels.
+/// 43 colours of echoes; 64 more each from the ground to the grid, to labels, and from the grid to labels.
 std::vector<cv::Vec3b> palette_of_pictures() {
   std::vector<cv::Vec3b> colours;
   const cv::Mat echoes = amber::palette();
-  for (int value = 3; value < 256; value += 4) {
+  for (int value = 2; value < 256; value += 6) {
     colours.push_back(echoes.at<cv::Vec3b>(0, value));
   }
   const auto add_ramp = [&](const cv::Scalar& from, const cv::Scalar& to) {

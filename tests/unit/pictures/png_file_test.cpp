@@ -17,7 +17,7 @@ std::filesystem::path some_file() {
 }
 
 TEST(PngFile, KeepsTheColoursOfPictures) {
-  // The whole palette, and what lies between ground and labels: a step of 4 codes apart at most.
+  // The whole palette, and what lies between ground and labels: within half a step of 6 codes.
   cv::Mat picture(3, 256, CV_8UC3);
   client::amber::palette().copyTo(picture.row(0));
   for (int x = 0; x < 256; ++x) {
