@@ -22,6 +22,7 @@ View view_of(const GalleryScene& scene) {
 
 void take_effects_off(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
+  physical.backscatter = render::PhysicalModel::Backscatter::lambert;
   physical.speckle = render::PhysicalModel::Speckle::off;
   physical.noise = false;
   physical.texture_nu = 0;
@@ -39,7 +40,6 @@ void put_effects_on(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
   physical.texture_nu = 10;
   physical.volume_scattering_db = -65;
-  view.settings.aperture.elevation = render::Aperture::Elevation::sinc;
 }
 
 }  // namespace sonard::pictures
