@@ -37,7 +37,7 @@ Names files_in(const std::string& folder) {
   Names names;
   for (const auto& entry : std::filesystem::directory_iterator(docs / "images" / folder)) {
     EXPECT_EQ(entry.path().extension(), ".png");
-    EXPECT_LT(entry.file_size(), 170'000U) << entry.path();
+    EXPECT_LT(entry.file_size(), 150'000U) << entry.path();
     EXPECT_FALSE(cv::imread(entry.path().string()).empty()) << entry.path();
     names.insert(entry.path().stem().string());
   }
