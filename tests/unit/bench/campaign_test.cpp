@@ -79,7 +79,7 @@ TEST(Campaign, WithoutReferenceThereIsNoError) {
   test::Scene scene = small_plane();
   scene.plane.reset();
   Campaign campaign({render::Backend::ray}, "/nowhere");
-  campaign.run(scene, {{{grid_point(1, 64), once}}, {}, 1});
+  campaign.run(scene, {{{grid_point(1, 64), once}}, {}, {}, 1});
   EXPECT_TRUE(campaign.results().find(on_ray("grid_1x64"), "ping_ms"));
   EXPECT_FALSE(campaign.results().find(on_ray("grid_1x64"), "bin_rms"));
   EXPECT_FALSE(campaign.results().find(on_ray("grid_1x64"), "hole_fraction"));
@@ -87,7 +87,7 @@ TEST(Campaign, WithoutReferenceThereIsNoError) {
 
 TEST(Campaign, APointThatCannotBeGriddedIsLeftOut) {
   Campaign campaign({render::Backend::ray}, "/nowhere");
-  campaign.run(small_plane(), {{{grid_point(4, 20'000), once}, {grid_point(1, 64), once}}, {}, 1});
+  campaign.run(small_plane(), {{{grid_point(4, 20'000), once}, {grid_point(1, 64), once}}, {}, {}, 1});
   EXPECT_FALSE(campaign.results().find(on_ray("grid_4x20000"), "ping_ms"));
   EXPECT_TRUE(campaign.results().find(on_ray("grid_1x64"), "ping_ms"));
 }
@@ -96,7 +96,7 @@ TEST(Campaign, AScanningSonarHasAMetricOfItsOwn) {
   test::Scene scene = small_plane();
   scene.settings.aperture.beam_edges_rad = {0.026, -0.026};
   Campaign campaign({render::Backend::ray}, "/nowhere");
-  campaign.run(scene, {{{grid_point(4, 64), once}}, {}, 1});
+  campaign.run(scene, {{{grid_point(4, 64), once}}, {}, {}, 1});
   EXPECT_EQ(campaign.results().find(on_ray("grid_4x64"), "msis_ping_ms"),
             campaign.results().find(on_ray("grid_4x64"), "ping_ms"));
 }

@@ -36,7 +36,8 @@ struct Image {
 class Client {
  public:
   Client(const render::SonarSettings& acoustics, int native_lines, int compression_log2 = 0)
-      : acoustics_(acoustics), device_(device_config(), now_), surface_(gemini::SurfaceConfig{}) {
+      : device_(device_config(), now_), surface_(gemini::SurfaceConfig{}) {
+    head_.acoustics = acoustics;
     gemini::PingSettings wanted;
     wanted.compression_log2 = compression_log2;
     config_ = gemini::make_ping_config(wanted);
@@ -82,7 +83,7 @@ class Client {
 
   gemini::PingImage render(const gemini::PingJob& job, float intensity) {
     render::PingRequest request;
-    request.settings = server::to_sonar_settings(job, acoustics_);
+    request.settings = server::to_sonar_settings(job, head_);
     request.ping_number = job.ping_number;
     request.seed = 7;
     line_m_ = job.line_step_m * (1 << job.compression_log2);
@@ -96,7 +97,7 @@ class Client {
   static constexpr gemini::Ipv4 head_address = 0x7F000002;
   static constexpr gemini::Ipv4 surface_address = 0x7F000001;
 
-  render::SonarSettings acoustics_;
+  server::GeminiHeadConfig head_;
   gemini::TimePoint now_ = 0s;
   gemini::Device device_;
   gemini::Surface surface_;
