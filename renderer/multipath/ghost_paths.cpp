@@ -10,7 +10,8 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int divisions = 4;           // of a cell at an edge, along both of its sides
+constexpr int parts_across = 4;  // of a cell at an edge
+constexpr int parts_up = 8;
 constexpr double corner_reach = 1.5;   // of a cell's diagonal: how near a ray must pass to find a corner
 constexpr double least_cosine = 1e-3;  // surfaces seen edge-on have no end in range, and no energy
 constexpr double nearest_m = 0.02;     // what is nearer to the sonar does not hide it
@@ -116,8 +117,8 @@ void GhostPaths::refine_column(const Ping& ping, int column) {
     const FanCell cell = ping.fan.cell(column, row);
     const bool has_path = path != end && path->row == row;
     if (differs_from_neighbours(ping, column, row)) {
-      for (int i = 0; i < divisions * divisions; ++i) {
-        const FanCell part = cell.part(i % divisions, i / divisions, divisions);
+      for (int i = 0; i < parts_across * parts_up; ++i) {
+        const FanCell part = cell.part(i % parts_across, i / parts_across, parts_across, parts_up);
         Path part_path;
         follow_one(ping, part, part_path, result);
         add_echoes(ping, part, part_path, result);

@@ -117,7 +117,7 @@ GhostPaths::Result Multipath::search_small_parts(const Pose& T_world_sonar, cons
     const FanCell around{0, std::atan2(p.y, p.x), elevation_rad, height_rad / std::cos(elevation_rad),
                          height_rad};
     for (int i = 0; i < search_rays * search_rays; ++i) {
-      cells.push_back(around.part(i % search_rays, i / search_rays, search_rays));
+      cells.push_back(around.part(i % search_rays, i / search_rays, search_rays, search_rays));
     }
   }
   return GhostPaths::search(*scene_, *fan_, T_world_sonar, limits, cells);

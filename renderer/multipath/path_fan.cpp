@@ -10,7 +10,7 @@ namespace sonard::render {
 namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double widest_column_rad = 0.25 * degree;
-constexpr double highest_row_rad = 0.08 * degree;
+constexpr double highest_row_rad = 0.16 * degree;
 constexpr double low_weight = 0.25;  // of the elevation pattern
 
 /// Where the pattern has fallen to low_weight, between the axis and the end of the fan.
@@ -49,10 +49,9 @@ glm::dvec3 FanCell::along_height() const {
           height_rad * std::cos(elevation_rad)};
 }
 
-FanCell FanCell::part(int column, int row, int divisions) const {
-  const auto offset = [divisions](int i) { return (i + 0.5) / divisions - 0.5; };
-  return {beam, azimuth_rad + width_rad * offset(column), elevation_rad + height_rad * offset(row),
-          width_rad / divisions, height_rad / divisions};
+FanCell FanCell::part(int column, int row, int columns, int rows) const {
+  return {beam, azimuth_rad + width_rad * ((column + 0.5) / columns - 0.5),
+          elevation_rad + height_rad * ((row + 0.5) / rows - 0.5), width_rad / columns, height_rad / rows};
 }
 
 PathFan::PathFan(const Aperture& aperture) : aperture_(aperture) {

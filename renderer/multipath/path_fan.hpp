@@ -20,8 +20,8 @@ struct FanCell {
   glm::dvec3 direction() const;     ///< unit
   glm::dvec3 along_width() const;   ///< by how much it changes from one side of the cell to the other
   glm::dvec3 along_height() const;  ///< the same, from its lower to its upper end
-  /// One of divisions x divisions parts of the cell.
-  FanCell part(int column, int row, int divisions) const;
+  /// One of columns x rows parts of the cell.
+  FanCell part(int column, int row, int columns, int rows) const;
 };
 
 /// A grid of such cells over the fan: columns that divide beams, rows of equal elevation, twice as high where

@@ -53,7 +53,7 @@ TEST(PathFan, CellsFillTheFanOnce) {
   const FanCell cell = fan.cell(7, 11);
   double parts = 0.0;
   for (int i = 0; i < 16; ++i) {
-    parts += cell.part(i % 4, i / 4, 4).solid_angle();
+    parts += cell.part(i % 4, i / 4, 4, 4).solid_angle();
   }
   EXPECT_NEAR(parts, cell.solid_angle(), 1e-15);
 }
@@ -68,7 +68,7 @@ TEST(PathFan, RowsAreTwiceAsHighWhereLittleIsHeard) {
     const FanCell cell = fan.cell(0, row);
     EXPECT_NEAR(cell.elevation_rad, -aperture.elevation_limit_rad() + height + cell.height_rad / 2, 1e-12);
     EXPECT_LE(cell.height_rad,
-              (aperture.elevation_weight(cell.elevation_rad) > 0.26 ? 0.0801 : 0.1601) * degree);
+              (aperture.elevation_weight(cell.elevation_rad) > 0.26 ? 0.1601 : 0.3201) * degree);
     height += cell.height_rad;
   }
   EXPECT_NEAR(height, 2 * aperture.elevation_limit_rad(), 1e-12);
