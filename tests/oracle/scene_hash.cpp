@@ -78,6 +78,9 @@ class Fingerprint {
 
 std::string scene_hash(const render::World& world, const render::Pose& T_world_sonar,
                        const render::SonarSettings& settings) {
+  const bool hears_facets =
+      settings.model == render::Model::physical &&
+      settings.physical.backscatter == render::PhysicalModel::Backscatter::lambert_facet;
   Fingerprint fingerprint;
   fingerprint.settings(settings);
   fingerprint.pose(T_world_sonar);
@@ -88,7 +91,7 @@ std::string scene_hash(const render::World& world, const render::Pose& T_world_s
     for (const render::BodyPart& part : body.parts) {
       fingerprint.pose(part.T_body_part);
       fingerprint.fine(part.material.lambert_mu);
-      if (part.material.pressure_reflection != 0) {
+      if (hears_facets && part.material.pressure_reflection != 0) {
         fingerprint.fine(part.material.pressure_reflection);
         fingerprint.fine(part.material.rms_slope);
       }

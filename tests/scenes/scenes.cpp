@@ -201,6 +201,7 @@ Scene make_docking(const std::string& name) {
   scene.settings =
       forward_looking(2411, 2411 * 1500.0 / 180844);  // native lines (docs/protocols/gemini.md 6.5)
   scene.settings.aperture.beam_edges_rad = render::equal_sine_edges(256, 60 * degree);
+  scene.settings.physical.backscatter = render::PhysicalModel::Backscatter::lambert;
   return scene;
 }
 

@@ -38,6 +38,8 @@ void take_effects_off(View& view) {
 
 void put_effects_on(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
+  physical.backscatter = render::PhysicalModel::Backscatter::lambert_facet;
+  physical.multipath.level = render::MultipathSettings::Level::full;
   physical.texture_nu = 10;
   physical.volume_scattering_db = -65;
 }
