@@ -12,27 +12,12 @@
 
 #include "renderer/acoustics/beam_kernel.hpp"
 #include "renderer/acoustics/random.hpp"
+#include "tests/unit/acoustics/receiver_bench.hpp"
 
 namespace sonard::render {
 namespace {
 
 constexpr int beams = 256;
-
-PingRequest physical_request(int lines) {
-  PingRequest request;
-  request.settings.aperture.beam_edges_rad = equal_sine_edges(beams, 1.0471975511965976);
-  request.settings.range = {lines, 0.01, 0, false};
-  PhysicalModel& model = request.settings.physical;
-  model.tvg_log_coefficient = 0;
-  model.tvg_absorption_db_per_m = 0;
-  model.gain_db = 0;
-  model.noise = false;
-  model.near_field_blank_m = 0;
-  model.broadside_stripe_db = 0;
-  request.settings.sixteen_bit = true;
-  request.seed = 5;
-  return request;
-}
 
 EchoImage uniform_echo(int lines, float intensity) {
   return {beams, lines,
@@ -79,12 +64,12 @@ void expect_rayleigh(const PingSamples& samples, double root_intensity) {
 
 TEST(Receiver, SpeckleIsRayleighWithTheGrainOfTheArray) {
   WorkerPool workers;
-  expect_rayleigh(Receiver().receive(uniform_echo(1500, 0.01F), physical_request(1500), 0, workers), 0.1);
+  expect_rayleigh(Receiver().receive(uniform_echo(1500, 0.01F), bare_request(1500), 0, workers), 0.1);
 }
 
 TEST(Receiver, NoiseFillsEmptyWaterWithTheSameGrain) {
   WorkerPool workers;
-  PingRequest request = physical_request(1500);
+  PingRequest request = bare_request(1500);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -20;
   expect_rayleigh(Receiver().receive(uniform_echo(1500, 0), request, 0, workers), 0.1);
@@ -117,7 +102,7 @@ double distance_from_rayleigh(std::vector<double> amplitudes, double power) {
 // sqrt(n); four of each.
 TEST(Receiver, AmplitudesAreRayleighInDistributionAndMoments) {
   WorkerPool workers;
-  PingRequest request = physical_request(3000);
+  PingRequest request = bare_request(3000);
   const PingSamples speckle = Receiver().receive(uniform_echo(3000, 0.01F), request, 0, workers);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -20;
@@ -167,7 +152,7 @@ double intensity_correlation(const PingSamples& first, const PingSamples& second
 // 256 / 4 beams of a line are independent; bounds are four standard errors for 3000 lines.
 TEST(Receiver, FieldsHaveTheGrainOfTheArrayAcrossBeamsAndNoneInRange) {
   WorkerPool workers;
-  PingRequest request = physical_request(3000);
+  PingRequest request = bare_request(3000);
   const PingSamples speckle = Receiver().receive(uniform_echo(3000, 0.01F), request, 0, workers);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -20;
@@ -199,7 +184,7 @@ TEST(Receiver, TvgLiftsByTheDocumentedLawUpToItsCeiling) {
 // peak of 4: the mean of the largest of four exponentials in intensity is 25/12.
 TEST(Receiver, CompressionAveragesAmplitudesOrKeepsThePeak) {
   WorkerPool workers;
-  PingRequest request = physical_request(4000);
+  PingRequest request = bare_request(4000);
   request.settings.range.compression_log2 = 2;
   const PingSamples mean = Receiver().receive(uniform_echo(4000, 0.01F), request, 0, workers);
   EXPECT_EQ(mean.lines, 1000);
@@ -214,7 +199,7 @@ TEST(Receiver, CompressionAveragesAmplitudesOrKeepsThePeak) {
 }
 
 TEST(Receiver, IsTheSameForAnyNumberOfThreads) {
-  PingRequest request = physical_request(700);
+  PingRequest request = bare_request(700);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -30;
   WorkerPool one(1);
@@ -238,7 +223,7 @@ double image_correlation(const PingSamples& a, const PingSamples& b) {
 TEST(Receiver, SpeckleOfAStillSonarIsFrozenAndFadesWithMotion) {
   WorkerPool workers;
   Receiver receiver;
-  PingRequest request = physical_request(400);
+  PingRequest request = bare_request(400);
   const EchoImage echo = uniform_echo(400, 0.01F);
   const PingSamples first = receiver.receive(echo, request, 0, workers);
   request.ping_number = 1;
@@ -259,7 +244,7 @@ TEST(Receiver, SpeckleOfAStillSonarIsFrozenAndFadesWithMotion) {
 TEST(Receiver, SpeckleFadesByTheLawOfMotionAndNoiseAtOnce) {
   WorkerPool workers;
   Receiver receiver;
-  PingRequest request = physical_request(2000);
+  PingRequest request = bare_request(2000);
   const EchoImage echo = uniform_echo(2000, 0.01F);
   const double bound = 4 / std::sqrt(2000.0 * 256 / 4);
   const PingSamples first = receiver.receive(echo, request, 0, workers);
@@ -290,7 +275,7 @@ TEST(Receiver, SpeckleFadesByTheLawOfMotionAndNoiseAtOnce) {
 TEST(Receiver, SpeckleOfLinesThatHadNoEchoFadesAllTheSame) {
   WorkerPool workers;
   Receiver receiver;
-  PingRequest request = physical_request(2000);
+  PingRequest request = bare_request(2000);
   const EchoImage echo = uniform_echo(2000, 0.01F);
   const PingSamples first = receiver.receive(echo, request, 0, workers);
   for (int ping = 1; ping <= 4; ++ping) {
@@ -309,7 +294,7 @@ TEST(Receiver, SpeckleOfLinesThatHadNoEchoFadesAllTheSame) {
 // path.
 TEST(Receiver, LinesWithoutEchoAreThoseWithAnEchoThatVanishes) {
   WorkerPool workers;
-  PingRequest request = physical_request(300);
+  PingRequest request = bare_request(300);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -20;
   request.settings.physical.broadside_stripe_db = 3.5;
@@ -325,7 +310,7 @@ TEST(Receiver, FrozenAndPerPingSpeckleDependOnTheRequestAlone) {
   WorkerPool workers;
   const EchoImage echo = uniform_echo(200, 0.01F);
   for (const auto kind : {PhysicalModel::Speckle::frozen, PhysicalModel::Speckle::per_ping}) {
-    PingRequest request = physical_request(200);
+    PingRequest request = bare_request(200);
     request.settings.physical.speckle = kind;
     request.ping_number = 9;
     const PingSamples alone = Receiver().receive(echo, request, 0, workers);
@@ -345,7 +330,7 @@ TEST(Receiver, FrozenAndPerPingSpeckleDependOnTheRequestAlone) {
 TEST(Receiver, FollowsEveryChangeOfItsSettings) {
   WorkerPool workers;
   Receiver receiver;
-  PingRequest request = physical_request(200);
+  PingRequest request = bare_request(200);
   request.settings.physical.speckle = PhysicalModel::Speckle::frozen;
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -40;
@@ -399,7 +384,7 @@ std::vector<std::complex<double>> plain_field(RandomKey key, int line, const std
 // TVG, stripe, mean of two lines, 16 bits.
 TEST(Receiver, AgreesWithPlainDoubleArithmetic) {
   constexpr int lines = 60;
-  PingRequest request = physical_request(lines);
+  PingRequest request = bare_request(lines);
   request.settings.range = {lines, 0.05, 1, false};
   PhysicalModel& model = request.settings.physical;
   model.speckle = PhysicalModel::Speckle::per_ping;
@@ -453,7 +438,7 @@ TEST(Receiver, AgreesWithPlainDoubleArithmetic) {
 
 TEST(Receiver, StreamsAndSeedsDoNotShareSpeckle) {
   WorkerPool workers;
-  PingRequest request = physical_request(400);
+  PingRequest request = bare_request(400);
   const EchoImage echo = uniform_echo(400, 0.01F);
   Receiver receiver;
   const PingSamples a = receiver.receive(echo, request, 0, workers);
@@ -466,7 +451,7 @@ TEST(Receiver, StreamsAndSeedsDoNotShareSpeckle) {
 
 TEST(Receiver, SaturatesWithoutWrapping) {
   WorkerPool workers;
-  PingRequest request = physical_request(64);
+  PingRequest request = bare_request(64);
   request.settings.sixteen_bit = false;
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   const PingSamples samples = Receiver().receive(uniform_echo(64, 1e12F), request, 0, workers);
@@ -477,7 +462,7 @@ TEST(Receiver, SaturatesWithoutWrapping) {
 
 TEST(Receiver, QuantisesToTheNearestCode) {
   WorkerPool workers;
-  PingRequest request = physical_request(1);
+  PingRequest request = bare_request(1);
   request.settings.sixteen_bit = false;
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   const auto code = [&](double amplitude) {
@@ -493,7 +478,7 @@ TEST(Receiver, QuantisesToTheNearestCode) {
 
 TEST(Receiver, NearFieldIsExactlyZero) {
   WorkerPool workers;
-  PingRequest request = physical_request(200);
+  PingRequest request = bare_request(200);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -20;
   request.settings.physical.near_field_blank_m = 0.7;
@@ -509,7 +494,7 @@ TEST(Receiver, NearFieldIsExactlyZero) {
 // docs/physics.md 2.16: +3 to 4 dB of noise in the middle of the fan, two acoustic beams wide.
 TEST(Receiver, BroadsideStripeRaisesNoiseInMidFan) {
   WorkerPool workers;
-  PingRequest request = physical_request(2000);
+  PingRequest request = bare_request(2000);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -30;
   request.settings.physical.broadside_stripe_db = 3.5;
@@ -527,7 +512,7 @@ TEST(Receiver, BroadsideStripeRaisesNoiseInMidFan) {
 }
 
 PingRequest paper_request(int lines) {
-  PingRequest request = physical_request(lines);
+  PingRequest request = bare_request(lines);
   request.settings.model = Model::paper;
   return request;
 }

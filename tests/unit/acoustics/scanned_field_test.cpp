@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/quaternion.hpp>
 
+#include "tests/support/correlation.hpp"
 #include "tests/unit/acoustics/receiver_bench.hpp"
 
 namespace sonard::render {
@@ -43,20 +44,6 @@ class Scan {
   WorkerPool workers_{1};
 };
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean_a = 0, mean_b = 0, sum = 0, square_a = 0, square_b = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    mean_a += a[i] / static_cast<double>(a.size());
-    mean_b += b[i] / static_cast<double>(a.size());
-  }
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += (a[i] - mean_a) * (b[i] - mean_b);
-    square_a += std::pow(a[i] - mean_a, 2);
-    square_b += std::pow(b[i] - mean_b, 2);
-  }
-  return sum / std::sqrt(square_a * square_b);
-}
-
 constexpr double bound = 0.08;  // five standard errors of 4000 lines
 
 // exp(-(d / 1.5 degrees)^2) of the field, its square in the intensity, at any bearing and across +-180
@@ -66,7 +53,7 @@ TEST(ScannedField, BearingsAreCorrelatedByTheLawOfTheFan) {
     Scan scan;
     const std::vector<double> first = scan.look(looking(from_deg * degree));
     for (const double apart_deg : {0.225, 0.45, 0.9, 1.8, 6.0}) {
-      EXPECT_NEAR(correlation(first, scan.look(looking((from_deg + apart_deg) * degree))),
+      EXPECT_NEAR(test::correlation(first, scan.look(looking((from_deg + apart_deg) * degree))),
                   std::exp(-2 * std::pow(apart_deg / 1.5, 2)), bound)
           << from_deg << ' ' << apart_deg;
     }
@@ -104,7 +91,7 @@ TEST(ScannedField, TurnsOfTheVehicleAboutTheAxisAreTurnsOfTheHead) {
     Scan scan;
     const std::vector<double> first = scan.look(looking(0.4, mounted));
     const std::vector<double> again = scan.look(looking(0.4 - 0.2, looking(0.2, mounted)));
-    EXPECT_NEAR(correlation(first, again), 1, 1e-6);
+    EXPECT_NEAR(test::correlation(first, again), 1, 1e-6);
   }
 }
 
@@ -114,7 +101,7 @@ TEST(ScannedField, MotionOfTheVehicleFades) {
     Scan scan;
     const std::vector<double> first = scan.look(looking(0.4));
     const Pose moved{{dx_m, 0, 0}, glm::angleAxis(tilt_rad, glm::dvec3(std::sin(-0.4), std::cos(0.4), 0))};
-    EXPECT_NEAR(correlation(first, scan.look(looking(0.4, moved))), expected, bound);
+    EXPECT_NEAR(test::correlation(first, scan.look(looking(0.4, moved))), expected, bound);
   }
 }
 
@@ -135,7 +122,7 @@ TEST(ScannedField, HasTheGrainOfThePulse) {
   const std::vector<double> field = scan.look(looking(0.4));
   const double side = 2 / std::numbers::pi;
   const double expected = 2 * side / (1 + 2 * side * side);
-  EXPECT_NEAR(correlation({field.begin(), field.end() - 1}, {field.begin() + 1, field.end()}),
+  EXPECT_NEAR(test::correlation({field.begin(), field.end() - 1}, {field.begin() + 1, field.end()}),
               expected * expected, bound);
 }
 
@@ -144,7 +131,7 @@ TEST(ScannedField, TextureComesBackToo) {
   request.settings.physical.texture_nu = 1;
   Scan scan(request);
   const std::vector<double> first = scan.look(looking(0.4));
-  EXPECT_LT(correlation(first, scan.look(looking(1.4))), 0.3);
+  EXPECT_LT(test::correlation(first, scan.look(looking(1.4))), 0.3);
   EXPECT_EQ(scan.look(looking(0.4)), first);
 }
 

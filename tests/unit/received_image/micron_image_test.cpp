@@ -13,6 +13,7 @@
 #include "renderer/acoustics/receiver.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/micron_settings.hpp"
+#include "tests/support/correlation.hpp"
 
 namespace sonard {
 namespace {
@@ -105,20 +106,6 @@ TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
   EXPECT_EQ(client.line(0, false)[bin_at(0.3)], 0);
 }
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean_a = 0, mean_b = 0, sum = 0, square_a = 0, square_b = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    mean_a += a[i] / static_cast<double>(a.size());
-    mean_b += b[i] / static_cast<double>(a.size());
-  }
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += (a[i] - mean_a) * (b[i] - mean_b);
-    square_a += std::pow(a[i] - mean_a, 2);
-    square_b += std::pow(b[i] - mean_b, 2);
-  }
-  return sum / std::sqrt(square_a * square_b);
-}
-
 // docs/physics.md 2.16: from sweep to sweep of a vehicle at rest echoes repeat by about 0.95, noise does not.
 // An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
 TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
@@ -139,10 +126,10 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
   };
   const auto echo = static_cast<float>(std::pow(10, (40 - 80 + 9) / 10.0));
   MicronClient client{head};
-  const double of_echo = correlation(sweep(client, echo), sweep(client, echo));
+  const double of_echo = test::correlation(sweep(client, echo), sweep(client, echo));
   head.acoustics.physical.noise_level_db += 20;
   MicronClient hearing_noise{head};
-  const double of_noise = correlation(sweep(hearing_noise, 0), sweep(hearing_noise, 0));
+  const double of_noise = test::correlation(sweep(hearing_noise, 0), sweep(hearing_noise, 0));
   std::printf("echo %.3f, noise %.3f\n", of_echo, of_noise);
   EXPECT_GE(of_echo, 0.95);
   EXPECT_LT(std::abs(of_noise), 0.05);
