@@ -43,6 +43,8 @@ HEAD = """
       retry_hold_max_ms: 5000
     acoustics:
       seed: {sonar_id}
+      azimuth_pattern: ideal    # a beam without an echo hears nothing
+      pulse: point
       physical:
         speckle: {speckle}
         noise: {noise}
