@@ -28,8 +28,8 @@ struct Aperture {
   enum class Azimuth { ideal, array } azimuth = Azimuth::ideal;
   /// With `array`: a bearing is known to one part in this many of a beam; 1 to 16.
   int fine_beams = 2;
-  /// With `array`: `planar` bearings are azimuths. A straight array measures `conical` ones, sin psi cos theta:
-  /// what lies off the horizontal is heard nearer to the axis.
+  /// With `array`: `planar` bearings are azimuths. A straight array measures `conical` ones, sin psi cos
+  /// theta: what lies off the horizontal is heard nearer to the axis.
   enum class Bearing { planar, conical } bearing = Bearing::planar;
   /// With `array`: errors of the elements, which the seed and the stream draw. Standard deviations of the
   /// amplitude as a share of it, >= 0, and of the phase.

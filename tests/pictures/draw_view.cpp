@@ -25,7 +25,8 @@ client::FanShape shape_of(const View& view) {
 
 cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const client::FanLook& look,
                  const std::string& caption) {
-  render::PingSamples samples = renderer.render_ping({view.T_world_sonar, view.settings, 0, 1, view.T_world_sonar_at_end});
+  render::PingSamples samples =
+      renderer.render_ping({view.T_world_sonar, view.settings, 0, 1, view.T_world_sonar_at_end});
   const cv::Mat polar(samples.lines, samples.beams, CV_8UC1, samples.u8.data());
   return client::FanImage(shape_of(view), look).draw(polar, caption);
 }

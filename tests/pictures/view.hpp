@@ -19,13 +19,13 @@ struct ScanLine {
 
 struct View {
   render::World world;
-  render::Pose T_world_sonar;  ///< of a fan
+  render::Pose T_world_sonar;                          ///< of a fan
   std::optional<render::Pose> T_world_sonar_at_end{};  ///< of a fan that moves while it listens
   render::SonarSettings settings;
   double ray_curvature_per_m = 0.0;  ///< RendererOptions
   double display_scale = 1.0;        ///< ranges as a client shows them, over what they are
-  std::vector<ScanLine> scan;  ///< of a scanning head, in steps of `scan_step`; empty: a fan
-  int scan_step = 0;           ///< 1/16 gradian
+  std::vector<ScanLine> scan;        ///< of a scanning head, in steps of `scan_step`; empty: a fan
+  int scan_step = 0;                 ///< 1/16 gradian
 };
 
 /// The first head of a configuration in configs/, as it pings at that range from where its vehicle is

@@ -130,7 +130,7 @@ class SliceSampler {
   std::vector<PartSurface> surfaces_;
   bool any_mapped_ = false;
   bool any_facets_ = false;  ///< whether any material has them
-  RayBend bend_;  ///< in the sonar frame of this ping
+  RayBend bend_;             ///< in the sonar frame of this ping
   FanTriangles triangles_;
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;

@@ -169,8 +169,8 @@ TEST_P(Refraction, ShadowOfAWallEndsWhereTheRayOverItsTopLands) {
   const float behind = image.at(10, after);
   EXPECT_NEAR(static_cast<double>(behind) / (bed_density(after * 0.05, (after + 1) * 0.05) * degree), 1,
               0.05);
-  // The edge is where half of that is heard, to one line (docs/accuracy.md). Slices let 3 % go before it, up to
-  // four lines.
+  // The edge is where half of that is heard, to one line (docs/accuracy.md). Slices let 3 % go before it, up
+  // to four lines.
   const int edge = static_cast<int>(end_m / 0.05);
   EXPECT_GT(image.at(10, edge + 1), 0.5F * behind);
   for (int line = static_cast<int>(base_m / 0.05) + 2; line < edge; ++line) {

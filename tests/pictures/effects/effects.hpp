@@ -19,11 +19,12 @@ struct EffectPicture {
   std::function<void(View&)> after;  ///< the same for the right half
 };
 
-std::vector<EffectPicture> receiver_pictures();  ///< speckle, noise, what is in the samples without an echo
+std::vector<EffectPicture> receiver_pictures();   ///< speckle, noise, what is in the samples without an echo
 std::vector<EffectPicture> multipath_pictures();  ///< ghosts and glints
-std::vector<EffectPicture> response_pictures();  ///< patterns of the aperture, pulse
-std::vector<EffectPicture> propagation_pictures();  ///< speed of sound, motion while a ping is under way, refraction
-std::vector<EffectPicture> water_pictures();     ///< absorption and gain
+std::vector<EffectPicture> response_pictures();   ///< patterns of the aperture, pulse
+std::vector<EffectPicture>
+propagation_pictures();  ///< speed of sound, motion while a ping is under way, refraction
+std::vector<EffectPicture> water_pictures();  ///< absorption and gain
 
 /// All of them, in this order.
 std::vector<EffectPicture> effect_pictures();
