@@ -7,10 +7,12 @@
 #include <optional>
 
 #include "renderer/acoustics/echo_reception.hpp"
+#include "renderer/acoustics/propagation_loss.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/binning/gpu_binner.hpp"
+#include "renderer/known_echo.hpp"
 #include "renderer/multipath/multipath.hpp"
 #include "renderer/ping_motion.hpp"
 #include "renderer/visibility/beam_refinement.hpp"
@@ -96,9 +98,7 @@ float largest_response(const World& world) {
 
 /// Whether the beams are cones around a straight array.
 bool hears_cones(const SonarSettings& settings) {
-  const Aperture& aperture = settings.aperture;
-  return settings.model == Model::physical && aperture.azimuth == Aperture::Azimuth::array &&
-         aperture.beam_count() > 1 && aperture.bearing == Aperture::Bearing::conical;
+  return is_heard_by_array(settings) && settings.aperture.bearing == Aperture::Bearing::conical;
 }
 
 BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches& skip,
@@ -117,100 +117,6 @@ BinningOptions binning_options(const SonarSettings& settings, const SkipSwitches
   options.cone_aperture = hears_cones(settings) ? &settings.aperture : nullptr;
   return options;
 }
-
-/// Spherical spreading and absorption, two ways, of every native line (docs/physics.md 2.1, equation 1).
-struct PropagationLoss {
-  double step_m = 0.0;
-  double absorption_db_per_m = 0.0;
-  std::vector<float> of_line;
-
-  PropagationLoss() = default;
-  explicit PropagationLoss(const SonarSettings& settings)
-      : step_m(settings.range.step_m),
-        absorption_db_per_m(settings.physical.absorption_db_per_m),
-        of_line(static_cast<std::size_t>(settings.range.count)) {
-    for (std::size_t k = 0; k < of_line.size(); ++k) {
-      const double range_m = (static_cast<double>(k) + 0.5) * step_m;
-      of_line[k] =
-          static_cast<float>(std::pow(10.0, -absorption_db_per_m * range_m / 5) / (range_m * range_m));
-    }
-  }
-  /// True: made from these settings.
-  bool fits(const SonarSettings& settings) const {
-    return step_m == settings.range.step_m && absorption_db_per_m == settings.physical.absorption_db_per_m &&
-           of_line.size() == static_cast<std::size_t>(settings.range.count);
-  }
-};
-
-void apply(const std::vector<float>& loss, EchoImage& image) {
-  for (std::size_t beam = 0; beam < static_cast<std::size_t>(image.beams); ++beam) {
-    float* line = &image.intensity[beam * loss.size()];
-    for (std::size_t k = 0; k < loss.size(); ++k) {
-      line[k] *= loss[k];
-    }
-  }
-}
-
-/// Without what only the receiver looks at.
-PaperModel echo_part(PaperModel model) {
-  const PaperModel any;
-  model.gain = any.gain;
-  model.speckle = any.speckle;
-  model.speckle_mean = any.speckle_mean;
-  model.speckle_sd = any.speckle_sd;
-  model.speckle_floor = any.speckle_floor;
-  return model;
-}
-
-/// Without what only the receiver looks at.
-PhysicalModel echo_part(const PhysicalModel& model) {
-  PhysicalModel part;
-  part.absorption_db_per_m = model.absorption_db_per_m;
-  part.backscatter = model.backscatter;
-  part.multipath = model.multipath;
-  part.pulse = model.pulse;
-  part.range_cell_m = model.range_cell_m;
-  part.volume_scattering_db = model.volume_scattering_db;
-  return part;
-}
-
-/// Whether all that the mean echo depends on is the same in both.
-bool same_echo(const SonarSettings& a, const SonarSettings& b) {
-  if (a.transmit != b.transmit || a.model != b.model || a.range.count != b.range.count ||
-      a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
-    return false;
-  }
-  return a.model == Model::physical ? echo_part(a.physical) == echo_part(b.physical)
-                                    : echo_part(a.paper) == echo_part(b.paper);
-}
-
-/// Whether the echo goes with the seed, as errors of elements do.
-bool has_random_array(const SonarSettings& settings) {
-  const Aperture& aperture = settings.aperture;
-  return settings.model == Model::physical && aperture.azimuth == Aperture::Azimuth::array &&
-         (aperture.element_amplitude_sd > 0 || aperture.element_phase_sd_rad > 0);
-}
-
-/// Where the sonar is while it pings.
-struct SonarMotion {
-  Pose T_world_sonar;          ///< when the ping is sent
-  std::optional<Pose> at_end;  ///< when its last line is heard; nullopt: as if at rest
-  bool operator==(const SonarMotion&) const = default;
-};
-
-/// The last mean echo of a stream, and what it was made of.
-struct KnownEcho {
-  EchoImage image;
-  SonarSettings settings;
-  std::uint64_t seed = 0;
-  SonarMotion motion;
-  std::uint64_t world_revision = 0;  ///< 0: there is none yet
-
-  bool fits(const PingRequest& wanted, const SonarMotion& motion_wanted, std::uint64_t revision) const {
-    return world_revision == revision && motion == motion_wanted && same_echo(settings, wanted.settings) &&
-           (seed == wanted.seed || !has_random_array(wanted.settings));
-  }
-};
 
 class Stopwatch {
  public:
@@ -385,7 +291,7 @@ struct SonarRenderer::Impl {
       if (has_volume_reverberation(settings) && bins.open_sr.empty()) {
         statistics.skipped.add(SkipRule::clear_water);
       }
-      apply(line_weight, image);
+      apply_loss(line_weight, image);
     }
     statistics.binning_s += watch.lap();
   }

@@ -224,4 +224,10 @@ struct SonarSettings {
   OutputScale output_scale = OutputScale::linear;
 };
 
+/// Whether the beams are those of a straight array: mode `physical`, Azimuth::array, two beams or more.
+inline bool is_heard_by_array(const SonarSettings& settings) {
+  return settings.model == Model::physical && settings.aperture.azimuth == Aperture::Azimuth::array &&
+         settings.aperture.beam_count() > 1;
+}
+
 }  // namespace sonard::render

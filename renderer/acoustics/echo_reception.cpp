@@ -11,7 +11,7 @@ void EchoReception::prepare(const SonarSettings& settings, std::uint64_t seed, i
   if (settings.model == Model::paper) {
     return;
   }
-  if (settings.aperture.azimuth == Aperture::Azimuth::array && settings.aperture.beam_count() > 1) {
+  if (is_heard_by_array(settings)) {
     prepare_pattern(settings, seed, stream, skip, skipped);
   }
   if (settings.physical.pulse != PhysicalModel::Pulse::point && settings.physical.range_cell_m > 0) {

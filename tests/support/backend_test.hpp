@@ -59,6 +59,12 @@ inline std::string backend_name(const ::testing::TestParamInfo<render::Backend>&
   return std::string(render::name_of(info.param));
 }
 
+/// A sonar turned to port about the vertical, then tilted down.
+inline render::Pose looking(const glm::dvec3& position_m, double yaw_deg, double down_deg) {
+  return {position_m, glm::angleAxis(glm::radians(yaw_deg), glm::dvec3(0, 0, 1)) *
+                          glm::angleAxis(glm::radians(down_deg), glm::dvec3(0, 1, 0))};
+}
+
 /// A body of one mesh, at the world's origin.
 inline render::Body make_body(const std::string& name, render::TriangleMesh mesh, double lambert_mu = 1.0) {
   render::BodyPart part;

@@ -16,17 +16,13 @@
 namespace sonard::render {
 namespace {
 
+using test::looking;
 using test::make_body;
 using test::make_quad;
 using test::make_sphere;
 using test::make_world;
 
 constexpr double degree = std::numbers::pi / 180;
-
-Pose looking(const glm::dvec3& position_m, double yaw_deg, double down_deg) {
-  return {position_m, glm::angleAxis(yaw_deg * degree, glm::dvec3(0, 0, 1)) *
-                          glm::angleAxis(down_deg * degree, glm::dvec3(0, 1, 0))};
-}
 
 /// Over the whole fan.
 TriangleMesh wall(float distance_m) {

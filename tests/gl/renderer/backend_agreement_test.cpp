@@ -11,6 +11,7 @@
 namespace sonard::render {
 namespace {
 
+using test::looking;
 using test::make_body;
 using test::make_quad;
 using test::make_sphere;
@@ -23,11 +24,6 @@ struct View {
   World world;
   Pose T_world_sonar;
 };
-
-Pose looking(const glm::dvec3& position_m, double yaw_deg, double down_deg) {
-  return {position_m, glm::angleAxis(yaw_deg * degree, glm::dvec3(0, 0, 1)) *
-                          glm::angleAxis(down_deg * degree, glm::dvec3(0, 1, 0))};
-}
 
 View shipped_world(const std::string& file, const Pose& T_world_sonar) {
   return {load_world(std::string(SONARD_SOURCE_DIR) + "/configs/worlds/" + file, {}), T_world_sonar};
