@@ -5,72 +5,95 @@
 
 #include <glm/geometric.hpp>
 
-#include "renderer/visibility/slices/slice_shading.hpp"
-
 namespace sonard::render {
 
 FacetSight::FacetSight(const PartSurface& part, const VisiblePiece& piece, const Slice& slice)
-    : part_(part), piece_(piece), slice_(slice) {
-  const float low = piece.low, high = piece.high, t = 0.5F * (low + high);
-  const float secant = std::sqrt(1 + t * t);
-  turn_ = {(high - low) / std::sqrt((1 + low * low) * (1 + high * high)), slice.width_rad / secant};
-  const float cosine = std::abs(piece.normal_h + piece.normal_z * t) / secant;
-  const float incidence = std::acos(std::min(cosine, 1.0F));
-  const float nearer = 0.5F * (turn_.along + turn_.across) + part.bend_rad;
-  may_hear_ = incidence - nearer < part.facet_reach_rad;
-  if (may_hear_ && part.vertex_normals) {
-    find_turn();
+    : backscatter_(&part.backscatter), width_rad_(slice.width_rad) {
+  const float t = 0.5F * (piece.low + piece.high);
+  normals_ = part.vertex_normals ? interpolated_normals(part, *piece.triangle, slice, t)
+                                 : NormalRun{{piece.normal_h, piece.normal_s, piece.normal_z}};
+  find_turn(t, slice.width_rad);
+  const float slope = std::sqrt(part.backscatter.slope_variance);
+  const float turn_rad = slope * (slopes_per_t_ * (piece.high - piece.low) + slopes_across_);
+  const float middle = cosine(0.0F, t);
+  may_hear_ =
+      middle > part.backscatter.least_cosine || std::acos(middle) - 0.5F * turn_rad < part.facet_reach_rad;
+}
+
+/// From how direction and normal change in the middle. Off a mirror they differ by d - n or d + n.
+void FacetSight::find_turn(float middle_t, float width_rad) {
+  const glm::vec3 d(1, 0, middle_t), n = normals_.at + middle_t * normals_.per_t;
+  const float per_d = 1 / glm::length(d), per_n = 1 / glm::length(n);
+  const glm::vec3 d_unit = d * per_d, n_unit = n * per_n;
+  const float facing = glm::dot(d, n) > 0 ? per_n : -per_n;
+  const auto turn = [&](const glm::vec3& d_step, const glm::vec3& n_step) {
+    return glm::length((d_step - d_unit * glm::dot(d_unit, d_step)) * per_d -
+                       (n_step - n_unit * glm::dot(n_unit, n_step)) * facing);
+  };
+  const float per_slope = 1 / std::sqrt(backscatter_->slope_variance);
+  slopes_per_t_ = per_slope * turn({0, 0, 1}, normals_.per_t);
+  slopes_across_ = per_slope * width_rad * turn({0, 1, 0}, normals_.per_x);
+}
+
+float FacetSight::cosine(float x, float t) const {
+  const glm::vec3 n = normals_.at + x * normals_.per_x + t * normals_.per_t;
+  const glm::vec3 d(1, x, t);
+  return std::min(std::abs(glm::dot(n, d)) / std::sqrt(glm::dot(n, n) * glm::dot(d, d)), 1.0F);
+}
+
+/// On p = h (1, x, t) the surface is across its normal: (ln h)' = -n_s / (n . q). The range is h times the
+/// length of q.
+float FacetSight::range_slope(float t, float place) const {
+  constexpr float steepest = 10.0F;  // 84 degrees off: a silhouette
+  const float x = place * width_rad_;
+  const glm::vec3 q(1, x, t), n = normals_.at + x * normals_.per_x + t * normals_.per_t;
+  const float slope = -n.y / glm::dot(n, q);
+  return std::clamp(slope, -steepest, steepest) + x / glm::dot(q, q);
+}
+
+FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
+  constexpr float even = 0.05F, nearly_even = 0.5F, looked_over = 1.5F;  // in rms slopes
+  constexpr float most_strides = 32.0F;
+  const float middle = 0.5F * (wedge.from + wedge.to), width = wedge.to - wedge.from;
+  const float slopes = slopes_across_ * width;
+  if (slopes < even) {
+    return {backscatter_->facets(cosine(middle * width_rad_, t)), 0.0F};
   }
-}
-
-/// Of a surface with normals of its own.
-void FacetSight::find_turn() {
-  const float t = 0.5F * (piece_.low + piece_.high), half = 0.5F * slice_.width_rad;
-  turn_.along = glm::length(off_mirror(piece_.high, 0.0F) - off_mirror(piece_.low, 0.0F));
-  turn_.across = glm::length(off_mirror(t, half) - off_mirror(t, -half));
-}
-
-FacetSight::Sight FacetSight::at(float t, float offset_rad) const {
-  const float c = std::cos(offset_rad), s = std::sin(offset_rad);
-  if (!part_.vertex_normals) {  // along the slice, across it, and up
-    return {glm::normalize(glm::vec3(c, s, t)), {piece_.normal_h, piece_.normal_s, piece_.normal_z}};
+  FacetResponse sum;
+  const auto look = [&](float place, float weight) {
+    const float echo = weight * backscatter_->facets(cosine((middle + place) * width_rad_, t));
+    sum.mean += echo;
+    sum.moment += echo * place;
+  };
+  // Gauss and Legendre's two points, or three on each stride over which a bell is a smooth thing.
+  if (slopes < nearly_even) {
+    constexpr float off = 0.28867513F;
+    look(-off * width, 0.5F);
+    look(off * width, 0.5F);
+    return sum;
   }
-  const glm::vec3 q(slice_.cosine * c - slice_.sine * s, slice_.sine * c + slice_.cosine * s, t);
-  return {part_.R_part_sonar * glm::normalize(q), interpolated_normal(part_, *piece_.triangle, q)};
-}
-
-/// 0 where a mirror would send sound back, and as long as the angle away from that, if small.
-glm::vec3 FacetSight::off_mirror(float t, float offset_rad) const {
-  const Sight sight = at(t, offset_rad);
-  return sight.direction + (glm::dot(sight.normal, sight.direction) > 0 ? -sight.normal : sight.normal);
-}
-
-float FacetSight::response_at(float t, float offset_rad) const {
-  const Sight sight = at(t, offset_rad);
-  return part_.backscatter.facets(std::min(std::abs(glm::dot(sight.normal, sight.direction)), 1.0F));
-}
-
-float FacetSight::displacement_m() const {
-  const float t = 0.5F * (piece_.low + piece_.high), secant = std::sqrt(1 + t * t);
-  const float facing = piece_.normal_h + piece_.normal_z * t;
-  const float range = secant / (piece_.w_at_0 + piece_.w_slope * t);
-  const float by_azimuth = range * piece_.normal_s / facing;
-  const FacetResponse facets = response(t);
-  const float all = facets.mean + part_.backscatter.lambert(std::abs(facing) / secant);
-  return all > 0 ? std::abs(by_azimuth * slice_.width_rad * facets.moment / all) : 0.0F;
-}
-
-FacetResponse FacetSight::response(float t) const {
-  constexpr float narrow = 0.05F;  // of m: the middle is as good as the mean
-  const float middle = response_at(t, 0.0F);
-  if (turn_.across * turn_.across < narrow * narrow * part_.backscatter.slope_variance) {
-    return {middle, 0.0F};
+  constexpr float off = 0.38729833F, at_middle = 8.0F / 18, beside = 5.0F / 18;
+  const float strides = std::clamp(std::ceil(slopes / looked_over), 1.0F, most_strides);
+  for (float k = 0.5F; k < strides; ++k) {
+    const float place = width * (k / strides - 0.5F), step = width / strides;
+    look(place - off * step, beside / strides);
+    look(place, at_middle / strides);
+    look(place + off * step, beside / strides);
   }
-  // Gauss and Legendre's three points.
-  const float place = 0.5F * std::sqrt(0.6F);
-  const float starboard = response_at(t, -place * slice_.width_rad);
-  const float port = response_at(t, place * slice_.width_rad);
-  return {(5 * (starboard + port) + 8 * middle) * (1.0F / 18), 5 * place * (port - starboard) * (1.0F / 18)};
+  return sum;
+}
+
+PieceFacets facets_of_piece(const FacetSight& sight, const VisiblePiece& piece, bool tilts,
+                            const WedgePart& wedge) {
+  const float even = tilts ? 0.05F : 0.25F;  // in rms slopes
+  const float t = 0.5F * (piece.low + piece.high);
+  const FacetResponse middle = sight.response(t, wedge);
+  if (sight.slopes_per_t() * (piece.high - piece.low) < even) {
+    return {middle.mean, middle.moment, 0.0F};
+  }
+  const FacetResponse low = sight.response(piece.low, wedge), high = sight.response(piece.high, wedge);
+  return {(low.mean + 4 * middle.mean + high.mean) * (1.0F / 6),
+          (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6), high.mean - low.mean};
 }
 
 }  // namespace sonard::render

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "renderer/simd.hpp"
-#include "renderer/visibility/slices/slice_facets.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
 
 namespace sonard::render {
@@ -19,6 +18,7 @@ constexpr int most_rounds = 6;      // near a foot point the divided pieces are 
 constexpr float most_tilt = 1.1F;   // of a piece; 1 where the range turns round at one end
 // Under a normal map pieces are no longer than this many lines, so that its bumps appear at their ranges.
 constexpr float mapped_lines = 2.0F;
+constexpr float most_side_by_side = 16.0F;  // patches of a piece
 
 /// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
 /// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
@@ -56,6 +56,7 @@ float ElevationPattern::at(float t) const {
 
 std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = &request.pieces;
+  see_facets(request);
   int rounds = 0;
   do {
     lay_out(request);
@@ -64,22 +65,87 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
     find_tilts(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
   const std::uint64_t without_facets = shade(request);
-  const std::size_t begin = patches.size();
-  patches.resize(begin + pieces_->size());
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
-    patches[begin + i] = {
-        range_low_[i],   range_high_[i], smear_low_[i],  smear_high_[i], response_[i] * solid_angle_[i],
-        solid_angle_[i], echo_tilt_[i],  range_tilt_[i], seen_.low[i],   seen_.high[i]};
+    add_patches(request, i, patches);
   }
   return without_facets;
+}
+
+/// Normals and directions of the pieces whose facets may be heard. What a piece is divided into goes on with
+/// its own.
+void SlicePatcher::see_facets(const Request& request) {
+  sights_.clear();
+  sight_of_.clear();
+  if (!request.any_facets) {
+    return;
+  }
+  for (const VisiblePiece& piece : *pieces_) {
+    sight_of_.push_back(static_cast<std::uint32_t>(sights_.size()));
+    const PartSurface& part = request.parts[piece.triangle->part];
+    const bool heard = part.backscatter.facet_strength > 0 || request.surface.facets == Facets::everywhere;
+    sights_.push_back(heard && !part.normal_map ? FacetSight(part, piece, request.slice) : FacetSight());
+  }
+}
+
+/// One, or several side by side where facets are much louder at one side of the wedge.
+void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const {
+  const EchoPatch whole{
+      range_low_[i],   range_high_[i], smear_low_[i],  smear_high_[i], response_[i] * solid_angle_[i],
+      solid_angle_[i], echo_tilt_[i],  range_tilt_[i], seen_.low[i],   seen_.high[i]};
+  patches.push_back(whole);
+  if (!request.any_facets || aside_[i] == 0.0F) {
+    return;
+  }
+  const FacetSight& sight = sights_[sight_of_[i]];
+  const float t = 0.5F * (seen_.low[i] + seen_.high[i]);
+  const float wedge_m = range_mid_[i] * request.slice.width_rad;
+  const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * aside_[i];
+  // What moves a part, and by how much it is bent, fall with the square of their number.
+  const float facets_share = 1 - response_without_facets_[i] / response_[i];
+  const float bowed_m =
+      0.125F * wedge_m * facets_share * (sight.range_slope(t, 0.5F) - sight.range_slope(t, -0.5F));
+  const float off_m = std::max(std::abs(moved_m), std::abs(bowed_m));
+  const float wanted = std::sqrt(off_m / (request.facet_lines * request.line_m));
+  const float count = std::clamp(std::ceil(wanted), 1.0F, most_side_by_side);
+  if (count == 1.0F) {
+    patches.back().range_a_m += moved_m;
+    patches.back().range_b_m += moved_m;
+    return;
+  }
+  patches.pop_back();
+  for (float k = 0.0F; k < count; ++k) {
+    const WedgePart part{k / count - 0.5F, (k + 1) / count - 0.5F};
+    const PieceFacets facets = facets_of_piece(sight, (*pieces_)[i], range_tilt_[i] != 0.0F, part);
+    const float response = response_without_facets_[i] + facets.mean;
+    const float aside = response > 0 ? facets.moment / response : 0.0F;
+    EchoPatch patch = whole;
+    patch.weight /= count;
+    patch.echo = response * patch.weight;
+    const auto put = [&](float end_t, float& range_m, float& smear_m) {
+      const float place = 0.5F * (part.from + part.to);
+      // From the azimuth of the slice, not from the mean over the wedge.
+      const float n = seen_.normal_h[i] + seen_.normal_z[i] * end_t;
+      range_m /= 1 + bow_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
+      const float wedge_there_m = range_m * request.slice.width_rad;
+      const float slope = sight.range_slope(end_t, place);
+      const float on_the_way =
+          sight.range_slope(end_t, 0.0F) + 4 * sight.range_slope(end_t, 0.5F * place) + slope;
+      range_m += wedge_there_m * (place * on_the_way * (1.0F / 6) + slope * aside);
+      smear_m = wedge_there_m * std::abs(slope) / count;
+    };
+    put(seen_.low[i], patch.range_a_m, patch.smear_a_m);
+    put(seen_.high[i], patch.range_b_m, patch.smear_b_m);
+    patches.push_back(patch);
+  }
 }
 
 void SlicePatcher::lay_out(const Request& request) {
   seen_.lay_out(*pieces_);
   if (seen_.size() > plain_.size()) {
-    for (auto* array : {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_,
-                        &solid_angle_, &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_,
-                        &echo_tilt_, &displaced_, &by_azimuth_low_, &by_azimuth_high_}) {
+    for (auto* array :
+         {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
+          &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_,
+          &by_azimuth_low_, &by_azimuth_high_, &aside_, &response_without_facets_}) {
       array->resize(seen_.size());
     }
     shaded_.resize(seen_.size());
@@ -257,17 +323,13 @@ float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, flo
 /// So that over each part the echo of facets changes little: by less than would show if the part lies in one
 /// line, and by about as much as a straight line follows if it spreads over more.
 float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
-  const VisiblePiece& piece = (*pieces_)[i];
-  const PartSurface& part = request.parts[piece.triangle->part];
-  if (!(part.backscatter.facet_strength > 0) || part.normal_map) {
-    return 1.0F;
-  }
-  const FacetSight sight(part, piece, request.slice);
+  const FacetSight& sight = sights_[sight_of_[i]];
   if (!sight.may_hear()) {
     return 1.0F;
   }
+  const VisiblePiece& piece = (*pieces_)[i];
   const float share = span_m < 0.5F * request.line_m ? 1.0F : std::sqrt(request.evenness);
-  return std::ceil(sight.turn().along / (share * std::sqrt(part.backscatter.slope_variance)));
+  return std::ceil(sight.slopes_per_t() * (piece.high - piece.low) / share);
 }
 
 /// Divides the pieces whose echo runs otherwise in range than a patch can say.
@@ -278,32 +340,42 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   }
   bool any = false;
   divided_.clear();
+  divided_sight_of_.clear();
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
     const int parts = parts_of(request, i);
-    const VisiblePiece& whole = (*pieces_)[i];
     if (parts == 1) {
-      divided_.push_back(whole);
-      continue;
+      divided_.push_back((*pieces_)[i]);
+    } else {
+      divide(i, parts);
+      any = true;
     }
-    any = true;
-    VisiblePiece part = whole;
-    // A range that turns round inside does so where dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
-    const float turn = seen_.w_slope[i] / seen_.w_at_0[i];
-    const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
-    for (int k = 1; k <= parts; ++k) {
-      const float share = static_cast<float>(k) / static_cast<float>(parts);
-      part.high = k == parts ? whole.high : at_turn ? turn : whole.low + (whole.high - whole.low) * share;
-      part.high_run = k == parts ? whole.high_run : EdgeRun{};
-      if (part.high > part.low) {
-        divided_.push_back(part);
-        part.low = part.high;
-        part.low_run = part.high_run;
-      }
+    if (request.any_facets) {
+      divided_sight_of_.resize(divided_.size(), sight_of_[i]);
     }
   }
   whole_.swap(divided_);
+  sight_of_.swap(divided_sight_of_);
   pieces_ = &whole_;
   return any;
+}
+
+/// Puts its parts into `divided_`.
+void SlicePatcher::divide(std::size_t i, int parts) {
+  const VisiblePiece& whole = (*pieces_)[i];
+  VisiblePiece part = whole;
+  // A range that turns round inside does so where dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
+  const float turn = seen_.w_slope[i] / seen_.w_at_0[i];
+  const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
+  for (int k = 1; k <= parts; ++k) {
+    const float share = static_cast<float>(k) / static_cast<float>(parts);
+    part.high = k == parts ? whole.high : at_turn ? turn : whole.low + (whole.high - whole.low) * share;
+    part.high_run = k == parts ? whole.high_run : EdgeRun{};
+    if (part.high > part.low) {
+      divided_.push_back(part);
+      part.low = part.high;
+      part.low_run = part.high_run;
+    }
+  }
 }
 
 /// @return of how many pieces facets were not looked at.
@@ -313,6 +385,7 @@ std::uint64_t SlicePatcher::shade(const Request& request) {
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
     response_[i] = shade_plainly(request, i);
     echo_tilt_[i] = cosine_tilt_[i] * plain_[i];
+    aside_[i] = 0.0F;
     without_facets += any_facets && add_facets(request, i) ? 0 : 1;
     const bool tilts = range_tilt_[i] != 0.0F;
     if (!request.pattern.flat()) {
@@ -337,7 +410,9 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
     // In the middle; that the mean differs from the middle is a matter of geometry.
     const float middle = cosine_mid_[i];
     if (middle > 0) {
-      shaded_[i] = shaded_incidence(part, *piece.triangle, place, middle);
+      const float seen = sights_.empty() || part.normal_map ? NAN : sights_[sight_of_[i]].cosine(t);
+      shaded_[i] = std::isfinite(seen) ? ShadedIncidence{seen, 1.0F}
+                                       : shaded_incidence(part, *piece.triangle, place, middle);
       cosine = shaded_[i].cosine * (cosine / middle);
     }
   }
@@ -358,21 +433,16 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
         part.backscatter.facets(std::min(shaded_[i].cosine / length, 1.0F), variance_of_mean_normal(length));
     return true;
   }
-  const FacetSight sight(part, piece, request.slice);
+  const FacetSight& sight = sights_[sight_of_[i]];
   if (!everywhere && !sight.may_hear()) {
     return false;
   }
-  const float plainly = response_[i];
-  const FacetResponse low = sight.response(piece.low), high = sight.response(piece.high);
-  const FacetResponse middle = sight.response(0.5F * (piece.low + piece.high));
-  response_[i] += (low.mean + 4 * middle.mean + high.mean) * (1.0F / 6);
+  const PieceFacets facets = facets_of_piece(sight, piece, range_tilt_[i] != 0.0F);
+  response_without_facets_[i] = response_[i];
+  response_[i] += facets.mean;
   if (response_[i] > 0) {
-    echo_tilt_[i] = (echo_tilt_[i] * plainly + 0.5F * (high.mean - low.mean)) / response_[i];
-    // Both ends smear evenly over the wedge; where one side echoes more, their middle lies towards it.
-    const float aside = (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6) / response_[i];
-    const float moved_m = 0.5F * (by_azimuth_low_[i] + by_azimuth_high_[i]) * request.slice.width_rad * aside;
-    range_low_[i] += moved_m;
-    range_high_[i] += moved_m;
+    echo_tilt_[i] = (echo_tilt_[i] * response_without_facets_[i] + 0.5F * facets.rise) / response_[i];
+    aside_[i] = facets.moment / response_[i];
   }
   return true;
 }

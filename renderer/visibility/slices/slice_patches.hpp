@@ -3,39 +3,17 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include <glm/mat3x3.hpp>
-
 #include "renderer/binning/echo_patch.hpp"
-#include "renderer/scene/world.hpp"
-#include "renderer/visibility/normal_pyramid.hpp"
 #include "renderer/visibility/sampler.hpp"
+#include "renderer/visibility/slices/part_surface.hpp"
 #include "renderer/visibility/slices/piece_arrays.hpp"
 #include "renderer/visibility/slices/piece_ends.hpp"
+#include "renderer/visibility/slices/slice_facets.hpp"
+#include "renderer/visibility/slices/slice_shading.hpp"
 
 namespace sonard::render {
-
-/// How the surface of one part answers.
-struct PartSurface {
-  std::shared_ptr<const TriangleMesh> mesh;
-  std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
-  bool vertex_normals = false;                      ///< whether shading interpolates them
-  Backscatter backscatter;
-  float facet_reach_rad = -1e3F;  ///< from normal incidence; farther off facets are not heard
-  float bend_rad = 0.0F;          ///< at most so much vertex normals are away from their facet's
-  float reflectance = 0.0F;
-  // For this ping:
-  glm::mat3 R_part_sonar{1.0F};
-  RayBend bend_in_part;  ///< `up` in the axes of the part
-};
-
-/// How sound meets the normal that shades.
-struct ShadedIncidence {
-  float cosine;       ///< |n . d|, with the mean of a map's normals as it is
-  float mean_length;  ///< of that mean; 1 without a map
-};
 
 /// Elevation pattern as a function of t, tabled.
 class ElevationPattern {
@@ -67,6 +45,9 @@ class SlicePatcher {
     float evenness;
     bool any_mapped;  ///< whether any of the parts has a normal map
     bool any_facets;  ///< whether facets have to be looked at, of any of the parts
+    /// Where facets are louder at one side of the wedge than at the other, a patch lies that much nearer to
+    /// that side. It is divided across until that is no more than this many lines.
+    float facet_lines;
     float line_m;
     float max_range_m;  ///< what is wholly beyond is left as it is
   };
@@ -80,19 +61,24 @@ class SlicePatcher {
   void measure(const Request& request);
   void find_tilts(const Request& request);
   bool divide_uneven(const Request& request);
+  void divide(std::size_t i, int parts);
   bool all_even(float allowed_m) const;
   int parts_of(const Request& request, std::size_t i) const;
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
   float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
   float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
+  void see_facets(const Request& request);
   std::uint64_t shade(const Request& request);
   float shade_plainly(const Request& request, std::size_t i);
   bool add_facets(const Request& request, std::size_t i);
+  void add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const;
   void weigh_by_pattern(const Request& request, std::size_t i);
 
   /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
   std::vector<VisiblePiece> whole_, divided_;
+  std::vector<FacetSight> sights_;  ///< of each piece of the request; empty where no facets are looked at
+  std::vector<std::uint32_t> sight_of_, divided_sight_of_;  ///< of each piece, its number in `sights_`
   PieceArrays seen_;
   PieceEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
@@ -103,7 +89,8 @@ class SlicePatcher {
   std::vector<float> cosine_mid_;   ///< in its middle
   std::vector<float> echo_tilt_;    ///< of both
   std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
-  std::vector<float> response_;
+  std::vector<float> response_, response_without_facets_;
+  std::vector<float> aside_;             ///< where in its wedge the echo has its middle, 1/2 at the port side
   std::vector<ShadedIncidence> shaded_;  ///< in its middle
 };
 

@@ -196,9 +196,8 @@ std::vector<float> SliceSampler::doubtful_slices(const Setting& setting) const {
 }
 
 /// Into how many parts each slice is to be divided: those on both sides of every border at which they
-/// disagree too much, those that miss something thin, those in which the range ends, and those across which
-/// the echo of facets changes too much. All is measured by what the beam hears; errors of many slices add up
-/// as independent ones do.
+/// disagree too much, those that miss something thin, and those in which the range ends. All is measured by
+/// what the beam hears; errors of many slices add up as independent ones do.
 std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   compare_neighbours(setting);
   const std::vector<float> heard = heard_by_beams(setting);
@@ -227,7 +226,7 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
       const bool three_will_do = !cell.misses_something && apart < three_helps_by * most_apart;
       parts[i] =
           three_will_do && !(is_first && setting.accuracy.first_in_five) ? parts_of_bows : parts_at_edges;
-    } else if (bent > bows_per_edge * most || ending > ends_per_edge * most || cell.blurs_facets) {
+    } else if (bent > bows_per_edge * most || ending > ends_per_edge * most) {
       parts[i] = parts_of_bows;
     }
   }

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "renderer/visibility/slices/coplanar_facets.hpp"
-#include "renderer/visibility/slices/slice_facets.hpp"
 #include "renderer/visibility/slices/slice_sampler_impl.hpp"
 #include "renderer/visibility/slices/slice_shading.hpp"
 
@@ -83,7 +82,6 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   surface.reflectance = static_cast<float>(part.material.reflectance);
   if (surface.backscatter.facet_strength > 0) {
     surface.facet_reach_rad = std::acos(std::min(surface.backscatter.least_cosine, 1.0F));
-    surface.bend_rad = most_bend_rad(*part.mesh);
     any_facets_ = true;
   }
   const bool plain_facets = has_plain_facets(*part.mesh);
@@ -224,21 +222,6 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
   });
 }
 
-/// See SliceCell.
-bool SliceSampler::blurs_facets(const Setting& setting, const SliceCell& cell) {
-  const SliceAccuracy& accuracy = setting.accuracy;
-  return std::any_of(cell.pieces.begin(), cell.pieces.end(), [&](const VisiblePiece& piece) {
-    const PartSurface& part = setting.parts[piece.triangle->part];
-    if (!(part.backscatter.facet_strength > 0) || part.normal_map) {
-      return false;
-    }
-    const FacetSight sight(part, piece, cell.slice);
-    return sight.may_hear() &&
-           (sight.turn().across > accuracy.facet_turn * std::sqrt(part.backscatter.slope_variance) ||
-            sight.displacement_m() > accuracy.facet_lines * setting.line_m);
-  });
-}
-
 void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell) {
   if (!cell.seen) {
     scratch.cutter.cut(cell.slice, setting.fan.tan_limit(), scratch.segments);
@@ -248,7 +231,6 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   if (setting.accuracy.most_divisions == 1) {
     return;
   }
-  cell.blurs_facets = setting.any_facets && blurs_facets(setting, cell);
   cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
   scratch.cutter.find_upright_edges(cell.slice, cell.edges);
   scratch.expectation.find(cell.pieces, cell.slice.width_rad, setting.side_view, cell.sides);
@@ -263,11 +245,11 @@ void SliceSampler::make_patches(const Setting& setting) {
     for (std::size_t i = begin; i < std::min(order_.size(), begin + cells_per_job); ++i) {
       SliceCell& cell = *cells_[order_[i]];
       cell.patches.clear();
-      cell.without_facets =
-          patcher.make({cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern,
-                        setting.fan.tan_limit(), setting.accuracy.evenness, setting.any_mapped,
-                        setting.any_facets, setting.line_m, setting.fan.max_range_m()},
-                       cell.patches);
+      cell.without_facets = patcher.make(
+          {cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern, setting.fan.tan_limit(),
+           setting.accuracy.evenness, setting.any_mapped, setting.any_facets, setting.accuracy.facet_lines,
+           setting.line_m, setting.fan.max_range_m()},
+          cell.patches);
     }
   });
 }

@@ -42,8 +42,7 @@ struct SliceAccuracy {
   float bow_lines = 6e-4F;
   float evenness = 0.03F;      ///< see SlicePatcher::Request
   float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
-  float facet_turn = 0.75F;    ///< FacetTurn::across of what hears facets may be so many times their slope
-  float facet_lines = 0.006F;  ///< FacetSight::displacement_m() of it may be so many lines
+  float facet_lines = 0.006F;  ///< see SlicePatcher::Request
 };
 
 /// Shares of the elevations at which neighbouring slices do not agree.
@@ -62,7 +61,6 @@ struct SliceCell {
   std::vector<EchoPatch> patches;
   SliceSides sides;
   SliceBorder to_starboard;                  ///< between this slice and the next one
-  bool blurs_facets = false;                 ///< some piece is beyond facet_turn or facet_lines
   std::uint64_t without_facets = 0;          ///< patches, see SkipRule::facet_kernel
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
   bool seen = false;                         ///< its pieces are known
@@ -107,7 +105,6 @@ class SliceSampler {
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
   static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
-  static bool blurs_facets(const Setting& setting, const SliceCell& cell);
   void make_patches(const Setting& setting);
   std::size_t new_cell(const Slice& slice, int beam);
 

@@ -91,40 +91,60 @@ glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, co
 
 bool has_plain_facets(const TriangleMesh& mesh) {
   constexpr float plain_rad = 1e-4F;
-  return most_bend_rad(mesh) < plain_rad;
-}
-
-float most_bend_rad(const TriangleMesh& mesh) {
-  float most = 0.0F;  // sine
   for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.normals.empty(); i += 3) {
     const std::uint32_t* corner = &mesh.indices[i];
     const glm::vec3 edge_b = mesh.positions[corner[1]] - mesh.positions[corner[0]];
     const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
     const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
     for (std::size_t k = 0; k < 3; ++k) {
-      // What is not a number, or turned round, is as far away as can be.
-      const glm::vec3& normal = mesh.normals[corner[k]];
-      const float sine = glm::length(glm::cross(facet, normal));
-      most = sine < 1 ? std::max(most, sine) : 1.0F;
+      // What is not a number is no direction.
+      if (!(glm::length(glm::cross(facet, mesh.normals[corner[k]])) < plain_rad)) {
+        return false;
+      }
     }
   }
-  return std::asin(most);
+  return true;
 }
 
-glm::vec3 interpolated_normal(const PartSurface& part, const FanTriangle& triangle, const glm::vec3& q) {
+NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
+                               float middle_t) {
+  // Rows: the axes of the slice.
+  const glm::vec3 along(slice.cosine, slice.sine, 0), across(-slice.sine, slice.cosine, 0), up(0, 0, 1);
+  const auto in_slice = [&](const glm::vec3& v) {
+    return glm::vec3(glm::dot(along, v), glm::dot(across, v), v.z);
+  };
+  const auto normal_of = [&](std::size_t corner) {
+    const std::uint32_t k = part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3 + corner];
+    return in_slice(part.mesh->normals[k] * part.R_part_sonar);
+  };
+  const SurfacePoint surface(triangle, {});
+  const glm::vec3 plane = in_slice(surface.normal);
   if (part.mesh->normals.empty()) {
-    return part.R_part_sonar * glm::normalize(triangle.across());
+    return {plane};
   }
-  constexpr float beyond = 16.0F;  // triangles: wedges may be wider than those of a finely meshed ball
-  const glm::vec3 across = triangle.across();
-  const SurfacePoint surface(triangle, q * (glm::dot(across, triangle.corner(0)) / glm::dot(across, q)));
-  const glm::vec2 weights =
-      glm::clamp(surface.weights(surface.p - surface.corner), glm::vec2(-beyond), glm::vec2(1 + beyond));
-  const glm::vec3 n = part.bend_in_part.normal(
-      interpolate(part.mesh->normals, &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3], weights),
-      part.R_part_sonar * surface.p);
-  const float length = glm::length(n);
-  return length > 0 ? n / length : part.R_part_sonar * glm::normalize(across);
+  const glm::vec3 a = normal_of(0), by_b = normal_of(1) - a, by_c = normal_of(2) - a;
+  const float nn = glm::dot(surface.normal, surface.normal);
+  const glm::vec3 grows_to_b = glm::cross(surface.edge_c, surface.normal) / nn;
+  const glm::vec3 grows_to_c = glm::cross(surface.normal, surface.edge_b) / nn;
+  const glm::vec3 b_of = in_slice(grows_to_b), c_of = in_slice(grows_to_c);
+  // At the sonar, which the plane may be continued to.
+  const glm::vec3 at_sonar =
+      a - by_b * glm::dot(grows_to_b, surface.corner) - by_c * glm::dot(grows_to_c, surface.corner);
+  const glm::vec3 depth = plane / glm::dot(surface.normal, surface.corner);
+  NormalRun run{at_sonar * depth.x + by_b * b_of.x + by_c * c_of.x,
+                at_sonar * depth.y + by_b * b_of.y + by_c * c_of.y,
+                at_sonar * depth.z + by_b * b_of.z + by_c * c_of.z};
+  const RayBend& bend = part.bend_in_part;
+  if (!bend.straight()) {
+    const glm::vec3 up_in_slice = in_slice(bend.up * part.R_part_sonar);
+    const float nearness = depth.x + middle_t * depth.z;
+    const glm::vec3 middle = (run.at + middle_t * run.per_t) / nearness;
+    const float turn = 2 * bend.per_m * glm::dot(middle, up_in_slice);
+    run.at -= turn * (glm::vec3(1, 0, 0) - up_in_slice * up_in_slice.x);
+    run.per_x -= turn * (glm::vec3(0, 1, 0) - up_in_slice * up_in_slice.y);
+    run.per_t -= turn * (glm::vec3(0, 0, 1) - up_in_slice * up_in_slice.z);
+  }
+  return run;
 }
 
 ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& triangle,

@@ -1,9 +1,20 @@
 // What a surface answers at a piece of a slice: interpolated normals, normal maps, and the response laws.
 #pragma once
 
-#include "renderer/visibility/slices/slice_patches.hpp"
+#include <glm/vec3.hpp>
+
+#include "renderer/visibility/sampler.hpp"
+#include "renderer/visibility/slices/fan_triangles.hpp"
+#include "renderer/visibility/slices/part_surface.hpp"
+#include "renderer/visibility/slices/slice_cutter.hpp"
 
 namespace sonard::render {
+
+/// How sound meets the normal that shades.
+struct ShadedIncidence {
+  float cosine;       ///< |n . d|, with the mean of a map's normals as it is
+  float mean_length;  ///< of that mean; 1 without a map
+};
 
 /// The middle of a piece in its slice, and its size.
 struct PiecePlace {
@@ -17,12 +28,18 @@ struct PiecePlace {
 ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& triangle,
                                  const PiecePlace& place, float geometric);
 
-/// The normal that the corners of the triangle give to the point of its plane along the ray q of the sonar
-/// frame, unit, in the part's axes. Beside the triangle it goes on as within, for some of its widths.
-glm::vec3 interpolated_normal(const PartSurface& part, const FanTriangle& triangle, const glm::vec3& q);
+/// The normal that shades the plane of a triangle, where the ray (1, x, t) of a slice meets it: at + x *
+/// per_x
+/// + t * per_t, of any length and sign. Components are along the slice, across it to port, and up. Weights of
+/// corners go as 1 / depth along a ray, so that this is exact; beside the triangle it goes on as within.
+struct NormalRun {
+  glm::vec3 at, per_x{0.0F}, per_t{0.0F};
+};
 
-/// How far any vertex normal is away from that of its facet, radians.
-float most_bend_rad(const TriangleMesh& mesh);
+/// From the normals of its corners.
+/// @param middle_t where refraction turns it as it does here (RayBend)
+NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
+                               float middle_t);
 
 /// Whether all vertex normals are those of their facets, to 1e-4 rad, as where there are none: then there is
 /// nothing to interpolate.

@@ -1,0 +1,28 @@
+// What slices know of the surface of one part of a body.
+#pragma once
+
+#include <memory>
+
+#include <glm/mat3x3.hpp>
+
+#include "renderer/scene/world.hpp"
+#include "renderer/visibility/backscatter.hpp"
+#include "renderer/visibility/normal_pyramid.hpp"
+#include "renderer/visibility/ray_bend.hpp"
+
+namespace sonard::render {
+
+/// How the surface of one part answers.
+struct PartSurface {
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
+  bool vertex_normals = false;                      ///< whether shading interpolates them
+  Backscatter backscatter;
+  float facet_reach_rad = -1e3F;  ///< from normal incidence; farther off facets are not heard
+  float reflectance = 0.0F;
+  // For this ping:
+  glm::mat3 R_part_sonar{1.0F};
+  RayBend bend_in_part;  ///< `up` in the axes of the part
+};
+
+}  // namespace sonard::render
