@@ -10,8 +10,8 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int parts_across = 4;  // of a cell at an edge
-constexpr int parts_up = 8;
+constexpr int parts_across = packet_side;  // of a cell at an edge
+constexpr int parts_up = 2 * packet_side;
 constexpr double corner_reach = 1.5;   // of a cell's diagonal: how near a ray must pass to find a corner
 constexpr double least_cosine = 1e-3;  // surfaces seen edge-on have no end in range, and no energy
 constexpr double nearest_m = 0.02;     // what is nearer to the sonar does not hide it
@@ -79,23 +79,45 @@ const std::vector<GhostPaths::Result>& GhostPaths::follow(const PathScene& scene
   keys_.resize(columns * rows);
   paths_.resize(columns);
   results_.resize(columns);
-  workers_.run(fan.columns(), [&](int column) {
-    const auto c = static_cast<std::size_t>(column);
+  for (std::size_t c = 0; c < columns; ++c) {
     paths_[c].clear();
     results_[c].patches.clear();
     results_[c].corners.clear();
-    for (int row = 0; row < fan.rows(); ++row) {
-      Path path;
-      path.row = row;
-      keys_[c * rows + static_cast<std::size_t>(row)] =
-          follow_one(ping, fan.cell(column, row), path, results_[c]);
-      if (path.target.distance_m > 0) {
-        paths_[c].push_back(path);
-      }
-    }
-  });
+  }
+  workers_.run((fan.columns() + packet_side - 1) / packet_side,
+               [&](int job) { follow_columns(ping, job * packet_side); });
   workers_.run(fan.columns(), [&](int column) { refine_column(ping, column); });
   return results_;
+}
+
+/// As many columns as a packet is wide.
+void GhostPaths::follow_columns(const Ping& ping, int first_column) {
+  PathScene::Directions directions;
+  std::array<PathHit, packet_size> mirrors;
+  for (int first_row = 0; first_row < ping.fan.rows(); first_row += packet_side) {
+    const auto for_each = [&](const auto& what) {
+      for (int i = 0; i < packet_size; ++i) {
+        what(static_cast<std::size_t>(i), first_column + i % packet_side, first_row + i / packet_side);
+      }
+    };
+    for_each([&](std::size_t i, int column, int row) {
+      directions[i] = ping.R_world_sonar * ping.fan.direction(std::min(column, ping.fan.columns() - 1),
+                                                              std::min(row, ping.fan.rows() - 1));
+    });
+    ping.scene.trace_from_sonar(directions, ping.limits.max_range_m, mirrors);
+    for_each([&](std::size_t i, int column, int row) {
+      if (column < ping.fan.columns() && row < ping.fan.rows()) {
+        Path path;
+        path.row = row;
+        path.mirror = mirrors[i];
+        const auto c = static_cast<std::size_t>(column);
+        keys_[index(ping.fan, column, row)] = follow_on(ping, directions[i], path, results_[c]);
+        if (path.target.distance_m > 0) {
+          paths_[c].push_back(path);
+        }
+      }
+    });
+  }
 }
 
 GhostPaths::Result GhostPaths::search(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
@@ -117,11 +139,8 @@ void GhostPaths::refine_column(const Ping& ping, int column) {
     const FanCell cell = ping.fan.cell(column, row);
     const bool has_path = path != end && path->row == row;
     if (differs_from_neighbours(ping, column, row)) {
-      for (int i = 0; i < parts_across * parts_up; ++i) {
-        const FanCell part = cell.part(i % parts_across, i / parts_across, parts_across, parts_up);
-        Path part_path;
-        follow_one(ping, part, part_path, result);
-        add_echoes(ping, part, part_path, result);
+      for (int first_row = 0; first_row < parts_up; first_row += packet_side) {
+        follow_parts(ping, cell, first_row, result);
       }
     } else if (has_path) {
       add_echoes(ping, cell, *path, result);
@@ -130,11 +149,26 @@ void GhostPaths::refine_column(const Ping& ping, int column) {
   }
 }
 
+void GhostPaths::follow_parts(const Ping& ping, const FanCell& cell, int first_row, Result& result) {
+  std::array<FanCell, packet_size> parts;
+  PathScene::Directions directions;
+  for (int i = 0; i < packet_size; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    parts[k] = cell.part(i % parts_across, first_row + i / parts_across, parts_across, parts_up);
+    directions[k] = ping.R_world_sonar * parts[k].direction();
+  }
+  std::array<PathHit, packet_size> mirrors;
+  ping.scene.trace_from_sonar(directions, ping.limits.max_range_m, mirrors);
+  for (std::size_t k = 0; k < packet_size; ++k) {
+    Path path;
+    path.mirror = mirrors[k];
+    follow_on(ping, directions[k], path, result);
+    add_echoes(ping, parts[k], path, result);
+  }
+}
+
 bool GhostPaths::differs_from_neighbours(const Ping& ping, int column, int row) const {
-  const auto key = [&](int c, int r) {
-    return keys_[static_cast<std::size_t>(c) * static_cast<std::size_t>(ping.fan.rows()) +
-                 static_cast<std::size_t>(r)];
-  };
+  const auto key = [&](int c, int r) { return keys_[index(ping.fan, c, r)]; };
   const std::uint64_t own = key(column, row);
   return (row > 0 && key(column, row - 1) != own) ||
          (row + 1 < ping.fan.rows() && key(column, row + 1) != own) ||
@@ -142,10 +176,20 @@ bool GhostPaths::differs_from_neighbours(const Ping& ping, int column, int row) 
          (column + 1 < ping.fan.columns() && key(column + 1, row) != own);
 }
 
-/// @return a number for the surfaces that were met; 0: no flat mirror.
+/// From the sonar. @return as follow_on().
 std::uint64_t GhostPaths::follow_one(const Ping& ping, const FanCell& cell, Path& path, Result& result) {
   const glm::dvec3 direction = ping.R_world_sonar * cell.direction();
   if (!ping.scene.trace({}, {}, direction, ping.limits.max_range_m, path.mirror)) {
+    return 0;
+  }
+  return follow_on(ping, direction, path, result);
+}
+
+/// From what `direction` met first, if anything.
+/// @return a number for the surfaces that were met; 0: no flat mirror.
+std::uint64_t GhostPaths::follow_on(const Ping& ping, const glm::dvec3& direction, Path& path,
+                                    Result& result) {
+  if (!(path.mirror.distance_m > 0)) {
     return 0;
   }
   path.gain = ping.mirror_gain(path.mirror);

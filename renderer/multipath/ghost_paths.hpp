@@ -79,7 +79,14 @@ class GhostPaths {
   static bool sees_sonar(const Ping& ping, const PathHit& target);
   static void find_corners(const Ping& ping, const glm::dvec3& direction, const Path& path, Result& result);
   static void add_echoes(const Ping& ping, const FanCell& cell, const Path& path, Result& result);
+  static std::uint64_t follow_on(const Ping& ping, const glm::dvec3& direction, Path& path, Result& result);
+  static std::size_t index(const PathFan& fan, int column, int row) {
+    return static_cast<std::size_t>(column) * static_cast<std::size_t>(fan.rows()) +
+           static_cast<std::size_t>(row);
+  }
+  void follow_columns(const Ping& ping, int first_column);
   void refine_column(const Ping& ping, int column);
+  static void follow_parts(const Ping& ping, const FanCell& cell, int first_row, Result& result);
   bool differs_from_neighbours(const Ping& ping, int column, int row) const;
 
   WorkerPool& workers_;

@@ -61,7 +61,8 @@ PathFan::PathFan(const Aperture& aperture) : aperture_(aperture) {
     const double width = from - aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
     const int columns = std::max(1, static_cast<int>(std::ceil(width / widest_column_rad - 1e-6)));
     for (int i = 0; i < columns; ++i) {
-      columns_.push_back({beam, from - width * (i + 0.5) / columns, width / columns});
+      const double azimuth_rad = from - width * (i + 0.5) / columns;
+      columns_.push_back({beam, azimuth_rad, width / columns, std::cos(azimuth_rad), std::sin(azimuth_rad)});
       widest = std::max(widest, width / columns);
     }
   }
@@ -79,7 +80,8 @@ void PathFan::add_rows(double from_rad, double to_rad, double highest_rad) {
   const int rows = static_cast<int>(std::ceil((to_rad - from_rad) / highest_rad - 1e-6));
   for (int i = 0; i < rows; ++i) {
     const double height = (to_rad - from_rad) / rows;
-    rows_.push_back({from_rad + (i + 0.5) * height, height});
+    const double elevation_rad = from_rad + (i + 0.5) * height;
+    rows_.push_back({elevation_rad, height, std::cos(elevation_rad), std::sin(elevation_rad)});
   }
 }
 
@@ -87,6 +89,12 @@ FanCell PathFan::cell(int column, int row) const {
   const Column& at = columns_[static_cast<std::size_t>(column)];
   const Row& level = rows_[static_cast<std::size_t>(row)];
   return {at.beam, at.azimuth_rad, level.elevation_rad, at.width_rad, level.height_rad};
+}
+
+glm::dvec3 PathFan::direction(int column, int row) const {
+  const Column& at = columns_[static_cast<std::size_t>(column)];
+  const Row& level = rows_[static_cast<std::size_t>(row)];
+  return {level.cosine * at.cosine, level.cosine * at.sine, level.sine};
 }
 
 std::optional<int> PathFan::beam_of(double azimuth_rad) const {

@@ -33,6 +33,8 @@ class PathFan {
   int columns() const { return static_cast<int>(columns_.size()); }
   int rows() const { return static_cast<int>(rows_.size()); }
   FanCell cell(int column, int row) const;
+  /// FanCell::direction() of that cell.
+  glm::dvec3 direction(int column, int row) const;
   /// The angle across a cell from corner to corner, of the largest one.
   double diagonal_rad() const { return diagonal_rad_; }
 
@@ -46,9 +48,11 @@ class PathFan {
   struct Column {
     int beam;
     double azimuth_rad, width_rad;
+    double cosine, sine;  ///< of the azimuth
   };
   struct Row {
     double elevation_rad, height_rad;
+    double cosine, sine;  ///< of the elevation
   };
   void add_rows(double from_rad, double to_rad, double highest_rad);
 

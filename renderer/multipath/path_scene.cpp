@@ -62,8 +62,32 @@ bool PathScene::trace(const glm::dvec3& origin_m, const glm::dvec3& normal, cons
                       double farthest_m, PathHit& hit) const {
   const glm::vec3 start_m = lifted(origin_m, normal);
   SurfaceHit met;
+  meshes_.trace_one(start_m, glm::vec3(direction), static_cast<float>(farthest_m), met);
+  return complete(start_m, direction, farthest_m, met, hit);
+}
+
+void PathScene::trace_from_sonar(const Directions& directions, double farthest_m,
+                                 std::array<PathHit, packet_size>& hits) const {
+  RayPacket rays;
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    rays.x[i] = static_cast<float>(directions[i].x);
+    rays.y[i] = static_cast<float>(directions[i].y);
+    rays.z[i] = static_cast<float>(directions[i].z);
+  }
+  std::array<SurfaceHit, packet_size> met;
+  meshes_.trace_plainly(rays, static_cast<float>(farthest_m), met);
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    if (!complete({}, directions[i], farthest_m, met[i], hits[i])) {
+      hits[i].distance_m = 0.0;
+    }
+  }
+}
+
+/// @param met the first surface of a mesh, if any
+bool PathScene::complete(const glm::vec3& start_m, const glm::dvec3& direction, double farthest_m,
+                         const SurfaceHit& met, PathHit& hit) const {
   hit.distance_m = farthest_m;
-  if (meshes_.trace_one(start_m, glm::vec3(direction), static_cast<float>(farthest_m), met)) {
+  if (met.part != no_part) {
     hit.distance_m = static_cast<double>(met.distance_m);
     hit.surface = met.part;
     hit.triangle = met.triangle;

@@ -43,6 +43,12 @@ class PathScene {
   bool trace(const glm::dvec3& origin_m, const glm::dvec3& normal, const glm::dvec3& direction,
              double farthest_m, PathHit& hit) const;
 
+  /// The same for neighbouring directions from the sonar, which share the work.
+  /// @param hits where nothing is met, the distance is 0
+  using Directions = std::array<glm::dvec3, packet_size>;
+  void trace_from_sonar(const Directions& directions, double farthest_m,
+                        std::array<PathHit, packet_size>& hits) const;
+
   /// Whether a straight leg from a surface reaches so far.
   bool is_free(const glm::dvec3& origin_m, const glm::dvec3& normal, const glm::dvec3& direction,
                double distance_m) const;
@@ -63,6 +69,9 @@ class PathScene {
     double lambert_mu;
     std::shared_ptr<const TriangleMesh> mesh;
   };
+
+  bool complete(const glm::vec3& start_m, const glm::dvec3& direction, double farthest_m,
+                const SurfaceHit& met, PathHit& hit) const;
 
   EmbreeScene meshes_;
   std::vector<Surface> surfaces_;  // of the parts, counted through all bodies

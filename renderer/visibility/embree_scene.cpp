@@ -309,6 +309,23 @@ bool EmbreeScene::trace_one(const glm::vec3& origin_m, const glm::vec3& directio
   return true;
 }
 
+void EmbreeScene::trace_plainly(const RayPacket& rays, float farthest_m,
+                                std::array<SurfaceHit, packet_size>& hits) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RayHits found;
+  impl_->intersect(rays, impl_->scene.get(), context, farthest_m, found);
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    hits[i] = {};
+    if (found.part[i] != no_part) {
+      const auto& [x, y, z] = impl_->parts[found.part[i]].shader.axes();
+      hits[i] = {found.depth[i], x * found.normal_x[i] + y * found.normal_y[i] + z * found.normal_z[i],
+                 found.part[i], found.triangle[i]};
+    }
+  }
+}
+
 bool EmbreeScene::is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

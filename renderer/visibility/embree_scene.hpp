@@ -1,6 +1,7 @@
 // The world in Embree: packets of sixteen rays from the sonar go in, surfaces come out.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -52,6 +53,11 @@ class EmbreeScene {
   /// @return false when there is none within `farthest_m`.
   bool trace_one(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m,
                  SurfaceHit& hit) const;
+
+  /// The same for a packet of rays of unit length from the sonar.
+  /// @param hits of a ray that meets nothing, the part is no_part
+  void trace_plainly(const RayPacket& rays, float farthest_m,
+                     std::array<SurfaceHit, packet_size>& hits) const;
 
   /// Whether nothing lies on the way from a point along a unit direction.
   bool is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const;
