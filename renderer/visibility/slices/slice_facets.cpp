@@ -7,6 +7,20 @@
 
 namespace sonard::render {
 
+bool may_hear_facets(const PartSurface& part, const VisiblePiece& piece, const Slice& slice) {
+  const float t = 0.5F * (piece.low + piece.high);
+  const float cosine = std::abs(piece.normal_h + piece.normal_z * t) / std::sqrt(1 + t * t);
+  float nearer = 0.5F * (piece.high - piece.low + slice.width_rad);
+  if (!part.bends_rad.empty()) {
+    // On the triangle; across a wedge that is wider, the surface goes on turning.
+    const float bend = part.bends_rad[piece.triangle->mesh_triangle];
+    const float wedge_m = slice.width_rad / (piece.w_at_0 + piece.w_slope * t);
+    const float triangles = wedge_m / (std::sqrt(glm::length(piece.triangle->across())) * cosine + 1e-6F);
+    nearer += bend * (1 + std::max(1.0F, triangles));
+  }
+  return std::acos(std::min(cosine, 1.0F)) - nearer < part.facet_reach_rad;
+}
+
 FacetSight::FacetSight(const PartSurface& part, const VisiblePiece& piece, const Slice& slice)
     : backscatter_(&part.backscatter), width_rad_(slice.width_rad) {
   const float t = 0.5F * (piece.low + piece.high);
@@ -52,7 +66,7 @@ float FacetSight::range_slope(float t, float place) const {
 }
 
 FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
-  constexpr float even = 0.05F, nearly_even = 0.5F, looked_over = 1.5F;  // in rms slopes
+  constexpr float even = 0.05F, nearly_even = 0.5F, looked_over = 2.5F;  // in rms slopes
   constexpr float most_strides = 32.0F;
   const float middle = 0.5F * (wedge.from + wedge.to), width = wedge.to - wedge.from;
   const float slopes = slopes_across_ * width;

@@ -20,6 +20,9 @@ struct FacetResponse {
   float moment = 0.0F;  ///< mean of response * (place across the wedge, from the middle of the part)
 };
 
+/// Whether FacetSight::may_hear() may say yes, by what is known without looking at normals.
+bool may_hear_facets(const PartSurface& part, const VisiblePiece& piece, const Slice& slice);
+
 /// Normals and directions over one piece. Beside the piece the surface goes on as its triangle does.
 class FacetSight {
  public:

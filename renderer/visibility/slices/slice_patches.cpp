@@ -79,11 +79,14 @@ void SlicePatcher::see_facets(const Request& request) {
   if (!request.any_facets) {
     return;
   }
+  const bool everywhere = request.surface.facets == Facets::everywhere;
   for (const VisiblePiece& piece : *pieces_) {
     sight_of_.push_back(static_cast<std::uint32_t>(sights_.size()));
     const PartSurface& part = request.parts[piece.triangle->part];
-    const bool heard = part.backscatter.facet_strength > 0 || request.surface.facets == Facets::everywhere;
-    sights_.push_back(heard && !part.normal_map ? FacetSight(part, piece, request.slice) : FacetSight());
+    const bool heard = part.backscatter.facet_strength > 0 || everywhere;
+    const bool looked_at =
+        heard && !part.normal_map && (everywhere || may_hear_facets(part, piece, request.slice));
+    sights_.push_back(looked_at ? FacetSight(part, piece, request.slice) : FacetSight());
   }
 }
 
@@ -410,7 +413,8 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
     // In the middle; that the mean differs from the middle is a matter of geometry.
     const float middle = cosine_mid_[i];
     if (middle > 0) {
-      const float seen = sights_.empty() || part.normal_map ? NAN : sights_[sight_of_[i]].cosine(t);
+      const bool looked_at = !sights_.empty() && sights_[sight_of_[i]].may_hear();
+      const float seen = looked_at ? sights_[sight_of_[i]].cosine(t) : NAN;
       shaded_[i] = std::isfinite(seen) ? ShadedIncidence{seen, 1.0F}
                                        : shaded_incidence(part, *piece.triangle, place, middle);
       cosine = shaded_[i].cosine * (cosine / middle);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -104,6 +105,25 @@ bool has_plain_facets(const TriangleMesh& mesh) {
     }
   }
   return true;
+}
+
+std::vector<float> normal_bends_rad(const TriangleMesh& mesh) {
+  std::vector<float> bends_rad;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.normals.empty(); i += 3) {
+    const std::uint32_t* corner = &mesh.indices[i];
+    const glm::vec3 edge_b = mesh.positions[corner[1]] - mesh.positions[corner[0]];
+    const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
+    const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
+    float most = 0.0F;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float cosine = std::abs(glm::dot(facet, glm::normalize(mesh.normals[corner[k]])));
+      // What is no direction may be any.
+      const float off = cosine <= 1 ? std::acos(cosine) : cosine > 1 ? 0.0F : std::numbers::pi_v<float>;
+      most = std::max(most, off);
+    }
+    bends_rad.push_back(2 * most);
+  }
+  return bends_rad;
 }
 
 NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,

@@ -41,6 +41,9 @@ struct NormalRun {
 NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
                                float middle_t);
 
+/// By how much the normals of the corners of each triangle differ, radians; empty where there are none.
+std::vector<float> normal_bends_rad(const TriangleMesh& mesh);
+
 /// Whether all vertex normals are those of their facets, to 1e-4 rad, as where there are none: then there is
 /// nothing to interpolate.
 bool has_plain_facets(const TriangleMesh& mesh);
