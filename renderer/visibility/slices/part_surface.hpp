@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include <glm/mat3x3.hpp>
 
@@ -20,7 +19,6 @@ struct PartSurface {
   bool vertex_normals = false;                      ///< whether shading interpolates them
   Backscatter backscatter;
   float facet_reach_rad = -1e3F;  ///< from normal incidence; farther off facets are not heard
-  std::vector<float> bends_rad;   ///< by how much normals turn over each triangle; empty where they do not
   float reflectance = 0.0F;
   // For this ping:
   glm::mat3 R_part_sonar{1.0F};

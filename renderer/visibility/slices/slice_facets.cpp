@@ -7,25 +7,10 @@
 
 namespace sonard::render {
 
-bool may_hear_facets(const PartSurface& part, const VisiblePiece& piece, const Slice& slice) {
+FacetSight::FacetSight(const PartSurface& part, const NormalRun& normals, const VisiblePiece& piece,
+                       const Slice& slice)
+    : backscatter_(&part.backscatter), normals_(normals), width_rad_(slice.width_rad) {
   const float t = 0.5F * (piece.low + piece.high);
-  const float cosine = std::abs(piece.normal_h + piece.normal_z * t) / std::sqrt(1 + t * t);
-  float nearer = 0.5F * (piece.high - piece.low + slice.width_rad);
-  if (!part.bends_rad.empty()) {
-    // On the triangle; across a wedge that is wider, the surface goes on turning.
-    const float bend = part.bends_rad[piece.triangle->mesh_triangle];
-    const float wedge_m = slice.width_rad / (piece.w_at_0 + piece.w_slope * t);
-    const float triangles = wedge_m / (std::sqrt(glm::length(piece.triangle->across())) * cosine + 1e-6F);
-    nearer += bend * (1 + std::max(1.0F, triangles));
-  }
-  return std::acos(std::min(cosine, 1.0F)) - nearer < part.facet_reach_rad;
-}
-
-FacetSight::FacetSight(const PartSurface& part, const VisiblePiece& piece, const Slice& slice)
-    : backscatter_(&part.backscatter), width_rad_(slice.width_rad) {
-  const float t = 0.5F * (piece.low + piece.high);
-  normals_ = part.vertex_normals ? interpolated_normals(part, *piece.triangle, slice, t)
-                                 : NormalRun{{piece.normal_h, piece.normal_s, piece.normal_z}};
   find_turn(t, slice.width_rad);
   const float slope = std::sqrt(part.backscatter.slope_variance);
   const float turn_rad = slope * (slopes_per_t_ * (piece.high - piece.low) + slopes_across_);

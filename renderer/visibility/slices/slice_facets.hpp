@@ -20,15 +20,13 @@ struct FacetResponse {
   float moment = 0.0F;  ///< mean of response * (place across the wedge, from the middle of the part)
 };
 
-/// Whether FacetSight::may_hear() may say yes, by what is known without looking at normals.
-bool may_hear_facets(const PartSurface& part, const VisiblePiece& piece, const Slice& slice);
-
 /// Normals and directions over one piece. Beside the piece the surface goes on as its triangle does.
 class FacetSight {
  public:
   FacetSight() = default;
   /// @param part with its surface; stays where it is while this is in use.
-  FacetSight(const PartSurface& part, const VisiblePiece& piece, const Slice& slice);
+  FacetSight(const PartSurface& part, const NormalRun& normals, const VisiblePiece& piece,
+             const Slice& slice);
 
   /// Whether facets are heard anywhere between both ends and both sides: of what answers no, all facets echo
   /// less than SkipRule::facet_kernel allows. May answer yes where there are none.
@@ -42,9 +40,6 @@ class FacetSight {
   /// How the range of a surface that has these normals changes across the wedge at one elevation: r' / r, per
   /// radian, at a place in it.
   float range_slope(float t, float place) const;
-
-  /// |n . d| in the slice, at one elevation.
-  float cosine(float t) const { return cosine(0.0F, t); }
 
   /// At one elevation.
   FacetResponse response(float t, const WedgePart& wedge) const;

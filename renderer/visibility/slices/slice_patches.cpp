@@ -56,12 +56,16 @@ float ElevationPattern::at(float t) const {
 
 std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = &request.pieces;
+  see_normals(request);
   see_facets(request);
   int rounds = 0;
   do {
     lay_out(request);
     ends_.run_straight(*pieces_, request.slice.width_rad, request.tan_limit, seen_);
     measure(request);
+    if (!runs_.empty()) {
+      measure_shading();
+    }
     find_tilts(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
   const std::uint64_t without_facets = shade(request);
@@ -71,22 +75,42 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
   return without_facets;
 }
 
-/// Normals and directions of the pieces whose facets may be heard. What a piece is divided into goes on with
-/// its own.
+/// Normals of all pieces, if any of them is shaded by those of its corners. What a piece is divided into goes
+/// on with its own.
+void SlicePatcher::see_normals(const Request& request) {
+  runs_.clear();
+  original_.clear();
+  const auto is_shaded = [&](const VisiblePiece& piece) {
+    const PartSurface& part = request.parts[piece.triangle->part];
+    return part.vertex_normals && !part.normal_map;
+  };
+  const bool any = std::any_of(pieces_->begin(), pieces_->end(), is_shaded);
+  for (std::size_t i = 0; (any || request.any_facets) && i < pieces_->size(); ++i) {
+    const VisiblePiece& piece = (*pieces_)[i];
+    NormalRun run{{piece.normal_h, piece.normal_s, piece.normal_z}};
+    if (is_shaded(piece)) {
+      const NormalRun shading = interpolated_normals(request.parts[piece.triangle->part], *piece.triangle,
+                                                     request.slice, 0.5F * (piece.low + piece.high));
+      run = shading.is_finite() ? shading : run;
+    }
+    runs_.push_back(run);
+    original_.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+/// How facets are heard over the pieces.
 void SlicePatcher::see_facets(const Request& request) {
   sights_.clear();
-  sight_of_.clear();
   if (!request.any_facets) {
     return;
   }
   const bool everywhere = request.surface.facets == Facets::everywhere;
-  for (const VisiblePiece& piece : *pieces_) {
-    sight_of_.push_back(static_cast<std::uint32_t>(sights_.size()));
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+    const VisiblePiece& piece = (*pieces_)[i];
     const PartSurface& part = request.parts[piece.triangle->part];
     const bool heard = part.backscatter.facet_strength > 0 || everywhere;
-    const bool looked_at =
-        heard && !part.normal_map && (everywhere || may_hear_facets(part, piece, request.slice));
-    sights_.push_back(looked_at ? FacetSight(part, piece, request.slice) : FacetSight());
+    sights_.push_back(heard && !part.normal_map ? FacetSight(part, runs_[i], piece, request.slice)
+                                                : FacetSight());
   }
 }
 
@@ -99,7 +123,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   if (!request.any_facets || aside_[i] == 0.0F) {
     return;
   }
-  const FacetSight& sight = sights_[sight_of_[i]];
+  const FacetSight& sight = sights_[original_[i]];
   const float t = 0.5F * (seen_.low[i] + seen_.high[i]);
   const float wedge_m = range_mid_[i] * request.slice.width_rad;
   const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * aside_[i];
@@ -145,17 +169,32 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
 void SlicePatcher::lay_out(const Request& request) {
   seen_.lay_out(*pieces_);
   if (seen_.size() > plain_.size()) {
-    for (auto* array :
-         {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
-          &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_,
-          &by_azimuth_low_, &by_azimuth_high_, &aside_, &response_without_facets_}) {
+    for (auto* array : {&range_low_,       &range_mid_,       &range_high_,
+                        &smear_low_,       &smear_high_,      &cosine_,
+                        &solid_angle_,     &response_,        &plain_,
+                        &range_tilt_,      &cosine_tilt_,     &cosine_mid_,
+                        &echo_tilt_,       &displaced_,       &by_azimuth_low_,
+                        &by_azimuth_high_, &aside_,           &response_without_facets_,
+                        &shading_h_,       &shading_s_,       &shading_z_,
+                        &shading_h_per_t_, &shading_s_per_t_, &shading_z_per_t_}) {
       array->resize(seen_.size());
     }
-    shaded_.resize(seen_.size());
+    mapped_.resize(seen_.size());
   }
   const bool as_cosine = request.surface.model == Model::physical;
   for (std::size_t i = 0; i < seen_.count; ++i) {
-    plain_[i] = as_cosine && (*pieces_)[i].triangle->plain ? 1.0F : 0.0F;
+    const VisiblePiece& piece = (*pieces_)[i];
+    const bool is_mapped = request.parts[piece.triangle->part].normal_map != nullptr;
+    plain_[i] = as_cosine && !is_mapped ? 1.0F : 0.0F;
+  }
+  for (std::size_t i = 0; !runs_.empty() && i < seen_.count; ++i) {
+    const NormalRun& run = runs_[original_[i]];
+    shading_h_[i] = run.at.x;
+    shading_s_[i] = run.at.y;
+    shading_z_[i] = run.at.z;
+    shading_h_per_t_[i] = run.per_t.x;
+    shading_s_per_t_[i] = run.per_t.y;
+    shading_z_per_t_[i] = run.per_t.z;
   }
 }
 
@@ -213,6 +252,35 @@ void SlicePatcher::measure(const Request& request) {
     cosine_tilt[i] = 0.5F * (c2 - c1) / cosine;
     cosine_mid[i] = cm;
     solid_angle[i] = (t2 / g2 - t1 / g1) * width;
+  }
+}
+
+/// Incidence on the normals that shade.
+SONARD_SIMD_CLONES
+void SlicePatcher::measure_shading() {
+  const auto count = pieces_->size();
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
+  const float* __restrict at_h = shading_h_.data();
+  const float* __restrict at_s = shading_s_.data();
+  const float* __restrict at_z = shading_z_.data();
+  const float* __restrict h_per_t = shading_h_per_t_.data();
+  const float* __restrict s_per_t = shading_s_per_t_.data();
+  const float* __restrict z_per_t = shading_z_per_t_.data();
+  float* __restrict cos_phi = cosine_.data();
+  float* __restrict cosine_tilt = cosine_tilt_.data();
+  float* __restrict cosine_mid = cosine_mid_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto cosine_at = [&](float t) {
+      const float h = at_h[i] + h_per_t[i] * t, s = at_s[i] + s_per_t[i] * t, z = at_z[i] + z_per_t[i] * t;
+      return std::abs(h + z * t) / std::sqrt((h * h + s * s + z * z) * (1 + t * t));
+    };
+    const float c1 = cosine_at(low[i]), c2 = cosine_at(high[i]), cm = cosine_at(0.5F * (low[i] + high[i]));
+    const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
+    const bool is_direction = cosine >= 0;  // else the plane's is kept
+    cos_phi[i] = is_direction ? (cosine < 1 ? cosine : 1.0F) : cos_phi[i];
+    cosine_tilt[i] = is_direction ? 0.5F * (c2 - c1) / cosine : cosine_tilt[i];
+    cosine_mid[i] = is_direction ? cm : cosine_mid[i];
   }
 }
 
@@ -326,7 +394,7 @@ float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, flo
 /// So that over each part the echo of facets changes little: by less than would show if the part lies in one
 /// line, and by about as much as a straight line follows if it spreads over more.
 float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
-  const FacetSight& sight = sights_[sight_of_[i]];
+  const FacetSight& sight = sights_[original_[i]];
   if (!sight.may_hear()) {
     return 1.0F;
   }
@@ -343,7 +411,7 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   }
   bool any = false;
   divided_.clear();
-  divided_sight_of_.clear();
+  divided_original_.clear();
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
     const int parts = parts_of(request, i);
     if (parts == 1) {
@@ -352,12 +420,12 @@ bool SlicePatcher::divide_uneven(const Request& request) {
       divide(i, parts);
       any = true;
     }
-    if (request.any_facets) {
-      divided_sight_of_.resize(divided_.size(), sight_of_[i]);
+    if (!runs_.empty()) {
+      divided_original_.resize(divided_.size(), original_[i]);
     }
   }
   whole_.swap(divided_);
-  sight_of_.swap(divided_sight_of_);
+  original_.swap(divided_original_);
   pieces_ = &whole_;
   return any;
 }
@@ -405,19 +473,16 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
   const VisiblePiece& piece = (*pieces_)[i];
   const PartSurface& part = request.parts[piece.triangle->part];
   float cosine = cosine_[i];
-  shaded_[i] = {cosine, 1.0F};
-  if (part.vertex_normals || part.normal_map) {
+  if (part.normal_map) {
     const float t = 0.5F * (piece.low + piece.high);
     const float h = 1.0F / (seen_.w_at_0[i] + seen_.w_slope[i] * t);
     const PiecePlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
     // In the middle; that the mean differs from the middle is a matter of geometry.
     const float middle = cosine_mid_[i];
+    mapped_[i] = {middle, 1.0F};
     if (middle > 0) {
-      const bool looked_at = !sights_.empty() && sights_[sight_of_[i]].may_hear();
-      const float seen = looked_at ? sights_[sight_of_[i]].cosine(t) : NAN;
-      shaded_[i] = std::isfinite(seen) ? ShadedIncidence{seen, 1.0F}
-                                       : shaded_incidence(part, *piece.triangle, place, middle);
-      cosine = shaded_[i].cosine * (cosine / middle);
+      mapped_[i] = mapped_incidence(part, *piece.triangle, place, middle);
+      cosine = mapped_[i].cosine * (cosine / middle);
     }
   }
   return surface_response(part, request.surface, cosine, range_mid_[i]);
@@ -432,12 +497,12 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
     return false;
   }
   if (part.normal_map) {
-    const float length = shaded_[i].mean_length;
+    const float length = mapped_[i].mean_length;
     response_[i] +=
-        part.backscatter.facets(std::min(shaded_[i].cosine / length, 1.0F), variance_of_mean_normal(length));
+        part.backscatter.facets(std::min(mapped_[i].cosine / length, 1.0F), variance_of_mean_normal(length));
     return true;
   }
-  const FacetSight& sight = sights_[sight_of_[i]];
+  const FacetSight& sight = sights_[original_[i]];
   if (!everywhere && !sight.may_hear()) {
     return false;
   }

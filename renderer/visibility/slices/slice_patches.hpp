@@ -59,6 +59,7 @@ class SlicePatcher {
  private:
   void lay_out(const Request& request);
   void measure(const Request& request);
+  void measure_shading();
   void find_tilts(const Request& request);
   bool divide_uneven(const Request& request);
   void divide(std::size_t i, int parts);
@@ -67,6 +68,7 @@ class SlicePatcher {
   static bool is_mapped(const Request& request, const VisiblePiece& piece);
   float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
   float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
+  void see_normals(const Request& request);
   void see_facets(const Request& request);
   std::uint64_t shade(const Request& request);
   float shade_plainly(const Request& request, std::size_t i);
@@ -77,21 +79,26 @@ class SlicePatcher {
   /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
   std::vector<VisiblePiece> whole_, divided_;
-  std::vector<FacetSight> sights_;  ///< of each piece of the request; empty where no facets are looked at
-  std::vector<std::uint32_t> sight_of_, divided_sight_of_;  ///< of each piece, its number in `sights_`
+  /// Of each piece of the request; empty where all are shaded by their planes, and where no facets are looked
+  /// at.
+  std::vector<NormalRun> runs_;
+  std::vector<FacetSight> sights_;
+  std::vector<std::uint32_t> original_, divided_original_;  ///< of each piece, its number in both
   PieceArrays seen_;
   PieceEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
   std::vector<float> by_azimuth_low_, by_azimuth_high_;  ///< change of the ends' ranges with the azimuth
-  std::vector<float> plain_;        ///< 1 where the response is the cosine to the facet, else 0
+  std::vector<float> plain_;        ///< 1 where the response is cosine_, which changes evenly; else 0
   std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used
   std::vector<float> cosine_tilt_;  ///< of cosine_, the mean of a piece
   std::vector<float> cosine_mid_;   ///< in its middle
   std::vector<float> echo_tilt_;    ///< of both
   std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_, response_without_facets_;
-  std::vector<float> aside_;             ///< where in its wedge the echo has its middle, 1/2 at the port side
-  std::vector<ShadedIncidence> shaded_;  ///< in its middle
+  std::vector<float> aside_;  ///< where in its wedge the echo has its middle, 1/2 at the port side
+  std::vector<float> shading_h_, shading_s_, shading_z_;                    ///< NormalRun::at
+  std::vector<float> shading_h_per_t_, shading_s_per_t_, shading_z_per_t_;  ///< NormalRun::per_t
+  std::vector<MappedIncidence> mapped_;                                     ///< in its middle
 };
 
 }  // namespace sonard::render

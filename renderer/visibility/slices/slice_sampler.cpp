@@ -98,9 +98,6 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   const Prepared::Shape& shape = prepared.shape(part.mesh, merge);
   skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
   surface.mesh = shape.mesh;
-  if (surface.vertex_normals && surface.backscatter.facet_strength > 0) {
-    surface.bends_rad = normal_bends_rad(*surface.mesh);
-  }
   parts_.push_back({T_world_body_.size(), part.T_body_part});
   placed_.push_back({shape.clusters, {}, {}, plain_facets && !part.normal_map});
   surfaces_.push_back(std::move(surface));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -107,25 +106,6 @@ bool has_plain_facets(const TriangleMesh& mesh) {
   return true;
 }
 
-std::vector<float> normal_bends_rad(const TriangleMesh& mesh) {
-  std::vector<float> bends_rad;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.normals.empty(); i += 3) {
-    const std::uint32_t* corner = &mesh.indices[i];
-    const glm::vec3 edge_b = mesh.positions[corner[1]] - mesh.positions[corner[0]];
-    const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
-    const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
-    float most = 0.0F;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float cosine = std::abs(glm::dot(facet, glm::normalize(mesh.normals[corner[k]])));
-      // What is no direction may be any.
-      const float off = cosine <= 1 ? std::acos(cosine) : cosine > 1 ? 0.0F : std::numbers::pi_v<float>;
-      most = std::max(most, off);
-    }
-    bends_rad.push_back(2 * most);
-  }
-  return bends_rad;
-}
-
 NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
                                float middle_t) {
   // Rows: the axes of the slice.
@@ -167,7 +147,7 @@ NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& trian
   return run;
 }
 
-ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& triangle,
+MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
                                  const PiecePlace& place, float geometric) {
   const SurfacePoint surface(triangle,
                              {place.h_m * place.slice.cosine, place.h_m * place.slice.sine, place.z_m});
@@ -178,18 +158,12 @@ ShadedIncidence shaded_incidence(const PartSurface& part, const FanTriangle& tri
                                  : part.bend_in_part.normal(interpolate(part.mesh->normals, corner, weights),
                                                             part.R_part_sonar * surface.p);
   const glm::vec3 d = part.R_part_sonar * glm::normalize(surface.p);
-  float product, mean_length = 1.0F;
-  if (part.normal_map) {
-    const glm::vec3 n = mapped_normal(part, surface, corner, weights, vertex_normal, place);
-    product = glm::dot(n, d);
-    mean_length = glm::length(n);
-  } else {
-    product = glm::dot(vertex_normal, d) / glm::length(vertex_normal);
-  }
+  const glm::vec3 n = mapped_normal(part, surface, corner, weights, vertex_normal, place);
+  const float product = glm::dot(n, d);
   if (!std::isfinite(product)) {
     return {geometric, 1.0F};
   }
-  return {std::min(1.0F, std::abs(product)), mean_length};
+  return {std::min(1.0F, std::abs(product)), glm::length(n)};
 }
 
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m) {
