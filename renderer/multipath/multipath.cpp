@@ -9,6 +9,7 @@ namespace sonard::render {
 
 namespace {
 
+constexpr double fast_coarseness = 2.0;       // of the cells with the preset `fast`
 constexpr double small_parts_in_cells = 2.0;  // that many diagonals of a cell across: a grid may miss it
 constexpr int search_rays = 8;                // along each side of a part that is so small
 
@@ -80,8 +81,9 @@ void Multipath::add_to(std::vector<float>& echo, const SonarSettings& settings, 
 }
 
 void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar, const PathLimits& limits) {
-  if (!fan_ || fan_->aperture() != settings.aperture) {
-    fan_ = std::make_unique<PathFan>(settings.aperture);
+  const double coarseness = settings.sampling.preset == Sampling::Preset::fast ? fast_coarseness : 1.0;
+  if (!fan_ || fan_->aperture() != settings.aperture || fan_->coarseness() != coarseness) {
+    fan_ = std::make_unique<PathFan>(settings.aperture, coarseness);
   }
   patches_of_beam_.resize(static_cast<std::size_t>(settings.aperture.beam_count()));
   for (std::vector<EchoPatch>& patches : patches_of_beam_) {

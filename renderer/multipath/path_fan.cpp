@@ -54,12 +54,13 @@ FanCell FanCell::part(int column, int row, int columns, int rows) const {
           elevation_rad + height_rad * ((row + 0.5) / rows - 0.5), width_rad / columns, height_rad / rows};
 }
 
-PathFan::PathFan(const Aperture& aperture) : aperture_(aperture) {
+PathFan::PathFan(const Aperture& aperture, double coarseness) : aperture_(aperture), coarseness_(coarseness) {
   double widest = 0.0;
   for (int beam = 0; beam < aperture.beam_count(); ++beam) {
     const double from = aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
     const double width = from - aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
-    const int columns = std::max(1, static_cast<int>(std::ceil(width / widest_column_rad - 1e-6)));
+    const int columns =
+        std::max(1, static_cast<int>(std::ceil(width / (coarseness * widest_column_rad) - 1e-6)));
     for (int i = 0; i < columns; ++i) {
       const double azimuth_rad = from - width * (i + 0.5) / columns;
       columns_.push_back({beam, azimuth_rad, width / columns, std::cos(azimuth_rad), std::sin(azimuth_rad)});
@@ -68,9 +69,10 @@ PathFan::PathFan(const Aperture& aperture) : aperture_(aperture) {
   }
   const double limit = aperture.elevation_limit_rad();
   const double heard = well_heard_rad(aperture);
-  add_rows(-limit, -heard, 2 * highest_row_rad);
-  add_rows(-heard, heard, highest_row_rad);
-  add_rows(heard, limit, 2 * highest_row_rad);
+  const double highest = coarseness * highest_row_rad;
+  add_rows(-limit, -heard, 2 * highest);
+  add_rows(-heard, heard, highest);
+  add_rows(heard, limit, 2 * highest);
   for (const Row& row : rows_) {
     diagonal_rad_ = std::max(diagonal_rad_, std::hypot(widest, row.height_rad));
   }

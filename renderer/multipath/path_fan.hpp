@@ -28,7 +28,8 @@ struct FanCell {
 /// the elevation pattern is low.
 class PathFan {
  public:
-  explicit PathFan(const Aperture& aperture);
+  /// @param coarseness how many times wider and higher cells are than they need be.
+  explicit PathFan(const Aperture& aperture, double coarseness = 1.0);
 
   int columns() const { return static_cast<int>(columns_.size()); }
   int rows() const { return static_cast<int>(rows_.size()); }
@@ -43,6 +44,7 @@ class PathFan {
   /// Whether sound is sent and heard in this direction, in the sonar frame.
   bool contains(const glm::dvec3& direction) const;
   const Aperture& aperture() const { return aperture_; }
+  double coarseness() const { return coarseness_; }
 
  private:
   struct Column {
@@ -57,6 +59,7 @@ class PathFan {
   void add_rows(double from_rad, double to_rad, double highest_rad);
 
   Aperture aperture_;
+  double coarseness_;
   std::vector<Column> columns_;
   std::vector<Row> rows_;
   double diagonal_rad_ = 0.0;
