@@ -10,8 +10,8 @@ namespace {
 
 using namespace test;
 
-class Corners : public BackendTest {};
-INSTANTIATE_TEST_SUITE_P(Multipath, Corners, all_backends(), backend_name);
+class Corners : public PathTest {};
+INSTANTIATE_TEST_SUITE_P(Multipath, Corners, path_cases(), path_case_name);
 
 struct Glint {
   int beam = -1, line = -1;

@@ -9,8 +9,8 @@ namespace {
 
 using namespace test;
 
-class Ghosts : public BackendTest {};
-INSTANTIATE_TEST_SUITE_P(Multipath, Ghosts, all_backends(), backend_name);
+class Ghosts : public PathTest {};
+INSTANTIATE_TEST_SUITE_P(Multipath, Ghosts, path_cases(), path_case_name);
 
 /// What a small Lambert sphere sends from one direction into another one, beta apart (its phase law, e.g. of
 /// a moon): mu times the integral of the two cosines over the part that both see.
@@ -217,8 +217,8 @@ TEST_P(Ghosts, MovedBodiesAreFollowed) {
 
 TEST_P(Ghosts, AnyNumberOfThreadsGivesTheSameBytes) {
   const PingRequest request = fan_request(256, 20, 15, 0.02);
-  SonarRenderer one(mirror_and_plate(), {GetParam(), 1});
-  SonarRenderer three(mirror_and_plate(), {GetParam(), 3});
+  SonarRenderer one(mirror_and_plate(), options(1));
+  SonarRenderer three(mirror_and_plate(), options(3));
   EXPECT_EQ(one.render_echo(request).intensity, three.render_echo(request).intensity);
 }
 

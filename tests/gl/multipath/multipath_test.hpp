@@ -23,6 +23,40 @@ inline render::PingRequest fan_request(int beams, double height_deg, double rang
   return request;
 }
 
+/// Ghosts are followed in cells that depend on the preset: each test runs with both, on both backends.
+struct PathCase {
+  render::Backend backend;
+  render::Sampling::Preset preset;
+};
+
+class PathTest : public ::testing::TestWithParam<PathCase> {
+ protected:
+  void SetUp() override {
+    if (GetParam().backend == render::Backend::raster) {
+      require_raster();
+    }
+  }
+  static render::RendererOptions options(unsigned threads = 0) { return {GetParam().backend, threads}; }
+  static render::PingRequest fan_request(int beams, double height_deg, double range_m, double step_m) {
+    render::PingRequest request = test::fan_request(beams, height_deg, range_m, step_m);
+    request.settings.sampling.preset = GetParam().preset;
+    return request;
+  }
+};
+
+inline auto path_cases() {
+  using render::Backend, render::Sampling;
+  return ::testing::Values(PathCase{Backend::raster, Sampling::Preset::fast},
+                           PathCase{Backend::raster, Sampling::Preset::normal},
+                           PathCase{Backend::ray, Sampling::Preset::fast},
+                           PathCase{Backend::ray, Sampling::Preset::normal});
+}
+
+inline std::string path_case_name(const ::testing::TestParamInfo<PathCase>& info) {
+  return std::string(render::name_of(info.param.backend)) +
+         (info.param.preset == render::Sampling::Preset::fast ? "_fast" : "_default");
+}
+
 inline render::Body smooth_body(const std::string& name, render::TriangleMesh mesh, double reflection = 1.0,
                                 double rms_height_m = 0.0, double lambert_mu = 0.0) {
   render::Body body = make_body(name, std::move(mesh), lambert_mu);
