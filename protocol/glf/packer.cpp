@@ -49,7 +49,8 @@ zip::Entry entry_of(const std::string& name, std::uint32_t size, std::uint32_t c
 
 }  // namespace
 
-Packer::Packer(std::string stamp, std::string config_xml, const DatSummary& dat, const CivilTime& closed)
+Packer::Packer(const std::string& stamp, std::string config_xml, const DatSummary& dat,
+               const CivilTime& closed)
     : config_xml_(std::move(config_xml)), closed_(closed) {
   if (config_xml_.empty() || config_xml_.size() > pack_block_size) {
     throw std::invalid_argument("the .cfg of a log must fit one block");

@@ -31,7 +31,7 @@ class Packer {
   /// @param config_xml the .cfg, of at most pack_block_size bytes
   /// @param closed when, on the log's clock
   /// @throws std::invalid_argument where .cfg or .dat are too large
-  Packer(std::string stamp, std::string config_xml, const DatSummary& dat, const CivilTime& closed);
+  Packer(const std::string& stamp, std::string config_xml, const DatSummary& dat, const CivilTime& closed);
 
   /// The .cfg with all that belongs to it, and the local header of the .dat.
   std::vector<std::uint8_t> head() const;
