@@ -56,8 +56,8 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
   for (const std::size_t offset : {23U, 31U, 41U, 47U, 112U, 113U}) {
     Bytes image = encode(small_image());
     image[offset] ^= 0x80U;
-    const auto view =
-        LogView::open(joined({encode(small_status()), image, encode(small_image()), {0xDE, 0xDE}}));
+    const Bytes dat = joined({encode(small_status()), image, encode(small_image()), {0xDE, 0xDE}});
+    const auto view = LogView::open(dat);
     ASSERT_TRUE(view);
     const DatIndex& index = view->index();
     // More raw lines than pixels are found only when the image is decoded.
