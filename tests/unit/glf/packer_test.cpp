@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/glf/deflate.hpp"
 #include "tests/unit/glf/fixture.hpp"
 
 namespace sonard::glf::testing {
@@ -12,14 +11,6 @@ namespace {
 
 Bytes text(const std::string& characters) {
   return {characters.begin(), characters.end()};
-}
-
-TEST(Crc32, is_that_of_zip) {
-  Crc32 crc;
-  EXPECT_EQ(crc.value(), 0U);
-  crc.add(text("1234"));
-  crc.add(text("56789"));
-  EXPECT_EQ(crc.value(), 0xCBF43926U) << "the check value of this CRC, as catalogues print it";
 }
 
 // CRC-32 of "<a/>" is 0x01D11CD4, of "123456789" 0xCBF43926. 14:22:33 is 14 << 11 | 22 << 5 | 33 / 2 =
