@@ -1,4 +1,5 @@
 // Logs of other programs, damaged ones and ones made to hurt.
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -71,6 +72,32 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
                 (WireError{WireErrorReason::bad_length, 239 + 51, "pixels"}));
     }
   }
+}
+
+// Where the length leads to what only looks like a header, the index ends instead of listing noise.
+TEST(Hostile, damaged_images_whose_length_leads_nowhere_end_the_index) {
+  constexpr std::size_t next = 60;  // inside the bearings
+  Bytes image = encode(small_image());
+  patch<std::uint16_t>(image, 23, 0xEFEE);
+  patch<std::uint32_t>(image, 2, next);
+  std::fill_n(image.begin() + next, 21, std::uint8_t{0});
+  const auto ends_there = [&] {
+    const Bytes dat = joined({image, encode(small_status()), {0xDE, 0xDE}});
+    const auto view = LogView::open(dat);
+    EXPECT_EQ(view->index().damaged_records, 0U);
+    EXPECT_EQ(view->index().whole_size, 0U);
+    return view->index().tail_error == WireError{WireErrorReason::bad_value, 23, "record_tag"};
+  };
+  EXPECT_TRUE(ends_there()) << "no header";
+  image[next] = '*';
+  image[next + 2] = 20;
+  EXPECT_TRUE(ends_there()) << "a length of less than the header";
+  image[next + 2] = 21;
+  image[next + 19] = 1;
+  EXPECT_TRUE(ends_there()) << "spare bytes that are not zero";
+  image[next + 19] = 0;
+  image[next + 20] = 1;
+  EXPECT_TRUE(ends_there()) << "nor the second";
 }
 
 TEST(Hostile, what_is_no_log_is_refused) {
