@@ -140,6 +140,25 @@ TEST(Hostile, directories_that_lie) {
   EXPECT_EQ(LogView::open(with_central<std::uint16_t>(10, 0)).error().field, "size") << "method 0, two sizes";
 }
 
+// Every bit of the header of the first block of the .dat, which stands behind the .cfg of 14 bytes.
+TEST(Hostile, broken_block_headers_are_refused) {
+  constexpr std::size_t block = 30 + 25 + 14 + 10 + 30 + 26;
+  const Bytes archive = packed(small_dat());
+  ASSERT_EQ(archive[block + 5], '*');
+  for (std::size_t bit = 0; bit < 40; ++bit) {
+    Bytes broken = archive;
+    broken[block + bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    const auto view = LogView::open(broken);
+    // The lowest bit makes it the final block, which may hold data, too; the upper five of the first byte
+    // mean nothing before a stored block.
+    const bool harmless = bit == 0 || (bit >= 3 && bit < 8);
+    ASSERT_EQ(view.has_value(), harmless) << bit;
+    if (!harmless) {
+      EXPECT_EQ(view.error().field, "entry_data") << bit;
+    }
+  }
+}
+
 TEST(Hostile, broken_config_is_refused_by_its_crc) {
   Bytes archive = packed(small_dat());
   archive[30 + 25 + 5] ^= 1U;
