@@ -25,8 +25,9 @@ struct DatIndex {
   std::uint64_t other_records = 0;    ///< of types that this library does not know, skipped by their length
   std::uint64_t damaged_records = 0;  ///< images that make no sense, skipped by their length
   bool closed = false;                ///< the terminator follows the last record, and nothing follows it
-  /// Where the last whole record ends. Cut a .dat that was not closed to this size, append dat_terminator,
-  /// and it is a log again.
+  /// Where the last record ends that was found. Cut a .dat that was not closed to this size, append
+  /// dat_terminator, and it is a log again. Keep the original where tail_size is more than one record can
+  /// be: then something in the middle is damaged, and what lies behind it would go, too.
   std::uint64_t whole_size = 0;
   std::uint64_t tail_size = 0;          ///< bytes from there on that are neither record nor terminator
   std::optional<WireError> tail_error;  ///< why they are no record; offset in the .dat
