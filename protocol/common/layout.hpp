@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace sonard {
 
-/// One field: the type of the member is its type on the wire, little-endian.
+/// One field: the type of the member is its type on the wire, little-endian; float and double as IEEE-754.
 template <class Owner, class Member>
 struct Field {
   std::size_t offset;  ///< from the start of the message
@@ -35,7 +36,7 @@ struct Spare {
 /// Bytes that a member of this type takes on the wire. An optional member may only come last.
 template <class Member>
 struct WireSize : std::integral_constant<std::size_t, sizeof(Member)> {
-  static_assert(std::integral<Member> || std::is_enum_v<Member>);
+  static_assert(std::integral<Member> || std::floating_point<Member> || std::is_enum_v<Member>);
 };
 template <class Element, std::size_t N>
 struct WireSize<std::array<Element, N>> : std::integral_constant<std::size_t, N * WireSize<Element>::value> {
@@ -74,12 +75,22 @@ consteval bool layout_is_contiguous(std::size_t start) {
   return contiguous && offset == Table::size && Table::minimum <= Table::size;
 }
 
+/// Whole number that holds the bits of a floating-point one.
+template <std::floating_point Value>
+using BitsOf = std::conditional_t<sizeof(Value) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
+
 // ---- Members on the wire, by type. A type of its own brings its own pair, found beside it.
 
 template <class Value>
 requires std::integral<Value> || std::is_enum_v<Value>
 void read_value(ByteReader& reader, std::string_view name, Value& value) {
   value = static_cast<Value>(reader.little_endian(WireSize<Value>::value, name));
+}
+
+template <std::floating_point Value>
+void read_value(ByteReader& reader, std::string_view name, Value& value) {
+  const auto bits = static_cast<BitsOf<Value>>(reader.little_endian(sizeof(Value), name));
+  value = std::bit_cast<Value>(bits);
 }
 
 template <class Element, std::size_t N>
@@ -103,6 +114,11 @@ template <class Value>
 requires std::integral<Value> || std::is_enum_v<Value>
 void write_value(ByteWriter& writer, const Value& value) {
   writer.little_endian(static_cast<std::uint64_t>(value), WireSize<Value>::value);
+}
+
+template <std::floating_point Value>
+void write_value(ByteWriter& writer, const Value& value) {
+  writer.little_endian(std::bit_cast<BitsOf<Value>>(value), sizeof(Value));
 }
 
 template <class Element, std::size_t N>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the fuzzing seeds in corpus/ from the byte examples in tests/data/gemini and tests/data/micron.
+"""Writes the fuzzing seeds in corpus/ from the byte examples in tests/data/gemini and tests/data/micron, and logs made here.
 
 gemini/datagrams/  one example each, as it is
 gemini/device/     scripts for fuzz_gemini_device: what a surface sends to a head, with time between
@@ -7,12 +7,16 @@ gemini/surface/    scripts for fuzz_gemini_surface: what a head sends to a surfa
 micron/frames/     one example each, and streams of some
 micron/device/     scripts for fuzz_micron_device: what a host sends to a head
 micron/host/       scripts for fuzz_micron_host: what a head sends to a host
+glf/log/           small logs, bare and in every kind of archive
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
 for another reason (inputs that once failed) are left alone.
 """
+import io
 import pathlib
 import struct
+import zipfile
+import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "data"
@@ -151,6 +155,43 @@ def micron_host_scripts():
     yield "small_talk", micron_frame("fpga_cal_data") + micron_frame("fpga_version_data") + micron_frame("aux_data")
 
 
+def glf_record(kind, body):
+    return struct.pack("<cBIdBHHH", b"*", 2, 21 + len(body), 1479651753.25, kind, 1194, 100, 0) + body
+
+
+def glf_image(lines, beams, raw=False, version=3):
+    """docs/logs.md 1.4"""
+    pixels = bytes((3 * line + 5 * beam) % 256 for line in range(lines) for beam in range(beams))
+    data = pixels if raw else zlib.compress(pixels, 9)
+    compression = struct.pack("<H", raw) if version == 3 else b""
+    head = struct.pack("<HHHIIHII", 1, 0xEFEF, version, 0, lines, 0, 0, beams) + compression + struct.pack("<I", len(data))
+    tail = struct.pack("<IIfdHfhBBBBH", 0, 18750, 120.0, 1479651753.25, 0, 1500.0, 50, 0, 0, 0, 0, 0xDEDE)
+    return glf_record(0, head + data + struct.pack(f"<{beams}d", *(1.0 - beam / beams for beam in range(beams))) + tail)
+
+
+def glf_archive(entries, method, level=None):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method, compresslevel=level) as archive:
+        for name, data in entries:
+            archive.writestr(zipfile.ZipInfo(name), data, method, level)
+    return out.getvalue()
+
+
+def glf_logs():
+    status, end = glf_record(3, bytes(218)), b"\xde\xde"
+    dat = glf_image(20, 16) + status + glf_image(3, 4, raw=True) + end
+    config = b"<genesisLog><logHeader><creationTime>1.5</creationTime></logHeader></genesisLog>"
+    both = [("a.cfg", config), ("b.dat", dat)]
+    yield "closed", dat
+    yield "cut", dat[:-50]
+    yield "other_types", glf_record(1, b"$GPGGA") + status + glf_record(99, bytes(20)) + end
+    yield "older_versions", glf_image(8, 8, version=2) + glf_image(3, 4, raw=True, version=2) + end
+    yield "damaged", glf_image(3, 4).replace(b"\xef\xef", b"\xef\xee") + status + end
+    yield "stored", glf_archive(both, zipfile.ZIP_STORED)
+    yield "stored_blocks", glf_archive(both, zipfile.ZIP_DEFLATED, 0)
+    yield "compressed", glf_archive(both, zipfile.ZIP_DEFLATED, 9)
+
+
 def write(folder, name, data):
     target = CORPUS / folder
     target.mkdir(parents=True, exist_ok=True)
@@ -165,7 +206,8 @@ def main():
         example(path.stem, "micron") for path in sorted((EXAMPLES / "micron").glob("*.hex"))
         if path.stat().st_size < 100))
     for folder, scripts in (("gemini/device", device_scripts()), ("gemini/surface", surface_scripts()),
-                            ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts())):
+                            ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
+                            ("glf/log", glf_logs())):
         for name, script in scripts:
             write(folder, name, script)
 

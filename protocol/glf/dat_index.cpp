@@ -1,0 +1,150 @@
+#include "protocol/glf/dat_index.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "protocol/common/result.hpp"
+#include "protocol/glf/headers.hpp"
+
+namespace sonard::glf {
+namespace {
+
+using Front = std::array<std::uint8_t, ci_header_size + image_header_size>;
+
+/// What there is of the first bytes at `offset`, copied to `front`.
+std::span<const std::uint8_t> read_front(const PiecewiseBytes& dat, std::uint64_t offset, Front& front) {
+  const auto bytes = std::span{front}.first(std::min<std::uint64_t>(front.size(), dat.size() - offset));
+  dat.copy(offset, bytes);
+  return bytes;
+}
+
+WireError moved(WireError error, std::uint64_t offset) {
+  error.offset += offset;
+  return error;
+}
+
+bool terminator_at(const PiecewiseBytes& dat, std::uint64_t offset) {
+  std::array<std::uint8_t, dat_terminator.size()> bytes{};
+  if (dat.size() - offset != bytes.size()) {
+    return false;
+  }
+  dat.copy(offset, bytes);
+  return bytes == dat_terminator;
+}
+
+/// Size of the image whose header `reader` has passed, by what the image itself says: other programs write
+/// something else into the header.
+Result<std::uint64_t, WireError> image_size(const PiecewiseBytes& dat, std::uint64_t offset,
+                                            ByteReader& reader) {
+  const ImageHeader image = read_image_header(reader);
+  if (!reader.ok()) {
+    return *reader.error();
+  }
+  const std::uint64_t size = reader.offset() + image.rest();
+  if (size > dat.size() - offset) {
+    return WireError{WireErrorReason::truncated, reader.offset(), "pixels"};
+  }
+  std::array<std::uint8_t, 3> end{};
+  dat.copy(offset + size - end.size(), end);
+  if (end[0] != 0) {
+    return WireError{WireErrorReason::bad_value, size - 3, "acoustic_zoom"};
+  }
+  if ((end[1] | end[2] << 8) != image_end_tag) {
+    return WireError{WireErrorReason::bad_value, size - 2, "end_tag"};
+  }
+  return size;
+}
+
+/// True where a header starts, or the terminator ends the .dat. Two spare bytes and the length are
+/// held to what they must be, so that few other bytes pass.
+bool goes_on_at(const PiecewiseBytes& dat, std::uint64_t offset) {
+  Front front{};
+  ByteReader reader{read_front(dat, offset, front)};
+  const CiHeader header = read_ci_header(reader);
+  const bool spare_is_zero = front[19] == 0 && front[20] == 0;
+  return terminator_at(dat, offset) || (reader.ok() && header.length >= ci_header_size && spare_is_zero);
+}
+
+class Indexer {
+ public:
+  explicit Indexer(const PiecewiseBytes& dat) : dat_(dat) {}
+
+  DatIndex run() {
+    while (offset_ < dat_.size() && !terminator_at(dat_, offset_) && step()) {
+    }
+    index_.whole_size = offset_;
+    index_.closed = offset_ < dat_.size() && terminator_at(dat_, offset_);
+    index_.tail_size = index_.closed ? 0 : dat_.size() - offset_;
+    return std::move(index_);
+  }
+
+ private:
+  /// Goes over one record; false where there is none.
+  bool step() {
+    Front front{};
+    ByteReader reader{read_front(dat_, offset_, front)};
+    const CiHeader header = read_ci_header(reader);
+    if (!reader.ok()) {
+      return stop(*reader.error());
+    }
+    switch (static_cast<RecordType>(header.type)) {
+      case RecordType::image:
+        return step_over_image(header, reader);
+      case RecordType::status:
+        return fits(ci_header_size + status_body_size)
+                   ? take(header, ci_header_size + status_body_size)
+                   : stop({WireErrorReason::truncated, ci_header_size, "status"});
+    }
+    if (header.length < ci_header_size) {
+      return stop({WireErrorReason::bad_length, 2, "length"});
+    }
+    if (!fits(header.length)) {
+      return stop({WireErrorReason::truncated, ci_header_size, "body"});
+    }
+    ++index_.other_records;
+    offset_ += header.length;
+    return true;
+  }
+
+  bool step_over_image(const CiHeader& header, ByteReader& reader) {
+    const auto size = image_size(dat_, offset_, reader);
+    if (size) {
+      return take(header, *size);
+    }
+    // A damaged image does not hide what comes after it, if its length leads there. One that was cut does not
+    // come this far: its length points beyond the end.
+    if (header.length < ci_header_size || !fits(header.length) ||
+        !goes_on_at(dat_, offset_ + header.length)) {
+      return stop(size.error());
+    }
+    ++index_.damaged_records;
+    offset_ += header.length;
+    return true;
+  }
+
+  bool fits(std::uint64_t size) const { return size <= dat_.size() - offset_; }
+
+  bool take(const CiHeader& header, std::uint64_t size) {
+    index_.records.push_back({static_cast<RecordType>(header.type), header.origin(), offset_, size});
+    offset_ += size;
+    return true;
+  }
+
+  bool stop(const WireError& error) {
+    index_.tail_error = moved(error, offset_);
+    return false;
+  }
+
+  const PiecewiseBytes& dat_;
+  std::uint64_t offset_ = 0;
+  DatIndex index_;
+};
+
+}  // namespace
+
+DatIndex index_dat(const PiecewiseBytes& dat) {
+  return Indexer{dat}.run();
+}
+
+}  // namespace sonard::glf

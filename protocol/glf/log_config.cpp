@@ -1,0 +1,93 @@
+#include "protocol/glf/log_config.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace sonard::glf {
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+/// With three decimals and a point, whatever the locale; what is not finite as 0.
+std::string decimal(double time_s) {
+  std::array<char, 400> text{};  // the largest double has 309 digits before its point
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), std::isfinite(time_s) ? time_s : 0.0,
+                                 std::chars_format::fixed, 3);
+  return {text.data(), end.ptr};
+}
+
+std::string device_info(const std::vector<std::uint16_t>& device_ids) {
+  std::string text;
+  for (const std::uint16_t id : device_ids) {
+    text += text.empty() ? "Gemini - " : ", Gemini - ";
+    text += std::to_string(id);
+  }
+  return text;
+}
+
+/// The number that is the text of the first element of that name.
+std::optional<double> number_in(std::string_view xml, const std::string& element) {
+  const std::string opening = "<" + element + ">";
+  const auto start = xml.find(opening);
+  if (start == std::string_view::npos) {
+    return std::nullopt;
+  }
+  std::string_view text = xml.substr(start + opening.size());
+  text = text.substr(0, text.find('<'));
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  double value = 0.0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto rest = text.substr(static_cast<std::size_t>(end.ptr - text.data()));
+  const bool whole = end.ec == std::errc{} && rest.find_first_not_of(" \t\r\n") == std::string_view::npos;
+  return whole && std::isfinite(value) ? std::optional{value} : std::nullopt;
+}
+
+}  // namespace
+
+std::string config_xml(const LogConfig& config) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+         "<genesisLog>\n"
+         "  <logHeader>\n"
+         "    <appName>" +
+         escaped(config.app_name) +
+         "</appName>\n"
+         "    <fileVersion>1</fileVersion>\n"
+         "    <creationTime>" +
+         decimal(config.creation_time_s) +
+         "</creationTime>\n"
+         "    <deviceInfo>" +
+         device_info(config.device_ids) +
+         "</deviceInfo>\n"
+         "  </logHeader>\n"
+         "  <logTerminator>\n"
+         "    <closeTime>" +
+         decimal(config.close_time_s) +
+         "</closeTime>\n"
+         "  </logTerminator>\n"
+         "</genesisLog>\n";
+}
+
+LogSpan read_log_span(std::string_view xml) {
+  return {.creation_time_s = number_in(xml, "creationTime"), .close_time_s = number_in(xml, "closeTime")};
+}
+
+}  // namespace sonard::glf

@@ -1,0 +1,31 @@
+// The .cfg entry of a .glf: XML that says who wrote the log, when, and of which sonars.
+// Source: docs/logs.md 1.2. No state; any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sonard::glf {
+
+struct LogConfig {
+  std::string app_name;                   ///< of the writer, with its version; UTF-8
+  double creation_time_s = 0.0;           ///< on the log's clock (log_time.hpp), kept to the millisecond
+  double close_time_s = 0.0;              ///< the same
+  std::vector<std::uint16_t> device_ids;  ///< of the Geminis in the log
+};
+
+std::string config_xml(const LogConfig& config);
+
+/// When a log was opened and closed, as far as its .cfg says so.
+struct LogSpan {
+  std::optional<double> creation_time_s;
+  std::optional<double> close_time_s;
+};
+
+/// Reads the two times out of XML of any program; what is missing or no number is left out.
+LogSpan read_log_span(std::string_view xml);
+
+}  // namespace sonard::glf

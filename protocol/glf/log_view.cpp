@@ -1,0 +1,93 @@
+#include "protocol/glf/log_view.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/glf/headers.hpp"
+#include "protocol/glf/zip_entries.hpp"
+
+namespace sonard::glf {
+namespace {
+
+constexpr std::uint8_t archive_start = 'P';
+
+const ZipEntry* find_suffix(const std::vector<ZipEntry>& entries, std::string_view suffix) {
+  const auto found =
+      std::ranges::find_if(entries, [&](const ZipEntry& e) { return e.name.ends_with(suffix); });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+/// Errors of a record, as errors of the .dat.
+template <class Record>
+Result<Record, WireError> placed(Result<Record, WireError> decoded, const RecordEntry& entry) {
+  if (decoded) {
+    return decoded;
+  }
+  WireError error = decoded.error();
+  error.offset += entry.offset;
+  return error;
+}
+
+}  // namespace
+
+Result<LogView, WireError> LogView::open(std::span<const std::uint8_t> file,
+                                         std::uint64_t max_unpacked_size) {
+  if (!file.empty() && file.front() == archive_start) {
+    return open_archive(file, max_unpacked_size);
+  }
+  if (!file.empty() && file.front() != record_id && file.front() != dat_terminator.front()) {
+    return WireError{WireErrorReason::bad_value, 0, "file"};
+  }
+  LogView log;
+  log.dat_ = PiecewiseBytes{file};
+  log.index_ = index_dat(log.dat_);
+  return log;
+}
+
+Result<LogView, WireError> LogView::open_archive(std::span<const std::uint8_t> archive,
+                                                 std::uint64_t max_unpacked_size) {
+  const auto entries = zip_entries(archive);
+  if (!entries) {
+    return entries.error();
+  }
+  LogView log;
+  if (const ZipEntry* config = find_suffix(*entries, ".cfg")) {
+    const auto text = unpacked(*config, max_unpacked_size);
+    if (!text) {
+      return text.error();
+    }
+    log.config_xml_.assign(text->begin(), text->end());
+  }
+  const ZipEntry* dat = find_suffix(*entries, ".dat");
+  if (dat == nullptr) {
+    return WireError{WireErrorReason::bad_value, archive.size(), "dat_entry"};
+  }
+  if (auto pieces = stored_pieces(*dat)) {
+    log.dat_ = std::move(*pieces);
+  } else {
+    auto content = unpacked(*dat, max_unpacked_size);
+    if (!content) {
+      return content.error();
+    }
+    log.unpacked_ = std::move(*content);
+    log.dat_ = PiecewiseBytes{log.unpacked_};
+  }
+  log.index_ = index_dat(log.dat_);
+  return log;
+}
+
+Result<ImageRecord, WireError> LogView::image(const RecordEntry& entry) const {
+  return placed(decode_image(record_bytes(entry)), entry);
+}
+
+Result<StatusRecord, WireError> LogView::status(const RecordEntry& entry) const {
+  return placed(decode_status(record_bytes(entry)), entry);
+}
+
+std::vector<std::uint8_t> LogView::record_bytes(const RecordEntry& entry) const {
+  std::vector<std::uint8_t> bytes(entry.size);
+  dat_.copy(entry.offset, bytes);
+  return bytes;
+}
+
+}  // namespace sonard::glf

@@ -1,0 +1,32 @@
+// Bytes that belong together but lie in pieces, as a .dat does inside a .glf.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sonard::glf {
+
+/// Views its pieces; does not own them. After the last append() any thread may read.
+class PiecewiseBytes {
+ public:
+  PiecewiseBytes() = default;
+  explicit PiecewiseBytes(std::span<const std::uint8_t> whole) { append(whole); }
+
+  void append(std::span<const std::uint8_t> piece);
+
+  std::uint64_t size() const { return size_; }
+  /// Copies out.size() bytes from `offset` on; all of them must be there.
+  void copy(std::uint64_t offset, std::span<std::uint8_t> out) const;
+
+ private:
+  struct Piece {
+    std::uint64_t offset;
+    std::span<const std::uint8_t> bytes;
+  };
+
+  std::vector<Piece> pieces_;  ///< none is empty
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace sonard::glf
