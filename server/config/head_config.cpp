@@ -12,9 +12,6 @@ GeminiHeadConfig::GeminiHeadConfig() {
   acoustics.aperture.element_amplitude_sd = 0.35;
   acoustics.aperture.element_phase_sd_rad = 20 * degree;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
-  // At the pace of a fan these two cost more than a ping has on a small machine.
-  acoustics.physical.backscatter = render::PhysicalModel::Backscatter::lambert;
-  acoustics.physical.multipath.level = render::MultipathSettings::Level::off;
   // Whether what sends and what hears share their height is not published: the pattern is taken once
   // (docs/physics.md 2.5).
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;

@@ -81,8 +81,7 @@ void SlicePatcher::see_normals(const Request& request) {
   runs_.clear();
   original_.clear();
   const auto is_shaded = [&](const VisiblePiece& piece) {
-    const PartSurface& part = request.parts[piece.triangle->part];
-    return part.vertex_normals && !part.normal_map;
+    return request.parts[piece.triangle->part].vertex_normals && !is_mapped(request, piece);
   };
   const bool any = std::any_of(pieces_->begin(), pieces_->end(), is_shaded);
   for (std::size_t i = 0; (any || request.any_facets) && i < pieces_->size(); ++i) {
@@ -183,9 +182,7 @@ void SlicePatcher::lay_out(const Request& request) {
   }
   const bool as_cosine = request.surface.model == Model::physical;
   for (std::size_t i = 0; i < seen_.count; ++i) {
-    const VisiblePiece& piece = (*pieces_)[i];
-    const bool is_mapped = request.parts[piece.triangle->part].normal_map != nullptr;
-    plain_[i] = as_cosine && !is_mapped ? 1.0F : 0.0F;
+    plain_[i] = as_cosine && !is_mapped(request, (*pieces_)[i]) ? 1.0F : 0.0F;
   }
   for (std::size_t i = 0; !runs_.empty() && i < seen_.count; ++i) {
     const NormalRun& run = runs_[original_[i]];
