@@ -62,6 +62,20 @@ TEST(McapBroken, a_summary_with_a_wrong_byte_is_not_used) {
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 
+TEST(McapBroken, a_summary_whose_chunks_overlap_is_not_used) {
+  const Bytes file = finished_file();
+  const auto section = scan_data_section(file);
+  ASSERT_TRUE(section);
+  Summary twice = section->summary;
+  twice.chunks.push_back(twice.chunks.back());
+  Bytes hostile{file.begin(), file.begin() + static_cast<std::ptrdiff_t>(section->end)};
+  append(hostile, make_end(twice, hostile.size(), 0));
+  const auto reader = Reader::open(hostile);
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->finished());
+  EXPECT_EQ(all_of(reader->messages()), messages_in_order);
+}
+
 // Every error must lie inside the file, and every message too; the sanitizers see the rest.
 TEST(McapBroken, flipped_bits_never_crash) {
   const Bytes whole = finished_file();

@@ -15,6 +15,21 @@ TEST(McapReader, messages_come_in_the_order_of_their_times) {
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 
+TEST(McapReader, messages_of_equal_times_come_in_the_order_of_the_file) {
+  Writer writer{"test", 100'000};
+  const auto channel = writer.add_channel(0, "/x", "json");
+  writer.add_message(channel, 50, 50, bytes_of("first"));
+  writer.end_chunk();
+  writer.add_message(channel, 10, 10, bytes_of("before"));
+  writer.add_message(channel, 50, 50, bytes_of("second"));
+  writer.finish();
+  const Bytes file = writer.take();
+  const auto reader = Reader::open(file);
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(all_of(reader->messages()),
+            (std::vector<Said>{{1, 1, 10, "before"}, {1, 0, 50, "first"}, {1, 2, 50, "second"}}));
+}
+
 TEST(McapReader, only_the_channels_that_were_asked_for) {
   const Bytes file = finished_file();
   const auto reader = Reader::open(file);
@@ -54,7 +69,7 @@ TEST(McapReader, pieces_make_the_same_file) {
   Bytes pieces = writer.take();
   const auto channel = writer.add_channel(0, "/x", "json");
   for (std::uint64_t i = 0; i < 5; ++i) {
-    writer.add_message(channel, i + 1, i + 1, bytes_of("{}"));
+    writer.add_message(channel, 10 - i, 10 - i, bytes_of("{}"));  // a clock that goes back
     append(pieces, writer.take());
     EXPECT_EQ(pieces.size(), writer.file_size());
   }
@@ -64,6 +79,7 @@ TEST(McapReader, pieces_make_the_same_file) {
   ASSERT_TRUE(reader);
   EXPECT_TRUE(reader->finished());
   EXPECT_EQ(reader->summary(), writer.summary());
+  EXPECT_EQ(scan_data_section(pieces)->summary, writer.summary());
   EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
