@@ -76,7 +76,7 @@ class Scanner {
       return put(read_channel(record));
     }
     if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
-        record.opcode == 0) {
+        record.opcode == 0) {  // zeros: a part of the disk that was never written
       return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
     }
     return std::nullopt;
@@ -135,34 +135,35 @@ class Scanner {
 
 Result<Chunk, WireError> read_chunk(const Record& record) {
   ByteReader reader{record.content};
-  const auto fail = [&](std::size_t offset, WireErrorReason reason, std::string_view field) {
-    return WireError{reason, record.content_offset() + offset, field};
-  };
   reader.skip(16, "chunk.times");
+  const std::size_t size_offset = reader.offset();
   const std::uint64_t records_size = reader.u64le("chunk.uncompressed_size");
+  const std::size_t crc_offset = reader.offset();
   const std::uint32_t crc = reader.u32le("chunk.uncompressed_crc");
+  const std::size_t compression_offset = reader.offset();
   const std::string compression = read_string(reader, "chunk.compression");
   const std::uint64_t stored_size = reader.u64le("chunk.records");
   const std::size_t records_offset = reader.offset();
   const ByteView records = reader.bytes(static_cast<std::size_t>(stored_size), "chunk.records");
-  if (!reader.ok()) {
-    return shifted(*reader.error(), record.content_offset());
-  }
   if (!compression.empty()) {
-    return fail(28, WireErrorReason::bad_value, "chunk.compression");
+    reader.fail_at(compression_offset, WireErrorReason::bad_value, "chunk.compression");
   }
   if (records_size != stored_size) {
-    return fail(16, WireErrorReason::bad_length, "chunk.uncompressed_size");
+    reader.fail_at(size_offset, WireErrorReason::bad_length, "chunk.uncompressed_size");
   }
   if (crc != 0 && crc != crc32(records)) {
-    return fail(24, WireErrorReason::bad_value, "chunk.uncompressed_crc");
+    reader.fail_at(crc_offset, WireErrorReason::bad_value, "chunk.uncompressed_crc");
+  }
+  if (!reader.ok()) {
+    return shifted(*reader.error(), record.content_offset());
   }
   Chunk chunk;
   chunk.records_size = records_size;
   for (std::size_t offset = 0; offset < records.size();) {
     const auto inner = record_at(records, offset);
     if (!inner) {
-      return fail(records_offset + offset, WireErrorReason::bad_length, "chunk.records");
+      return WireError{WireErrorReason::bad_length, record.content_offset() + records_offset + offset,
+                       "chunk.records"};
     }
     if (const auto error = take(*inner, chunk)) {
       return shifted(*error, record.content_offset() + records_offset);
