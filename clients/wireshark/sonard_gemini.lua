@@ -49,7 +49,6 @@ local extra = {
   mdio_word = ProtoField.uint16(prefix .. ".mdio_commands.word", "Word", base.HEX),
   serial_time = ProtoField.uint64(prefix .. ".serial_data.time_us", "Time (us)"),
   serial_value = ProtoField.uint8(prefix .. ".serial_data.value", "Byte", base.HEX),
-  spare = ProtoField.bytes(prefix .. ".beyond", "Bytes beyond the message"),
 }
 gemini.fields = tables.make_fields(prefix, messages, {
   ["header.type"] = "hex", ["ping_config.run_mode"] = "hex", ["ping_config.ext_mode"] = "hex",

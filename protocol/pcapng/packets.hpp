@@ -32,8 +32,8 @@ Bytes udp_packet(const Endpoint& from, const Endpoint& to, ByteView payload);
 /// of 1460 bytes. A reader of the capture, Wireshark say, puts the same stream together from them.
 ///
 /// A serial line or pseudo terminal is written down as such a connection too, between two addresses that RFC
-/// 5737 keeps for documentation: of all that Wireshark can be told about bytes without packets this one needs
-/// no setting there, and takes frames apart and together as on a real connection.
+/// 5737 keeps for documentation. The link type that Wireshark has for private use would need a setting in
+/// every Wireshark, and would not put frames together that were read in pieces.
 class TcpConversation {
  public:
   TcpConversation(const Endpoint& client, const Endpoint& server);

@@ -22,7 +22,7 @@ std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::v
 pcapng::Bytes to_head(pcapng::ByteView payload);
 pcapng::Bytes from_head(pcapng::ByteView payload);
 
-/// Where expert info of Wireshark at its worst: nothing, or what is malformed.
+/// What Wireshark and the dissectors complain about.
 inline const std::string expert_field = "_ws.expert.message";
 
 }  // namespace sonard::testing

@@ -18,8 +18,8 @@ TEST(UdpPacket, bytes) {
 }
 
 TEST(UdpPacket, a_checksum_of_zero_is_written_as_ones) {
-  // Without payload the words sum up to 7CCD: 0A00 + 0001 + 0A00 + 0002 + 0011 + 0008 + 1234 + 5678 + 0008.
-  // FFFF - 7CCD = 8332, with the length counted twice more by 2 each: 832E.
+  // Without the payload the words sum up to 0A00 + 0001 + 0A00 + 0002 + 0011 + 000A + 1234 + 5678 + 000A =
+  // 7CD4; with FFFF - 7CD4 = 832B as payload they sum up to FFFF, which inverted is 0.
   const Bytes packet = udp_packet(a, b, Bytes{0x83, 0x2B});
   EXPECT_EQ(packet[26], 0xFF);
   EXPECT_EQ(packet[27], 0xFF);
