@@ -2,9 +2,6 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <limits>
-
 #include "protocol/common/byte_writer.hpp"
 
 namespace sonard::mcap {
