@@ -20,6 +20,8 @@ enum class Facets {
 /// for a surface whose slopes are Gaussian with rms m along each axis. All of it integrates to |R|^2 a^2 / 4
 /// over a sphere of radius a.
 struct Backscatter {
+  static constexpr float widest_variance = 0.25F;  // m = 0.5: beyond, the law is none
+
   float lambert_mu = 0.0F;
   float facet_strength = 0.0F;   ///< |R|^2 / (8 pi); 0: no facets
   float slope_variance = 0.04F;  ///< m^2
@@ -39,9 +41,8 @@ struct Backscatter {
   /// The same of the facets.
   /// @param added_variance of the slopes of a normal map, to be added to m^2
   float facets(float cosine, float added_variance = 0.0F) const {
-    constexpr float widest = 0.25F;           // m = 0.5: beyond, the law is none
     constexpr float as_good_as_none = 80.0F;  // exp(-80); keeps 0 / 0 out at grazing incidence
-    const float variance = std::min(slope_variance + added_variance, widest);
+    const float variance = std::min(slope_variance + added_variance, widest_variance);
     const float c2 = cosine * cosine;
     const float exponent = (1.0F - c2) / (2.0F * variance * c2);
     return exponent < as_good_as_none ? facet_strength / (variance * c2 * c2 * cosine) * std::exp(-exponent)

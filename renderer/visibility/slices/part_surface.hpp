@@ -18,7 +18,6 @@ struct PartSurface {
   std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
   bool vertex_normals = false;                      ///< whether shading interpolates them
   Backscatter backscatter;
-  float facet_reach_rad = -1e3F;  ///< from normal incidence; farther off facets are not heard
   float reflectance = 0.0F;
   // For this ping:
   glm::mat3 R_part_sonar{1.0F};

@@ -7,31 +7,16 @@
 
 namespace sonard::render {
 
-FacetSight::FacetSight(const PartSurface& part, const NormalRun& normals, const VisiblePiece& piece,
-                       const Slice& slice)
-    : backscatter_(&part.backscatter), normals_(normals), width_rad_(slice.width_rad) {
-  const float t = 0.5F * (piece.low + piece.high);
-  find_turn(t, slice.width_rad);
-  const float slope = std::sqrt(part.backscatter.slope_variance);
-  const float turn_rad = slope * (slopes_per_t_ * (piece.high - piece.low) + slopes_across_);
-  const float middle = cosine(0.0F, t);
-  may_hear_ =
-      middle > part.backscatter.least_cosine || std::acos(middle) - 0.5F * turn_rad < part.facet_reach_rad;
-}
-
-/// From how direction and normal change in the middle. Off a mirror they differ by d - n or d + n.
-void FacetSight::find_turn(float middle_t, float width_rad) {
-  const glm::vec3 d(1, 0, middle_t), n = normals_.at + middle_t * normals_.per_t;
-  const float per_d = 1 / glm::length(d), per_n = 1 / glm::length(n);
-  const glm::vec3 d_unit = d * per_d, n_unit = n * per_n;
-  const float facing = glm::dot(d, n) > 0 ? per_n : -per_n;
-  const auto turn = [&](const glm::vec3& d_step, const glm::vec3& n_step) {
-    return glm::length((d_step - d_unit * glm::dot(d_unit, d_step)) * per_d -
-                       (n_step - n_unit * glm::dot(n_unit, n_step)) * facing);
-  };
-  const float per_slope = 1 / std::sqrt(backscatter_->slope_variance);
-  slopes_per_t_ = per_slope * turn({0, 0, 1}, normals_.per_t);
-  slopes_across_ = per_slope * width_rad * turn({0, 1, 0}, normals_.per_x);
+FacetSight::FacetSight(const Backscatter& backscatter, const NormalRun& normals, float width_rad,
+                       float middle_t)
+    : backscatter_(backscatter), normals_(normals), width_rad_(width_rad) {
+  const glm::vec3 d = glm::normalize(glm::vec3(1, 0, middle_t)), n = normals_.at + middle_t * normals_.per_t;
+  const float per_n = 1 / glm::length(n);
+  const glm::vec3 n_unit = n * per_n;
+  const glm::vec3 n_turn = (normals_.per_x - n_unit * glm::dot(n_unit, normals_.per_x)) * per_n;
+  const glm::vec3 d_turn(0, d.x, 0);  // across d
+  const float turn = glm::length(glm::dot(d, n) > 0 ? d_turn - n_turn : d_turn + n_turn);
+  slopes_across_ = width_rad_ * turn / std::sqrt(backscatter_.slope_variance);
 }
 
 float FacetSight::cosine(float x, float t) const {
@@ -56,11 +41,11 @@ FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
   const float middle = 0.5F * (wedge.from + wedge.to), width = wedge.to - wedge.from;
   const float slopes = slopes_across_ * width;
   if (slopes < even) {
-    return {backscatter_->facets(cosine(middle * width_rad_, t)), 0.0F};
+    return {backscatter_.facets(cosine(middle * width_rad_, t)), 0.0F};
   }
   FacetResponse sum;
   const auto look = [&](float place, float weight) {
-    const float echo = weight * backscatter_->facets(cosine((middle + place) * width_rad_, t));
+    const float echo = weight * backscatter_.facets(cosine((middle + place) * width_rad_, t));
     sum.mean += echo;
     sum.moment += echo * place;
   };
@@ -82,15 +67,9 @@ FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
   return sum;
 }
 
-PieceFacets facets_of_piece(const FacetSight& sight, const VisiblePiece& piece, bool tilts,
-                            const WedgePart& wedge) {
-  const float even = tilts ? 0.05F : 0.25F;  // in rms slopes
-  const float t = 0.5F * (piece.low + piece.high);
-  const FacetResponse middle = sight.response(t, wedge);
-  if (sight.slopes_per_t() * (piece.high - piece.low) < even) {
-    return {middle.mean, middle.moment, 0.0F};
-  }
+PieceFacets facets_of_piece(const FacetSight& sight, const VisiblePiece& piece, const WedgePart& wedge) {
   const FacetResponse low = sight.response(piece.low, wedge), high = sight.response(piece.high, wedge);
+  const FacetResponse middle = sight.response(0.5F * (piece.low + piece.high), wedge);
   return {(low.mean + 4 * middle.mean + high.mean) * (1.0F / 6),
           (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6), high.mean - low.mean};
 }

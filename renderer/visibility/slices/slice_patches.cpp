@@ -57,7 +57,6 @@ float ElevationPattern::at(float t) const {
 std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = &request.pieces;
   see_normals(request);
-  see_facets(request);
   int rounds = 0;
   do {
     lay_out(request);
@@ -66,8 +65,16 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
     if (!runs_.empty()) {
       measure_shading();
     }
+    if (request.any_facets) {
+      facets_.lay_out(*pieces_, request.parts, runs_, original_,
+                      request.surface.facets == Facets::everywhere);
+      facets_.find_turns(seen_, request.slice.width_rad);
+    }
     find_tilts(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
+  if (request.any_facets) {
+    facets_.hear(seen_, request.slice.width_rad);
+  }
   const std::uint64_t without_facets = shade(request);
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
     add_patches(request, i, patches);
@@ -97,22 +104,6 @@ void SlicePatcher::see_normals(const Request& request) {
   }
 }
 
-/// How facets are heard over the pieces.
-void SlicePatcher::see_facets(const Request& request) {
-  sights_.clear();
-  if (!request.any_facets) {
-    return;
-  }
-  const bool everywhere = request.surface.facets == Facets::everywhere;
-  for (std::size_t i = 0; i < pieces_->size(); ++i) {
-    const VisiblePiece& piece = (*pieces_)[i];
-    const PartSurface& part = request.parts[piece.triangle->part];
-    const bool heard = part.backscatter.facet_strength > 0 || everywhere;
-    sights_.push_back(heard && !part.normal_map ? FacetSight(part, runs_[i], piece, request.slice)
-                                                : FacetSight());
-  }
-}
-
 /// One, or several side by side where facets are much louder at one side of the wedge.
 void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const {
   const EchoPatch whole{
@@ -122,8 +113,8 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   if (!request.any_facets || aside_[i] == 0.0F) {
     return;
   }
-  const FacetSight& sight = sights_[original_[i]];
   const float t = 0.5F * (seen_.low[i] + seen_.high[i]);
+  const FacetSight sight = sight_of(request, i);
   const float wedge_m = range_mid_[i] * request.slice.width_rad;
   const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * aside_[i];
   // What moves a part, and by how much it is bent, fall with the square of their number.
@@ -141,7 +132,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   patches.pop_back();
   for (float k = 0.0F; k < count; ++k) {
     const WedgePart part{k / count - 0.5F, (k + 1) / count - 0.5F};
-    const PieceFacets facets = facets_of_piece(sight, (*pieces_)[i], range_tilt_[i] != 0.0F, part);
+    const PieceFacets facets = facets_of_piece(sight, (*pieces_)[i], part);
     const float response = response_without_facets_[i] + facets.mean;
     const float aside = response > 0 ? facets.moment / response : 0.0F;
     EchoPatch patch = whole;
@@ -391,13 +382,12 @@ float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, flo
 /// So that over each part the echo of facets changes little: by less than would show if the part lies in one
 /// line, and by about as much as a straight line follows if it spreads over more.
 float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
-  const FacetSight& sight = sights_[original_[i]];
-  if (!sight.may_hear()) {
+  if (!facets_.may_hear(i)) {
     return 1.0F;
   }
   const VisiblePiece& piece = (*pieces_)[i];
-  const float share = span_m < 0.5F * request.line_m ? 1.0F : std::sqrt(request.evenness);
-  return std::ceil(sight.slopes_per_t() * (piece.high - piece.low) / share);
+  const float share = span_m < 0.5F * request.line_m ? 1.0F : request.facet_slopes;
+  return std::ceil(facets_.slopes_per_t(i) * (piece.high - piece.low) / share);
 }
 
 /// Divides the pieces whose echo runs otherwise in range than a patch can say.
@@ -489,28 +479,35 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
 bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
   const VisiblePiece& piece = (*pieces_)[i];
   const PartSurface& part = request.parts[piece.triangle->part];
-  const bool everywhere = request.surface.facets == Facets::everywhere;
-  if (!everywhere && !(part.backscatter.facet_strength > 0)) {
-    return false;
-  }
   if (part.normal_map) {
+    if (request.surface.facets != Facets::everywhere && !(part.backscatter.facet_strength > 0)) {
+      return false;
+    }
     const float length = mapped_[i].mean_length;
     response_[i] +=
         part.backscatter.facets(std::min(mapped_[i].cosine / length, 1.0F), variance_of_mean_normal(length));
     return true;
   }
-  const FacetSight& sight = sights_[original_[i]];
-  if (!everywhere && !sight.may_hear()) {
+  if (!facets_.may_hear(i)) {
     return false;
   }
-  const PieceFacets facets = facets_of_piece(sight, piece, range_tilt_[i] != 0.0F);
+  PieceFacets heard{facets_.mean(i), facets_.moment(i), facets_.rise(i)};
+  if (facets_.is_wide(i)) {
+    heard = facets_of_piece(sight_of(request, i), piece);
+  }
   response_without_facets_[i] = response_[i];
-  response_[i] += facets.mean;
+  response_[i] += heard.mean;
   if (response_[i] > 0) {
-    echo_tilt_[i] = (echo_tilt_[i] * response_without_facets_[i] + 0.5F * facets.rise) / response_[i];
-    aside_[i] = facets.moment / response_[i];
+    echo_tilt_[i] = (echo_tilt_[i] * response_without_facets_[i] + 0.5F * heard.rise) / response_[i];
+    aside_[i] = heard.moment / response_[i];
   }
   return true;
+}
+
+FacetSight SlicePatcher::sight_of(const Request& request, std::size_t i) const {
+  const VisiblePiece& piece = (*pieces_)[i];
+  return {request.parts[piece.triangle->part].backscatter, runs_[original_[i]], request.slice.width_rad,
+          0.5F * (piece.low + piece.high)};
 }
 
 /// Mean over the echo of the piece, and how it rises. Solid angle and response change along the piece too.

@@ -7,6 +7,7 @@
 
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/visibility/sampler.hpp"
+#include "renderer/visibility/slices/facet_arrays.hpp"
 #include "renderer/visibility/slices/part_surface.hpp"
 #include "renderer/visibility/slices/piece_arrays.hpp"
 #include "renderer/visibility/slices/piece_ends.hpp"
@@ -45,6 +46,9 @@ class SlicePatcher {
     float evenness;
     bool any_mapped;  ///< whether any of the parts has a normal map
     bool any_facets;  ///< whether facets have to be looked at, of any of the parts
+    /// Pieces that spread over lines are divided until the direction of their echo, against that of a mirror,
+    /// turns by no more than this many rms slopes of their facets.
+    float facet_slopes;
     /// Where facets are louder at one side of the wedge than at the other, a patch lies that much nearer to
     /// that side. It is divided across until that is no more than this many lines.
     float facet_lines;
@@ -69,21 +73,20 @@ class SlicePatcher {
   float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
   float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
   void see_normals(const Request& request);
-  void see_facets(const Request& request);
   std::uint64_t shade(const Request& request);
   float shade_plainly(const Request& request, std::size_t i);
   bool add_facets(const Request& request, std::size_t i);
+  FacetSight sight_of(const Request& request, std::size_t i) const;
   void add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const;
   void weigh_by_pattern(const Request& request, std::size_t i);
 
   /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
   std::vector<VisiblePiece> whole_, divided_;
-  /// Of each piece of the request; empty where all are shaded by their planes, and where no facets are looked
-  /// at.
+  /// Of each piece of the request; empty where all are shaded by their planes and no facets are looked at.
   std::vector<NormalRun> runs_;
-  std::vector<FacetSight> sights_;
-  std::vector<std::uint32_t> original_, divided_original_;  ///< of each piece, its number in both
+  std::vector<std::uint32_t> original_, divided_original_;  ///< of each piece, its number in `runs_`
+  FacetArrays facets_;
   PieceArrays seen_;
   PieceEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;

@@ -81,7 +81,6 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   surface.backscatter = Backscatter(part.material);
   surface.reflectance = static_cast<float>(part.material.reflectance);
   if (surface.backscatter.facet_strength > 0) {
-    surface.facet_reach_rad = std::acos(std::min(surface.backscatter.least_cosine, 1.0F));
     any_facets_ = true;
   }
   const bool plain_facets = has_plain_facets(*part.mesh);
@@ -247,8 +246,8 @@ void SliceSampler::make_patches(const Setting& setting) {
       cell.patches.clear();
       cell.without_facets = patcher.make(
           {cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern, setting.fan.tan_limit(),
-           setting.accuracy.evenness, setting.any_mapped, setting.any_facets, setting.accuracy.facet_lines,
-           setting.line_m, setting.fan.max_range_m()},
+           setting.accuracy.evenness, setting.any_mapped, setting.any_facets, setting.accuracy.facet_slopes,
+           setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},
           cell.patches);
     }
   });

@@ -1,0 +1,52 @@
+// Facets of all pieces of a slice at once, as arrays, because loops over them are vectorised.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/visibility/slices/part_surface.hpp"
+#include "renderer/visibility/slices/piece_arrays.hpp"
+#include "renderer/visibility/slices/slice_shading.hpp"
+
+namespace sonard::render {
+
+/// What FacetSight says of one piece, with three looks along it and three across the wedge. That is enough
+/// where facets turn little across; is_wide() says where it is not. Arrays never shrink.
+class FacetArrays {
+ public:
+  /// Of the pieces in `pieces`. @param runs, original their normals: runs[original[i]] are those of piece i
+  /// @param everywhere facets are looked at whatever the incidence
+  void lay_out(const std::vector<VisiblePiece>& pieces, const std::vector<PartSurface>& parts,
+               const std::vector<NormalRun>& runs, const std::vector<std::uint32_t>& original,
+               bool everywhere);
+
+  /// How the direction of the echo turns, and where facets may be heard.
+  void find_turns(const PieceArrays& pieces, float width_rad);
+  /// What they answer.
+  void hear(const PieceArrays& pieces, float width_rad);
+
+  /// Whether facets are heard anywhere between both ends and both sides: of what answers no, all facets echo
+  /// less than SkipRule::facet_kernel allows. May answer yes where there are none.
+  bool may_hear(std::size_t i) const { return heard_[i] > 0; }
+  /// By how many rms slopes m the direction of the echo, against that of a mirror, changes over a height of 1
+  /// in t.
+  float slopes_per_t(std::size_t i) const { return slopes_per_t_[i]; }
+  /// Whether the echo changes more across the wedge than three looks can tell.
+  bool is_wide(std::size_t i) const { return slopes_across_[i] > most_across; }
+
+  /// As PieceFacets.
+  float mean(std::size_t i) const { return mean_[i]; }
+  float moment(std::size_t i) const { return moment_[i]; }
+  float rise(std::size_t i) const { return rise_[i]; }
+
+ private:
+  static constexpr float most_across = 2.5F;
+
+  std::vector<float> at_h_, at_s_, at_z_, x_h_, x_s_, x_z_, t_h_, t_s_, t_z_;  ///< NormalRun
+  std::vector<float> strength_, variance_, least_cosine_;                      ///< Backscatter
+  std::vector<float> heard_, slopes_per_t_, slopes_across_;
+  std::vector<float> mean_, moment_, rise_;
+};
+
+}  // namespace sonard::render
