@@ -1,6 +1,7 @@
 // Facets of all pieces of a slice at once, as arrays, because loops over them are vectorised.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -32,6 +33,8 @@ class FacetArrays {
   /// By how many rms slopes m the direction of the echo, against that of a mirror, changes over a height of 1
   /// in t.
   float slopes_per_t(std::size_t i) const { return slopes_per_t_[i]; }
+  /// Of that direction across the wedge, radians.
+  float turn_across_rad(std::size_t i) const { return slopes_across_[i] * std::sqrt(variance_[i]); }
   /// Whether the echo changes more across the wedge than three looks can tell.
   bool is_wide(std::size_t i) const { return slopes_across_[i] > most_across; }
 

@@ -44,16 +44,6 @@ ElevationPattern::ElevationPattern(const Aperture& aperture, bool tabled_if_flat
   }
 }
 
-float ElevationPattern::at(float t) const {
-  if (weight_.empty()) {
-    return 1.0F;
-  }
-  const float place = std::clamp((t / tan_limit_ + 1) * (0.5F * pattern_steps), 0.0F, pattern_steps - 1e-3F);
-  const auto step = static_cast<std::size_t>(place);
-  const float rest = place - static_cast<float>(step);
-  return weight_[step] * (1 - rest) + weight_[step + 1] * rest;
-}
-
 std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   pieces_ = &request.pieces;
   see_normals(request);
@@ -113,6 +103,14 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   if (!request.any_facets || aside_[i] == 0.0F) {
     return;
   }
+  const float by_wedge_m = 0.5F * (by_azimuth_low_[i] + by_azimuth_high_[i]) * request.slice.width_rad;
+  const float allowed_m = request.facet_lines * request.line_m;
+  if (std::abs(by_wedge_m * aside_[i]) < 0.25F * allowed_m &&
+      facets_.turn_across_rad(i) * range_mid_[i] * request.slice.width_rad < allowed_m) {
+    patches.back().range_a_m += by_wedge_m * aside_[i];
+    patches.back().range_b_m += by_wedge_m * aside_[i];
+    return;
+  }
   const float t = 0.5F * (seen_.low[i] + seen_.high[i]);
   const FacetSight sight = sight_of(request, i);
   const float wedge_m = range_mid_[i] * request.slice.width_rad;
@@ -122,7 +120,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   const float bowed_m =
       0.125F * wedge_m * facets_share * (sight.range_slope(t, 0.5F) - sight.range_slope(t, -0.5F));
   const float off_m = std::max(std::abs(moved_m), std::abs(bowed_m));
-  const float wanted = std::sqrt(off_m / (request.facet_lines * request.line_m));
+  const float wanted = std::sqrt(off_m / allowed_m);
   const float count = std::clamp(std::ceil(wanted), 1.0F, most_side_by_side);
   if (count == 1.0F) {
     patches.back().range_a_m += moved_m;
@@ -445,14 +443,25 @@ std::uint64_t SlicePatcher::shade(const Request& request) {
     echo_tilt_[i] = cosine_tilt_[i] * plain_[i];
     aside_[i] = 0.0F;
     without_facets += any_facets && add_facets(request, i) ? 0 : 1;
-    const bool tilts = range_tilt_[i] != 0.0F;
-    if (!request.pattern.flat()) {
-      weigh_by_pattern(request, i);
-    }
-    echo_tilt_[i] = tilts ? std::clamp(range_tilt_[i] + echo_tilt_[i], -1.0F, 1.0F) : 0.0F;
-    range_tilt_[i] = std::clamp(range_tilt_[i], -1.0F, 1.0F);
   }
+  if (!request.pattern.flat()) {
+    weigh_by_pattern(request.pattern);
+  }
+  join_tilts();
   return without_facets;
+}
+
+SONARD_SIMD_CLONES
+void SlicePatcher::join_tilts() {
+  const auto count = pieces_->size();
+  float* __restrict range_tilt = range_tilt_.data();
+  float* __restrict echo_tilt = echo_tilt_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float both = range_tilt[i] + echo_tilt[i];
+    const float kept = both > 1 ? 1.0F : (both < -1 ? -1.0F : both);
+    echo_tilt[i] = range_tilt[i] != 0.0F ? kept : 0.0F;
+    range_tilt[i] = range_tilt[i] > 1 ? 1.0F : (range_tilt[i] < -1 ? -1.0F : range_tilt[i]);
+  }
 }
 
 /// What a piece answers without facets.
@@ -510,23 +519,35 @@ FacetSight SlicePatcher::sight_of(const Request& request, std::size_t i) const {
           0.5F * (piece.low + piece.high)};
 }
 
-/// Mean over the echo of the piece, and how it rises. Solid angle and response change along the piece too.
-void SlicePatcher::weigh_by_pattern(const Request& request, std::size_t i) {
-  const VisiblePiece& piece = (*pieces_)[i];
-  const auto solid_angle = [](float t) {
-    const float q = 1 + t * t;
-    return 1 / (q * std::sqrt(q));
-  };
-  const float t = 0.5F * (piece.low + piece.high);
-  const float low = request.pattern.at(piece.low), high = request.pattern.at(piece.high);
-  const float by_low = solid_angle(piece.low) * (1 - echo_tilt_[i]);
-  const float by_middle = 4 * solid_angle(t);
-  const float by_high = solid_angle(piece.high) * (1 + echo_tilt_[i]);
-  const float weight =
-      (low * by_low + request.pattern.at(t) * by_middle + high * by_high) / (by_low + by_middle + by_high);
-  solid_angle_[i] *= weight;
-  if (range_tilt_[i] != 0.0F && weight > 0) {
-    range_tilt_[i] += 0.5F * (high - low) / weight;
+/// Mean over the echo of each piece, and how it rises. Solid angle and response change along the piece too.
+SONARD_SIMD_CLONES
+void SlicePatcher::weigh_by_pattern(const ElevationPattern& pattern) {
+  const auto count = pieces_->size();
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
+  const float* __restrict echo_tilt = echo_tilt_.data();
+  float* __restrict solid_angle = solid_angle_.data();
+  float* __restrict range_tilt = range_tilt_.data();
+  const float* __restrict table = pattern.table();
+  const float per_t = pattern.steps_per_t(), at_0 = pattern.step_at_0(), last = 2 * at_0 - 1e-3F;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto weight_at = [&](float t) {
+      const float anywhere = t * per_t + at_0;
+      const float place = anywhere > 0 ? (anywhere < last ? anywhere : last) : 0.0F;
+      const auto step = static_cast<std::int32_t>(place);
+      const float rest = place - static_cast<float>(step);
+      return table[step] * (1 - rest) + table[step + 1] * rest;
+    };
+    const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
+    const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
+    const float w1 = weight_at(t1), w2 = weight_at(t2), wm = weight_at(tm);
+    const float by_low = (1 - echo_tilt[i]) / (q1 * std::sqrt(q1));
+    const float by_middle = 4 / (qm * std::sqrt(qm));
+    const float by_high = (1 + echo_tilt[i]) / (q2 * std::sqrt(q2));
+    const float weight = (w1 * by_low + wm * by_middle + w2 * by_high) / (by_low + by_middle + by_high);
+    solid_angle[i] *= weight;
+    const float steeper = range_tilt[i] + 0.5F * (w2 - w1) / weight;
+    range_tilt[i] = (range_tilt[i] != 0.0F) & (weight > 0) ? steeper : range_tilt[i];
   }
 }
 

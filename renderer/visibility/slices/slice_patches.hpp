@@ -23,7 +23,12 @@ class ElevationPattern {
   explicit ElevationPattern(const Aperture& aperture, bool tabled_if_flat = false);
   bool flat() const { return weight_.empty(); }
   bool varies() const { return varies_; }
-  float at(float t) const;
+
+  /// Of the elevation -tan_limit to tan_limit: weights at even steps of t, of which that at t is number
+  /// step_at_0() + t * steps_per_t().
+  const float* table() const { return weight_.data(); }
+  float steps_per_t() const { return 0.5F * static_cast<float>(weight_.size() - 1) / tan_limit_; }
+  float step_at_0() const { return 0.5F * static_cast<float>(weight_.size() - 1); }
 
  private:
   float tan_limit_;
@@ -78,7 +83,8 @@ class SlicePatcher {
   bool add_facets(const Request& request, std::size_t i);
   FacetSight sight_of(const Request& request, std::size_t i) const;
   void add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const;
-  void weigh_by_pattern(const Request& request, std::size_t i);
+  void weigh_by_pattern(const ElevationPattern& pattern);
+  void join_tilts();
 
   /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
   const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
