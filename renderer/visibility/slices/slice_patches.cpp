@@ -13,11 +13,9 @@ namespace sonard::render {
 namespace {
 
 constexpr int pattern_steps = 1024;
-constexpr int most_divisions = 16;  // of a piece at once
-constexpr int most_rounds = 6;      // near a foot point the divided pieces are divided again
-constexpr float most_tilt = 1.1F;   // of a piece; 1 where the range turns round at one end
-// Under a normal map pieces are no longer than this many lines, so that its bumps appear at their ranges.
-constexpr float mapped_lines = 2.0F;
+constexpr int most_divisions = 16;          // of a piece at once
+constexpr int most_rounds = 6;              // near a foot point the divided pieces are divided again
+constexpr float most_tilt = 1.1F;           // of a piece; 1 where the range turns round at one end
 constexpr float most_side_by_side = 16.0F;  // patches of a piece
 
 /// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
@@ -355,9 +353,9 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
     parts = turns ? 2.0F : 1.0F + std::floor(tilts ? std::cbrt(excess) : std::sqrt(excess));
   }
   const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
-  if (request.any_mapped && in_range && span_m > mapped_lines * request.line_m &&
+  if (request.any_mapped && in_range && span_m > request.mapped_lines * request.line_m &&
       is_mapped(request, (*pieces_)[i])) {
-    parts = std::max(parts, 1.0F + std::floor(span_m / (mapped_lines * request.line_m)));
+    parts = std::max(parts, 1.0F + std::floor(span_m / (request.mapped_lines * request.line_m)));
   }
   if (in_range && request.any_facets) {
     parts = std::max(parts, parts_for_facets(request, i, span_m));

@@ -50,6 +50,8 @@ class SlicePatcher {
     /// until that displaces it by no more than this many lines.
     float evenness;
     bool any_mapped;  ///< whether any of the parts has a normal map
+    /// Under one, pieces are no longer than this many lines, so that its bumps appear at their ranges.
+    float mapped_lines;
     bool any_facets;  ///< whether facets have to be looked at, of any of the parts
     /// Pieces that spread over lines are divided until the direction of their echo, against that of a mirror,
     /// turns by no more than this many rms slopes of their facets.

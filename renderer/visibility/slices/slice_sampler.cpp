@@ -244,11 +244,12 @@ void SliceSampler::make_patches(const Setting& setting) {
     for (std::size_t i = begin; i < std::min(order_.size(), begin + cells_per_job); ++i) {
       SliceCell& cell = *cells_[order_[i]];
       cell.patches.clear();
-      cell.without_facets = patcher.make(
-          {cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern, setting.fan.tan_limit(),
-           setting.accuracy.evenness, setting.any_mapped, setting.any_facets, setting.accuracy.facet_slopes,
-           setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},
-          cell.patches);
+      cell.without_facets =
+          patcher.make({cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern,
+                        setting.fan.tan_limit(), setting.accuracy.evenness, setting.any_mapped,
+                        setting.accuracy.mapped_lines, setting.any_facets, setting.accuracy.facet_slopes,
+                        setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},
+                       cell.patches);
     }
   });
 }

@@ -42,6 +42,7 @@ struct SliceAccuracy {
   float bow_lines = 6e-4F;
   float evenness = 0.03F;      ///< see SlicePatcher::Request
   float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
+  float mapped_lines = 2.0F;   ///< see SlicePatcher::Request
   float facet_slopes = 0.17F;  ///< see SlicePatcher::Request
   float facet_lines = 0.006F;  ///< see SlicePatcher::Request
 };
