@@ -136,7 +136,7 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
   const int slices = settings.model == Model::paper ? 2 : 1;
   switch (settings.sampling.preset) {
     case Sampling::Preset::fast:
-      return {slices, 25, true, 2.5e-2F, 1.0F, 3e-3F, 0.15F, 0.05F, 4.0F, 0.33F, 0.03F};
+      return {slices, 25, true, 2.5e-2F, 1.0F, 3e-3F, 0.15F, 0.05F, 4.0F, 0.5F, 0.03F};
     case Sampling::Preset::reference:
       return {9, 125, false, 1e-4F, 0.02F, 5e-5F, 0.005F, 0.001F, 2.0F, 0.03F, 0.001F};
     default:
