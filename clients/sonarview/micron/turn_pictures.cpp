@@ -9,7 +9,7 @@
 namespace sonard::client {
 namespace {
 
-picture::TurnShape shape_of(const ScanSettings& settings) {
+picture::TurnShape shape_of(const micron::ScanSettings& settings) {
   picture::TurnShape shape;
   if (settings.sector) {
     shape.left = settings.sector->left;
@@ -17,7 +17,7 @@ picture::TurnShape shape_of(const ScanSettings& settings) {
   }
   shape.step = settings.step;
   shape.bins = settings.bins;
-  shape.bin_m = bin_length_m(settings);
+  shape.bin_m = micron::bin_length_m(settings);
   return shape;
 }
 
@@ -29,7 +29,7 @@ std::string caption_of(const Turn& turn, const picture::TurnShape& shape) {
 
 }  // namespace
 
-TurnPictures::TurnPictures(const ScanSettings& settings, const picture::FanLook& look)
+TurnPictures::TurnPictures(const micron::ScanSettings& settings, const picture::FanLook& look)
     : shape_(shape_of(settings)),
       sector_(settings.sector.has_value()),
       scale_(settings.eight_bit ? 1 : 17),

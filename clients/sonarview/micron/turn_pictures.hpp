@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "clients/sonarview/image_writer.hpp"
-#include "clients/sonarview/micron/scan_settings.hpp"
 #include "clients/sonarview/micron/scan_turns.hpp"
+#include "protocol/micron/scan_settings.hpp"
 #include "renderer/picture/turn_image.hpp"
 
 namespace sonard::client {
@@ -15,7 +15,7 @@ namespace sonard::client {
 /// Makes them for one ImageWriter, on whose thread they are drawn.
 class TurnPictures {
  public:
-  TurnPictures(const ScanSettings& settings, const picture::FanLook& look);
+  TurnPictures(const micron::ScanSettings& settings, const picture::FanLook& look);
 
   /// The files turn-<name>.png, or fan-<name>.png of a sector, and polar-<name>.png; for each name.
   std::vector<Picture> of(const Turn& turn, const std::vector<std::string>& names) const;

@@ -1,4 +1,4 @@
-#include "clients/sonarview/micron/scan_settings.hpp"
+#include "protocol/micron/scan_settings.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -6,11 +6,11 @@
 
 #include "protocol/micron/units.hpp"
 
-namespace sonard::client {
+namespace sonard::micron {
 namespace {
 
 std::uint8_t level(double db) {
-  return static_cast<std::uint8_t>(std::lround(db * 255.0 / micron::full_scale_db));
+  return static_cast<std::uint8_t>(std::lround(db * 255.0 / full_scale_db));
 }
 
 void assign(std::uint16_t& control, std::uint16_t bit, bool on) {
@@ -20,14 +20,14 @@ void assign(std::uint16_t& control, std::uint16_t bit, bool on) {
 }  // namespace
 
 int ad_interval(const ScanSettings& settings) {
-  const double bin_time_s = 2.0 * settings.range_m / (settings.sound_speed_mps * settings.bins);
+  const double wanted_s = 2.0 * settings.range_m / (settings.sound_speed_mps * settings.bins);
   constexpr double rounding = 1e-9;  // of a range that was computed from an interval
-  return static_cast<int>(bin_time_s / micron::bin_time_s(1) + rounding);
+  return static_cast<int>(wanted_s / bin_time_s(1) + rounding);
 }
 
-micron::HeadCommand make_head_command(const ScanSettings& settings) {
-  namespace bits = micron::control_bits;
-  micron::HeadCommand command;
+HeadCommand make_head_command(const ScanSettings& settings) {
+  namespace bits = control_bits;
+  HeadCommand command;
   assign(command.control, bits::eight_bit, settings.eight_bit);
   assign(command.control, bits::continuous, !settings.sector);
   assign(command.control, bits::scan_right, settings.clockwise);
@@ -38,8 +38,7 @@ micron::HeadCommand make_head_command(const ScanSettings& settings) {
   }
   command.ad_low = level(settings.ad_low_db);
   command.ad_span = level(settings.ad_span_db);
-  const auto gain =
-      static_cast<std::uint8_t>(std::lround(settings.gain_percent * micron::gain_full_scale / 100.0));
+  const auto gain = static_cast<std::uint8_t>(std::lround(settings.gain_percent * gain_full_scale / 100.0));
   command.gain = {gain, gain};
   command.step = static_cast<std::uint8_t>(settings.step);
   command.ad_interval = static_cast<std::uint16_t>(ad_interval(settings));
@@ -48,7 +47,7 @@ micron::HeadCommand make_head_command(const ScanSettings& settings) {
 }
 
 double bin_length_m(const ScanSettings& settings) {
-  return micron::bin_time_s(ad_interval(settings)) * settings.sound_speed_mps / 2.0;
+  return bin_time_s(ad_interval(settings)) * settings.sound_speed_mps / 2.0;
 }
 
 double covered_range_m(const ScanSettings& settings) {
@@ -56,7 +55,21 @@ double covered_range_m(const ScanSettings& settings) {
 }
 
 double bearing_deg(int bearing) {
-  return micron::bearing_rad(bearing) * 180.0 / std::numbers::pi;
+  return bearing_rad(bearing) * 180.0 / std::numbers::pi;
 }
 
-}  // namespace sonard::client
+int bearing_of_degrees(double degrees) {
+  return wrapped(bearing_ahead + static_cast<int>(std::lround(degrees / step_unit_deg)));
+}
+
+std::optional<int> step_of_degrees(double degrees) {
+  constexpr double rounding = 1e-3;  // units
+  const double units = degrees / step_unit_deg;
+  const double whole = std::round(units);
+  if (!(whole >= 1.0 && whole <= most_step) || std::abs(units - whole) > rounding) {
+    return std::nullopt;
+  }
+  return static_cast<int>(whole);
+}
+
+}  // namespace sonard::micron

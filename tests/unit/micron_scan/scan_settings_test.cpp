@@ -1,9 +1,9 @@
 // What a scan becomes on the wire (docs/protocols/micron.md 4, 5.3, 5.4).
-#include "clients/sonarview/micron/scan_settings.hpp"
+#include "protocol/micron/scan_settings.hpp"
 
 #include <gtest/gtest.h>
 
-namespace sonard::client {
+namespace sonard::micron {
 namespace {
 
 TEST(ScanSettings, IntervalsAreCutOffAsMostDriversDo) {
@@ -31,7 +31,7 @@ TEST(ScanSettings, CoversWhatTheIntervalSaysNotWhatWasAskedFor) {
 }
 
 TEST(ScanSettings, AllRoundIsTheCommandOfCommonDrivers) {
-  const micron::HeadCommand command = make_head_command({});
+  const HeadCommand command = make_head_command({});
   EXPECT_EQ(command.control, 0x2307);
   EXPECT_EQ(command.range_scale, 100);
   EXPECT_EQ(command.gain[0], 105);
@@ -41,7 +41,7 @@ TEST(ScanSettings, AllRoundIsTheCommandOfCommonDrivers) {
 }
 
 TEST(ScanSettings, ASectorTurnsBetweenItsLimits) {
-  const micron::HeadCommand command =
+  const HeadCommand command =
       make_head_command({.sector = ScanSector{2400, 4000}, .clockwise = false, .eight_bit = false});
   EXPECT_EQ(command.control, 0x2300);
   EXPECT_EQ(command.left_limit, 2400);
@@ -49,7 +49,7 @@ TEST(ScanSettings, ASectorTurnsBetweenItsLimits) {
 }
 
 TEST(ScanSettings, DecibelsArePartsOf80) {
-  const micron::HeadCommand command =
+  const HeadCommand command =
       make_head_command({.gain_percent = 40.0, .ad_low_db = 12.5, .ad_span_db = 25.1});
   EXPECT_EQ(command.gain[0], 84);
   EXPECT_EQ(command.ad_low, 40);   // 39.8
@@ -64,4 +64,4 @@ TEST(ScanSettings, BearingsAreDegreesFromAhead) {
 }
 
 }  // namespace
-}  // namespace sonard::client
+}  // namespace sonard::micron

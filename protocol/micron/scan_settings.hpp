@@ -5,7 +5,7 @@
 
 #include "protocol/micron/messages.hpp"
 
-namespace sonard::client {
+namespace sonard::micron {
 
 /// Clockwise from `left` to `right`, in units of the wire (protocol/micron/units.hpp), 0..6399, not equal.
 struct ScanSector {
@@ -31,7 +31,7 @@ struct ScanSettings {
 int ad_interval(const ScanSettings& settings);
 
 /// Requires 1 <= ad_interval(settings) <= 65535.
-micron::HeadCommand make_head_command(const ScanSettings& settings);
+HeadCommand make_head_command(const ScanSettings& settings);
 
 /// What the head then does: the length of a bin, and of all of them.
 double bin_length_m(const ScanSettings& settings);
@@ -39,5 +39,12 @@ double covered_range_m(const ScanSettings& settings);
 
 /// Degrees, 0 ahead, positive to starboard, -180 <= degrees < 180.
 double bearing_deg(int bearing);
+/// The bearing nearest to so many degrees of any number of turns.
+int bearing_of_degrees(double degrees);
 
-}  // namespace sonard::client
+inline constexpr double step_unit_deg = 0.05625;  ///< of ScanSettings::step
+inline constexpr int most_step = 255;             ///< it is a byte
+/// ScanSettings::step of so many degrees; nullopt for what is no multiple of step_unit_deg, or too many.
+std::optional<int> step_of_degrees(double degrees);
+
+}  // namespace sonard::micron
