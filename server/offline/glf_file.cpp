@@ -47,7 +47,15 @@ std::vector<std::string> GlfFile::close() {
   if (dat_) {
     finish();
   }
-  return std::exchange(names_, {});
+  std::vector<std::string> names;
+  for (const Packed& log : packed_) {
+    names.push_back(log.name);
+  }
+  while (!packed_.empty()) {
+    packed_.back().file->publish(packed_.back().name);
+    packed_.pop_back();
+  }
+  return names;
 }
 
 void GlfFile::finish() {
@@ -57,18 +65,17 @@ void GlfFile::finish() {
   const std::string stamp = glf::log_stamp(first_time_s_);
   const glf::Packer packer(stamp, glf::config_xml({app_name_, first_time_s_, last_time_s_, {device_id_}}),
                            {size_, crc_.value()}, glf::civil_time(last_time_s_));
-  PartFile log(folder_.path());
-  log.write(as_text(packer.head()));
+  auto log = std::make_unique<PartFile>(folder_.path());
+  log->write(as_text(packer.head()));
   for (std::uint64_t offset = 0; offset < size_; offset += glf::pack_block_size) {
     const std::string block = dat_->read(
         offset, static_cast<std::size_t>(std::min<std::uint64_t>(glf::pack_block_size, size_ - offset)));
-    log.write(as_text(glf::Packer::block_header(block.size())));
-    log.write(block);
+    log->write(as_text(glf::Packer::block_header(block.size())));
+    log->write(block);
   }
-  log.write(as_text(packer.tail()));
-  log.sync();
-  names_.push_back(glf::log_name(stamp));
-  log.publish(names_.back());
+  log->write(as_text(packer.tail()));
+  log->sync();
+  packed_.push_back({glf::log_name(stamp), std::move(log)});
   dat_.reset();
 }
 

@@ -14,7 +14,7 @@ namespace sonard::server {
 
 /// Records are collected in a .dat that nobody sees, which close() packs. The same records make the same
 /// bytes: all times in the file are those of its records. Where a .dat grows too large for readers another
-/// log begins.
+/// log begins. Logs get their names at the end, the first one last: where it is, all are.
 class GlfFile {
  public:
   /// Bytes of a .dat at which the next log begins; readers count in 31 bits (docs/logs.md 1.1).
@@ -42,7 +42,11 @@ class GlfFile {
   double first_time_s_ = 0.0;
   double last_time_s_ = 0.0;
   std::uint16_t device_id_ = 0;
-  std::vector<std::string> names_;
+  struct Packed {
+    std::string name;
+    std::unique_ptr<PartFile> file;
+  };
+  std::vector<Packed> packed_;
 };
 
 }  // namespace sonard::server

@@ -228,8 +228,7 @@ void RenderRun::finish() {
   const OutputFolder::Lock lock(folder_);
   const std::string out = folder_.path().string();
   if (const int missing = missing_frames(); missing > 0) {
-    fmt::print("{}: {} of {} frames are there; whoever makes the last one makes the log\n", out,
-               frames_->count() - missing, frames_->count());
+    fmt::print("{}: {} of {} frames are there\n", out, frames_->count() - missing, frames_->count());
     return;
   }
   if (frames_->makes_glf()) {
@@ -240,7 +239,6 @@ void RenderRun::finish() {
 }
 
 void RenderRun::make_glf() const {
-  // Logs appear from the last to the first, so with the first all are there.
   const std::string first = glf::log_name(glf::log_stamp(glf::glf_time_s(frames_->unix_ns(0), 0)));
   if (folder_.has(first) && !options_.overwrite) {
     return;
