@@ -31,19 +31,23 @@ void silence(render::Body& body) {
   }
 }
 
-/// Takes over the bins in which this body is louder than those before.
+/// Takes over the bins in which this body is louder than those before. Behind an echo the binning leaves
+/// roundings, some 1e-7 of it; they are no body.
 void keep_loudest(const render::EchoImage& echo, int compression_log2, std::uint16_t id,
                   std::vector<float>& loudest, std::vector<std::uint16_t>& ids) {
+  constexpr float rounding = 1e-6F;
   const int lines = echo.lines >> compression_log2;
-  for (int line = 0; line < lines; ++line) {
-    for (int beam = 0; beam < echo.beams; ++beam) {
+  for (int beam = 0; beam < echo.beams; ++beam) {
+    float loudest_of_body = 0.0F;
+    for (int line = 0; line < lines; ++line) {
       float sum = 0.0F;
       for (int native = line << compression_log2; native < (line + 1) << compression_log2; ++native) {
         sum += echo.at(beam, native);
       }
+      loudest_of_body = std::max(loudest_of_body, sum);
       const auto bin = static_cast<std::size_t>(line) * static_cast<std::size_t>(echo.beams) +
                        static_cast<std::size_t>(beam);
-      if (sum > loudest[bin]) {
+      if (sum > loudest[bin] && sum > rounding * loudest_of_body) {
         loudest[bin] = sum;
         ids[bin] = id;
       }

@@ -115,12 +115,21 @@ render::RendererOptions tested(const render::RendererOptions& options) {
   return options;
 }
 
-void check_sampling(const LoadedConfig& loaded, std::size_t head) {
+/// @throws StartError, pose::TrajectoryError where there are none
+std::unique_ptr<FrameSource> make_frames(const LoadedConfig& loaded, std::size_t head, const Voyage& voyage,
+                                         const OfflineOptions& options, BodyTruth* truth) {
+  const std::vector<AnyHeadConfig>& heads = loaded.config.heads;
   try {
-    check_sampling_of(loaded.config.heads[head]);
+    check_sampling_of(heads[head]);
   } catch (const render::RequestError& error) {
     throw StartError("sampling", exit_config, error.what());
   }
+  std::unique_ptr<FrameSource> frames = make_source(heads, head, voyage, options, truth);
+  if (frames->count() == 0) {
+    throw pose::TrajectoryError(fmt::format("{}: ends before the first sweep of head '{}' does",
+                                            options.trajectory.string(), common(heads[head]).name));
+  }
+  return frames;
 }
 
 RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
@@ -131,13 +140,8 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       world_(load_world_of(config_)),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
-      frames_(make_source(config_.heads, head_, voyage_, options, truth_.get())),
+      frames_(make_frames(loaded, head_, voyage_, options, truth_.get())),
       folder_(options.out) {
-  check_sampling(loaded, head_);
-  if (frames_->count() == 0) {
-    throw pose::TrajectoryError(fmt::format("{}: ends before the first sweep of head '{}' does",
-                                            options.trajectory.string(), common(config_.heads[head_]).name));
-  }
   folder_.claim(manifest(), options.overwrite);
 }
 
