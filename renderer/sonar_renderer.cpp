@@ -513,6 +513,12 @@ PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
   return samples;
 }
 
+bool SonarRenderer::pass_ping(const PingRequest& request, int stream) {
+  check(request.settings);
+  impl_->statistics = {};
+  return impl_->receiver.pass(request, stream, impl_->workers);
+}
+
 const PingStatistics& SonarRenderer::last_statistics() const {
   return impl_->statistics;
 }

@@ -95,6 +95,13 @@ class SonarRenderer {
   /// @throws RequestError, RendererError
   PingSamples render_ping(const PingRequest& request, int stream = 0);
 
+  /// Leaves all that this stream keeps from ping to ping as render_ping() would, for a fraction of its time:
+  /// whoever renders every n-th ping of a run gets the bytes of the whole run.
+  /// @return false, and nothing has happened, when that depends on the echo: where pulses are shorter than a
+  /// line, speckle `ou` goes on only in lines with an echo. Then render_ping() it is.
+  /// @throws RequestError
+  bool pass_ping(const PingRequest& request, int stream = 0);
+
   const PingStatistics& last_statistics() const;
 
  private:

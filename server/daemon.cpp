@@ -258,7 +258,9 @@ void Daemon::end(int exit_code) {
   });
 }
 
-render::World load(const DaemonConfig& config) {
+}  // namespace
+
+render::World load_world_of(const DaemonConfig& config) {
   try {
     render::World world = render::load_world(config.world_file);
     for (const std::string& warning : world.warnings) {
@@ -275,10 +277,13 @@ render::World load(const DaemonConfig& config) {
   }
 }
 
-}  // namespace
+render::RendererOptions renderer_options(const DaemonConfig& config) {
+  return {config.backend, 0, config.skip, config.gpu_binning,
+          config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
+}
 
 int run_daemon(const DaemonConfig& config) {
-  const render::World world = load(config);
+  const render::World world = load_world_of(config);
   for (const AnyHeadConfig& head : config.heads) {
     try {
       check_sampling_of(head);
@@ -287,9 +292,7 @@ int run_daemon(const DaemonConfig& config) {
                        fmt::format("head '{}': {}", common(head).name, error.what()));
     }
   }
-  const render::RendererOptions options{
-      config.backend, 0, config.skip, config.gpu_binning,
-      config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
+  const render::RendererOptions options = renderer_options(config);
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     if (!config.skip.on(entry.rule)) {
       spdlog::info("skip rule {} is off", entry.name);

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "renderer/backend.hpp"
 #include "renderer/scene/world.hpp"
 #include "server/config/config.hpp"
 #include "server/render_service.hpp"
@@ -20,6 +21,13 @@ struct StartError : std::runtime_error {
   std::string key;  ///< "heads[0].network.bind"
   int exit_code;    ///< of server/exit_codes.hpp
 };
+
+/// The world of a configuration. Logs what is odd about it.
+/// @throws StartError
+render::World load_world_of(const DaemonConfig& config);
+
+/// What a renderer is made with.
+render::RendererOptions renderer_options(const DaemonConfig& config);
 
 /// Loads the world, starts the renderer (self-test first), binds the sockets and serves until SIGINT or
 /// SIGTERM, which end it within the time of one ping. When all is up it logs one line that begins with

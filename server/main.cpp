@@ -9,12 +9,17 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "server/check.hpp"
 #include "server/config/loader.hpp"
 #include "server/daemon.hpp"
 #include "server/exit_codes.hpp"
+#include "server/offline/arguments.hpp"
+#include "server/offline/output_folder.hpp"
+#include "server/offline/render_run.hpp"
+#include "server/offline/voyage.hpp"
 
 namespace sonard::server {
 namespace {
@@ -25,6 +30,7 @@ constexpr const char* exit_code_help =
     "  2   configuration, world or trajectory cannot be used\n"
     "  3   an address or port cannot be used\n"
     "  4   the backend asked for cannot be had, failed self-test, or the renderer failed while serving\n"
+    "  5   a file or folder to write to cannot be used\n"
     "  64  wrong command line\n"
     "  70  a defect of this program";
 
@@ -115,6 +121,19 @@ int selftest(const CommandLine& arguments) {
   return exit_clean;
 }
 
+int render_offline(const OfflineArguments& arguments) {
+  const LoadedConfig loaded = load_config(arguments.config());
+  for (const std::string& warning : loaded.warnings) {
+    print_error("warning: " + warning);
+  }
+  try {
+    return render_trajectory(loaded, arguments.options(loaded.config.heads));
+  } catch (const StartError& error) {
+    print_error(loaded.problem_with(error.key, error.what()));
+    return error.exit_code;
+  }
+}
+
 /// The command, with what it throws turned into its exit code.
 template <typename Command>
 int guarded(const Command& command) {
@@ -125,6 +144,21 @@ int guarded(const Command& command) {
       print_error(line);
     }
     return exit_config;
+  } catch (const pose::TrajectoryError& error) {
+    print_error(error.what());
+    return exit_config;
+  } catch (const render::RequestError& error) {
+    print_error(fmt::format("cannot render: {}", error.what()));
+    return exit_config;
+  } catch (const TooManyPings& error) {
+    print_error(error.what());
+    return exit_usage;
+  } catch (const OutputError& error) {
+    print_error(error.what());
+    return exit_output;
+  } catch (const CLI::ValidationError& error) {  // of an option whose meaning depends on the configuration
+    print_error(error.what());
+    return exit_usage;
   } catch (const render::RendererError& error) {
     print_error(fmt::format("renderer: {}", error.what()));
     return exit_renderer;
@@ -153,6 +187,10 @@ int main_program(int argc, char** argv) {
   check_command->add_flag("--no-network", arguments.no_network,
                           "Do not try whether the addresses can be bound here");
 
+  CLI::App* render_command = app.add_subcommand(
+      "render", "Render a trajectory to pictures, arrays and a log, without serving (docs/offline.md)");
+  OfflineArguments offline(*render_command);
+
   CLI::App* selftest_command = app.add_subcommand(
       "selftest", "Show the backend in use and compare one known scene with its closed form");
   selftest_command->add_option("--backend", arguments.backend, "auto, raster or ray")
@@ -160,7 +198,7 @@ int main_program(int argc, char** argv) {
           CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},
                                                                          {"raster", render::Backend::raster},
                                                                          {"ray", render::Backend::ray}}));
-  for (CLI::App* command : {run_command, check_command, selftest_command}) {
+  for (CLI::App* command : {run_command, check_command, render_command, selftest_command}) {
     command->footer(exit_code_help);
   }
 
@@ -173,6 +211,9 @@ int main_program(int argc, char** argv) {
   return guarded([&] {
     if (run_command->parsed()) {
       return run(arguments);
+    }
+    if (render_command->parsed()) {
+      return render_offline(offline);
     }
     return check_command->parsed() ? check(arguments) : selftest(arguments);
   });

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "protocol/micron/codec.hpp"
+#include "protocol/micron/line_job.hpp"
 
 namespace sonard::micron {
 namespace {
@@ -115,29 +116,11 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   const nanoseconds line_after = timing.listen + config_.line_overhead;
   ping.line_due = config_.line_period ? ping.transmit_time + std::min(line_after, *config_.line_period)
                                       : std::max(ping.transmit_time + line_after, link_free_at_);
-  job_ = make_job(ping);
+  job_ = make_line_job(*parameters_, config_, sweep_.bearing());
+  job_->ping_number = ping.number;
+  job_->transmit_time = ping.transmit_time;
   ping_ = std::move(ping);
   ++counters_.pings_started;
-}
-
-MicronJob Scanner::make_job(const Ping& ping) const {
-  const HeadCommand& parameters = *parameters_;
-  MicronJob job;
-  job.ping_number = ping.number;
-  job.transmit_time = ping.transmit_time;
-  job.bearing = static_cast<std::uint16_t>(sweep_.bearing());
-  const bool mirrored = parameters.has(control_bits::invert) != config_.mounted_inverted;
-  job.bearing_rad = (mirrored ? -1.0 : 1.0) * bearing_rad(sweep_.bearing());
-  job.bins = effective_bins(parameters);
-  job.bin_time_s = bin_time_s(effective_ad_interval(parameters));
-  job.sound_speed_mps = config_.water_sound_speed_mps;
-  job.bin_length_m = job.bin_time_s * job.sound_speed_mps / 2.0;
-  job.gain_db = gain_db(parameters.gain[0]);
-  job.ad_low_db = level_db(parameters.ad_low);
-  job.ad_span_db = level_db(parameters.ad_span);
-  job.eight_bit = parameters.has(control_bits::eight_bit);
-  job.transmit = !parameters.has(control_bits::transmit_off);
-  return job;
 }
 
 std::optional<MicronJob> Scanner::take_job() {

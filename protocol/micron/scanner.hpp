@@ -64,7 +64,6 @@ class Scanner {
   std::optional<TimePoint> ping_due() const;
   std::optional<TimePoint> line_due() const;
   void start_ping(TimePoint now, TimePoint due);
-  MicronJob make_job(const Ping& ping) const;
   std::vector<std::uint8_t> make_line(const Ping& ping) const;
   void send_line(std::vector<std::vector<std::uint8_t>>& out);
   void end_ping();

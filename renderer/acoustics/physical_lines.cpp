@@ -147,8 +147,7 @@ class PhysicalLines {
   AlignedVector<float> textured_, codes_;
 };
 
-/// Where lines share a pulse a line needs its neighbours, which may be another thread's: all of a kept field
-/// is brought up to date beforehand.
+/// A line's neighbours may be another thread's.
 void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, WorkerPool& workers,
                   SkipCounts& skipped) {
   const int reach = ping.tables.range_grain.reach();
@@ -172,10 +171,14 @@ void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, Work
 
 }  // namespace
 
-PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
-                             WorkerPool& workers, SkipCounts& skipped) {
+void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped) {
   evolve_whole(ping.speckle, ping, workers, skipped);
   evolve_whole(ping.texture, ping, workers, skipped);
+}
+
+PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
+                             WorkerPool& workers, SkipCounts& skipped) {
+  evolve_fields(ping, workers, skipped);
   return receive_lines<PhysicalLines>(echo, ping, settings, workers, skipped);
 }
 

@@ -19,6 +19,10 @@ struct PhysicalPing {
   const SkipSwitches& skip;
 };
 
+/// Brings the kept fields up to date, all lines of them, where lines share a pulse: a line needs its
+/// neighbours then. Elsewhere each line is brought up to date when it is read.
+void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped);
+
 /// @param echo mean echo, as the array hears it. @param skipped what was left out is added to it.
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
                              WorkerPool& workers, SkipCounts& skipped);

@@ -7,36 +7,76 @@
 
 namespace sonard::render {
 
-PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
-                              WorkerPool& workers) {
-  const SonarSettings& settings = request.settings;
-  skipped_ = {};
-  const auto key = [&](RandomField field, std::uint64_t ping_number) {
-    return make_random_key(request.seed, stream, field, ping_number);
-  };
-  if (settings.model == Model::paper) {
-    const PaperPing ping{settings.paper, key(RandomField::paper_speckle, request.ping_number),
-                         codes_per_amplitude(settings), skip_};
-    return receive_paper(echo, ping, settings, workers, skipped_);
-  }
+namespace {
+
+/// Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
+std::uint64_t speckle_ping(const PingRequest& request) {
+  const bool frozen = request.settings.physical.speckle == PhysicalModel::Speckle::frozen;
+  return frozen ? 0 : request.ping_number;
+}
+
+}  // namespace
+
+Receiver::Stream& Receiver::stream_for(const SonarSettings& settings, int stream) {
   Stream& state = streams_[stream];
   if (state.tables.fits(settings) && skip_.on(SkipRule::unchanged_settings)) {
     skipped_.add(SkipRule::unchanged_settings);
   } else {
     state.tables = ReceiverTables(settings);
   }
+  return state;
+}
+
+RandomFieldOfPing Receiver::speckle_of(Stream& state, const PingRequest& request, int stream) {
+  return state.fields.speckle(
+      make_random_key(request.seed, stream, RandomField::speckle, speckle_ping(request)), skip_, skipped_);
+}
+
+RandomFieldOfPing Receiver::texture_of(Stream& state, const PingRequest& request, int stream) {
+  return state.fields.texture(
+      make_random_key(request.seed, stream, RandomField::texture, speckle_ping(request)), skip_, skipped_);
+}
+
+PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
+                              WorkerPool& workers) {
+  const SonarSettings& settings = request.settings;
+  skipped_ = {};
+  const auto key = [&](RandomField field) {
+    return make_random_key(request.seed, stream, field, request.ping_number);
+  };
+  if (settings.model == Model::paper) {
+    const PaperPing ping{settings.paper, key(RandomField::paper_speckle), codes_per_amplitude(settings),
+                         skip_};
+    return receive_paper(echo, ping, settings, workers, skipped_);
+  }
+  Stream& state = stream_for(settings, stream);
   state.fields.advance(request, state.tables);
-  // Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
-  const bool frozen = settings.physical.speckle == PhysicalModel::Speckle::frozen;
-  const std::uint64_t speckle_ping = frozen ? 0 : request.ping_number;
-  const PhysicalPing ping{state.tables,
-                          state.fields.speckle(key(RandomField::speckle, speckle_ping), skip_, skipped_),
-                          state.fields.texture(key(RandomField::texture, speckle_ping), skip_, skipped_),
-                          {.key = key(RandomField::noise, request.ping_number)},
-                          draw_interference(settings.physical.interference, settings.range.count,
-                                            key(RandomField::interference, request.ping_number)),
-                          skip_};
+  const PhysicalPing ping{
+      state.tables,
+      speckle_of(state, request, stream),
+      texture_of(state, request, stream),
+      {.key = key(RandomField::noise)},
+      draw_interference(settings.physical.interference, settings.range.count, key(RandomField::interference)),
+      skip_};
   return receive_physical(echo, ping, settings, workers, skipped_);
+}
+
+bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers) {
+  skipped_ = {};
+  const SonarSettings& settings = request.settings;
+  if (settings.model == Model::paper || settings.physical.speckle != PhysicalModel::Speckle::ou) {
+    return true;  // each ping by itself
+  }
+  Stream& state = stream_for(settings, stream);
+  const bool single_beam = settings.aperture.beam_count() == 1;
+  if (!single_beam && state.tables.range_grain.reach() == 0) {
+    return false;
+  }
+  state.fields.advance(request, state.tables);
+  const PhysicalPing ping{
+      state.tables, speckle_of(state, request, stream), texture_of(state, request, stream), {}, {}, skip_};
+  evolve_fields(ping, workers, skipped_);
+  return true;
 }
 
 }  // namespace sonard::render

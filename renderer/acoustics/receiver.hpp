@@ -21,6 +21,10 @@ class Receiver {
   /// @param echo mean echo intensity as EchoImage states it.
   PingSamples receive(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers);
 
+  /// Leaves the fields of a stream as receive() would. @return false, and nothing has happened, when they
+  /// would go on only where there is an echo.
+  bool pass(const PingRequest& request, int stream, WorkerPool& workers);
+
   /// What the last receive() left out.
   const SkipCounts& skipped() const { return skipped_; }
 
@@ -29,6 +33,12 @@ class Receiver {
     ReceiverTables tables;
     StreamFields fields;
   };
+
+  /// With tables for these settings.
+  Stream& stream_for(const SonarSettings& settings, int stream);
+  /// What the receiver makes of speckle and texture; good until the next call of anything.
+  RandomFieldOfPing speckle_of(Stream& state, const PingRequest& request, int stream);
+  RandomFieldOfPing texture_of(Stream& state, const PingRequest& request, int stream);
 
   SkipSwitches skip_;
   SkipCounts skipped_;

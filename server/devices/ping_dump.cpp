@@ -1,6 +1,5 @@
 #include "server/devices/ping_dump.hpp"
 
-#include <array>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -9,31 +8,9 @@
 #include <spdlog/spdlog.h>
 #include <boost/crc.hpp>
 
+#include "server/npy/npy_file.hpp"
+
 namespace sonard::server {
-namespace {
-
-// NumPy's file format 1.0: magic, version, length of the header, a Python literal padded to a multiple of 64.
-std::string npy_header(const char* dtype, int lines, int beams) {
-  std::string dictionary =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}, {}), }}", dtype, lines, beams);
-  constexpr std::size_t preamble = 10;
-  const std::size_t unpadded = preamble + dictionary.size() + 1;
-  dictionary.append((64 - unpadded % 64) % 64, ' ');
-  dictionary.push_back('\n');
-  std::string header("\x93NUMPY\x01\x00", 8);
-  header.push_back(static_cast<char>(dictionary.size() & 0xFF));
-  header.push_back(static_cast<char>(dictionary.size() >> 8));
-  return header + dictionary;
-}
-
-template <class Sample>
-void write_samples(std::ofstream& file, const std::vector<Sample>& samples) {
-  file.write(reinterpret_cast<const char*>(samples.data()),
-             static_cast<std::streamsize>(samples.size() * sizeof(Sample)));
-}
-
-}  // namespace
-
 std::uint32_t samples_crc32(const render::PingSamples& samples) {
   boost::crc_32_type crc;
   crc.process_bytes(samples.u8.data(), samples.u8.size());
@@ -60,9 +37,7 @@ void PingDump::write(const RenderJob& job, const render::PingSamples& samples) {
   const std::uint64_t number = job.request.ping_number;
   const std::filesystem::path path = folder_ / fmt::format("{}-{:08}.npy", head_, number);
   std::ofstream file(path, std::ios::binary);
-  file << npy_header(samples.u16.empty() ? "|u1" : "<u2", samples.lines, samples.beams);
-  write_samples(file, samples.u8);
-  write_samples(file, samples.u16);
+  file << npy_bytes({samples.lines, samples.beams, samples.u8, samples.u16});
   file.close();
   index_ << fmt::format("{},{},{},{},{},{:08x}\n", number, number % 256, job.transmit_us, samples.lines,
                         samples.beams, samples_crc32(samples))

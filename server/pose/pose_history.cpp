@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <bit>
 
+#include "server/pose/to_render.hpp"
+
 namespace sonard::server {
 namespace {
-
-render::Pose to_render(const pose::Transform& transform) {
-  const pose::Vec3& p = transform.position_m;
-  const pose::Quat& q = transform.orientation;
-  return {glm::dvec3(p.x, p.y, p.z), glm::dquat(q.w, q.x, q.y, q.z)};
-}
 
 /// Messages on a local network take less; and a slow clock must not use up the extrapolation limit.
 std::chrono::nanoseconds longest_delay(std::chrono::nanoseconds extrapolation_limit) {

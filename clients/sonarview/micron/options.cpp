@@ -13,8 +13,6 @@
 namespace sonard::client {
 namespace {
 
-constexpr double unit_deg = 360.0 / micron::units_per_turn;
-constexpr int most_step = 255;  // it is a byte
 constexpr int most_ad_interval = 65'535;
 
 std::chrono::nanoseconds to_ns(double seconds) {
@@ -36,23 +34,19 @@ LineAddress host_and_port(LineAddress::Way way, const std::string& option, const
 }
 
 int step_of(double degrees) {
-  const double units = degrees / unit_deg;
-  const double whole = std::round(units);
-  if (whole < 1.0 || whole > most_step || std::abs(units - whole) > 1e-3) {
-    throw CLI::ValidationError(
-        "--step",
-        fmt::format("expected a multiple of {} degrees, {} at most, found {}; the nearest is {}", unit_deg,
-                    most_step * unit_deg, degrees, std::clamp(whole, 1.0, 1.0 * most_step) * unit_deg));
+  if (const std::optional<int> step = micron::step_of_degrees(degrees)) {
+    return *step;
   }
-  return static_cast<int>(whole);
+  constexpr double unit_deg = micron::step_unit_deg;
+  const double nearest = std::clamp(std::round(degrees / unit_deg), 1.0, 1.0 * micron::most_step);
+  throw CLI::ValidationError(
+      "--step", fmt::format("expected a multiple of {} degrees, {} at most, found {}; the nearest is {}",
+                            unit_deg, micron::most_step * unit_deg, degrees, nearest * unit_deg));
 }
 
-int bearing_of(double degrees) {
-  return micron::wrapped(micron::bearing_ahead + static_cast<int>(std::lround(degrees / unit_deg)));
-}
-
-ScanSector sector_of(const std::vector<double>& from_to_deg) {
-  const ScanSector sector{bearing_of(from_to_deg[0]), bearing_of(from_to_deg[1])};
+micron::ScanSector sector_of(const std::vector<double>& from_to_deg) {
+  const micron::ScanSector sector{micron::bearing_of_degrees(from_to_deg[0]),
+                                  micron::bearing_of_degrees(from_to_deg[1])};
   if (sector.left == sector.right) {
     throw CLI::ValidationError("--sector", "FROM and TO are one bearing; leave it away to scan all round");
   }
@@ -97,7 +91,7 @@ void MicronArguments::declare_link(CLI::App& app) {
 }
 
 void MicronArguments::declare_sonar(CLI::App& app) {
-  ScanSettings& scan = options_.scan;
+  micron::ScanSettings& scan = options_.scan;
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->capture_default_str()->group("Sonar");
   };
@@ -159,15 +153,15 @@ LineAddress MicronArguments::line() const {
   throw CLI::ValidationError("--tcp, --udp, --tty", "one of them must say where the head is");
 }
 
-ScanSettings MicronArguments::scan() const {
-  ScanSettings scan = options_.scan;
+micron::ScanSettings MicronArguments::scan() const {
+  micron::ScanSettings scan = options_.scan;
   scan.step = step_of(step_deg_);
   if (!sector_deg_.empty()) {
     scan.sector = sector_of(sector_deg_);
   }
   scan.clockwise = !scan_left_;
   scan.eight_bit = !four_bit_;
-  if (const int interval = ad_interval(scan); interval < 1 || interval > most_ad_interval) {
+  if (const int interval = micron::ad_interval(scan); interval < 1 || interval > most_ad_interval) {
     throw CLI::ValidationError(
         "--bins", fmt::format("{} bins over {} m are too {} for a head, which takes 1 to {} times 640 ns "
                               "between bins",

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/micron/scan_settings.hpp"
 #include "clients/sonarview/micron/serial_line.hpp"
 #include "protocol/micron/host.hpp"
+#include "protocol/micron/scan_settings.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -20,7 +20,7 @@ namespace sonard::client {
 struct MicronOptions {
   LineAddress line;
   micron::HostConfig host;
-  ScanSettings scan;
+  micron::ScanSettings scan;
 
   std::uint64_t turns = 0;              ///< 0: without limit
   std::uint64_t lines = 0;              ///< 0: without limit
@@ -51,7 +51,7 @@ class MicronArguments {
   void declare_sonar(CLI::App& app);
   void declare_run(CLI::App& app);
   LineAddress line() const;
-  ScanSettings scan() const;
+  micron::ScanSettings scan() const;
 
   MicronOptions options_;
   // As they are typed, before they have their units.

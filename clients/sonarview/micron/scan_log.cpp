@@ -9,7 +9,7 @@
 
 namespace sonard::client {
 
-std::string scan_text(const ScanSettings& settings) {
+std::string scan_text(const micron::ScanSettings& settings) {
   const int left = settings.sector ? settings.sector->left : 0;
   const int right = settings.sector ? settings.sector->right : micron::units_per_turn;
   const int width = settings.sector ? micron::wrapped(right - left) : micron::units_per_turn;
@@ -17,11 +17,11 @@ std::string scan_text(const ScanSettings& settings) {
       "scan range_m={:.3f} bins={} bin_m={:.5f} ad_interval={} step={} step_deg={:g} from_deg={:g} "
       "to_deg={:g} "
       "lines_per_turn={} gain={} bits={} sound_speed_mps={:g}",
-      covered_range_m(settings), settings.bins, bin_length_m(settings), ad_interval(settings), settings.step,
-      settings.step * 360.0 / micron::units_per_turn, bearing_deg(left),
-      settings.sector ? bearing_deg(right) : 180.0,
+      micron::covered_range_m(settings), settings.bins, micron::bin_length_m(settings),
+      micron::ad_interval(settings), settings.step, settings.step * 360.0 / micron::units_per_turn,
+      micron::bearing_deg(left), settings.sector ? micron::bearing_deg(right) : 180.0,
       (width + settings.step - 1) / settings.step + (settings.sector ? 1 : 0),
-      make_head_command(settings).gain[0], settings.eight_bit ? 8 : 4, settings.sound_speed_mps);
+      micron::make_head_command(settings).gain[0], settings.eight_bit ? 8 : 4, settings.sound_speed_mps);
 }
 
 std::string line_text(const micron::ReceivedLine& line, std::uint64_t turn, double bin_m) {
@@ -31,9 +31,9 @@ std::string line_text(const micron::ReceivedLine& line, std::uint64_t turn, doub
   return fmt::format(
       "line number={} turn={} bearing={} bearing_deg={:.5g} sweep={} bins={} strongest={} strongest_m={:.3f} "
       "crc32={:08x}",
-      line.number, turn, line.head.bearing, bearing_deg(line.head.bearing), static_cast<int>(line.head.sweep),
-      line.bins.size(), *strongest, (static_cast<double>(strongest - line.bins.begin()) + 0.5) * bin_m,
-      crc.checksum());
+      line.number, turn, line.head.bearing, micron::bearing_deg(line.head.bearing),
+      static_cast<int>(line.head.sweep), line.bins.size(), *strongest,
+      (static_cast<double>(strongest - line.bins.begin()) + 0.5) * bin_m, crc.checksum());
 }
 
 std::string summary_text(const micron::HostStatistics& statistics, const ScanCounters& counters) {

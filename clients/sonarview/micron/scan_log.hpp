@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <string>
 
-#include "clients/sonarview/micron/scan_settings.hpp"
 #include "protocol/micron/host.hpp"
+#include "protocol/micron/scan_settings.hpp"
 
 namespace sonard::client {
 
 /// "scan range_m=9.984 bins=400 bin_m=0.02496 ...": what the head was asked to do.
-std::string scan_text(const ScanSettings& settings);
+std::string scan_text(const micron::ScanSettings& settings);
 
 /// "line number=0 turn=0 bearing_deg=0.00 ...". `bin_m`: length of a bin.
 std::string line_text(const micron::ReceivedLine& line, std::uint64_t turn, double bin_m);

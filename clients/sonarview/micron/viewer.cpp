@@ -108,7 +108,7 @@ Viewer::Viewer(const MicronOptions& options)
                  },
              .lost = [this](const std::string& why) { on_lost(why); }}),
       host_(options.host, started_),
-      turns_(make_head_command(options.scan)),
+      turns_(micron::make_head_command(options.scan)),
       lost_at_(started_),
       pictures_(options.scan, {.radius_px = options.radius_px}) {
   if (!options_.out.empty()) {
@@ -127,7 +127,7 @@ ExitStatus Viewer::run() {
   });
   fmt::print("{}\n", scan_text(options_.scan));
   std::fflush(stdout);
-  host_.start(started_, make_head_command(options_.scan), options_.lines);
+  host_.start(started_, micron::make_head_command(options_.scan), options_.lines);
   line_.open();
   arm_timer();
   io_.run();
@@ -211,7 +211,7 @@ void Viewer::take_line(const micron::ReceivedLine& line) {
   last_bearing_ = line.head.bearing;
   const std::uint64_t turn = turns_.current().number;
   if (options_.log_lines) {
-    fmt::print("{}\n", line_text(line, turn, bin_length_m(options_.scan)));
+    fmt::print("{}\n", line_text(line, turn, micron::bin_length_m(options_.scan)));
     std::fflush(stdout);
   }
   if (file_) {
@@ -251,8 +251,8 @@ void Viewer::greet_head() {
     fmt::print(stderr, ", {} duplex", head.user_blocks->half_duplex() ? "half" : "full");
   }
   fmt::print(stderr, "\nsonarview: {} bins of {:.1f} mm: the head covers {:.3f} m of {:g} m\n",
-             options_.scan.bins, 1e3 * bin_length_m(options_.scan), covered_range_m(options_.scan),
-             options_.scan.range_m);
+             options_.scan.bins, 1e3 * micron::bin_length_m(options_.scan),
+             micron::covered_range_m(options_.scan), options_.scan.range_m);
 }
 
 // ---- What is said meanwhile
@@ -265,7 +265,7 @@ std::string Viewer::head_text() const {
   if (!alive) {
     return "the head says nothing of its state";
   }
-  const double bearing = bearing_deg(alive->position);
+  const double bearing = micron::bearing_deg(alive->position);
   if (!alive->has(micron::head_info_bits::centred)) {
     return fmt::format("the head is centring, at {:+.1f} deg", bearing);
   }
@@ -288,7 +288,7 @@ void Viewer::show_progress(TimePoint at) {
       turns_.begun() ? fmt::format("turn {}, {:.0f} %", turns_.current().number, 100.0 * turns_.share())
                      : "on the way to the first limit";
   fmt::print(stderr, "sonarview: bearing {:+.1f} deg, {} lines, {} in the last second; {}\n",
-             bearing_deg(last_bearing_), lines, fresh, done);
+             micron::bearing_deg(last_bearing_), lines, fresh, done);
 }
 
 // ---- Ends

@@ -81,7 +81,8 @@ def trajectories():
     tank = out_and_back(start=(-1.0, -0.5, -4.0), end=(2.0, 1.5, -4.0), rest_s=20.0, move_s=20.0)
     grid = turn_and_back(position=(0.0, 0.0, -8.0), turn_deg=20.0, rest_s=10.0, turn_s=10.0)
     oil_and_gas = out_and_back(start=(0.0, 0.0, -24.5), end=(7.0, 0.0, -24.5), rest_s=20.0, move_s=20.0)
-    return {"docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
+    demo = [row for row in dock if row[0] <= 10.0]
+    return {"demo.csv": csv_text(demo).encode("ascii"), "docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
             "ssiv_demo.tum": tum_text(valve).encode("ascii"), "manifold_demo.csv": csv_text(manifold).encode("ascii"),
             "tank.csv": csv_text(tank).encode("ascii"),
             "grid.csv": csv_text(grid, time_digits=2).encode("ascii"), "oil_and_gas.csv": csv_text(oil_and_gas).encode("ascii")}

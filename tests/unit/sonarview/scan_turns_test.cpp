@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "clients/sonarview/micron/scan_settings.hpp"
+#include "protocol/micron/scan_settings.hpp"
 
 namespace sonard::client {
 namespace {
@@ -32,7 +32,7 @@ std::vector<int> bearings(const Turn& turn) {
 
 /// A scan, and the turns that came of it.
 struct Scan {
-  explicit Scan(const ScanSettings& settings) : turns(make_head_command(settings)) {}
+  explicit Scan(const micron::ScanSettings& settings) : turns(micron::make_head_command(settings)) {}
   void hear(const std::vector<int>& all) {
     for (const int bearing : all) {
       if (auto turn = turns.add(line_at(bearing))) {
@@ -45,7 +45,7 @@ struct Scan {
 };
 
 // Steps of 200 units, 11.25 degrees: 32 to the turn.
-ScanSettings wide_steps(bool clockwise = true) {
+micron::ScanSettings wide_steps(bool clockwise = true) {
   return {.step = 200, .clockwise = clockwise};
 }
 
@@ -73,7 +73,7 @@ TEST(ScanTurns, CounterClockwiseIsTheSame) {
 }
 
 TEST(ScanTurns, StepsThatDoNotDivideTheTurnMakeItALineLonger) {
-  ScanSettings settings;
+  micron::ScanSettings settings;
   settings.step = 250;  // 25.6 to the turn
   Scan scan(settings);
   int bearing = 3200;
@@ -123,10 +123,10 @@ TEST(ScanTurns, ALineThatComesTwiceIsNoGap) {
   EXPECT_EQ(scan.turns.lines_missed(), 0U);
 }
 
-ScanSettings sector(int left, int right) {
-  ScanSettings settings;
+micron::ScanSettings sector(int left, int right) {
+  micron::ScanSettings settings;
   settings.step = 200;
-  settings.sector = ScanSector{left, right};
+  settings.sector = micron::ScanSector{left, right};
   return settings;
 }
 

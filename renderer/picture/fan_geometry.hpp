@@ -1,0 +1,36 @@
+// Where a range and a beam lie in a fan picture.
+#pragma once
+
+#include <vector>
+
+#include "renderer/picture/sector_geometry.hpp"
+
+namespace sonard::picture {
+
+/// What the samples of a ping stand for.
+struct FanShape {
+  std::vector<double> bearings_rad;  ///< centre of each beam, port (negative) to starboard, strictly rising
+  int lines = 0;                     ///< > 0
+  double line_step_m = 0.0;          ///< line i covers [i, i + 1) * line_step_m; > 0
+
+  double range_m() const { return lines * line_step_m; }
+
+  bool operator==(const FanShape&) const = default;
+};
+
+/// The fan seen from above. Its edges are those of the first and last beam, half a beam beyond their centres.
+class FanGeometry : public SectorGeometry {
+ public:
+  /// Requires at least two beams, bearings within +-90 degrees, radius_px > 0.
+  FanGeometry(FanShape shape, int radius_px, int margin_px);
+
+  const FanShape& shape() const { return shape_; }
+  /// Fractional beam at a bearing: i at the centre of beam i, linear in between and for half a beam beyond
+  /// the outer centres; NaN outside.
+  double beam_at(double bearing_rad) const;
+
+ private:
+  FanShape shape_;
+};
+
+}  // namespace sonard::picture

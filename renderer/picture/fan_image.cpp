@@ -1,0 +1,70 @@
+#include "renderer/picture/fan_image.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "renderer/picture/amber.hpp"
+#include "renderer/picture/polar_grid.hpp"
+
+namespace sonard::picture {
+
+cv::Mat raw_polar_image(const cv::Mat& polar) {
+  cv::Mat upwards;
+  cv::flip(polar, upwards, 0);
+  return upwards;
+}
+
+FanImage::FanImage(const FanShape& shape, const FanLook& look)
+    : geometry_(shape, look.radius_px, look.grid ? grid_margin_px : 0),
+      look_(look),
+      mapped_lines_(std::min(shape.lines, look.radius_px)) {
+  map_pixels();
+  if (look.grid) {
+    grid_ = polar_grid(geometry_, {-60, -30, 0, 30, 60});
+  }
+}
+
+void FanImage::map_pixels() {
+  const cv::Size size = geometry_.size();
+  map_beams_.create(size, CV_32FC1);
+  map_lines_.create(size, CV_32FC1);
+  inside_ = cv::Mat::zeros(size, CV_8UC1);
+  const double lines_per_metre = mapped_lines_ / geometry_.shape().range_m();
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const cv::Point2d pixel(x, y);
+      const double range_m = geometry_.range_at(pixel);
+      const double beam = geometry_.beam_at(geometry_.bearing_at(pixel));
+      const bool inside = !std::isnan(beam) && range_m < geometry_.shape().range_m();
+      inside_.at<uchar>(y, x) = inside ? 255 : 0;
+      map_beams_.at<float>(y, x) = inside ? static_cast<float>(beam) : 0.0F;
+      // The centre of line i is at i + 0.5 steps.
+      map_lines_.at<float>(y, x) = inside ? static_cast<float>(range_m * lines_per_metre - 0.5) : 0.0F;
+    }
+  }
+}
+
+cv::Mat FanImage::project(const cv::Mat& polar) const {
+  CV_Assert(polar.type() == CV_8UC1 && polar.rows == geometry_.shape().lines &&
+            polar.cols == static_cast<int>(geometry_.shape().bearings_rad.size()));
+  cv::Mat source = polar;
+  if (mapped_lines_ < polar.rows) {
+    cv::resize(polar, source, {polar.cols, mapped_lines_}, 0.0, 0.0, cv::INTER_AREA);
+  }
+  cv::Mat fan;
+  cv::remap(source, fan, map_beams_, map_lines_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::Mat masked = cv::Mat::zeros(fan.size(), fan.type());
+  fan.copyTo(masked, inside_);
+  return masked;
+}
+
+cv::Mat FanImage::draw(const cv::Mat& polar, const std::string& caption) const {
+  cv::Mat picture = amber::paint(project(polar), inside_);
+  if (look_.grid) {
+    add_grid(picture, grid_, caption);
+  }
+  return picture;
+}
+
+}  // namespace sonard::picture

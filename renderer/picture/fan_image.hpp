@@ -1,0 +1,46 @@
+// Pictures of a ping: the fan as a person would see it from above, and the raw samples.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "renderer/picture/fan_geometry.hpp"
+
+namespace sonard::picture {
+
+struct FanLook {
+  int radius_px = 900;  ///< from the apex to the full range
+  bool grid = true;     ///< range arcs with metres, bearing lines with degrees, caption
+};
+
+/// Draws pings of one shape; the way from pixel to sample is worked out once. Any thread, one at a time.
+class FanImage {
+ public:
+  FanImage(const FanShape& shape, const FanLook& look);
+
+  const FanGeometry& geometry() const { return geometry_; }
+
+  /// Samples in place of pixels: CV_8UC1 of geometry().size(), 0 outside the fan. `polar`: CV_8UC1, one row
+  /// per line, near lines first, one column per beam. Bilinear; where lines are finer than pixels they are
+  /// averaged first.
+  cv::Mat project(const cv::Mat& polar) const;
+
+  /// project() in colour (CV_8UC3, BGR) with the grid, and `caption` in the top left corner.
+  cv::Mat draw(const cv::Mat& polar, const std::string& caption) const;
+
+ private:
+  void map_pixels();
+
+  FanGeometry geometry_;
+  FanLook look_;
+  int mapped_lines_;   ///< lines of the picture that the maps look into
+  cv::Mat map_beams_;  ///< CV_32FC1: fractional column of each pixel
+  cv::Mat map_lines_;  ///< CV_32FC1: fractional row
+  cv::Mat inside_;     ///< CV_8UC1: 255 within the fan
+  cv::Mat grid_;       ///< CV_8UC3, black where nothing is drawn
+};
+
+/// Samples as they came, CV_8UC1: one column per beam, port on the left; one row per line, range upwards.
+cv::Mat raw_polar_image(const cv::Mat& polar);
+
+}  // namespace sonard::picture

@@ -1,0 +1,146 @@
+#include "renderer/picture/turn_image.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "renderer/picture/amber.hpp"
+#include "renderer/picture/polar_grid.hpp"
+
+namespace sonard::picture {
+namespace {
+
+constexpr int units_per_turn = 6400;
+constexpr int bearing_ahead = 3200;
+/// Halves of a unit: the edges of a step lie on them, also where it is odd.
+constexpr int slots_per_turn = 2 * units_per_turn;
+constexpr double slot_rad = 2.0 * std::numbers::pi / slots_per_turn;
+
+int slot_of(double bearing_rad) {
+  const int slot = static_cast<int>(std::floor(bearing_rad / slot_rad)) + 2 * bearing_ahead;
+  return (slot + slots_per_turn) % slots_per_turn;
+}
+
+SectorGeometry geometry_of(const TurnShape& shape, const FanLook& look) {
+  const int margin_px = look.grid ? grid_margin_px : 0;
+  if (shape.full_circle()) {
+    return {shape.range_m(), -std::numbers::pi, std::numbers::pi, look.radius_px, margin_px};
+  }
+  const int port_slot = 2 * (shape.left - bearing_ahead) - shape.step;
+  // A sector that begins within half a step of astern begins on its other side.
+  const double port_rad =
+      (port_slot < -slots_per_turn / 2 ? port_slot + slots_per_turn : port_slot) * slot_rad;
+  return {shape.range_m(), port_rad, port_rad + 2 * (shape.width + shape.step) * slot_rad, look.radius_px,
+          margin_px};
+}
+
+/// Which line is seen in each slot; -1: none.
+std::vector<int> lines_in_slots(const std::vector<TurnLine>& lines, int step) {
+  std::vector<int> seen(slots_per_turn, -1);
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    for (int slot = 2 * lines[line].bearing - step; slot < 2 * lines[line].bearing + step; ++slot) {
+      seen[static_cast<std::size_t>((slot + slots_per_turn) % slots_per_turn)] = static_cast<int>(line);
+    }
+  }
+  return seen;
+}
+
+/// A row for each line, a column for each bin. A line of another length is cut or filled up with 0.
+cv::Mat matrix_of(const std::vector<TurnLine>& lines, int bins) {
+  cv::Mat rows = cv::Mat::zeros(static_cast<int>(lines.size()), bins, CV_8UC1);
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    const auto& samples = lines[line].samples;
+    std::copy_n(samples.begin(), std::min(samples.size(), static_cast<std::size_t>(bins)),
+                rows.ptr<uchar>(static_cast<int>(line)));
+  }
+  return rows;
+}
+
+}  // namespace
+
+TurnImage::TurnImage(const TurnShape& shape, const FanLook& look)
+    : shape_(shape),
+      geometry_(geometry_of(shape, look)),
+      look_(look),
+      mapped_bins_(std::min(shape.bins, look.radius_px)) {
+  map_pixels();
+  if (look.grid) {
+    grid_ = polar_grid(geometry_, round_bearings_deg(geometry_));
+  }
+}
+
+void TurnImage::map_pixels() {
+  const cv::Size size = geometry_.size();
+  map_bins_.create(size, CV_32FC1);
+  slots_.create(size, CV_32SC1);
+  const double bins_per_metre = mapped_bins_ / shape_.range_m();
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const cv::Point2d pixel(x, y);
+      const double range_m = geometry_.range_at(pixel);
+      const double bearing_rad = geometry_.bearing_at(pixel);
+      const bool inside = range_m < geometry_.range_m() && geometry_.contains(bearing_rad);
+      slots_.at<int>(y, x) = inside ? slot_of(bearing_rad) : -1;
+      // The centre of bin k is at k + 0.5 bins.
+      map_bins_.at<float>(y, x) = inside ? static_cast<float>(range_m * bins_per_metre - 0.5) : 0.0F;
+    }
+  }
+}
+
+TurnImage::Projection TurnImage::project(const std::vector<TurnLine>& lines) const {
+  const cv::Size size = geometry_.size();
+  Projection projection{cv::Mat::zeros(size, CV_8UC1), cv::Mat::zeros(size, CV_8UC1)};
+  if (lines.empty()) {
+    return projection;
+  }
+  cv::Mat source = matrix_of(lines, shape_.bins);
+  if (mapped_bins_ < source.cols) {
+    cv::resize(source, source, {mapped_bins_, source.rows}, 0.0, 0.0, cv::INTER_AREA);
+  }
+  const std::vector<int> seen = lines_in_slots(lines, shape_.step);
+  cv::Mat map_lines = cv::Mat::zeros(size, CV_32FC1);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int slot = slots_.at<int>(y, x);
+      const int line = slot >= 0 ? seen[static_cast<std::size_t>(slot)] : -1;
+      if (line >= 0) {
+        projection.heard.at<uchar>(y, x) = 255;
+        map_lines.at<float>(y, x) = static_cast<float>(line);
+      }
+    }
+  }
+  cv::Mat samples;
+  cv::remap(source, samples, map_bins_, map_lines, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  samples.copyTo(projection.samples, projection.heard);
+  return projection;
+}
+
+cv::Mat TurnImage::draw(const std::vector<TurnLine>& lines, const std::string& caption) const {
+  const Projection projection = project(lines);
+  cv::Mat picture = amber::paint(projection.samples, projection.heard);
+  if (look_.grid) {
+    add_grid(picture, grid_, caption);
+  }
+  return picture;
+}
+
+cv::Mat turn_polar_image(const TurnShape& shape, const std::vector<TurnLine>& lines) {
+  const bool all_round = shape.width == units_per_turn;
+  const int steps = (shape.width + shape.step - 1) / shape.step;
+  const int columns = all_round ? steps : steps + 1;
+  const cv::Mat rows = matrix_of(lines, shape.bins);
+  cv::Mat polar = cv::Mat::zeros(shape.bins, columns, CV_8UC1);
+  for (int line = 0; line < rows.rows; ++line) {
+    const int offset =
+        (lines[static_cast<std::size_t>(line)].bearing - shape.left + units_per_turn) % units_per_turn;
+    const int column = (2 * offset + shape.step) / (2 * shape.step);
+    if (all_round || column < columns) {
+      cv::Mat(rows.row(line).t()).copyTo(polar.col(column % columns));
+    }
+  }
+  return raw_polar_image(polar);
+}
+
+}  // namespace sonard::picture

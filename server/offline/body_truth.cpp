@@ -1,0 +1,135 @@
+#include "server/offline/body_truth.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace sonard::server {
+namespace {
+
+/// In mode `paper` a silent surface has a little echo left, sigmoid(0).
+constexpr float paper_silence = 1e-5F;
+
+render::SonarSettings truth_settings(render::SonarSettings settings) {
+  settings.transmit = true;
+  settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
+  settings.physical.pulse = render::PhysicalModel::Pulse::point;
+  settings.physical.multipath.level = render::MultipathSettings::Level::off;
+  settings.physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
+  return settings;
+}
+
+void silence(render::Body& body) {
+  for (render::BodyPart& part : body.parts) {
+    part.material.reflectance = 0.0;
+    part.material.lambert_mu = 0.0;
+    part.material.pressure_reflection = 0.0;
+  }
+}
+
+/// Takes over the bins in which this body is louder than those before. Behind an echo the binning leaves
+/// roundings, some 1e-7 of it; they are no body.
+void keep_loudest(const render::EchoImage& echo, int compression_log2, std::uint16_t id,
+                  std::vector<float>& loudest, std::vector<std::uint16_t>& ids) {
+  constexpr float rounding = 1e-6F;
+  const int lines = echo.lines >> compression_log2;
+  for (int beam = 0; beam < echo.beams; ++beam) {
+    float loudest_of_body = 0.0F;
+    for (int line = 0; line < lines; ++line) {
+      float sum = 0.0F;
+      for (int native = line << compression_log2; native < (line + 1) << compression_log2; ++native) {
+        sum += echo.at(beam, native);
+      }
+      loudest_of_body = std::max(loudest_of_body, sum);
+      const auto bin = static_cast<std::size_t>(line) * static_cast<std::size_t>(echo.beams) +
+                       static_cast<std::size_t>(beam);
+      if (sum > loudest[bin] && sum > rounding * loudest_of_body) {
+        loudest[bin] = sum;
+        ids[bin] = id;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+BodyTruth::BodyTruth(render::World world, const render::RendererOptions& options)
+    : world_(std::move(world)), options_(options) {
+  options_.backend = render::Backend::ray;
+  for (const render::Body& body : world_.bodies) {
+    balls_.push_back(ball_around(body));
+  }
+}
+
+std::vector<std::string> BodyTruth::bodies() const {
+  std::vector<std::string> names;
+  for (const render::Body& body : world_.bodies) {
+    names.push_back(body.name);
+  }
+  return names;
+}
+
+BodyTruth::Ball BodyTruth::ball_around(const render::Body& body) {
+  constexpr double huge = std::numeric_limits<double>::max();
+  glm::dvec3 low(huge), high(-huge);
+  for (const render::BodyPart& part : body.parts) {
+    const render::Pose T_world_part = body.T_world_body * part.T_body_part;
+    for (const glm::vec3& position : part.mesh->positions) {
+      const glm::dvec3 corner = T_world_part * glm::dvec3(position);
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
+    }
+  }
+  return {(low + high) / 2.0, glm::length(high - low) / 2.0};
+}
+
+render::SonarRenderer& BodyTruth::renderer_of(std::size_t body) {
+  std::unique_ptr<render::SonarRenderer>& renderer = renderers_[body];
+  if (!renderer) {
+    render::World alone = world_;
+    for (std::size_t other = 0; other < alone.bodies.size(); ++other) {
+      if (other != body) {
+        silence(alone.bodies[other]);
+      }
+    }
+    renderer = std::make_unique<render::SonarRenderer>(alone, options_);
+  }
+  return *renderer;
+}
+
+std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& request) {
+  render::PingRequest at_rest = request;
+  at_rest.settings = truth_settings(request.settings);
+  at_rest.T_world_sonar_at_end.reset();
+  const render::RangeLines& range = request.settings.range;
+  const auto bins = static_cast<std::size_t>(range.output_count()) *
+                    static_cast<std::size_t>(request.settings.aperture.beam_count());
+  const bool paper = request.settings.model == render::Model::paper;
+  std::vector<float> loudest(bins,
+                             paper ? paper_silence * static_cast<float>(1 << range.compression_log2) : 0.0F);
+  std::vector<std::uint16_t> ids(bins, 0);
+  for (std::size_t body = 0; body < balls_.size(); ++body) {
+    const double distance_m = glm::length(balls_[body].centre_m - request.T_world_sonar.position_m);
+    if (distance_m - balls_[body].radius_m < range.max_range_m()) {
+      keep_loudest(renderer_of(body).render_echo(at_rest), range.compression_log2,
+                   static_cast<std::uint16_t>(body + 1), loudest, ids);
+    }
+  }
+  return ids;
+}
+
+NpyTable BodyTruth::table(int rows, int columns, const std::vector<std::uint16_t>& ids) const {
+  if (world_.bodies.size() > std::numeric_limits<std::uint8_t>::max()) {
+    return {rows, columns, {}, ids};
+  }
+  NpyTable table{rows, columns, {}, {}};
+  std::transform(ids.begin(), ids.end(), std::back_inserter(table.u8),
+                 [](std::uint16_t id) { return static_cast<std::uint8_t>(id); });
+  return table;
+}
+
+}  // namespace sonard::server

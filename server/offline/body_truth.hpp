@@ -1,0 +1,53 @@
+// Which body of the world is heard in each bin of a ping.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderer/scene/world.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "server/npy/npy_file.hpp"
+
+namespace sonard::server {
+
+/// Renders the mean echo of each body that is near enough, with all others there but silent, and compares.
+/// What counts is what lies in a bin: beams hear nothing beside them and pulses have no length, there are no
+/// mirror images, and the sonar is at rest while it listens. Always by the CPU. One thread uses it.
+///
+/// It takes a renderer for each body that was ever near, and the time of one echo for each that is.
+class BodyTruth {
+ public:
+  BodyTruth(render::World world, const render::RendererOptions& options);
+
+  /// By id, from 1 on.
+  std::vector<std::string> bodies() const;
+
+  /// For each sample of the ping, [line * beams + beam], the id of the body that gives most of its echo; 0:
+  /// there is none.
+  /// @throws render::RequestError, render::RendererError
+  std::vector<std::uint16_t> bodies_in(const render::PingRequest& request);
+
+  /// `ids` as a table; of 8 bits where all ids of the world fit.
+  NpyTable table(int rows, int columns, const std::vector<std::uint16_t>& ids) const;
+
+ private:
+  /// A ball around a body, in the world.
+  struct Ball {
+    glm::dvec3 centre_m{0.0};
+    double radius_m = 0.0;
+  };
+  static Ball ball_around(const render::Body& body);
+  render::SonarRenderer& renderer_of(std::size_t body);
+
+  render::World world_;
+  render::RendererOptions options_;
+  std::vector<Ball> balls_;
+  std::map<std::size_t, std::unique_ptr<render::SonarRenderer>> renderers_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,57 @@
+// What a head makes of a voyage: frames, one after the other.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <opencv2/core/mat.hpp>
+
+#include "protocol/glf/records.hpp"
+#include "renderer/sonar_renderer.hpp"
+
+namespace sonard::server {
+
+/// One ping of a fan, or one sweep of a scanning head, as the files that hold it.
+struct Frame {
+  std::string npy;                ///< samples
+  std::string bodies_npy;         ///< ids of bodies; empty: not asked for
+  std::string sidecar;            ///< JSON
+  std::function<cv::Mat()> draw;  ///< the picture; of all frames one at a time
+};
+
+/// Frames depend on nothing but what a source was made of, and on the frames before, which the renderer must
+/// have rendered or passed in order: speckle goes on from ping to ping. One thread uses it.
+class FrameSource {
+ public:
+  FrameSource() = default;
+  virtual ~FrameSource() = default;
+  FrameSource(const FrameSource&) = delete;
+  FrameSource& operator=(const FrameSource&) = delete;
+
+  virtual int count() const = 0;
+  /// Of its files, without what tells them apart: "ping_000012".
+  virtual std::string name(int frame) const = 0;
+  /// @throws render::RequestError, render::RendererError
+  virtual Frame render(render::SonarRenderer& renderer, int frame) = 0;
+  /// Leaves the renderer as render() does. @throws the same
+  virtual void pass(render::SonarRenderer& renderer, int frame) = 0;
+
+  /// What frames are made with, as members of a JSON object.
+  virtual std::string settings_json() const = 0;
+
+  /// Whether frames go into a .glf.
+  virtual bool makes_glf() const { return false; }
+  /// The record of a frame, of its samples as they stand in its file. @return nullopt where those are not of
+  /// this frame
+  virtual std::optional<glf::ImageRecord> record([[maybe_unused]] int frame,
+                                                 [[maybe_unused]] std::string_view npy) const {
+    return std::nullopt;
+  }
+  /// When it was sent.
+  virtual std::int64_t unix_ns(int frame) const = 0;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,52 @@
+// A .glf of many pings, made in one go.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "protocol/glf/deflate.hpp"
+#include "protocol/glf/records.hpp"
+#include "server/offline/output_folder.hpp"
+
+namespace sonard::server {
+
+/// Records are collected in a .dat that nobody sees, which close() packs. The same records make the same
+/// bytes: all times in the file are those of its records. Where a .dat grows too large for readers another
+/// log begins. Logs get their names at the end, the first one last: where it is, all are.
+class GlfFile {
+ public:
+  /// Bytes of a .dat at which the next log begins; readers count in 31 bits (docs/logs.md 1.1).
+  static constexpr std::uint64_t usual_most_dat_size = 1'000'000'000;
+
+  /// @param app_name of the writer, with its version
+  GlfFile(const OutputFolder& folder, std::string app_name,
+          std::uint64_t most_dat_size = usual_most_dat_size);
+  ~GlfFile();
+
+  /// @throws OutputError
+  void add(const glf::ImageRecord& image);
+  /// @return the names of the logs. @throws OutputError
+  std::vector<std::string> close();
+
+ private:
+  void finish();
+
+  const OutputFolder& folder_;
+  std::string app_name_;
+  std::uint64_t most_dat_size_;
+  std::unique_ptr<PartFile> dat_;  ///< null: no record yet
+  std::uint64_t size_ = 0;
+  glf::Crc32 crc_;
+  double first_time_s_ = 0.0;
+  double last_time_s_ = 0.0;
+  std::uint16_t device_id_ = 0;
+  struct Packed {
+    std::string name;
+    std::unique_ptr<PartFile> file;
+  };
+  std::vector<Packed> packed_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,40 @@
+// What a user asks of `sonard render`.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "protocol/gemini/ping_settings.hpp"
+#include "protocol/micron/scan_settings.hpp"
+#include "protocol/pose/pose_codec.hpp"
+
+namespace sonard::server {
+
+/// Which frames a process renders: those whose number leaves the remainder index % count.
+struct Shard {
+  int index = 0;  ///< 0..count: the count stands for 0, so that counting from 1 works as from 0
+  int count = 1;  ///< >= 1
+
+  bool has(int frame) const { return frame % count == index % count; }
+  bool operator==(const Shard&) const = default;
+};
+
+/// "1/3". @return nullopt for anything else
+std::optional<Shard> parse_shard(const std::string& text);
+
+struct OfflineOptions {
+  std::filesystem::path trajectory;
+  pose::Axes axes = pose::Axes::enu_flu;
+  std::filesystem::path out;
+  std::string head;               ///< empty: the first of the configuration
+  std::optional<double> rate_hz;  ///< pings a second, > 0; nullopt: as fast as the head can
+  Shard shard;
+  bool overwrite = false;
+  bool truth = false;           ///< also which body is heard in each bin
+  int radius_px = 900;          ///< of pictures
+  gemini::PingSettings gemini;  ///< of a Gemini
+  micron::ScanSettings micron;  ///< of a Micron
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,178 @@
+#include "server/offline/output_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace sonard::server {
+namespace {
+
+constexpr const char* manifest_name = "run.json";
+constexpr const char* part_prefix = ".part-";
+constexpr mode_t file_mode = 0644;  // mkstemp makes files for the owner alone
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& doing) {
+  throw OutputError(path, "cannot " + doing + ": " + std::strerror(errno));
+}
+
+bool is_part(const std::string& name) {
+  return name.starts_with(part_prefix);
+}
+
+bool is_frame_or_log(const std::string& name) {
+  return name.starts_with("ping_") || name.starts_with("scan_") || name.starts_with("log_");
+}
+
+}  // namespace
+
+PartFile::PartFile(const std::filesystem::path& folder) : folder_(folder) {
+  std::string name = (folder / (std::string(part_prefix) + "XXXXXX")).string();
+  file_ = mkstemp(name.data());
+  if (file_ < 0) {
+    fail(folder, "make a file in it");
+  }
+  path_ = name;
+  fchmod(file_, file_mode);
+}
+
+PartFile::~PartFile() {
+  close(file_);
+  if (!path_.empty()) {
+    unlink(path_.c_str());
+  }
+}
+
+void PartFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written < 0) {
+      fail(folder_, "write a file in it");
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+std::string PartFile::read(std::uint64_t offset, std::size_t size) const {
+  std::string bytes(size, '\0');
+  const ssize_t got = pread(file_, bytes.data(), size, static_cast<off_t>(offset));
+  if (got < 0) {
+    fail(folder_, "read a file in it");
+  }
+  bytes.resize(static_cast<std::size_t>(got));
+  return bytes;
+}
+
+void PartFile::sync() {
+  if (fsync(file_) != 0) {
+    fail(folder_, "write a file in it");
+  }
+}
+
+void PartFile::publish(const std::string& name) {
+  if (rename(path_.c_str(), (folder_ / name).c_str()) != 0) {
+    fail(folder_ / name, "make it");
+  }
+  path_.clear();
+}
+
+OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) {
+    throw OutputError(folder_, "cannot make the folder: " + error.message());
+  }
+}
+
+bool OutputFolder::has(const std::string& name) const {
+  return access((folder_ / name).c_str(), F_OK) == 0;
+}
+
+void OutputFolder::write(const std::string& name, std::string_view bytes) const {
+  PartFile part(folder_);
+  part.write(bytes);
+  part.publish(name);
+}
+
+std::string OutputFolder::read(const std::string& name) const {
+  std::ifstream file(folder_ / name, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) {
+    throw OutputError(folder_ / name, "cannot be read");
+  }
+  return bytes;
+}
+
+void OutputFolder::remove(const std::string& name) const {
+  if (unlink((folder_ / name).c_str()) != 0 && errno != ENOENT) {
+    fail(folder_ / name, "remove it");
+  }
+}
+
+void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
+  const Lock lock(*this);
+  if (has(manifest_name)) {
+    if (read(manifest_name) == manifest) {
+      return;
+    }
+    if (!overwrite) {
+      throw OutputError(
+          folder_ / manifest_name,
+          "the folder holds a run with other settings or files (expected the same ones, another "
+          "folder, or --overwrite)");
+    }
+    remove_if(is_frame_or_log);
+  }
+  write(manifest_name, manifest);
+}
+
+void OutputFolder::remove_parts() const {
+  remove_if(is_part);
+}
+
+void OutputFolder::remove_if(bool (*unwanted)(const std::string& name)) const {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, error)) {
+    if (const std::string name = entry.path().filename().string(); unwanted(name)) {
+      names.push_back(name);
+    }
+  }
+  if (error) {
+    throw OutputError(folder_, "cannot be listed: " + error.message());
+  }
+  for (const std::string& name : names) {
+    remove(name);
+  }
+}
+
+// The folder itself is locked, so that no file is left for it.
+OutputFolder::Lock::Lock(const OutputFolder& folder)
+    : folder_(open(folder.path().c_str(), O_RDONLY | O_DIRECTORY)) {
+  if (folder_ < 0) {
+    fail(folder.path(), "open it");
+  }
+  while (flock(folder_, LOCK_EX) != 0) {
+    if (errno != EINTR) {
+      close(folder_);
+      fail(folder.path(), "lock it");
+    }
+  }
+}
+
+OutputFolder::Lock::~Lock() {
+  close(folder_);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,82 @@
+// The folder that frames go into, shared by processes and by runs that were interrupted.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace sonard::server {
+
+/// A file or folder cannot be made, written or read, or belongs to another run. what() is one line that
+/// begins with the path.
+struct OutputError : std::runtime_error {
+  OutputError(const std::filesystem::path& path, const std::string& what)
+      : std::runtime_error(path.string() + ": " + what) {}
+};
+
+/// A file with a name of its own, which takes its real name when it is whole. Without publish() it goes.
+class PartFile {
+ public:
+  /// Made in `folder`. @throws OutputError
+  explicit PartFile(const std::filesystem::path& folder);
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  /// @throws OutputError, also where the disk is full
+  void write(std::string_view bytes);
+  /// Reads what was written, from `offset` on, up to `size` bytes of it.
+  std::string read(std::uint64_t offset, std::size_t size) const;
+  /// Its bytes are on the disk. @throws OutputError
+  void sync();
+  /// Replaces whatever has that name, at once. @throws OutputError
+  void publish(const std::string& name);
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path path_;  ///< empty once published
+  int file_ = -1;
+};
+
+/// What is in the folder under its real name is whole. One thread uses an object; any number of processes a
+/// folder.
+class OutputFolder {
+ public:
+  /// Makes the folder. @throws OutputError
+  explicit OutputFolder(std::filesystem::path folder);
+
+  const std::filesystem::path& path() const { return folder_; }
+  bool has(const std::string& name) const;
+  /// @throws OutputError
+  void write(const std::string& name, std::string_view bytes) const;
+  /// @throws OutputError
+  std::string read(const std::string& name) const;
+  void remove(const std::string& name) const;
+
+  /// Makes the folder that of a run, which `manifest` describes to the last byte; it becomes the file
+  /// run.json. Where that is there already it must say the same, or with `overwrite` all frames and logs go.
+  /// @throws OutputError where it says something else
+  void claim(const std::string& manifest, bool overwrite) const;
+
+  /// While it exists no other process has one; the end of a process ends it too.
+  class Lock {
+   public:
+    explicit Lock(const OutputFolder& folder);
+    ~Lock();
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+
+   private:
+    int folder_ = -1;
+  };
+  /// Of processes that were ended in the middle of a file. Only while no other can be writing one.
+  void remove_parts() const;
+
+ private:
+  void remove_if(bool (*unwanted)(const std::string& name)) const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,272 @@
+#include "server/offline/render_run.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <fstream>
+#include <future>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "protocol/glf/deflate.hpp"
+#include "protocol/glf/log_time.hpp"
+#include "protocol/pose/trajectory.hpp"
+#include "renderer/errors.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "server/clock.hpp"
+#include "server/daemon.hpp"
+#include "server/devices/heads.hpp"
+#include "server/exit_codes.hpp"
+#include "server/offline/frame_source.hpp"
+#include "server/offline/gemini_frames.hpp"
+#include "server/offline/glf_file.hpp"
+#include "server/offline/json_text.hpp"
+#include "server/offline/output_folder.hpp"
+#include "server/offline/progress.hpp"
+#include "server/offline/scan_frames.hpp"
+#include "server/offline/sidecar.hpp"
+#include "server/offline/voyage.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr int png_compression = 3;  // as sonarview's pictures: nearly as small as they get, in half the time
+constexpr const char* app_name = "sonard " SONARD_VERSION;
+
+std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
+  const std::vector<AnyHeadConfig>& heads = loaded.config.heads;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    names.push_back(common(heads[i]).name);
+    if (name.empty() || names.back() == name) {
+      return i;
+    }
+  }
+  throw StartError("heads", exit_config,
+                   fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")));
+}
+
+HeadPlace place_of(const std::vector<AnyHeadConfig>& heads, std::size_t head) {
+  HeadPlace place{static_cast<int>(head), 0};
+  for (std::size_t i = 0; i < head; ++i) {
+    place.gemini_number += std::holds_alternative<GeminiHeadConfig>(heads[i]) ? 1 : 0;
+  }
+  return place;
+}
+
+std::unique_ptr<FrameSource> make_source(const std::vector<AnyHeadConfig>& heads, std::size_t head,
+                                         const Voyage& voyage, const OfflineOptions& options,
+                                         BodyTruth* truth) {
+  if (const auto* gemini = std::get_if<GeminiHeadConfig>(&heads[head])) {
+    return std::make_unique<GeminiFrames>(*gemini, place_of(heads, head), voyage, options, truth);
+  }
+  return std::make_unique<ScanFrames>(std::get<MicronHeadConfig>(heads[head]), static_cast<int>(head), voyage,
+                                      options, truth);
+}
+
+std::uint32_t crc_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  glf::Crc32 crc;
+  crc.add({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  return crc.value();
+}
+
+/// One run of the program over one trajectory.
+class RenderRun {
+ public:
+  RenderRun(const LoadedConfig& loaded, const OfflineOptions& options);
+
+  void render_missing();
+  /// The log, where all frames of all processes are there.
+  void finish();
+
+ private:
+  std::string manifest() const;
+  bool whole(int frame) const;
+  bool wanted(int frame) const { return options_.shard.has(frame) && (options_.overwrite || !whole(frame)); }
+  std::vector<int> wanted_frames() const;
+  void write(int frame, const Frame& made) const;
+  int missing_frames() const;
+  void make_glf() const;
+
+  const DaemonConfig& config_;
+  const OfflineOptions& options_;
+  std::size_t head_;
+  Voyage voyage_;
+  render::World world_;
+  render::SonarRenderer renderer_;
+  std::unique_ptr<BodyTruth> truth_;
+  std::unique_ptr<FrameSource> frames_;
+  OutputFolder folder_;
+};
+
+// The self-test comes first: a backend that draws nothing must not fill a folder.
+render::RendererOptions tested(const render::RendererOptions& options) {
+  render::run_self_test(options);
+  return options;
+}
+
+/// @throws StartError, pose::TrajectoryError where there are none
+std::unique_ptr<FrameSource> make_frames(const LoadedConfig& loaded, std::size_t head, const Voyage& voyage,
+                                         const OfflineOptions& options, BodyTruth* truth) {
+  const std::vector<AnyHeadConfig>& heads = loaded.config.heads;
+  try {
+    check_sampling_of(heads[head]);
+  } catch (const render::RequestError& error) {
+    throw StartError("sampling", exit_config, error.what());
+  }
+  std::unique_ptr<FrameSource> frames = make_source(heads, head, voyage, options, truth);
+  if (frames->count() == 0) {
+    throw pose::TrajectoryError(fmt::format("{}: ends before the first sweep of head '{}' does",
+                                            options.trajectory.string(), common(heads[head]).name));
+  }
+  return frames;
+}
+
+RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
+    : config_(loaded.config),
+      options_(options),
+      head_(chosen_head(loaded, options.head)),
+      voyage_(pose::load_trajectory(options.trajectory, options.axes)),
+      world_(load_world_of(config_)),
+      renderer_(world_, tested(renderer_options(config_))),
+      truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
+      frames_(make_frames(loaded, head_, voyage_, options, truth_.get())),
+      folder_(options.out) {
+  folder_.claim(manifest(), options.overwrite);
+}
+
+// All that the bytes of frames follow from, as far as it is not in the program; nothing of this process.
+std::string RenderRun::manifest() const {
+  SidecarText text;
+  text.add("program", json_string(app_name));
+  text.add("config_crc32", fmt::format("\"{:08x}\"", crc_of(config_.file)));
+  text.add("world_crc32", fmt::format("\"{:08x}\"", crc_of(config_.world_file)));
+  text.add("trajectory_crc32", fmt::format("\"{:08x}\"", crc_of(options_.trajectory)));
+  text.add("axes", options_.axes == pose::Axes::ned_frd ? "\"ned_frd\"" : "\"enu_flu\"");
+  text.add("backend", json_string(render::name_of(renderer_.backend())));
+  text.add("head", json_string(common(config_.heads[head_]).name));
+  text.add("settings", "{" + frames_->settings_json() + "}");
+  text.add("frames", std::to_string(frames_->count()));
+  text.add("radius_px", std::to_string(options_.radius_px));
+  text.add("truth", options_.truth ? "true" : "false");
+  return text.finish();
+}
+
+bool RenderRun::whole(int frame) const {
+  const std::string name = frames_->name(frame);
+  return folder_.has(sidecar_name(name)) && folder_.has(npy_name(name)) && folder_.has(picture_name(name)) &&
+         (!options_.truth || folder_.has(bodies_name(name)));
+}
+
+std::vector<int> RenderRun::wanted_frames() const {
+  std::vector<int> wanted_ones;
+  for (int frame = 0; frame < frames_->count(); ++frame) {
+    if (wanted(frame)) {
+      wanted_ones.push_back(frame);
+    }
+  }
+  return wanted_ones;
+}
+
+// The sidecar comes last: it says that the others are there.
+void RenderRun::write(int frame, const Frame& made) const {
+  const std::string name = frames_->name(frame);
+  folder_.write(npy_name(name), made.npy);
+  if (!made.bodies_npy.empty()) {
+    folder_.write(bodies_name(name), made.bodies_npy);
+  }
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", made.draw(), png, {cv::IMWRITE_PNG_COMPRESSION, png_compression});
+  folder_.write(picture_name(name), {reinterpret_cast<const char*>(png.data()), png.size()});
+  folder_.write(sidecar_name(name), made.sidecar);
+}
+
+// A frame is written while the next one is rendered.
+void RenderRun::render_missing() {
+  const std::vector<int> missing = wanted_frames();
+  int of_shard = 0;
+  for (int frame = 0; frame < frames_->count(); ++frame) {
+    of_shard += options_.shard.has(frame) ? 1 : 0;
+  }
+  Progress progress(of_shard, of_shard - static_cast<int>(missing.size()));
+  std::future<void> writing;
+  int next = 0;
+  for (const int frame : missing) {
+    for (; next < frame; ++next) {
+      frames_->pass(renderer_, next);
+    }
+    Frame made = frames_->render(renderer_, frame);
+    ++next;
+    if (writing.valid()) {
+      writing.get();
+      progress.made(SteadyClock().now());
+    }
+    writing = std::async(std::launch::async, [this, frame, made = std::move(made)] { write(frame, made); });
+  }
+  if (writing.valid()) {
+    writing.get();
+    progress.made(SteadyClock().now());
+  }
+  progress.end();
+}
+
+int RenderRun::missing_frames() const {
+  int missing = 0;
+  for (int frame = 0; frame < frames_->count(); ++frame) {
+    missing += whole(frame) ? 0 : 1;
+  }
+  return missing;
+}
+
+void RenderRun::finish() {
+  const OutputFolder::Lock lock(folder_);
+  const std::string out = folder_.path().string();
+  if (const int missing = missing_frames(); missing > 0) {
+    fmt::print("{}: {} of {} frames are there\n", out, frames_->count() - missing, frames_->count());
+    return;
+  }
+  if (frames_->makes_glf()) {
+    make_glf();
+  }
+  folder_.remove_parts();
+  fmt::print("{}: {} frames\n", out, frames_->count());
+}
+
+void RenderRun::make_glf() const {
+  const std::string first = glf::log_name(glf::log_stamp(glf::glf_time_s(frames_->unix_ns(0), 0)));
+  if (folder_.has(first) && !options_.overwrite) {
+    return;
+  }
+  GlfFile log(folder_, app_name);
+  for (int frame = 0; frame < frames_->count(); ++frame) {
+    const std::string file = npy_name(frames_->name(frame));
+    const std::optional<glf::ImageRecord> record = frames_->record(frame, folder_.read(file));
+    if (!record) {
+      throw OutputError(folder_.path() / file,
+                        "does not hold the samples of this frame (delete it, and it is rendered again)");
+    }
+    log.add(*record);
+  }
+  log.close();
+}
+
+}  // namespace
+
+int render_trajectory(const LoadedConfig& loaded, const OfflineOptions& options) {
+  RenderRun run(loaded, options);
+  run.render_missing();
+  run.finish();
+  return exit_clean;
+}
+
+}  // namespace sonard::server

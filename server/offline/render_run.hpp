@@ -1,0 +1,15 @@
+// `sonard render`: a trajectory to files.
+#pragma once
+
+#include "server/config/loader.hpp"
+#include "server/offline/options.hpp"
+
+namespace sonard::server {
+
+/// Renders the frames of this process that are not there yet. Whoever finds all frames of all processes there
+/// at its end makes the .glf of them. docs/offline.md describes the files.
+/// @return exit_clean
+/// @throws StartError, OutputError, pose::TrajectoryError, render::RequestError, render::RendererError
+int render_trajectory(const LoadedConfig& loaded, const OfflineOptions& options);
+
+}  // namespace sonard::server

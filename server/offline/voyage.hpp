@@ -1,0 +1,47 @@
+// A trajectory as the way of a vehicle, on the clocks of what is made of it.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "protocol/pose/trajectory.hpp"
+#include "renderer/pose.hpp"
+
+namespace sonard::server {
+
+/// More than can be numbered. what() is one line.
+struct TooManyPings : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Pings at even times of a trajectory, from its first stamp on.
+struct PingTimes {
+  std::int64_t start_ns = 0;
+  double period_ns = 1e9;  ///< > 0
+
+  std::int64_t at(std::int64_t ping) const;
+  /// How many there are until `end_ns`, which is included; at least one.
+  /// @throws TooManyPings
+  int count_until(std::int64_t end_ns) const;
+};
+
+/// Stamps are those of the trajectory file, in nanoseconds.
+class Voyage {
+ public:
+  explicit Voyage(pose::Trajectory trajectory) : trajectory_(std::move(trajectory)) {}
+
+  std::int64_t start_ns() const { return trajectory_.start_ns(); }
+  std::int64_t end_ns() const { return trajectory_.end_ns(); }
+  /// At rest before the first and after the last point.
+  render::Pose T_world_vehicle(std::int64_t time_ns) const;
+
+  /// A stamp as Unix time. A file whose first stamp is in 1980 or later as Unix time is taken to hold Unix
+  /// times; the stamps of any other count from 1980-01-01 00:00:00 UTC, where the clock of .glf logs begins.
+  std::int64_t unix_ns(std::int64_t time_ns) const;
+
+ private:
+  pose::Trajectory trajectory_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,329 @@
+#!/usr/bin/env python3
+"""`sonard render` as a user runs it: what it leaves, read without our C++ code.
+
+    render_test.py --programs DIR [TestCase.test_name ...]
+"""
+
+import argparse
+import ast
+import hashlib
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+import uuid
+import zipfile
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+sys.path += [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "tests", "system", "gemini")]
+import glf_reader  # noqa: E402
+from lab import Namespace, Program  # noqa: E402
+
+PROGRAMS = None  # folder of the programs under test
+DEMO = os.path.join(SOURCE, "configs", "demo.yaml")
+DEMO_WAY = os.path.join(SOURCE, "configs", "trajectories", "demo.csv")
+SPHERE = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+CSV_HEADER = "t,x,y,z,qx,qy,qz,qw\n"
+PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
+PATIENCE_S = 120
+
+CONFIG = """
+world:
+  file: {world}
+poses:
+  initial:
+    position_m: [0, 0, 0]
+  udp:
+    bind: 127.0.0.1:14600
+heads:
+  - name: bow
+    type: gemini_720i
+    sonar_id: 601
+    network:
+      alternate_address: 127.0.0.2
+      netmask: 255.0.0.0
+      status: [127.0.0.1]
+    dump:
+      directory: {dump}
+  - name: mast
+    type: micron
+    serial:
+      tcp:
+        - bind: 127.0.0.1:4001
+"""
+
+
+def render(*arguments, check=True):
+    done = subprocess.run([os.path.join(PROGRAMS, "sonard"), "render", *arguments], capture_output=True, text=True,
+                          timeout=PATIENCE_S)
+    if check and done.returncode != 0:
+        raise AssertionError(f"exit code {done.returncode}: {done.stderr}")
+    return done
+
+
+def read_npy(path):
+    """(rows, columns, bytes) of a file of format 1.0, 8 bits."""
+    with open(path, "rb") as file:
+        raw = file.read()
+    assert raw[:8] == b"\x93NUMPY\x01\x00", path
+    size = int.from_bytes(raw[8:10], "little")
+    header = ast.literal_eval(raw[10:10 + size].decode("latin1"))
+    assert header["descr"] == "|u1" and header["fortran_order"] is False, header
+    rows, columns = header["shape"]
+    assert len(raw) == 10 + size + rows * columns, path
+    return rows, columns, raw[10 + size:]
+
+
+def sums(folder):
+    """{name: SHA-256}"""
+    found = {}
+    for name in os.listdir(folder):
+        with open(os.path.join(folder, name), "rb") as file:
+            found[name] = hashlib.sha256(file.read()).hexdigest()
+    return found
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+    def write(self, name, text):
+        with open(self.path(name), "w") as file:
+            file.write(text)
+        return self.path(name)
+
+    def config(self, world=SPHERE):
+        return self.write("config.yaml", CONFIG.format(world=world, dump=self.path("dump")))
+
+    def way(self, seconds, start=0.0, speed=0.0):
+        """Straight ahead from the origin."""
+        return self.write("way.csv", CSV_HEADER + f"{start},0,0,0,0,0,0,1\n{start + seconds},{speed * seconds},0,0,0,0,0,1\n")
+
+    def sidecar(self, folder, name):
+        with open(os.path.join(folder, name + ".json")) as file:
+            return json.load(file)
+
+
+class Files(Case):
+    def test_contract(self):
+        """No arguments beyond these; the start of the demo, for time's sake."""
+        with open(DEMO_WAY) as file:
+            short = self.write("way.csv", "".join(file.readlines()[:4]))
+        out = self.path("out")
+        done = render(DEMO, "--trajectory", short, "--out", out)
+        self.assertEqual(done.stdout, f"{out}: 4 frames\n")
+        names = sorted(os.listdir(out))
+        self.assertEqual([n for n in names if n.endswith(".glf")], ["log_1980-01-01-000000.glf"])
+        self.assertEqual(len(names), 4 * 3 + 2, names)
+        for k in range(4):
+            rows, columns, _ = read_npy(os.path.join(out, f"ping_{k:06}.npy"))
+            sidecar = self.sidecar(out, f"ping_{k:06}")
+            self.assertEqual(sidecar["samples"]["shape"], [rows, columns])
+            self.assertEqual(len(sidecar["geometry"]["bearings_rad"]), columns)
+            self.assertAlmostEqual(sidecar["geometry"]["line_step_m"] * rows, sidecar["geometry"]["range_m"])
+            with open(os.path.join(out, sidecar["picture"]), "rb") as file:
+                self.assertEqual(file.read(8), PNG_MAGIC)
+
+    def test_log_holds_the_arrays(self):
+        """Unix times in the trajectory: those of the log."""
+        start = 1_700_000_000.25
+        out = self.path("out")
+        render(self.config(), "--trajectory", self.way(1.0, start), "--out", out, "--rate", "4", "--compression", "2")
+        logs = [name for name in os.listdir(out) if name.endswith(".glf")]
+        self.assertEqual(logs, ["log_2023-11-14-221320.glf"])
+        with zipfile.ZipFile(os.path.join(out, logs[0])) as archive:
+            self.assertIsNone(archive.testzip())
+        log = glf_reader.read(os.path.join(out, logs[0]))
+        self.assertEqual(len(log.images), 5)
+        self.assertEqual(log.device_info, "Gemini - 601")
+        for k, image in enumerate(log.images):
+            rows, columns, samples = read_npy(os.path.join(out, f"ping_{k:06}.npy"))
+            self.assertEqual((image.lines, image.beams, image.pixels), (rows, columns, samples))
+            self.assertAlmostEqual(image.header.unix_s, start + k / 4, places=6)
+            self.assertEqual(image.transmit_time_s, image.header.time_s)
+            sidecar = self.sidecar(out, f"ping_{k:06}")
+            self.assertEqual(list(image.bearings_rad), [-b for b in sidecar["geometry"]["bearings_rad"]])
+            self.assertAlmostEqual(image.max_range_m, sidecar["geometry"]["range_m"], delta=0.01)
+
+    def test_target_to_port_is_on_the_port_side(self):
+        """The sphere at (3, 2, 0): 33.7 degrees to port; its near side is at sqrt(13) - 0.5 m."""
+        out = self.path("out")
+        render(self.config(), "--trajectory", self.way(0.1), "--out", out, "--rate", "1", "--range", "6")
+        rows, columns, samples = read_npy(os.path.join(out, "ping_000000.npy"))
+        brightest = max(range(len(samples)), key=lambda i: samples[i])
+        geometry = self.sidecar(out, "ping_000000")["geometry"]
+        bearing = geometry["bearings_rad"][brightest % columns]
+        range_m = (brightest // columns + 0.5) * geometry["line_step_m"]
+        self.assertAlmostEqual(math.degrees(bearing), -33.7, delta=4.0)
+        self.assertTrue(math.sqrt(13) - 0.55 < range_m < math.sqrt(13), range_m)
+        image = glf_reader.read(os.path.join(out, "log_1980-01-01-000000.glf")).images[0]
+        self.assertGreater(image.bearings_rad[brightest % columns], 0.0)
+
+    def test_truth_names_bodies(self):
+        out = self.path("out")
+        render(self.config(), "--trajectory", self.way(0.1), "--out", out, "--rate", "1", "--range", "6", "--truth",
+               "--compression", "1")
+        truth = self.sidecar(out, "ping_000000")["truth"]
+        self.assertEqual(truth["bodies"], [{"id": 1, "name": "sphere"}])
+        rows, columns, ids = read_npy(os.path.join(out, truth["file"]))
+        geometry = self.sidecar(out, "ping_000000")["geometry"]
+        near = math.sqrt(13) - 0.5
+        seen = [(i // columns * geometry["line_step_m"], geometry["bearings_rad"][i % columns])
+                for i in range(len(ids)) if ids[i] == 1]
+        self.assertEqual(set(ids), {0, 1})
+        self.assertAlmostEqual(min(r for r, _ in seen), near, delta=2 * geometry["line_step_m"])
+        self.assertLess(max(r for r, _ in seen), math.sqrt(13 - 0.25) + 0.1)  # the rim, where rays graze; the back is at 4.1 m
+        half_rad = math.asin(0.5 / math.sqrt(13)) + 0.02
+        for _, bearing in seen:
+            self.assertLess(abs(bearing + math.atan2(2, 3)), half_rad)
+
+    def test_sweeps_of_a_micron(self):
+        out = self.path("out")
+        render(self.config(), "--trajectory", self.way(2.0, speed=0.5), "--out", out, "--head", "mast", "--rate", "150",
+               "--sector", "-45", "45", "--bins", "200", "--range", "5")
+        scans = sorted(name for name in os.listdir(out) if name.endswith(".npy"))
+        self.assertEqual(scans, [f"scan_{k:06}.npy" for k in range(6)])
+        self.assertFalse([name for name in os.listdir(out) if name.endswith(".glf")])
+        rows, columns, samples = read_npy(os.path.join(out, scans[0]))
+        self.assertEqual((rows, columns), (200, 51))
+        sidecar = self.sidecar(out, "scan_000000")
+        bearings = sidecar["geometry"]["bearings_rad"]
+        self.assertAlmostEqual(bearings[0], -math.pi / 4)
+        self.assertAlmostEqual(bearings[-1], math.pi / 4)
+        # From 1.2 m on the head no longer hears itself: the brightest is the sphere.
+        first = int(1.2 / sidecar["geometry"]["line_step_m"])
+        brightest = max(range(first * columns, len(samples)), key=lambda i: samples[i])
+        self.assertAlmostEqual(math.degrees(bearings[brightest % columns]), -33.7, delta=6.0)
+        last = self.sidecar(out, "scan_000005")
+        self.assertAlmostEqual(last["T_world_vehicle"][-1]["position_m"][0], 0.5 * last["stamps_s"][-1])
+
+
+class Bytes(Case):
+    def one_run(self, out, way, *arguments):
+        return render(self.config(), "--trajectory", way, "--out", out, "--rate", "10", "--compression", "3", "--truth",
+                      *arguments)
+
+    def test_three_shards_make_the_files_of_one_run(self):
+        """At the same time, while the sonar moves and its speckle goes on from ping to ping."""
+        way = self.way(1.5, speed=0.1)
+        self.one_run(self.path("one"), way)
+        self.config()
+        command = [os.path.join(PROGRAMS, "sonard"), "render", self.path("config.yaml"), "--trajectory", way, "--out",
+                   self.path("three"), "--rate", "10", "--compression", "3", "--truth", "--shard"]
+        shards = [subprocess.Popen([*command, f"{i}/3"], stdout=subprocess.PIPE, text=True) for i in range(3)]
+        said = [shard.communicate(timeout=PATIENCE_S)[0] for shard in shards]
+        self.assertEqual([shard.returncode for shard in shards], [0, 0, 0])
+        self.assertIn(f"{self.path('three')}: 16 frames\n", said)
+        self.assertEqual(sums(self.path("three")), sums(self.path("one")))
+        self.assertEqual(len(sums(self.path("one"))), 16 * 4 + 2)
+
+    def test_killed_and_started_again_makes_the_files_of_one_run(self):
+        way = self.way(1.5, speed=0.1)
+        self.one_run(self.path("one"), way)
+        out = self.path("killed")
+        seeded = random.Random(7)
+        command = [os.path.join(PROGRAMS, "sonard"), "render", self.path("config.yaml"), "--trajectory", way, "--out", out,
+                   "--rate", "10", "--compression", "3", "--truth"]
+        killed = 0
+        for _ in range(5):
+            program = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            try:
+                program.wait(0.4 + 0.6 * seeded.random())
+            except subprocess.TimeoutExpired:
+                program.send_signal(signal.SIGKILL)
+                program.wait()
+                killed += 1
+            whole = sums(self.path("one"))
+            for name, found in (sums(out) if os.path.isdir(out) else {}).items():
+                if not name.startswith(".part-"):
+                    self.assertEqual(found, whole[name], name)
+        self.assertGreater(killed, 0)
+        self.one_run(out, way)
+        self.assertEqual(sums(out), sums(self.path("one")))
+        # All is there: nothing is made again.
+        before = {name: os.stat(os.path.join(out, name)).st_mtime_ns for name in os.listdir(out)}
+        self.one_run(out, way)
+        self.assertEqual({name: os.stat(os.path.join(out, name)).st_mtime_ns for name in os.listdir(out)}, before)
+        # One file is lost: it comes back with the same bytes.
+        os.unlink(os.path.join(out, "ping_000005.npy"))
+        self.one_run(out, way)
+        self.assertEqual(sums(out), sums(self.path("one")))
+        # Everything anew.
+        self.one_run(out, way, "--overwrite")
+        self.assertEqual(sums(out), sums(self.path("one")))
+
+    def test_offline_equals_served(self):
+        """The same pose, seed and ping numbers: what a daemon has rendered for a client."""
+        config = self.config()
+        machine = Namespace("sonard-" + uuid.uuid4().hex[:8])
+        self.addCleanup(machine.remove)
+        daemon = Program(machine.command(os.path.join(PROGRAMS, "sonard"), "run", config), "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", 60)
+        view = machine.command(os.path.join(PROGRAMS, "sonarview"), "--pings", "4", "--range", "12", "--gain", "60",
+                               "--compression", "1", "--quiet")
+        self.assertEqual(subprocess.run(view, capture_output=True, timeout=60).returncode, 0)
+        daemon.terminate(10)
+
+        out = self.path("out")
+        render(config, "--trajectory", self.way(0.3), "--out", out, "--rate", "10", "--range", "12", "--gain", "60",
+               "--compression", "1")
+        for k in range(4):
+            served = read_npy(self.path("dump", f"bow-{k:08}.npy"))
+            self.assertEqual(served, read_npy(os.path.join(out, f"ping_{k:06}.npy")), f"ping {k}")
+        self.assertNotEqual(read_npy(os.path.join(out, "ping_000000.npy")), read_npy(os.path.join(out, "ping_000001.npy")))
+
+
+class Complaints(Case):
+    def expect(self, code, message, *arguments):
+        done = render(*arguments, check=False)
+        self.assertEqual((done.returncode, done.stderr.strip().splitlines()[-1]), (code, message))
+
+    def test_each_names_its_place(self):
+        config = self.config()
+        way = self.way(0.3)
+        out = self.path("out")
+        broken = self.write("broken.csv", CSV_HEADER + "0,0,0,0,0,0,0,1\n0.1,0,0,x,0,0,0,1\n")
+        self.expect(2, f"{broken}:3: z 'x' is not a number", config, "--trajectory", broken, "--out", out)
+        missing = self.path("missing.csv")
+        self.expect(2, f"{missing}: cannot be read", config, "--trajectory", missing, "--out", out)
+        self.expect(2, f"{config}:10:3: heads: no head is named 'stern' (expected bow or mast)", config, "--trajectory", way,
+                    "--out", out, "--head", "stern")
+        self.expect(2, f"{way}: ends before the first sweep of head 'mast' does", config, "--trajectory", way, "--out", out,
+                    "--head", "mast")
+        self.expect(64, "--bins: means nothing to a Gemini", config, "--trajectory", way, "--out", out, "--bins", "100")
+        self.expect(64, "--range: 190 is out of range for a Gemini (expected 0.3 to 150)", config, "--trajectory", way, "--out",
+                    out, "--range", "190")
+        self.expect(64, "--shard: expected I/N with 0 <= I <= N and N >= 1, found '4/3'", config, "--trajectory", way, "--out",
+                    out, "--shard", "4/3")
+        self.assertEqual(render(config, "--out", out, check=False).returncode, 64)
+        self.assertFalse(os.path.exists(out))
+        self.expect(5, "/proc/sonard: cannot make the folder: No such file or directory", config, "--trajectory", way, "--out",
+                    "/proc/sonard")
+        render(config, "--trajectory", way, "--out", out, "--rate", "1", "--compression", "4")
+        self.expect(5, f"{out}/run.json: the folder holds a run with other settings or files (expected the same ones, another "
+                       "folder, or --overwrite)", config, "--trajectory", way, "--out", out, "--rate", "1")
+
+
+def main():
+    global PROGRAMS
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
+    parser.add_argument("tests", nargs="*")
+    arguments = parser.parse_args()
+    PROGRAMS = os.path.abspath(arguments.programs)
+    unittest.main(argv=[sys.argv[0], "-v", *arguments.tests], module=__name__)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+// Two blocks before a wall, by geometry: which body lies in which bin.
+#include "server/offline/body_truth.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr int lines = 200;
+constexpr double step_m = 0.05;
+
+/// A square that faces the sonar at the origin: `x_m` ahead, from `left_m` to `right_m` (y, port is
+/// positive).
+render::Body board(const std::string& name, double x_m, double left_m, double right_m) {
+  auto mesh = std::make_shared<render::TriangleMesh>();
+  const auto x = static_cast<float>(x_m);
+  const auto left = static_cast<float>(left_m);
+  const auto right = static_cast<float>(right_m);
+  mesh->positions = {{x, left, -2}, {x, left, 2}, {x, right, 2}, {x, right, -2}};
+  mesh->indices = {0, 1, 2, 0, 2, 3};
+  render::Body body;
+  body.name = name;
+  body.parts.push_back({mesh, {}, {}, nullptr});
+  return body;
+}
+
+struct BodyTruthTest : testing::Test {
+  BodyTruthTest() {
+    world.bodies = {board("wall", 8.0, 20.0, -20.0), board("port block", 4.0, 1.5, 0.5),
+                    board("starboard block", 5.0, -0.5, -1.5)};
+    request.settings.aperture.beam_edges_rad = render::equal_angle_edges(64, 1.0);
+    request.settings.aperture.azimuth =
+        render::Aperture::Azimuth::array;  // with side lobes, that do not count
+    request.settings.range = {lines, step_m, 0, false};
+  }
+
+  /// Of the bin at a range, of the beam at an azimuth.
+  std::uint16_t at(const std::vector<std::uint16_t>& ids, double range_m, double azimuth_rad) const {
+    const auto line = static_cast<std::size_t>(range_m / step_m) >> request.settings.range.compression_log2;
+    const auto beam = static_cast<std::size_t>((0.5 - azimuth_rad) * 64);
+    return ids[line * 64 + beam];
+  }
+
+  render::World world;
+  render::PingRequest request;
+};
+
+TEST_F(BodyTruthTest, EachBlockIsInItsBinsAndHidesTheWall) {
+  BodyTruth truth(world, {});
+  const std::vector<std::uint16_t> ids = truth.bodies_in(request);
+  const double port_rad = std::atan2(1.0, 4.0);
+  const double starboard_rad = std::atan2(-1.0, 5.0);
+  EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, port_rad), 2);
+  EXPECT_EQ(at(ids, 5.0 / std::cos(starboard_rad) + 0.01, starboard_rad), 3);
+  EXPECT_EQ(at(ids, 8.01, 0.0), 1);                                   // the wall, between them
+  EXPECT_EQ(at(ids, 8.0 / std::cos(port_rad) + 0.01, port_rad), 0);   // the wall in the shadow
+  EXPECT_EQ(at(ids, 3.0, port_rad), 0);                               // water
+  EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, -port_rad), 0);  // the other side
+}
+
+TEST_F(BodyTruthTest, CompressedLinesBelongToWhatLiesInThem) {
+  request.settings.range.compression_log2 = 2;
+  BodyTruth truth(world, {});
+  const std::vector<std::uint16_t> ids = truth.bodies_in(request);
+  ASSERT_EQ(ids.size(), 50U * 64U);
+  const double port_rad = std::atan2(1.0, 4.0);
+  EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, port_rad), 2);
+  EXPECT_EQ(at(ids, 8.01, 0.0), 1);
+}
+
+TEST_F(BodyTruthTest, IdsAreOfEightBitsWhereTheyFit) {
+  EXPECT_EQ(BodyTruth(world, {}).table(1, 3, {0, 3, 1}), (NpyTable{1, 3, {0, 3, 1}, {}}));
+  world.bodies.resize(256, world.bodies[0]);
+  EXPECT_EQ(BodyTruth(world, {}).table(1, 2, {0, 256}), (NpyTable{1, 2, {}, {0, 256}}));
+}
+
+TEST_F(BodyTruthTest, NamesBodiesInTheOrderOfTheirIds) {
+  EXPECT_EQ(BodyTruth(world, {}).bodies(),
+            (std::vector<std::string>{"wall", "port block", "starboard block"}));
+}
+
+}  // namespace
+}  // namespace sonard::server

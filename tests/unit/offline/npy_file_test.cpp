@@ -1,0 +1,58 @@
+// Bytes as the documentation of numpy.lib.format gives them for version 1.0, written out by hand.
+#include "server/npy/npy_file.hpp"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+std::string eight_bit_file() {
+  // 0x93 NUMPY, version 1.0, header length 118 little-endian: 10 + 118 = 128 is a multiple of 64.
+  std::string file("\x93NUMPY\x01\x00\x76\x00", 10);
+  file += "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 3), }";
+  file.append(127 - file.size(), ' ');
+  file += '\n';
+  file += std::string("\x00\x01\x02\xFD\xFE\xFF", 6);
+  return file;
+}
+
+TEST(NpyFile, IsFormat10ToTheByte) {
+  EXPECT_EQ(npy_bytes({2, 3, {0, 1, 2, 253, 254, 255}, {}}), eight_bit_file());
+}
+
+TEST(NpyFile, SixteenBitSamplesAreLittleEndian) {
+  const std::string file = npy_bytes({1, 2, {}, {0x0102, 0xFFFE}});
+  ASSERT_EQ(file.size(), 128U + 4U);
+  EXPECT_NE(file.find("'descr': '<u2'"), std::string::npos);
+  EXPECT_EQ(file.substr(128), std::string("\x02\x01\xFE\xFF", 4));
+}
+
+TEST(NpyFile, SamplesBeginAtAMultipleOf64WhateverTheShape) {
+  for (int rows = 1; rows < 2'000'000'000 / 10; rows *= 10) {
+    const std::string header = npy_header("|u1", rows, 7);
+    EXPECT_EQ(header.size() % 64, 0U) << rows;
+    EXPECT_EQ(header.back(), '\n');
+    EXPECT_EQ(static_cast<unsigned char>(header[8]) + 256U * static_cast<unsigned char>(header[9]),
+              header.size() - 10);
+  }
+}
+
+TEST(NpyFile, ReadsBackWhatItWrote) {
+  const NpyTable wide{1, 2, {}, {0x0102, 0xFFFE}};
+  EXPECT_EQ(parse_npy(npy_bytes(wide), 1, 2, true), wide);
+  EXPECT_EQ(parse_npy(eight_bit_file(), 2, 3, false), (NpyTable{2, 3, {0, 1, 2, 253, 254, 255}, {}}));
+}
+
+TEST(NpyFile, RefusesAnyOtherFile) {
+  const std::string file = eight_bit_file();
+  EXPECT_FALSE(parse_npy(file, 3, 2, false));
+  EXPECT_FALSE(parse_npy(file, 2, 3, true));
+  EXPECT_FALSE(parse_npy(file.substr(0, file.size() - 1), 2, 3, false));
+  EXPECT_FALSE(parse_npy(file + "x", 2, 3, false));
+  EXPECT_FALSE(parse_npy("", 2, 3, false));
+}
+
+}  // namespace
+}  // namespace sonard::server

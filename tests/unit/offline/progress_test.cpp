@@ -1,0 +1,29 @@
+#include "server/offline/progress.hpp"
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+using std::chrono::seconds;
+
+TEST(ProgressText, TellsRateAndTimeLeft) {
+  EXPECT_EQ(progress_text({300, 0, 120, seconds(60)}), "120 of 300 frames, 40 %, 2.0 a second, 1:30 left");
+}
+
+TEST(ProgressText, FramesThatWereThereDoNotCountForTheRate) {
+  EXPECT_EQ(progress_text({300, 200, 10, seconds(10)}), "210 of 300 frames, 70 %, 1.0 a second, 1:30 left");
+}
+
+TEST(ProgressText, HoursAreWrittenWhereThereAreSome) {
+  EXPECT_EQ(progress_text({7300, 0, 100, seconds(100)}),
+            "100 of 7300 frames, 1 %, 1.0 a second, 2:00:00 left");
+}
+
+TEST(ProgressText, SaysNothingOfWhatItCannotKnow) {
+  EXPECT_EQ(progress_text({3, 0, 0, seconds(0)}), "0 of 3 frames, 0 %");
+  EXPECT_EQ(progress_text({0, 0, 0, seconds(0)}), "0 of 0 frames, 100 %");
+}
+
+}  // namespace
+}  // namespace sonard::server

@@ -1,0 +1,49 @@
+#include "server/offline/voyage.hpp"
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+
+Voyage voyage_from(std::int64_t start_ns) {
+  return Voyage(pose::Trajectory(
+      {{start_ns, {{0, 0, 0}, {1, 0, 0, 0}}}, {start_ns + 2 * second_ns, {{4, 0, -2}, {1, 0, 0, 0}}}}));
+}
+
+TEST(PingTimes, AreRoundedEachByItself) {
+  const PingTimes times{5, 1e9 / 3};
+  EXPECT_EQ(times.at(0), 5);
+  EXPECT_EQ(times.at(1), 333'333'338);
+  EXPECT_EQ(times.at(3), second_ns + 5);
+  EXPECT_EQ(times.at(3'000'000), 1'000'000 * second_ns + 5);
+}
+
+TEST(PingTimes, TheLastPingMayBeAtTheEnd) {
+  EXPECT_EQ((PingTimes{0, 1e8}.count_until(second_ns)), 11);
+  EXPECT_EQ((PingTimes{0, 1e8}.count_until(second_ns - 1)), 10);
+  EXPECT_EQ((PingTimes{7, 1e9 / 3}.count_until(7 + second_ns)), 4);
+  EXPECT_EQ((PingTimes{7, 1e9}.count_until(7)), 1);
+}
+
+TEST(PingTimes, MoreThanCanBeNumberedAreRefused) {
+  EXPECT_THROW((void)(PingTimes{0, 1e-3}.count_until(second_ns)), TooManyPings);
+}
+
+TEST(Voyage, GoesStraightFromPointToPointAndRestsBeyond) {
+  const Voyage voyage = voyage_from(0);
+  EXPECT_EQ(voyage.T_world_vehicle(second_ns).position_m, glm::dvec3(2, 0, -1));
+  EXPECT_EQ(voyage.T_world_vehicle(9 * second_ns).position_m, glm::dvec3(4, 0, -2));
+}
+
+// 1980-01-01 00:00:00 UTC is 3652 days after 1970-01-01.
+TEST(Voyage, StampsCountFrom1980UnlessTheyAreUnixTimes) {
+  constexpr std::int64_t of_1980 = 3652LL * 86'400 * second_ns;
+  EXPECT_EQ(voyage_from(0).unix_ns(second_ns), of_1980 + second_ns);
+  EXPECT_EQ(voyage_from(of_1980 - 1).unix_ns(of_1980), 2 * of_1980);
+  EXPECT_EQ(voyage_from(of_1980).unix_ns(of_1980 + 7), of_1980 + 7);
+}
+
+}  // namespace
+}  // namespace sonard::server
