@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/fan_image.hpp"
+#include "renderer/picture/fan_image.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "tests/bench/image_error.hpp"
 #include "tests/bench/reference.hpp"
@@ -25,9 +25,9 @@ constexpr double shown_difference = 0.2;  // of the truth, at full colour
 constexpr double heard = 1e-2;            // of its beam's maximum: what errors are taken over
 constexpr int radius_px = 460;
 
-client::FanShape shape_of(const test::Scene& scene) {
+picture::FanShape shape_of(const test::Scene& scene) {
   const std::vector<double>& edges = scene.settings.aperture.beam_edges_rad;
-  client::FanShape shape;
+  picture::FanShape shape;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     shape.bearings_rad.push_back(-0.5 *
                                  (edges[b] + edges[b + 1]));  // the fan of the picture counts to starboard
@@ -95,7 +95,7 @@ void draw(const std::string& name, const std::string& references, const std::str
   const render::EchoImage& truth = reference->image;
   const render::EchoImage ray = render_with(scene, render::Backend::ray);
   const render::EchoImage raster = render_with(scene, render::Backend::raster);
-  const client::FanImage fan(shape_of(scene), {radius_px, true});
+  const picture::FanImage fan(shape_of(scene), {radius_px, true});
   const double strongest = strongest_level(truth);
   const auto caption = [&](const char* backend, const render::EchoImage& image) {
     const ImageError error = compare_images(image, truth).value();

@@ -4,17 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include "clients/sonarview/fan_image.hpp"
-#include "clients/sonarview/turn_image.hpp"
+#include "renderer/picture/fan_image.hpp"
+#include "renderer/picture/turn_image.hpp"
 #include "renderer/sonar_renderer.hpp"
 
 namespace sonard::pictures {
 namespace {
 
-client::FanShape shape_of(const View& view) {
+picture::FanShape shape_of(const View& view) {
   const render::SonarSettings& settings = view.settings;
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
-  client::FanShape shape;
+  picture::FanShape shape;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     shape.bearings_rad.push_back(-0.5 * (edges[b] + edges[b + 1]));  // pictures count to starboard
   }
@@ -23,27 +23,27 @@ client::FanShape shape_of(const View& view) {
   return shape;
 }
 
-cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const client::FanLook& look,
+cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const picture::FanLook& look,
                  const std::string& caption) {
   render::PingSamples samples =
       renderer.render_ping({view.T_world_sonar, view.settings, 0, 1, view.T_world_sonar_at_end});
   const cv::Mat polar(samples.lines, samples.beams, CV_8UC1, samples.u8.data());
-  return client::FanImage(shape_of(view), look).draw(polar, caption);
+  return picture::FanImage(shape_of(view), look).draw(polar, caption);
 }
 
-cv::Mat draw_turn(render::SonarRenderer& renderer, const View& view, const client::FanLook& look,
+cv::Mat draw_turn(render::SonarRenderer& renderer, const View& view, const picture::FanLook& look,
                   const std::string& caption) {
-  client::TurnShape shape;
+  picture::TurnShape shape;
   shape.step = view.scan_step;
   shape.bins = view.settings.range.output_count();
   shape.bin_m = view.settings.range.step_m * (1 << view.settings.range.compression_log2);
-  std::vector<client::TurnLine> lines;
+  std::vector<picture::TurnLine> lines;
   std::uint64_t ping_number = 0;
   for (const ScanLine& line : view.scan) {
     render::PingSamples samples = renderer.render_ping({line.T_world_sonar, view.settings, ping_number++, 1});
     lines.push_back({line.bearing, std::move(samples.u8)});
   }
-  return client::TurnImage(shape, look).draw(lines, caption);
+  return picture::TurnImage(shape, look).draw(lines, caption);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ cv::Mat draw_view(const View& view, render::Backend backend, int radius_px, cons
   options.backend = backend;
   options.ray_curvature_per_m = view.ray_curvature_per_m;
   render::SonarRenderer renderer(view.world, options);
-  const client::FanLook look{radius_px, true};
+  const picture::FanLook look{radius_px, true};
   return view.scan.empty() ? draw_fan(renderer, view, look, caption)
                            : draw_turn(renderer, view, look, caption);
 }

@@ -12,12 +12,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "clients/sonarview/amber.hpp"
+#include "renderer/picture/amber.hpp"
 
 namespace sonard::pictures {
 namespace {
 
-namespace amber = client::amber;
+namespace amber = picture::amber;
 
 using Bytes = std::vector<std::uint8_t>;
 

@@ -12,7 +12,7 @@
 
 #include "clients/sonarview/compare/npy_file.hpp"
 #include "clients/sonarview/compare/turn_file.hpp"
-#include "clients/sonarview/fan_image.hpp"
+#include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {
 namespace {
@@ -93,7 +93,7 @@ std::filesystem::path file_of_ping(const std::filesystem::path& index, std::uint
 
 cv::Mat read_ping(const std::filesystem::path& file) {
   check_file(file);
-  return raw_polar_image(read_npy(file));
+  return picture::raw_polar_image(read_npy(file));
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 #include <system_error>
 #include <vector>
 
-#include "clients/sonarview/turn_image.hpp"
 #include "protocol/micron/messages.hpp"
 #include "protocol/micron/units.hpp"
+#include "renderer/picture/turn_image.hpp"
 
 namespace sonard::client {
 namespace {
@@ -23,8 +23,8 @@ constexpr int four_bit_scale = 17;
 
 struct ScanLine {
   std::uint64_t turn = 0;
-  TurnShape shape;
-  TurnLine line;
+  picture::TurnShape shape;
+  picture::TurnLine line;
 };
 
 std::vector<std::uint8_t> bytes_of(std::string_view digits, int scale) {
@@ -71,7 +71,7 @@ ScanLine parse_line(const std::string& text) {
   return scan;
 }
 
-bool same(const TurnShape& a, const TurnShape& b) {
+bool same(const picture::TurnShape& a, const picture::TurnShape& b) {
   return a.left == b.left && a.width == b.width && a.step == b.step && a.bins == b.bins;
 }
 
@@ -79,8 +79,8 @@ bool same(const TurnShape& a, const TurnShape& b) {
 
 cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
   std::ifstream in(file);
-  std::optional<TurnShape> shape;
-  std::vector<TurnLine> lines;
+  std::optional<picture::TurnShape> shape;
+  std::vector<picture::TurnLine> lines;
   int row = 0;
   for (std::string text; std::getline(in, text);) {
     ++row;
@@ -107,7 +107,7 @@ cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
   if (!shape) {
     throw std::runtime_error(fmt::format("{}: has no turn {}", file.string(), turn));
   }
-  return turn_polar_image(*shape, lines);
+  return picture::turn_polar_image(*shape, lines);
 }
 
 }  // namespace sonard::client

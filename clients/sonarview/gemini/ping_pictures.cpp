@@ -30,18 +30,19 @@ std::string caption_of(const gemini::ReceivedPing& ping, double range_m) {
 /// Lives on the writer's thread.
 class PingPictures::Painter {
  public:
-  Painter(const FanLook& look, double sound_speed_mps) : look_(look), sound_speed_mps_(sound_speed_mps) {}
+  Painter(const picture::FanLook& look, double sound_speed_mps)
+      : look_(look), sound_speed_mps_(sound_speed_mps) {}
 
   cv::Mat fan(const gemini::ReceivedPing& ping);
 
  private:
-  FanLook look_;
+  picture::FanLook look_;
   double sound_speed_mps_;
-  std::optional<FanImage> fan_;  ///< for the shape of the last ping
+  std::optional<picture::FanImage> fan_;  ///< for the shape of the last ping
 };
 
 cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {
-  FanShape shape;
+  picture::FanShape shape;
   shape.bearings_rad = gemini::bearings_rad(ping.head.beams);
   shape.lines = ping.lines;
   shape.line_step_m = sound_speed_mps_ / (2.0 * gemini::line_rate_hz) * (1 << ping.head.compression_log2());
@@ -56,13 +57,14 @@ cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {
   return fan_->draw(eight_bit, caption_of(ping, shape.range_m()));
 }
 
-PingPictures::PingPictures(const FanLook& look, double sound_speed_mps)
+PingPictures::PingPictures(const picture::FanLook& look, double sound_speed_mps)
     : painter_(std::make_shared<Painter>(look, sound_speed_mps)) {}
 
 std::vector<Picture> PingPictures::of(gemini::ReceivedPing ping, const std::string& name) const {
   const auto shared = std::make_shared<const gemini::ReceivedPing>(std::move(ping));
-  return {{fmt::format("fan-{}.png", name), [painter = painter_, shared] { return painter->fan(*shared); }},
-          {fmt::format("polar-{}.png", name), [shared] { return raw_polar_image(polar_of(*shared)); }}};
+  return {
+      {fmt::format("fan-{}.png", name), [painter = painter_, shared] { return painter->fan(*shared); }},
+      {fmt::format("polar-{}.png", name), [shared] { return picture::raw_polar_image(polar_of(*shared)); }}};
 }
 
 }  // namespace sonard::client

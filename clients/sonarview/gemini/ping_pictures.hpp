@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/fan_image.hpp"
 #include "clients/sonarview/image_writer.hpp"
 #include "protocol/gemini/surface.hpp"
+#include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {
 
@@ -16,7 +16,7 @@ namespace sonard::client {
 class PingPictures {
  public:
   /// `sound_speed_mps`: in which the user counts ranges.
-  PingPictures(const FanLook& look, double sound_speed_mps);
+  PingPictures(const picture::FanLook& look, double sound_speed_mps);
 
   /// The files fan-<name>.png and polar-<name>.png.
   std::vector<Picture> of(gemini::ReceivedPing ping, const std::string& name) const;

@@ -9,8 +9,8 @@
 namespace sonard::client {
 namespace {
 
-TurnShape shape_of(const ScanSettings& settings) {
-  TurnShape shape;
+picture::TurnShape shape_of(const ScanSettings& settings) {
+  picture::TurnShape shape;
   if (settings.sector) {
     shape.left = settings.sector->left;
     shape.width = micron::wrapped(settings.sector->right - settings.sector->left);
@@ -21,7 +21,7 @@ TurnShape shape_of(const ScanSettings& settings) {
   return shape;
 }
 
-std::string caption_of(const Turn& turn, const TurnShape& shape) {
+std::string caption_of(const Turn& turn, const picture::TurnShape& shape) {
   return fmt::format("Micron   turn {}   {} lines   {:.1f} m{}", turn.number, turn.lines.size(),
                      shape.range_m(),
                      turn.lines_missed == 0 ? "" : fmt::format("   {} lines lost", turn.lines_missed));
@@ -29,23 +29,23 @@ std::string caption_of(const Turn& turn, const TurnShape& shape) {
 
 }  // namespace
 
-TurnPictures::TurnPictures(const ScanSettings& settings, const FanLook& look)
+TurnPictures::TurnPictures(const ScanSettings& settings, const picture::FanLook& look)
     : shape_(shape_of(settings)),
       sector_(settings.sector.has_value()),
       scale_(settings.eight_bit ? 1 : 17),
-      image_(std::make_shared<TurnImage>(shape_, look)) {}
+      image_(std::make_shared<picture::TurnImage>(shape_, look)) {}
 
 std::vector<Picture> TurnPictures::of(const Turn& turn, const std::vector<std::string>& names) const {
-  std::vector<TurnLine> lines;
+  std::vector<picture::TurnLine> lines;
   lines.reserve(turn.lines.size());
   for (const micron::ReceivedLine& received : turn.lines) {
-    TurnLine line{received.head.bearing, received.bins};
+    picture::TurnLine line{received.head.bearing, received.bins};
     for (std::uint8_t& sample : line.samples) {
       sample = static_cast<std::uint8_t>(sample * scale_);
     }
     lines.push_back(std::move(line));
   }
-  const auto shared = std::make_shared<const std::vector<TurnLine>>(std::move(lines));
+  const auto shared = std::make_shared<const std::vector<picture::TurnLine>>(std::move(lines));
   std::vector<Picture> pictures;
   for (const std::string& name : names) {
     pictures.push_back({fmt::format("{}-{}.png", sector_ ? "fan" : "turn", name),
@@ -53,7 +53,7 @@ std::vector<Picture> TurnPictures::of(const Turn& turn, const std::vector<std::s
                           return image->draw(*shared, caption);
                         }});
     pictures.push_back({fmt::format("polar-{}.png", name),
-                        [shape = shape_, shared] { return turn_polar_image(shape, *shared); }});
+                        [shape = shape_, shared] { return picture::turn_polar_image(shape, *shared); }});
   }
   return pictures;
 }

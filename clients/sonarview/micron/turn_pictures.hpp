@@ -8,23 +8,23 @@
 #include "clients/sonarview/image_writer.hpp"
 #include "clients/sonarview/micron/scan_settings.hpp"
 #include "clients/sonarview/micron/scan_turns.hpp"
-#include "clients/sonarview/turn_image.hpp"
+#include "renderer/picture/turn_image.hpp"
 
 namespace sonard::client {
 
 /// Makes them for one ImageWriter, on whose thread they are drawn.
 class TurnPictures {
  public:
-  TurnPictures(const ScanSettings& settings, const FanLook& look);
+  TurnPictures(const ScanSettings& settings, const picture::FanLook& look);
 
   /// The files turn-<name>.png, or fan-<name>.png of a sector, and polar-<name>.png; for each name.
   std::vector<Picture> of(const Turn& turn, const std::vector<std::string>& names) const;
 
  private:
-  TurnShape shape_;
+  picture::TurnShape shape_;
   bool sector_;
   int scale_;  ///< of bins to samples: 4-bit bins fill the palette, too
-  std::shared_ptr<const TurnImage> image_;
+  std::shared_ptr<const picture::TurnImage> image_;
 };
 
 }  // namespace sonard::client

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "clients/sonarview/amber.hpp"
+#include "renderer/picture/amber.hpp"
 
 namespace sonard::pictures {
 namespace {
@@ -19,11 +19,11 @@ std::filesystem::path some_file() {
 TEST(PngFile, KeepsTheColoursOfPictures) {
   // The whole palette, and what lies between ground and labels: within half a step of 6 codes.
   cv::Mat picture(3, 256, CV_8UC3);
-  client::amber::palette().copyTo(picture.row(0));
+  picture::amber::palette().copyTo(picture.row(0));
   for (int x = 0; x < 256; ++x) {
     const double part = x / 255.0;
-    const cv::Scalar label = client::amber::background() * (1 - part) + client::amber::label() * part;
-    const cv::Scalar grid = client::amber::background() * (1 - part) + client::amber::grid() * part;
+    const cv::Scalar label = picture::amber::background() * (1 - part) + picture::amber::label() * part;
+    const cv::Scalar grid = picture::amber::background() * (1 - part) + picture::amber::grid() * part;
     picture.at<cv::Vec3b>(1, x) =
         cv::Vec3b(cv::saturate_cast<uchar>(label[0]), cv::saturate_cast<uchar>(label[1]),
                   cv::saturate_cast<uchar>(label[2]));
@@ -41,8 +41,8 @@ TEST(PngFile, KeepsTheColoursOfPictures) {
 
 TEST(PngFile, WidthsAndHeightsOfAnySize) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 3), cv::Size(1, 300), cv::Size(1594, 2)}) {
-    cv::Mat picture(size, CV_8UC3, client::amber::background());
-    picture.at<cv::Vec3b>(size.height - 1, size.width - 1) = client::amber::palette().at<cv::Vec3b>(0, 254);
+    cv::Mat picture(size, CV_8UC3, picture::amber::background());
+    picture.at<cv::Vec3b>(size.height - 1, size.width - 1) = picture::amber::palette().at<cv::Vec3b>(0, 254);
     write_png(some_file(), picture);
     EXPECT_EQ(cv::norm(cv::imread(some_file().string()), picture, cv::NORM_INF), 0) << size;
   }

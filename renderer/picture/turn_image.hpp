@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/fan_image.hpp"
-#include "clients/sonarview/sector_geometry.hpp"
+#include "renderer/picture/fan_image.hpp"
+#include "renderer/picture/sector_geometry.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 
 /// Bearings are 1/16 gradian as on a Micron's wire: 6400 to the turn, 3200 ahead, rising clockwise
-/// (protocol/micron/units.hpp).
+/// (docs/protocols/micron.md 4).
 struct TurnShape {
   int left = 0;        ///< where the sector begins, 0..6399
   int width = 6400;    ///< from there clockwise to its last bearing, > 0; 6400: all round
@@ -65,4 +65,4 @@ class TurnImage {
 /// column nearest to its bearing; a column without one is 0.
 cv::Mat turn_polar_image(const TurnShape& shape, const std::vector<TurnLine>& lines);
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

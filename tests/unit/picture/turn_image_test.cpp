@@ -1,6 +1,6 @@
 // Where the lines of a turn lie in its pictures, against closed forms: a bearing of u units looks to
 // (u - 3200) * 360 / 6400 degrees from ahead, which is up; bin k is at (k + 0.5) bin lengths.
-#include "clients/sonarview/turn_image.hpp"
+#include "renderer/picture/turn_image.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "clients/sonarview/amber.hpp"
+#include "renderer/picture/amber.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 namespace {
 
 constexpr int bins = 200;
@@ -234,4 +234,4 @@ TEST(TurnPolarImage, ASectorHasItsLimitsAtItsEdges) {
 }
 
 }  // namespace
-}  // namespace sonard::client
+}  // namespace sonard::picture

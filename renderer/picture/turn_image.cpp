@@ -1,4 +1,4 @@
-#include "clients/sonarview/turn_image.hpp"
+#include "renderer/picture/turn_image.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,19 +6,20 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "clients/sonarview/amber.hpp"
-#include "clients/sonarview/polar_grid.hpp"
-#include "protocol/micron/units.hpp"
+#include "renderer/picture/amber.hpp"
+#include "renderer/picture/polar_grid.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 namespace {
 
+constexpr int units_per_turn = 6400;
+constexpr int bearing_ahead = 3200;
 /// Halves of a unit: the edges of a step lie on them, also where it is odd.
-constexpr int slots_per_turn = 2 * micron::units_per_turn;
+constexpr int slots_per_turn = 2 * units_per_turn;
 constexpr double slot_rad = 2.0 * std::numbers::pi / slots_per_turn;
 
 int slot_of(double bearing_rad) {
-  const int slot = static_cast<int>(std::floor(bearing_rad / slot_rad)) + 2 * micron::bearing_ahead;
+  const int slot = static_cast<int>(std::floor(bearing_rad / slot_rad)) + 2 * bearing_ahead;
   return (slot + slots_per_turn) % slots_per_turn;
 }
 
@@ -27,7 +28,7 @@ SectorGeometry geometry_of(const TurnShape& shape, const FanLook& look) {
   if (shape.full_circle()) {
     return {shape.range_m(), -std::numbers::pi, std::numbers::pi, look.radius_px, margin_px};
   }
-  const int port_slot = 2 * (shape.left - micron::bearing_ahead) - shape.step;
+  const int port_slot = 2 * (shape.left - bearing_ahead) - shape.step;
   // A sector that begins within half a step of astern begins on its other side.
   const double port_rad =
       (port_slot < -slots_per_turn / 2 ? port_slot + slots_per_turn : port_slot) * slot_rad;
@@ -126,13 +127,14 @@ cv::Mat TurnImage::draw(const std::vector<TurnLine>& lines, const std::string& c
 }
 
 cv::Mat turn_polar_image(const TurnShape& shape, const std::vector<TurnLine>& lines) {
-  const bool all_round = shape.width == micron::units_per_turn;
+  const bool all_round = shape.width == units_per_turn;
   const int steps = (shape.width + shape.step - 1) / shape.step;
   const int columns = all_round ? steps : steps + 1;
   const cv::Mat rows = matrix_of(lines, shape.bins);
   cv::Mat polar = cv::Mat::zeros(shape.bins, columns, CV_8UC1);
   for (int line = 0; line < rows.rows; ++line) {
-    const int offset = micron::wrapped(lines[static_cast<std::size_t>(line)].bearing - shape.left);
+    const int offset =
+        (lines[static_cast<std::size_t>(line)].bearing - shape.left + units_per_turn) % units_per_turn;
     const int column = (2 * offset + shape.step) / (2 * shape.step);
     if (all_round || column < columns) {
       cv::Mat(rows.row(line).t()).copyTo(polar.col(column % columns));
@@ -141,4 +143,4 @@ cv::Mat turn_polar_image(const TurnShape& shape, const std::vector<TurnLine>& li
   return raw_polar_image(polar);
 }
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

@@ -1,4 +1,4 @@
-#include "clients/sonarview/polar_grid.hpp"
+#include "renderer/picture/polar_grid.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "clients/sonarview/amber.hpp"
+#include "renderer/picture/amber.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 namespace {
 
 constexpr int font = cv::FONT_HERSHEY_DUPLEX;
@@ -133,4 +133,4 @@ void add_grid(cv::Mat& picture, const cv::Mat& grid, const std::string& caption)
   put_label(picture, caption, {grid_margin_px / 4.0, grid_margin_px / 3.0}, 0.0);
 }
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

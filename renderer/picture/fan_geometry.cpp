@@ -1,4 +1,4 @@
-#include "clients/sonarview/fan_geometry.hpp"
+#include "renderer/picture/fan_geometry.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace sonard::client {
+namespace sonard::picture {
 namespace {
 
 double port_edge_rad(const std::vector<double>& bearings) {
@@ -21,8 +21,8 @@ double starboard_edge_rad(const std::vector<double>& bearings) {
 }  // namespace
 
 FanGeometry::FanGeometry(FanShape shape, int radius_px, int margin_px)
-    : SectorGeometry(shape.range_m(), client::port_edge_rad(shape.bearings_rad),
-                     client::starboard_edge_rad(shape.bearings_rad), radius_px, margin_px),
+    : SectorGeometry(shape.range_m(), picture::port_edge_rad(shape.bearings_rad),
+                     picture::starboard_edge_rad(shape.bearings_rad), radius_px, margin_px),
       shape_(std::move(shape)) {}
 
 double FanGeometry::beam_at(double bearing_rad) const {
@@ -36,4 +36,4 @@ double FanGeometry::beam_at(double bearing_rad) const {
   return static_cast<double>(right - 1) + (bearing_rad - left_rad) / (bearings[right] - left_rad);
 }
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

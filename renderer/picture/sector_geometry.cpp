@@ -1,11 +1,11 @@
-#include "clients/sonarview/sector_geometry.hpp"
+#include "renderer/picture/sector_geometry.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
-namespace sonard::client {
+namespace sonard::picture {
 namespace {
 
 constexpr double turn_rad = 2.0 * std::numbers::pi;
@@ -68,4 +68,4 @@ double SectorGeometry::bearing_at(cv::Point2d pixel) const {
   return std::atan2(pixel.x - apex_.x, apex_.y - pixel.y);
 }
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

@@ -1,10 +1,10 @@
-#include "clients/sonarview/amber.hpp"
+#include "renderer/picture/amber.hpp"
 
 #include <array>
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
 
-namespace sonard::client::amber {
+namespace sonard::picture::amber {
 namespace {
 
 struct Stop {
@@ -68,4 +68,4 @@ cv::Scalar label() {
   return {190, 182, 168};
 }
 
-}  // namespace sonard::client::amber
+}  // namespace sonard::picture::amber

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/sector_geometry.hpp"
+#include "renderer/picture/sector_geometry.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 
 /// Margin of a picture, for labels.
 inline constexpr int grid_margin_px = 68;
@@ -26,4 +26,4 @@ double ring_step_m(double range_m);
 /// where it is narrow.
 std::vector<int> round_bearings_deg(const SectorGeometry& geometry);
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

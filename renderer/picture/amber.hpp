@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/types.hpp>
 
-namespace sonard::client::amber {
+namespace sonard::picture::amber {
 
 /// BGR colour of each sample value: 1 x 256, CV_8UC3. Brightness rises strictly with the value, so that a
 /// picture reads the same in grey.
@@ -18,4 +18,4 @@ cv::Scalar background();
 cv::Scalar grid();
 cv::Scalar label();
 
-}  // namespace sonard::client::amber
+}  // namespace sonard::picture::amber

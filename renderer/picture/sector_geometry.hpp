@@ -3,7 +3,7 @@
 
 #include <opencv2/core/types.hpp>
 
-namespace sonard::client {
+namespace sonard::picture {
 
 /// A sector, up to the full circle. Ahead is up, port is on the left, and range grows away from the apex. The
 /// picture is as wide and high as the sector needs, plus a margin for labels. Pixel coordinates name pixel
@@ -39,4 +39,4 @@ class SectorGeometry {
   cv::Point2d apex_;
 };
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

@@ -4,9 +4,9 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
-#include "clients/sonarview/fan_geometry.hpp"
+#include "renderer/picture/fan_geometry.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 
 struct FanLook {
   int radius_px = 900;  ///< from the apex to the full range
@@ -43,4 +43,4 @@ class FanImage {
 /// Samples as they came, CV_8UC1: one column per beam, port on the left; one row per line, range upwards.
 cv::Mat raw_polar_image(const cv::Mat& polar);
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

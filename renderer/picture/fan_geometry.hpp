@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "clients/sonarview/sector_geometry.hpp"
+#include "renderer/picture/sector_geometry.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 
 /// What the samples of a ping stand for.
 struct FanShape {
@@ -33,4 +33,4 @@ class FanGeometry : public SectorGeometry {
   FanShape shape_;
 };
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

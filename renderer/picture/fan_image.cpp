@@ -1,13 +1,13 @@
-#include "clients/sonarview/fan_image.hpp"
+#include "renderer/picture/fan_image.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "clients/sonarview/amber.hpp"
-#include "clients/sonarview/polar_grid.hpp"
+#include "renderer/picture/amber.hpp"
+#include "renderer/picture/polar_grid.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 
 cv::Mat raw_polar_image(const cv::Mat& polar) {
   cv::Mat upwards;
@@ -67,4 +67,4 @@ cv::Mat FanImage::draw(const cv::Mat& polar, const std::string& caption) const {
   return picture;
 }
 
-}  // namespace sonard::client
+}  // namespace sonard::picture

@@ -1,6 +1,6 @@
 // Geometry of the fan against closed forms: bearing(b) = asin((2b + 1 - 256) / 256 * sin 60 deg),
 // docs/protocols/ gemini.md 6.5; line i at (i + 0.5) steps; range up, port on the left.
-#include "clients/sonarview/fan_image.hpp"
+#include "renderer/picture/fan_image.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <set>
 #include <utility>
 
-#include "clients/sonarview/amber.hpp"
-#include "clients/sonarview/polar_grid.hpp"
 #include "protocol/gemini/bearings.hpp"
+#include "renderer/picture/amber.hpp"
+#include "renderer/picture/polar_grid.hpp"
 
-namespace sonard::client {
+namespace sonard::picture {
 namespace {
 
 constexpr int beams = 256;
@@ -190,4 +190,4 @@ TEST(RawPolar, HasRangeUpwards) {
 }
 
 }  // namespace
-}  // namespace sonard::client
+}  // namespace sonard::picture
