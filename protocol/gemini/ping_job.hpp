@@ -24,10 +24,11 @@ struct PingJob {
   /// which is true.
   double assumed_sound_speed_mps = 0.0;
   bool sixteen_bit = false;
-  double pulse_s = 0.0;   ///< duration of the tone that is transmitted
-  bool transmit = true;   ///< false: the head only listens, there are no echoes but there is noise
-  double gain_db = 0.0;   ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
-  int rle_threshold = 0;  ///< samples below it become zero when the image travels; 0: none do
+  double pulse_s = 0.0;        ///< duration of the tone that is transmitted
+  bool transmit = true;        ///< false: the head only listens, there are no echoes but there is noise
+  double gain_db = 0.0;        ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
+  double gain_percent = 50.0;  ///< what the client set, by gemini::gain_percent(): for logs
+  int rle_threshold = 0;       ///< samples below it become zero when the image travels; 0: none do
   /// The RecordedPing that answers this job, whatever it asks for; nullopt: it is to be rendered.
   std::optional<std::uint64_t> record;
 

@@ -45,6 +45,7 @@ PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   job.transmit = config.tx_length != 0;
   job.gain_db = receive_gain_db(config.main_gain, config.spreading, device.gain);
   job.rle_threshold = config.rle_threshold_applied();
+  job.gain_percent = gain_percent(config.spreading);
   return job;
 }
 
