@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -15,6 +16,8 @@
 #include "server/config/loader.hpp"
 #include "server/daemon.hpp"
 #include "server/exit_codes.hpp"
+#include "server/logs/log_file.hpp"
+#include "server/replay/replay.hpp"
 
 namespace sonard::server {
 namespace {
@@ -33,6 +36,8 @@ struct CommandLine {
   std::string log_level;  ///< empty: as the configuration says
   bool no_network = false;
   render::Backend backend = render::Backend::automatic;  ///< of selftest
+  std::filesystem::path log;                             ///< of replay and info
+  ReplayTiming timing;
 };
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
@@ -64,8 +69,9 @@ void print_error(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
-int run(const CommandLine& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config);
+/// Loads CONFIG, and logs as it says from then on.
+LoadedConfig load_and_log(const CommandLine& arguments) {
+  LoadedConfig loaded = load_config(arguments.config);
   const spdlog::level::level_enum level = arguments.log_level.empty()
                                               ? spdlog_level(loaded.config.log_level)
                                               : spdlog::level::from_str(arguments.log_level);
@@ -73,10 +79,31 @@ int run(const CommandLine& arguments) {
   for (const std::string& warning : loaded.warnings) {
     spdlog::warn("{}", warning);
   }
+  return loaded;
+}
+
+int run(const CommandLine& arguments) {
+  const LoadedConfig loaded = load_and_log(arguments);
   try {
     return run_daemon(loaded.config);
   } catch (const StartError& error) {
     print_error(loaded.problem_with(error.key, error.what()));
+    return error.exit_code;
+  }
+}
+
+int replay(const CommandLine& arguments) {
+  LoadedConfig loaded;
+  if (arguments.config.empty()) {
+    spdlog::set_level(spdlog::level::from_str(arguments.log_level.empty() ? "info" : arguments.log_level));
+  } else {
+    loaded = load_and_log(arguments);
+  }
+  try {
+    return replay(arguments.log, arguments.config.empty() ? std::nullopt : std::optional(loaded.config),
+                  arguments.timing);
+  } catch (const StartError& error) {
+    print_error(arguments.config.empty() ? error.what() : loaded.problem_with(error.key, error.what()));
     return error.exit_code;
   }
 }
@@ -125,6 +152,9 @@ int guarded(const Command& command) {
       print_error(line);
     }
     return exit_config;
+  } catch (const LogError& error) {
+    print_error(error.what());
+    return exit_config;
   } catch (const render::RendererError& error) {
     print_error(fmt::format("renderer: {}", error.what()));
     return exit_renderer;
@@ -160,7 +190,36 @@ int main_program(int argc, char** argv) {
           CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},
                                                                          {"raster", render::Backend::raster},
                                                                          {"ray", render::Backend::ray}}));
-  for (CLI::App* command : {run_command, check_command, selftest_command}) {
+
+  CLI::App* replay_command =
+      app.add_subcommand("replay", "Serve a recorded .glf, .dat or .mcap as the device that made it");
+  replay_command->add_option("LOG", arguments.log, "What to play back (docs/logs.md)")->required();
+  replay_command->add_option(
+      "--config", arguments.config,
+      "YAML file with addresses and timing of the heads; without it they are on loopback");
+  CLI::Option* speed =
+      replay_command->add_option("--speed", arguments.timing.speed, "2: twice as fast as recorded")
+          ->check(CLI::Range(1e-3, 1e3))
+          ->capture_default_str();
+  replay_command
+      ->add_flag("--as-fast-as-asked", arguments.timing.as_asked,
+                 "The next ping whenever the client wants one, whatever the times of the recording")
+      ->excludes(speed);
+  replay_command->add_flag("--loop", arguments.timing.loop,
+                           "From the start again after the last ping, until SIGINT or SIGTERM");
+  bool start_now = false;
+  replay_command
+      ->add_option_function<std::string>(
+          "--start", [&start_now](const std::string& when) { start_now = when == "now"; },
+          "ping: time runs from the first ping that a client wants, and waits for clients; now: it runs from "
+          "the "
+          "start, and pings are skipped that nobody wants in time")
+      ->check(CLI::IsMember({"ping", "now"}))
+      ->default_str("ping");
+  replay_command->add_option("--log-level", arguments.log_level, "Least severe events shown")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
+
+  for (CLI::App* command : {run_command, check_command, selftest_command, replay_command}) {
     command->footer(exit_code_help);
   }
 
@@ -169,10 +228,14 @@ int main_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_clean : exit_usage;
   }
+  arguments.timing.start_now = start_now;
   start_log();
   return guarded([&] {
     if (run_command->parsed()) {
       return run(arguments);
+    }
+    if (replay_command->parsed()) {
+      return replay(arguments);
     }
     return check_command->parsed() ? check(arguments) : selftest(arguments);
   });

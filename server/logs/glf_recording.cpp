@@ -1,0 +1,71 @@
+#include "server/logs/glf_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "protocol/glf/log_time.hpp"
+
+namespace sonard::server {
+namespace {
+
+glf::LogView opened(const LogFile& file) {
+  auto view = glf::LogView::open(file.bytes());
+  if (!view) {
+    throw file.error(to_string(view.error()));
+  }
+  return std::move(*view);
+}
+
+RecordedSettings settings_of(const glf::ImageRecord& image) {
+  RecordedSettings settings;
+  settings.lines = static_cast<int>(image.lines);
+  settings.beams = static_cast<int>(image.beams);
+  settings.sound_speed_mps = image.sound_speed_mps;
+  settings.line_step_m = image.sound_speed_mps / 2.0 / image.modulation_frequency_hz;
+  settings.sound_speed_from_config = (image.ping_flags & glf::ping_flag_bits::manual_sound_speed) != 0;
+  settings.gain_percent = image.gain_percent;
+  return settings;
+}
+
+// Other programs' logs may hold anything.
+bool makes_sense(const glf::ImageRecord& image) {
+  return image.lines > 0 && image.beams > 0 && image.modulation_frequency_hz > 0 &&
+         std::isfinite(image.sound_speed_mps) && image.sound_speed_mps > 0.0F;
+}
+
+}  // namespace
+
+GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file)) {
+  const auto& records = view_.index().records;
+  for (std::size_t place = 0; place < records.size(); ++place) {
+    if (records[place].type != glf::RecordType::image) {
+      continue;
+    }
+    const auto image = view_.image_outline(records[place]);
+    const std::optional<std::int64_t> time_ns =
+        image ? glf::unix_ns(image->transmit_time_s, 0) : std::optional<std::int64_t>{};
+    if (!time_ns || !makes_sense(*image)) {
+      continue;
+    }
+    RecordedHead& head = this->head({}, image->origin.device_id);
+    if (head.images.empty()) {
+      head.bearings_rad.resize(image->bearings_rad.size());
+      // bearing_for_log() undoes itself, and its sign is that of our frame: port is positive.
+      std::ranges::copy(image->bearings_rad, head.bearings_rad.begin());
+    }
+    head.images.push_back({*time_ns, settings_of(*image), place});
+  }
+  sort_images();
+}
+
+std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const {
+  auto record = view_.image(view_.index().records.at(image.place));
+  if (!record) {
+    throw file_.error(to_string(record.error()));
+  }
+  return std::move(record->pixels);
+}
+
+}  // namespace sonard::server

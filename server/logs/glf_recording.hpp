@@ -1,0 +1,22 @@
+// The images of a Gemini's .glf or .dat.
+#pragma once
+
+#include "protocol/glf/log_view.hpp"
+#include "server/logs/recording.hpp"
+
+namespace sonard::server {
+
+class GlfRecording final : public Recording {
+ public:
+  /// @throws LogError
+  explicit GlfRecording(const LogFile& file);
+
+  std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
+  const glf::LogView& view() const { return view_; }
+
+ private:
+  const LogFile& file_;
+  glf::LogView view_;
+};
+
+}  // namespace sonard::server
