@@ -16,6 +16,7 @@
 #include "server/config/loader.hpp"
 #include "server/daemon.hpp"
 #include "server/exit_codes.hpp"
+#include "server/info/info.hpp"
 #include "server/logs/log_file.hpp"
 #include "server/replay/replay.hpp"
 
@@ -38,6 +39,7 @@ struct CommandLine {
   render::Backend backend = render::Backend::automatic;  ///< of selftest
   std::filesystem::path log;                             ///< of replay and info
   ReplayTiming timing;
+  InfoOptions info;
 };
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
@@ -219,7 +221,20 @@ int main_program(int argc, char** argv) {
   replay_command->add_option("--log-level", arguments.log_level, "Least severe events shown")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
 
-  for (CLI::App* command : {run_command, check_command, selftest_command, replay_command}) {
+  CLI::App* info_command = app.add_subcommand("info", "Say what is in a .glf, .dat, .mcap or .pcapng");
+  info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
+  info_command->add_flag("--json", arguments.info.json, "For programs");
+  CLI::Option* pictures = info_command->add_option("--png", arguments.info.pictures,
+                                                   "Folder for a picture of each ping of a Gemini");
+  info_command->add_option("--every", arguments.info.every, "Pictures of each N-th ping only")
+      ->needs(pictures)
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+  info_command
+      ->add_option("--utc-offset", arguments.info.utc_offset_h,
+                   "Hours that the clock of a .glf was ahead of UTC; without it those of this machine's zone")
+      ->check(CLI::Range(-14.0, 14.0));
+
+  for (CLI::App* command : {run_command, check_command, selftest_command, replay_command, info_command}) {
     command->footer(exit_code_help);
   }
 
@@ -233,6 +248,10 @@ int main_program(int argc, char** argv) {
   return guarded([&] {
     if (run_command->parsed()) {
       return run(arguments);
+    }
+    if (info_command->parsed()) {
+      info(arguments.log, arguments.info);
+      return static_cast<int>(exit_clean);
     }
     if (replay_command->parsed()) {
       return replay(arguments);

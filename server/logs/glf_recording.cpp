@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "protocol/glf/log_time.hpp"
 
 namespace sonard::server {
@@ -47,6 +49,7 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
     const std::optional<std::int64_t> time_ns =
         image ? glf::unix_ns(image->transmit_time_s, 0) : std::optional<std::int64_t>{};
     if (!time_ns || !makes_sense(*image)) {
+      ++bad_images_;
       continue;
     }
     RecordedHead& head = this->head({}, image->origin.device_id);
@@ -66,6 +69,22 @@ std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const
     throw file_.error(to_string(record.error()));
   }
   return std::move(record->pixels);
+}
+
+std::vector<std::string> GlfRecording::problems() const {
+  const glf::DatIndex& index = view_.index();
+  std::vector<std::string> problems;
+  if (index.tail_size > 0) {
+    problems.push_back(
+        fmt::format("cut or damaged: of {} bytes after the last whole record no more can be read ({})",
+                    index.tail_size, index.tail_error ? to_string(*index.tail_error) : "no record"));
+  } else if (!index.closed) {
+    problems.emplace_back("not closed: still being written, or its writer went away");
+  }
+  if (const std::uint64_t damaged = index.damaged_records + bad_images_; damaged > 0) {
+    problems.push_back(fmt::format("{} images make no sense and are left out", damaged));
+  }
+  return problems;
 }
 
 }  // namespace sonard::server

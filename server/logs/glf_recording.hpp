@@ -12,11 +12,14 @@ class GlfRecording final : public Recording {
   explicit GlfRecording(const LogFile& file);
 
   std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
+  std::vector<std::string> problems() const override;
+  bool closed() const override { return view_.index().closed; }
   const glf::LogView& view() const { return view_; }
 
  private:
   const LogFile& file_;
   glf::LogView view_;
+  std::uint64_t bad_images_ = 0;
 };
 
 }  // namespace sonard::server

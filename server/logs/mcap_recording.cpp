@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "protocol/log/log_messages.hpp"
 
 namespace sonard::server {
@@ -47,6 +49,7 @@ McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(
   while (const std::optional<mcap::Message> message = cursor.next()) {
     add(message->data);
   }
+  unreadable_ = cursor.error();
   sort_images();
 }
 
@@ -81,6 +84,22 @@ std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) cons
     }
   }
   return ids;
+}
+
+std::vector<std::string> McapRecording::problems() const {
+  std::vector<std::string> problems;
+  if (!reader_.finished()) {
+    problems.emplace_back("not closed: cut, still being written, or its writer went away");
+  }
+  for (const std::optional<WireError>& error : {reader_.stopped_by(), unreadable_}) {
+    if (error) {
+      problems.push_back(fmt::format("damaged: what follows cannot be read ({})", to_string(*error)));
+    }
+  }
+  if (bad_messages_ > 0) {
+    problems.push_back(fmt::format("{} images make no sense and are left out", bad_messages_));
+  }
+  return problems;
 }
 
 }  // namespace sonard::server

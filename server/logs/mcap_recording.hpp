@@ -1,6 +1,7 @@
 // The images of sonard's own .mcap.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
 
@@ -15,10 +16,11 @@ class McapRecording final : public Recording {
   explicit McapRecording(const LogFile& file);
 
   std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
+  std::vector<std::string> problems() const override;
+  bool closed() const override { return reader_.finished(); }
   const mcap::Reader& reader() const { return reader_; }
   /// Channels whose messages are of this schema, for example "sonard.log.SonarImage".
   std::set<std::uint16_t> channels_of(std::string_view schema) const;
-  std::uint64_t bad_messages() const { return bad_messages_; }
 
  private:
   void add(std::span<const std::uint8_t> message);
@@ -27,6 +29,7 @@ class McapRecording final : public Recording {
   mcap::Reader reader_;
   std::vector<std::span<const std::uint8_t>> messages_;  ///< of images; views of the file
   std::uint64_t bad_messages_ = 0;
+  std::optional<WireError> unreadable_;  ///< why the images end before the file does
 };
 
 }  // namespace sonard::server

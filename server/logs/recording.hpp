@@ -18,8 +18,8 @@ struct RecordedSettings {
   double line_step_m = 0.0;  ///< line i holds [i, i + 1) of it
   double sound_speed_mps = 0.0;
   bool sound_speed_from_config = true;  ///< a client had set it; false: the head measured it
-  double gain_percent = 0.0;
-  double frequency_hz = 0.0;  ///< of the sound; 0: the log does not say
+  double gain_percent = -1.0;           ///< 0..100; below 0: the log does not say
+  double frequency_hz = 0.0;            ///< of the sound; 0: the log does not say
 
   double range_m() const { return lines * line_step_m; }
   bool operator==(const RecordedSettings&) const = default;
@@ -55,6 +55,10 @@ class Recording {
   /// lines * beams samples, line after line from the nearest on, beams from port to starboard.
   /// @throws LogError when they cannot be unpacked
   virtual std::vector<std::uint8_t> pixels(const RecordedImage& image) const = 0;
+  /// What is wrong with the log, one phrase each: cut, not closed, damaged inside.
+  virtual std::vector<std::string> problems() const = 0;
+  /// It ends as a log does that was closed.
+  virtual bool closed() const = 0;
 
  protected:
   RecordedHead& head(const std::string& name, std::uint16_t device_id);

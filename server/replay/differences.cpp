@@ -40,7 +40,8 @@ std::optional<std::string> difference(Difference kind, const gemini::PingJob& as
                                   1 << sent.compression_log2));
     case Difference::gain:
       return if_apart(
-          std::abs(asked.gain_percent - recorded.gain_percent) > gain_step_percent,
+          recorded.gain_percent >= 0.0 &&
+              std::abs(asked.gain_percent - recorded.gain_percent) > gain_step_percent,
           fmt::format("gain {:.0f} % asked for, {:.0f} % sent", asked.gain_percent, recorded.gain_percent));
     case Difference::sound_speed:
       return if_apart(

@@ -12,6 +12,9 @@ namespace sonard::server {
 int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing) {
   const LogFile file(log);
   const std::unique_ptr<Recording> recording = open_recording(file);
+  for (const std::string& problem : recording->problems()) {
+    spdlog::warn("{}: {}", log.string(), problem);
+  }
   const ReplayConfig replayed = replay_config(
       config ? std::move(*config) : loopback_config(recording->heads()), recording->heads(), file);
   for (const PlayedHead& head : replayed.played) {
