@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ class LogView {
   /// @param max_unpacked_size most bytes to unpack, of an archive that is compressed
   static Result<LogView, WireError> open(std::span<const std::uint8_t> file,
                                          std::uint64_t max_unpacked_size = default_max_unpacked_size);
+
+  /// A .glf that open() refuses because its end is missing: whatever records are left of it (cut_dat()).
+  static std::optional<LogView> open_cut(std::span<const std::uint8_t> archive);
 
   LogView(LogView&&) = default;
   LogView& operator=(LogView&&) = default;

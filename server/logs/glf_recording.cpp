@@ -12,12 +12,18 @@
 namespace sonard::server {
 namespace {
 
-glf::LogView opened(const LogFile& file) {
+glf::LogView opened(const LogFile& file, bool& cut) {
   auto view = glf::LogView::open(file.bytes());
-  if (!view) {
-    throw file.error(to_string(view.error()));
+  if (view) {
+    return std::move(*view);
   }
-  return std::move(*view);
+  if (file.kind() == LogKind::glf) {
+    if (auto left = glf::LogView::open_cut(file.bytes())) {
+      cut = true;
+      return std::move(*left);
+    }
+  }
+  throw file.error(to_string(view.error()));
 }
 
 RecordedSettings settings_of(const glf::ImageRecord& image) {
@@ -39,7 +45,7 @@ bool makes_sense(const glf::ImageRecord& image) {
 
 }  // namespace
 
-GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file)) {
+GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file, cut_)) {
   const auto& records = view_.index().records;
   for (std::size_t place = 0; place < records.size(); ++place) {
     if (records[place].type != glf::RecordType::image) {
@@ -74,11 +80,14 @@ std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const
 std::vector<std::string> GlfRecording::problems() const {
   const glf::DatIndex& index = view_.index();
   std::vector<std::string> problems;
+  if (cut_) {
+    problems.emplace_back("cut: the end of the archive is missing");
+  }
   if (index.tail_size > 0) {
     problems.push_back(
         fmt::format("cut or damaged: of {} bytes after the last whole record no more can be read ({})",
                     index.tail_size, index.tail_error ? to_string(*index.tail_error) : "no record"));
-  } else if (!index.closed) {
+  } else if (!index.closed && !cut_) {
     problems.emplace_back("not closed: still being written, or its writer went away");
   }
   if (const std::uint64_t damaged = index.damaged_records + bad_images_; damaged > 0) {

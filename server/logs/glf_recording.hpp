@@ -13,11 +13,12 @@ class GlfRecording final : public Recording {
 
   std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
   std::vector<std::string> problems() const override;
-  bool closed() const override { return view_.index().closed; }
+  bool closed() const override { return view_.index().closed && !cut_; }
   const glf::LogView& view() const { return view_; }
 
  private:
   const LogFile& file_;
+  bool cut_ = false;  ///< before view_, which sets it
   glf::LogView view_;
   std::uint64_t bad_images_ = 0;
 };
