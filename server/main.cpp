@@ -25,8 +25,8 @@ namespace {
 
 constexpr const char* exit_code_help =
     "Exit codes:\n"
-    "  0   ended by SIGINT or SIGTERM, or nothing to complain about\n"
-    "  2   configuration, world or trajectory cannot be used\n"
+    "  0   ended by SIGINT or SIGTERM or with the recording, or nothing to complain about\n"
+    "  2   configuration, world, trajectory or log cannot be used\n"
     "  3   an address or port cannot be used\n"
     "  4   the backend asked for cannot be had, failed self-test, or the renderer failed while serving\n"
     "  64  wrong command line\n"

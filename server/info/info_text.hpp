@@ -12,7 +12,7 @@ namespace sonard::server {
 /// @param utc_offset_s of the zone that times of a .glf are in: that of the log is not written in it
 std::string info_text(const LogSummary& log, std::int32_t utc_offset_s);
 
-/// One JSON object, docs/logs.md 4; numbers in SI units, times as ISO 8601.
+/// One JSON object, docs/logs.md, "What is in a log"; numbers in SI units, times as ISO 8601.
 std::string info_json(const LogSummary& log, std::int32_t utc_offset_s);
 
 /// "2026-11-20T14:22:33.120Z" for UTC, "2026-11-20T14:22:33.120" for times of an unknown zone.
