@@ -134,6 +134,9 @@ namespace {
 using PixelReader = std::vector<std::uint8_t> (*)(ByteReader&, const ImageHeader&);
 
 std::vector<std::uint8_t> skipped_pixels(ByteReader& reader, const ImageHeader& header) {
+  if (header.lines() * header.beams() > max_pixels) {
+    reader.fail(WireErrorReason::bad_length, "pixels");
+  }
   reader.skip(header.data_size, "pixels");
   return {};
 }

@@ -59,7 +59,7 @@ void add_packet(LogSummary& log, const pcapng::Packet& packet) {
                                         : "other packets");
   const auto report = gemini::decode_report(payload.bytes);
   const auto* const head = report ? std::get_if<gemini::PingHead>(&*report) : nullptr;
-  if (head != nullptr && (head->ping_id & resent_head_bit) == 0) {
+  if (head != nullptr && plausible_time(time_ns) && (head->ping_id & resent_head_bit) == 0) {
     add_ping(head_of(log, {}, head->header.sonar_id, false), time_ns, settings_of(*head));
   }
 }

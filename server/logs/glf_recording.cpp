@@ -54,7 +54,7 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
     const auto image = view_.image_outline(records[place]);
     const std::optional<std::int64_t> time_ns =
         image ? glf::unix_ns(image->transmit_time_s, 0) : std::optional<std::int64_t>{};
-    if (!time_ns || !makes_sense(*image)) {
+    if (!time_ns || !plausible_time(*time_ns) || !makes_sense(*image)) {
       ++bad_images_;
       continue;
     }

@@ -49,7 +49,7 @@ void add_lines(LogSummary& log, const McapRecording& recording) {
   mcap::MessageCursor cursor = recording.reader().messages(channels);
   while (const auto message = cursor.next()) {
     const auto line = log::decode<log::ScanLine>(message->data);
-    if (!line) {
+    if (!line || !plausible_time(line->transmit_time_ns())) {
       count(log, "scan lines that cannot be read");
       continue;
     }
@@ -147,6 +147,9 @@ HeadSummary& head_of(LogSummary& log, const std::string& name, std::uint16_t id,
 }
 
 void include(LogSummary& log, std::int64_t time_ns) {
+  if (!plausible_time(time_ns)) {
+    return;
+  }
   const auto before = log.span_ns.value_or(std::pair{time_ns, time_ns});
   log.span_ns = {std::min(before.first, time_ns), std::max(before.second, time_ns)};
 }

@@ -21,8 +21,8 @@ mcap::Reader opened(const LogFile& file) {
 }
 
 bool makes_sense(const log::SonarImage& image) {
-  return !log::problem_of(image) && image.range_lines() > 0 && image.beams() > 0 &&
-         image.device_id() <= std::numeric_limits<std::uint16_t>::max() &&
+  return !log::problem_of(image) && plausible_time(image.transmit_time_ns()) && image.range_lines() > 0 &&
+         image.beams() > 0 && image.device_id() <= std::numeric_limits<std::uint16_t>::max() &&
          std::isfinite(image.metres_per_line()) && image.metres_per_line() > 0.0 &&
          std::isfinite(image.sound_speed_mps()) && image.sound_speed_mps() > 0.0;
 }

@@ -25,6 +25,12 @@ struct RecordedSettings {
   bool operator==(const RecordedSettings&) const = default;
 };
 
+/// Within 146 years of 1970, so that differences of times cannot overflow.
+constexpr bool plausible_time(std::int64_t time_ns) {
+  constexpr std::int64_t limit_ns = std::int64_t{1} << 62;
+  return time_ns > -limit_ns && time_ns < limit_ns;
+}
+
 struct RecordedImage {
   /// Since the Unix epoch. A .glf has local time and does not say which zone: there it counts as if that were
   /// UTC.

@@ -1,7 +1,9 @@
 #include "server/replay/replay_config.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -16,6 +18,8 @@ namespace {
 constexpr Ipv4 first_loopback_head = 0x7F000002;
 constexpr Ipv4 loopback_surface = 0x7F000001;
 constexpr double bearing_tolerance_rad = 1e-3;
+constexpr std::chrono::hours day{24};
+constexpr std::chrono::nanoseconds longest_span = 90 * day;
 
 const RecordedHead* find_recorded(const std::vector<RecordedHead>& recorded, const GeminiHeadConfig& head,
                                   bool only_one) {
@@ -58,6 +62,21 @@ void check_images(const RecordedHead& head, const std::string& name, const LogFi
         "head={} bearings of the recording are up to {:.1f} degrees from those of a 720i: clients will show "
         "wrong bearings",
         name, worst_rad * 180.0 / std::numbers::pi);
+  }
+}
+
+// At the slowest speed the last offset is still a time.
+void check_span(const std::vector<PlayedHead>& played, const LogFile& file) {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+  for (const PlayedHead& head : played) {
+    first_ns = std::min(first_ns, head.recorded->images.front().time_ns);
+    last_ns = std::max(last_ns, head.recorded->images.back().time_ns);
+  }
+  const std::chrono::nanoseconds span(last_ns - first_ns);
+  if (span > longest_span) {
+    throw file.error(
+        fmt::format("its times span {} days (expected at most {})", span / day, longest_span / day));
   }
 }
 
@@ -114,6 +133,7 @@ ReplayConfig replay_config(DaemonConfig config, const std::vector<RecordedHead>&
   if (config.heads.empty()) {
     throw file.error("has no images of a Gemini that is to be served");
   }
+  check_span(replay.played, file);
   config.poses = {};
   config.poses.T_world_vehicle_initial = render::Pose{};
   replay.daemon = std::move(config);

@@ -21,7 +21,8 @@ DaemonConfig loopback_config(const std::vector<RecordedHead>& recorded);
 /// whatever its ID. Heads without a recording are left out, with a warning, and so are poses: nothing is
 /// rendered. Recorded heads that a 720i cannot send as they are, or only with wrong ranges or bearings, are
 /// told about.
-/// @throws LogError when nothing is left, or a recorded head has images that a 720i cannot send
+/// @throws LogError when nothing is left, a recorded head has images that a 720i cannot send, or the times
+/// make no sense
 ReplayConfig replay_config(DaemonConfig config, const std::vector<RecordedHead>& recorded,
                            const LogFile& file);
 

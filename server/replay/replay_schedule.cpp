@@ -8,6 +8,9 @@ namespace {
 
 using std::chrono::nanoseconds;
 
+// Of pings that all have the same time: a loop must get on.
+constexpr std::chrono::milliseconds shortest_lap{1};
+
 // From the last ping of a lap to the first of the next.
 nanoseconds usual_interval(const std::vector<nanoseconds>& offsets) {
   if (offsets.size() < 2) {
@@ -38,6 +41,7 @@ ReplaySchedule::ReplaySchedule(std::vector<std::vector<std::int64_t>> times_ns, 
     }
     lap_ = std::max(lap_, head.offsets.back() + usual_interval(head.offsets));
   }
+  lap_ = std::max<nanoseconds>(lap_, shortest_lap);
   if (timing_.start_now) {
     start_ = now;
   }

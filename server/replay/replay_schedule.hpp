@@ -33,7 +33,7 @@ class ReplaySchedule {
     std::optional<TimePoint> due;  ///< nullopt: as soon as a client wants it
   };
 
-  /// @param times_ns of each head, rising; no head is without pings
+  /// @param times_ns of each head, rising, within 90 days; no head is without pings
   /// @param now when the clock starts, for ReplayTiming::start_now
   ReplaySchedule(std::vector<std::vector<std::int64_t>> times_ns, const ReplayTiming& timing, TimePoint now);
 

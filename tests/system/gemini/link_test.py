@@ -120,11 +120,13 @@ class LinkTest(unittest.TestCase):
         return path
 
     def check_recorded(self, crcs, name):
-        """What arrived is a stretch of the log, as it was written."""
+        """What arrived is in the log, in this order. A request that the link has doubled makes a ping more than the
+        client counts, so a few may lie between."""
         written = 2 * [f"{image.crc32():08x}" for image in self.recorded[name]]
-        self.assertIn(crcs[0], written)
-        start = written.index(crcs[0])
-        self.assertEqual(crcs, written[start:start + len(crcs)])
+        at = 0
+        for crc in crcs:
+            self.assertIn(crc, written[at:])
+            at = written.index(crc, at) + 1
 
     def start_viewer(self, lab, *options, surface=None, range_m=4):
         namespace = surface or lab.surface

@@ -94,6 +94,12 @@ TEST_F(ReplayConfigTest, images_of_other_heads_are_an_error_that_says_so) {
   }
 }
 
+TEST_F(ReplayConfigTest, times_that_make_no_sense_are_an_error) {
+  std::vector<RecordedHead> heads{recorded(513)};
+  heads[0].images.push_back({std::int64_t{91} * 86'400 * 1'000'000'000, settings(), 1});
+  EXPECT_THROW(replay_config(loopback_config(heads), heads, LogFile(path)), LogError);
+}
+
 TEST(WireForm, compression_follows_from_the_length_of_a_line) {
   for (int log2 = 0; log2 <= 4; ++log2) {
     const auto form = wire_form(settings(1500.0 / (2 * 90422.0) * (1 << log2)));

@@ -111,5 +111,10 @@ TEST(ReplaySchedule, one_ping_alone_can_be_looped) {
   EXPECT_EQ(play(schedule, 0s), (Played{0, 1s}));
 }
 
+TEST(ReplaySchedule, a_loop_of_pings_without_times_gets_on) {
+  ReplaySchedule schedule({{5 * ms, 5 * ms}}, {.loop = true, .start_now = true}, 0ns);
+  EXPECT_TRUE(schedule.next(0, 10s));
+}
+
 }  // namespace
 }  // namespace sonard::server
