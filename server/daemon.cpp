@@ -16,12 +16,14 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "server/clock.hpp"
 #include "server/devices/heads.hpp"
 #include "server/devices/ping_dump.hpp"
+#include "server/devices/playback.hpp"
 #include "server/devices/udp_endpoint.hpp"
 #include "server/exit_codes.hpp"
 #include "server/pose/pose_history.hpp"
@@ -114,7 +116,8 @@ std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<AnyHeadConfi
 // then is anything destroyed, on main, in the reverse order of the members.
 class Daemon {
  public:
-  Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer);
+  Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+         Playback* playback);
 
   /// Serves until it shall end. Returns the exit code.
   int run();
@@ -124,6 +127,7 @@ class Daemon {
   std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
                                                   const RendererFactory& make_renderer);
   void start_sources();
+  void end_when_played();
   void run_io();
   void stop_io();
   void end(int exit_code);
@@ -132,6 +136,8 @@ class Daemon {
   asio::io_context lifetime_;   // of main: signals, and the wish to end
   int exit_code_ = exit_clean;  // of main
   asio::io_context io_;
+  Playback* playback_;  // may be null
+  asio::steady_timer playback_timer_;
   PoseHistory poses_;
   std::vector<std::unique_ptr<PoseSource>> sources_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
@@ -140,15 +146,19 @@ class Daemon {
   std::string ready_line_;
 };
 
-Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer)
-    : poses_(config.poses),
+Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+               Playback* playback)
+    : playback_(playback),
+      playback_timer_(io_),
+      poses_(config.poses),
       sources_(make_sources(io_, config, clock_, poses_)),
       dumps_(make_dumps(config.heads)),
       fan_renderer_(make_renderer_of(false, config, make_renderer)),
       beam_renderer_(make_renderer_of(true, config, make_renderer)) {
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     RenderService& renderer = *(is_scanning(config.heads[i]) ? beam_renderer_ : fan_renderer_);
-    const HeadServices services{io_, clock_, renderer, poses_, world.water_surface_z_m, config.skip};
+    const HeadServices services{io_,         clock_,   renderer, poses_, world.water_surface_z_m,
+                                config.skip, playback_};
     try {
       heads_.push_back(make_head(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
@@ -212,6 +222,7 @@ int Daemon::run() {
       head->start();
     }
     spdlog::info(ready_line_);
+    end_when_played();
   });
 
   lifetime_.run();
@@ -228,6 +239,24 @@ int Daemon::run() {
   return exit_code_;
 }
 
+// Looks now and then: nobody minds when a replay ends a little late.
+void Daemon::end_when_played() {
+  if (playback_ == nullptr) {
+    return;
+  }
+  if (playback_->finished(clock_.now())) {
+    spdlog::info("the recording is over");
+    end(exit_clean);
+    return;
+  }
+  playback_timer_.expires_after(std::chrono::milliseconds{100});
+  playback_timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      end_when_played();
+    }
+  });
+}
+
 void Daemon::run_io() {
   try {
     io_.run();
@@ -239,6 +268,7 @@ void Daemon::run_io() {
 }
 
 void Daemon::stop_io() {
+  playback_timer_.cancel();
   for (const std::unique_ptr<PoseSource>& source : sources_) {
     source->stop();
     const PoseSourceCounters& done = source->counters();
@@ -301,8 +331,9 @@ int run_daemon(const DaemonConfig& config) {
   return serve(config, world, [&] { return make_world_renderer(world, options); });
 }
 
-int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer) {
-  Daemon daemon(config, world, make_renderer);
+int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+          Playback* playback) {
+  Daemon daemon(config, world, make_renderer, playback);
   return daemon.run();
 }
 

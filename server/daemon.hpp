@@ -12,6 +12,8 @@
 
 namespace sonard::server {
 
+class Playback;
+
 /// The value of a configuration key turned out to be unusable when it was used: world missing, address taken.
 /// what() is one line.
 struct StartError : std::runtime_error {
@@ -37,6 +39,8 @@ render::RendererOptions renderer_options(const DaemonConfig& config);
 int run_daemon(const DaemonConfig& config);
 
 /// The same with a world already loaded and any renderer; run_daemon() without rendering, for tests.
-int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer);
+/// @param playback what heads play back that are told to; the daemon ends when it is finished. May be null.
+int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+          Playback* playback = nullptr);
 
 }  // namespace sonard::server

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,18 +17,21 @@
 #include "server/config/loader.hpp"
 #include "server/daemon.hpp"
 #include "server/exit_codes.hpp"
+#include "server/info/info.hpp"
+#include "server/logs/log_file.hpp"
 #include "server/offline/arguments.hpp"
 #include "server/offline/output_folder.hpp"
 #include "server/offline/render_run.hpp"
 #include "server/offline/voyage.hpp"
+#include "server/replay/replay.hpp"
 
 namespace sonard::server {
 namespace {
 
 constexpr const char* exit_code_help =
     "Exit codes:\n"
-    "  0   ended by SIGINT or SIGTERM, or nothing to complain about\n"
-    "  2   configuration, world or trajectory cannot be used\n"
+    "  0   ended by SIGINT or SIGTERM or with the recording, or nothing to complain about\n"
+    "  2   configuration, world, trajectory or log cannot be used\n"
     "  3   an address or port cannot be used\n"
     "  4   the backend asked for cannot be had, failed self-test, or the renderer failed while serving\n"
     "  5   a file or folder to write to cannot be used\n"
@@ -39,6 +43,9 @@ struct CommandLine {
   std::string log_level;  ///< empty: as the configuration says
   bool no_network = false;
   render::Backend backend = render::Backend::automatic;  ///< of selftest
+  std::filesystem::path log;                             ///< of replay and info
+  ReplayTiming timing;
+  InfoOptions info;
 };
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
@@ -70,8 +77,9 @@ void print_error(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
-int run(const CommandLine& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config);
+/// Loads CONFIG, and logs as it says from then on.
+LoadedConfig load_and_log(const CommandLine& arguments) {
+  LoadedConfig loaded = load_config(arguments.config);
   const spdlog::level::level_enum level = arguments.log_level.empty()
                                               ? spdlog_level(loaded.config.log_level)
                                               : spdlog::level::from_str(arguments.log_level);
@@ -79,10 +87,31 @@ int run(const CommandLine& arguments) {
   for (const std::string& warning : loaded.warnings) {
     spdlog::warn("{}", warning);
   }
+  return loaded;
+}
+
+int run(const CommandLine& arguments) {
+  const LoadedConfig loaded = load_and_log(arguments);
   try {
     return run_daemon(loaded.config);
   } catch (const StartError& error) {
     print_error(loaded.problem_with(error.key, error.what()));
+    return error.exit_code;
+  }
+}
+
+int replay(const CommandLine& arguments) {
+  LoadedConfig loaded;
+  if (arguments.config.empty()) {
+    spdlog::set_level(spdlog::level::from_str(arguments.log_level.empty() ? "info" : arguments.log_level));
+  } else {
+    loaded = load_and_log(arguments);
+  }
+  try {
+    return replay(arguments.log, arguments.config.empty() ? std::nullopt : std::optional(loaded.config),
+                  arguments.timing);
+  } catch (const StartError& error) {
+    print_error(arguments.config.empty() ? error.what() : loaded.problem_with(error.key, error.what()));
     return error.exit_code;
   }
 }
@@ -159,6 +188,9 @@ int guarded(const Command& command) {
   } catch (const CLI::ValidationError& error) {  // of an option whose meaning depends on the configuration
     print_error(error.what());
     return exit_usage;
+  } catch (const LogError& error) {
+    print_error(error.what());
+    return exit_config;
   } catch (const render::RendererError& error) {
     print_error(fmt::format("renderer: {}", error.what()));
     return exit_renderer;
@@ -198,7 +230,50 @@ int main_program(int argc, char** argv) {
           CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},
                                                                          {"raster", render::Backend::raster},
                                                                          {"ray", render::Backend::ray}}));
-  for (CLI::App* command : {run_command, check_command, render_command, selftest_command}) {
+
+  CLI::App* replay_command =
+      app.add_subcommand("replay", "Serve a recorded .glf, .dat or .mcap as the device that made it");
+  replay_command->add_option("LOG", arguments.log, "What to play back (docs/logs.md)")->required();
+  replay_command->add_option(
+      "--config", arguments.config,
+      "YAML file with addresses and timing of the heads; without it they are on loopback");
+  CLI::Option* speed =
+      replay_command->add_option("--speed", arguments.timing.speed, "2: twice as fast as recorded")
+          ->check(CLI::Range(1e-3, 1e3))
+          ->capture_default_str();
+  replay_command
+      ->add_flag("--as-fast-as-asked", arguments.timing.as_asked,
+                 "The next ping whenever the client wants one, whatever the times of the recording")
+      ->excludes(speed);
+  replay_command->add_flag("--loop", arguments.timing.loop,
+                           "From the start again after the last ping, until SIGINT or SIGTERM");
+  bool start_now = false;
+  replay_command
+      ->add_option_function<std::string>(
+          "--start", [&start_now](const std::string& when) { start_now = when == "now"; },
+          "ping: time runs from the first ping that a client wants, and waits for clients; now: it runs from "
+          "the "
+          "start, and pings are skipped that nobody wants in time")
+      ->check(CLI::IsMember({"ping", "now"}))
+      ->default_str("ping");
+  replay_command->add_option("--log-level", arguments.log_level, "Least severe events shown")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
+
+  CLI::App* info_command = app.add_subcommand("info", "Say what is in a .glf, .dat, .mcap or .pcapng");
+  info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
+  info_command->add_flag("--json", arguments.info.json, "For programs");
+  CLI::Option* pictures = info_command->add_option("--png", arguments.info.pictures,
+                                                   "Folder for a picture of each ping of a Gemini");
+  info_command->add_option("--every", arguments.info.every, "Pictures of each N-th ping only")
+      ->needs(pictures)
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+  info_command
+      ->add_option("--utc-offset", arguments.info.utc_offset_h,
+                   "Hours that the clock of a .glf was ahead of UTC; without it those of this machine's zone")
+      ->check(CLI::Range(-14.0, 14.0));
+
+  for (CLI::App* command :
+       {run_command, check_command, render_command, replay_command, info_command, selftest_command}) {
     command->footer(exit_code_help);
   }
 
@@ -207,6 +282,7 @@ int main_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_clean : exit_usage;
   }
+  arguments.timing.start_now = start_now;
   start_log();
   return guarded([&] {
     if (run_command->parsed()) {
@@ -214,6 +290,13 @@ int main_program(int argc, char** argv) {
     }
     if (render_command->parsed()) {
       return render_offline(offline);
+    }
+    if (info_command->parsed()) {
+      info(arguments.log, arguments.info);
+      return static_cast<int>(exit_clean);
+    }
+    if (replay_command->parsed()) {
+      return replay(arguments);
     }
     return check_command->parsed() ? check(arguments) : selftest(arguments);
   });

@@ -395,6 +395,9 @@ void Device::on_trigger(TimePoint now) {
     impl_->pinger().on_trigger(now);
   }
 }
+void Device::offer(const std::optional<RecordedPing>& ping) {
+  impl_->pinger().offer(ping);
+}
 void Device::advance(TimePoint now) {
   impl_->advance(now);
 }

@@ -65,6 +65,9 @@ class Device {
   void set_out_of_water(bool out_of_water);
   /// One edge at the external trigger input (run mode 2).
   void on_trigger(TimePoint now);
+  /// For DeviceConfig::plays_back: the ping to send when the surface next wants one, in place of the one
+  /// offered before. Gone when its job is out; without one no ping begins.
+  void offer(const std::optional<RecordedPing>& ping);
 
   /// Runs everything due at `now`. Call after every on_*() and at next_deadline(). Calls that come late are
   /// made up for within the pacing rules: no more than DeviceConfig::burst_lines ping datagrams leave at

@@ -46,6 +46,9 @@ struct DeviceConfig {
   /// at its transmit time, when the pose is known. More lets the ping be rendered while the previous one is
   /// still being sent, which shortens the shortest ping period by as much, and the pose is then a prediction.
   std::chrono::nanoseconds render_lead{0};
+
+  /// The head sends the pings that Device::offer() names, and no others.
+  bool plays_back = false;
 };
 
 }  // namespace sonard::gemini

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "protocol/gemini/device_config.hpp"
@@ -27,6 +28,9 @@ struct PingJob {
   bool transmit = true;        ///< false: the head only listens, there are no echoes but there is noise
   double gain_db = 0.0;        ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
   double gain_percent = 50.0;  ///< what the client set, by gemini::gain_percent(): for logs
+  int rle_threshold = 0;       ///< samples below it become zero when the image travels; 0: none do
+  /// The RecordedPing that answers this job, whatever it asks for; nullopt: it is to be rendered.
+  std::optional<std::uint64_t> record;
 
   /// Lines of the image; a remainder of native lines that fills no whole line is not sent.
   int lines() const { return native_lines >> compression_log2; }
@@ -38,6 +42,18 @@ struct PingImage {
   std::uint64_t ping_number = 0;
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
+};
+
+/// A ping that was recorded and is to be sent once more, as it was: of all that the surface asks for, a head
+/// that plays back heeds only that it wants a ping. Its image has 8 bits and travels without run lengths.
+struct RecordedPing {
+  std::uint64_t record = 0;             ///< PingJob::record
+  int lines = 0;                        ///< of the image
+  int compression_log2 = 0;             ///< 0..4; lines * 2^n <= 65535
+  double sound_speed_mps = 0.0;         ///< that the head reckoned with
+  bool sound_speed_from_config = true;  ///< the surface had given it, not the velocimeter
+  /// Earliest transmit time; nullopt: when the surface wants it.
+  std::optional<TimePoint> due;
 };
 
 }  // namespace sonard::gemini

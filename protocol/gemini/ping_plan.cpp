@@ -44,6 +44,7 @@ PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   job.pulse_s = config.tx_length / carrier_hz;
   job.transmit = config.tx_length != 0;
   job.gain_db = receive_gain_db(config.main_gain, config.spreading, device.gain);
+  job.rle_threshold = config.rle_threshold_applied();
   job.gain_percent = gain_percent(config.spreading);
   return job;
 }
@@ -87,6 +88,29 @@ std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& 
   plan.job = make_job(config, device);
   plan.head = make_head(config, plan.job, device);
   plan.line_scale = static_cast<std::uint16_t>(config.software_gain & 0xFFFF);
+  return plan;
+}
+
+PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device) {
+  PingPlan plan = asked;
+  if (recorded.due) {
+    plan.interval = {};
+  }
+  plan.job.native_lines = recorded.lines << recorded.compression_log2;
+  plan.job.compression_log2 = recorded.compression_log2;
+  plan.job.sound_speed_mps = recorded.sound_speed_mps;
+  plan.job.assumed_sound_speed_mps = recorded.sound_speed_mps;
+  plan.job.line_step_m = recorded.sound_speed_mps / (2.0 * line_rate_hz);
+  plan.job.sixteen_bit = false;
+  plan.job.rle_threshold = 0;
+
+  plan.head.ext_mode = static_cast<std::uint16_t>(asked.head.ext_mode | ext_bits::eight_bit);
+  plan.head.end_range = static_cast<std::uint16_t>(plan.job.native_lines);
+  plan.head.velocimeter_speed = speed_code(recorded.sound_speed_mps, device.snap_sound_speed);
+  plan.head.sound_speed_used = static_cast<std::uint16_t>(
+      (recorded.sound_speed_from_config ? sound_speed_from_config : 0U) | plan.head.velocimeter_speed);
+  plan.head.rle_threshold = 0;
+  plan.head.range_compression = static_cast<std::uint8_t>(recorded.compression_log2);
   return plan;
 }
 

@@ -36,4 +36,8 @@ std::chrono::nanoseconds acoustic_time(int native_lines);
 /// moved inside. Everything not named in PingPlan has no effect on a 720i or on this model of it.
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device);
 
+/// What a head does about `asked` that has only this recorded ping to offer. A ping with a time of its own
+/// keeps it: the interval asked for does not matter.
+PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device);
+
 }  // namespace sonard::gemini

@@ -115,10 +115,14 @@ const PingPlan* Pinger::wanted_plan() const {
 // The rate rules (8.4): not before the previous tail was sent, nor before its last echo is back, nor more
 // often than the head can. nullopt while no ping can be started or none is wanted.
 std::optional<TimePoint> Pinger::next_transmit_time() const {
-  if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr) {
+  if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr ||
+      (config_.plays_back && !offered_)) {
     return std::nullopt;
   }
-  const TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
+  TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
+  if (offered_) {
+    wanted_at = std::max(wanted_at, offered_->due.value_or(wanted_at));
+  }
   const TimePoint time = std::max(wanted_at, earliest_start_);
   if (!sending()) {
     return transmission_ ? std::max(time, transmission_->tail_sent_at().value_or(time)) : time;
@@ -134,7 +138,8 @@ std::optional<TimePoint> Pinger::acquisition_due() const {
 }
 
 void Pinger::acquire(TimePoint now) {
-  const PingPlan plan = *wanted_plan();
+  const PingPlan asked = *wanted_plan();
+  const PingPlan plan = offered_ ? held_to(*offered_, asked, config_) : asked;
   TimePoint transmit_time = *next_transmit_time();
   if (now - transmit_time > start_slack) {
     transmit_time = now;
@@ -152,7 +157,10 @@ void Pinger::acquire(TimePoint now) {
   acquisition_ =
       Acquisition{plan, next_ping_number_++, transmit_time, asked_at, earliest_start_, std::nullopt, {}};
   earliest_start_ = transmit_time + std::max(config_.min_ping_period, plan.listening_time());
-  job_ = plan.job;
+  job_ = asked.job;
+  if (const auto offered = std::exchange(offered_, std::nullopt)) {
+    job_->record = offered->record;
+  }
   job_->ping_number = acquisition_->ping_number;
   job_->transmit_time = transmit_time;
   ++counters_.pings_started;

@@ -37,6 +37,7 @@ class Pinger {
   void on_image_failed(std::uint64_t ping_number);
   void set_inter_packet_gap(std::chrono::nanoseconds gap) { pacer_.set_gap(gap); }
   void set_out_of_water(bool out_of_water) { out_of_water_ = out_of_water; }
+  void offer(const std::optional<RecordedPing>& ping) { offered_ = ping; }
 
   /// The surface goes offline: no further pings. One that is on the wire is finished.
   void stop();
@@ -98,6 +99,7 @@ class Pinger {
   bool suspended_ = false;
   bool out_of_water_ = false;
   bool pings_out_of_water_ = false;  ///< by the newest configuration
+  std::optional<RecordedPing> offered_;
 
   // Acquired.
   std::uint64_t next_ping_number_ = 0;

@@ -76,8 +76,23 @@ Result<LogView, WireError> LogView::open_archive(std::span<const std::uint8_t> a
   return log;
 }
 
+std::optional<LogView> LogView::open_cut(std::span<const std::uint8_t> archive) {
+  std::optional<PiecewiseBytes> dat = cut_dat(archive);
+  if (!dat) {
+    return std::nullopt;
+  }
+  LogView log;
+  log.dat_ = std::move(*dat);
+  log.index_ = index_dat(log.dat_);
+  return log;
+}
+
 Result<ImageRecord, WireError> LogView::image(const RecordEntry& entry) const {
   return placed(decode_image(record_bytes(entry)), entry);
+}
+
+Result<ImageRecord, WireError> LogView::image_outline(const RecordEntry& entry) const {
+  return placed(decode_image_outline(record_bytes(entry)), entry);
 }
 
 Result<StatusRecord, WireError> LogView::status(const RecordEntry& entry) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ class LogView {
   static Result<LogView, WireError> open(std::span<const std::uint8_t> file,
                                          std::uint64_t max_unpacked_size = default_max_unpacked_size);
 
+  /// A .glf that open() refuses because its end is missing: whatever records are left of it (cut_dat()).
+  static std::optional<LogView> open_cut(std::span<const std::uint8_t> archive);
+
   LogView(LogView&&) = default;
   LogView& operator=(LogView&&) = default;
 
@@ -35,6 +39,8 @@ class LogView {
 
   /// @param entry one of index().records; offsets of errors are in the .dat
   Result<ImageRecord, WireError> image(const RecordEntry& entry) const;
+  /// The image without its pixels (decode_image_outline()).
+  Result<ImageRecord, WireError> image_outline(const RecordEntry& entry) const;
   Result<StatusRecord, WireError> status(const RecordEntry& entry) const;
 
  private:

@@ -63,6 +63,23 @@ Result<ZipEntry, WireError> located(std::span<const std::uint8_t> archive, const
                   .data = data};
 }
 
+/// Stored blocks from `start` on, the last one as far as it goes.
+PiecewiseBytes stored_front(std::span<const std::uint8_t> archive, std::size_t start) {
+  PiecewiseBytes pieces;
+  ByteReader reader{archive.subspan(start)};
+  for (bool last = false; !last;) {
+    const std::uint8_t kind = reader.u8("block");
+    const std::uint16_t size = reader.u16le("block");
+    const std::uint16_t inverse = reader.u16le("block");
+    if (!reader.ok() || (kind & 0x06) != 0 || (size ^ inverse) != 0xFFFF) {
+      break;
+    }
+    pieces.append(reader.bytes(std::min<std::size_t>(size, reader.remaining()), "block"));
+    last = (kind & 0x01) != 0;
+  }
+  return pieces;
+}
+
 }  // namespace
 
 Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_t> archive) {
@@ -111,6 +128,25 @@ std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry) {
     last = (kind & 0x01) != 0;
   }
   return pieces.size() == entry.size ? std::optional{std::move(pieces)} : std::nullopt;
+}
+
+std::optional<PiecewiseBytes> cut_dat(std::span<const std::uint8_t> archive) {
+  ByteReader reader{archive};
+  while (reader.ok()) {
+    zip::LocalHeader local;
+    read_fields<zip::Layout<zip::LocalHeader>>(reader, local);
+    const auto name = reader.bytes(local.entry.name_size, "entry_name");
+    reader.skip(local.entry.extra_size, "entry_name");
+    if (!reader.ok() || local.signature != zip::local_signature) {
+      break;
+    }
+    if (std::string_view(reinterpret_cast<const char*>(name.data()), name.size()).ends_with(".dat")) {
+      return local.entry.method == zip::method_deflate ? std::optional(stored_front(archive, reader.offset()))
+                                                       : std::nullopt;
+    }
+    reader.skip(local.entry.compressed_size, "entry_data");
+  }
+  return std::nullopt;
 }
 
 Result<std::vector<std::uint8_t>, WireError> unpacked(const ZipEntry& entry, std::uint64_t max_size) {

@@ -31,6 +31,10 @@ Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_
 /// one that has to be unpacked.
 std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry);
 
+/// As much of the first .dat as there is in an archive whose end is missing, with its directory. Only a .dat
+/// in stored blocks whose local header has its size can be found so; nullopt where there is none.
+std::optional<PiecewiseBytes> cut_dat(std::span<const std::uint8_t> archive);
+
 /// Unpacks an entry of at most `max_size` bytes and holds it to its CRC.
 Result<std::vector<std::uint8_t>, WireError> unpacked(const ZipEntry& entry, std::uint64_t max_size);
 

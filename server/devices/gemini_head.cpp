@@ -17,6 +17,7 @@
 #include "server/devices/gemini_settings.hpp"
 #include "server/devices/head_rendering.hpp"
 #include "server/devices/interfaces.hpp"
+#include "server/devices/playback.hpp"
 #include "server/devices/udp_endpoint.hpp"
 
 namespace sonard::server {
@@ -40,6 +41,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
 
   const GeminiHeadConfig config;
   const HeadServices services;
+  const int stream;
 
   gemini::Device device;
   gemini::DeviceAddresses addresses;
@@ -65,6 +67,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void pump();
   void take_from_surface(TimePoint now);
   void advance_device(TimePoint now);
+  void offer_recorded(TimePoint now);
   void drop_unheard_job(TimePoint now);
   void schedule();
 
@@ -101,6 +104,7 @@ GeminiHead::Impl::Impl(const GeminiHeadConfig& head_config, int stream_number,
                        const HeadServices& head_services)
     : config(head_config),
       services(head_services),
+      stream(stream_number),
       device(config.device, services.clock.now()),
       addresses(device.addresses()),
       socket(std::make_unique<UdpEndpoint>(services.io, Endpoint{config.bind_address, config.command_port})),
@@ -229,6 +233,7 @@ void GeminiHead::Impl::take_from_surface(TimePoint now) {
 void GeminiHead::Impl::advance_device(TimePoint now) {
   drop_unheard_job(now);  // a command has called it off, and the next ping waits for its answer
   device.set_out_of_water(out_of_water(now));
+  offer_recorded(now);
   device.advance(now);
   send(now, device.take_outgoing());
   while (const std::optional<gemini::PingJob> job = device.take_job()) {
@@ -242,6 +247,13 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
     send(now, device.take_outgoing());
   }
   drop_unheard_job(now);  // the surface has just timed out
+}
+
+void GeminiHead::Impl::offer_recorded(TimePoint now) {
+  if (config.device.plays_back && services.playback != nullptr) {
+    services.playback->progress(stream, now, device.counters());
+    device.offer(services.playback->next(stream, now));
+  }
 }
 
 // A ping that is called off while other heads are being rendered is not rendered.
@@ -353,6 +365,9 @@ void GeminiHead::Impl::check_interface() const {
 // False when this ping cannot be made.
 bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   log.settings(job);
+  if (job.record) {
+    services.playback->started(stream, job);
+  }
   const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(job.transmit_time);
   if (!T_world_sonar) {
     rendering.count_missing_pose();
@@ -360,7 +375,8 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   }
   const std::uint64_t transmit_us = device.clock_us(job.transmit_time);
   log.ping(job, transmit_us, *T_world_sonar);
-  rendering.submit({job.ping_number, job.transmit_time, transmit_us, *T_world_sonar,
+  // A recorded ping goes to the recording under the number that it has there.
+  rendering.submit({job.record.value_or(job.ping_number), job.transmit_time, transmit_us, *T_world_sonar,
                     rendering.T_world_mount(job.transmit_time + gemini::acoustic_time(job.native_lines)),
                     to_sonar_settings(job, config)},
                    [weak = weak_from_this(), number = job.ping_number](RenderResult result) {

@@ -12,6 +12,7 @@ class io_context;
 
 namespace sonard::server {
 
+class Playback;
 class PoseHistory;
 class RenderService;
 
@@ -23,6 +24,7 @@ struct HeadServices {
   const PoseHistory& poses;
   std::optional<double> water_surface_z_m;  ///< height above which a sonar is out of the water
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
+  Playback* playback = nullptr;             ///< for heads whose DeviceConfig::plays_back is set
 };
 
 /// A device on its transport. Constructor and destructor belong to the thread that owns the io_context while

@@ -65,6 +65,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto log = LogView::open(file, max_unpacked_size);
   if (!log) {
     require(log.error().offset <= size, "an error lies inside the file");
+    if (const auto left = LogView::open_cut(file)) {
+      check_index(left->index());
+    }
     return 0;
   }
   const DatIndex& index = log->index();
@@ -72,6 +75,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const RecordEntry& entry : index.records) {
     if (entry.type == RecordType::image) {
       check_decoded(log->image(entry), entry, decode_image);
+      require(!log->image(entry) || log->image_outline(entry).has_value(), "what decodes has an outline");
     } else {
       check_decoded(log->status(entry), entry, decode_status);
     }

@@ -1,19 +1,24 @@
 #!/usr/bin/env python3
 """The daemon and its clients as separate processes on separate machines (network namespaces on one wire).
 
-    link_test.py --programs DIR [TestCase.test_name ...]
+    link_test.py --programs DIR [--replay] [TestCase.test_name ...]
+
+With --replay the heads play back logs that are written here, and what arrives is compared with those.
 """
 
 import argparse
 import csv
 import math
 import os
+import re
 import signal
 import sys
 import tempfile
 import time
 import unittest
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+import glf_writer
 import wire
 from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, SURFACE_ADDRESS, Deadline, Lab, need,
                  receive)
@@ -21,6 +26,7 @@ from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, S
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
+REPLAY = False  # heads play back logs instead of rendering
 
 # The machine that runs these tests may be busy with others: patience costs nothing when all is well.
 START_S = 60
@@ -99,9 +105,28 @@ class LinkTest(unittest.TestCase):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
             file.write(DAEMON.format(world=WORLD, stale=stale, heads="".join(heads)))
-        daemon = lab.start(lab.head, os.path.join(PROGRAMS, "sonard"), "run", path)
+        command = ["replay", self.write_log(heads), "--config", path, "--as-fast-as-asked", "--loop"] if REPLAY else ["run", path]
+        daemon = lab.start(lab.head, os.path.join(PROGRAMS, "sonard"), *command)
         daemon.wait_for_line(r"sonard ready heads=%d " % len(heads), START_S)
         return daemon
+
+    def write_log(self, heads):
+        """A log for heads of these configurations. Their images have the shape that start_viewer() asks for."""
+        names = [re.search(r"name: (\S+)", head).group(1) for head in heads]
+        ids = [int(re.search(r"sonar_id: (\d+)", head).group(1)) for head in heads]
+        self.recorded = {name: glf_writer.noise(250, 482, sonar_id) for name, sonar_id in zip(names, ids)}
+        path = os.path.join(self.folder.name, "log.glf")
+        glf_writer.write_glf(path, [image for images in self.recorded.values() for image in images])
+        return path
+
+    def check_recorded(self, crcs, name):
+        """What arrived is in the log, in this order. A request that the link has doubled makes a ping more than the
+        client counts, so a few may lie between."""
+        written = 2 * [f"{image.crc32():08x}" for image in self.recorded[name]]
+        at = 0
+        for crc in crcs:
+            self.assertIn(crc, written[at:])
+            at = written.index(crc, at) + 1
 
     def start_viewer(self, lab, *options, surface=None, range_m=4):
         namespace = surface or lab.surface
@@ -125,6 +150,8 @@ class LinkTest(unittest.TestCase):
             self.assertEqual(ping["lines_lost"], "0", ping)
             self.assertEqual(ping["crc32"], rendered.get(int(ping["transmit_us"])), ping)
         self.assertEqual(len({ping["transmit_us"] for ping in logged}), count, "the same ping was counted twice")
+        if REPLAY:
+            self.check_recorded([ping["crc32"] for ping in logged], name)
         summary = key_values([line for line in viewer.lines if line.startswith("summary ")][-1])
         self.assertEqual(summary["pings_complete"], str(count))
         self.assertEqual(summary["pings_incomplete"], "0")
@@ -443,11 +470,13 @@ class StalePoses(LinkTest):
 
 
 def main():
-    global PROGRAMS
+    global PROGRAMS, REPLAY
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
+    parser.add_argument("--replay", action="store_true", help="let the heads play back logs")
     parser.add_argument("tests", nargs="*")
     arguments = parser.parse_args()
+    REPLAY = arguments.replay
     PROGRAMS = os.path.abspath(arguments.programs)
     unittest.main(argv=[sys.argv[0], "-v", *arguments.tests], module=__name__)
 

@@ -93,5 +93,41 @@ TEST(Crash, archives_that_were_cut_are_refused) {
   }
 }
 
+TEST(Crash, of_an_archive_without_its_end_every_whole_record_is_left) {
+  const SmallLog log;
+  const Bytes whole = packed(small_dat());
+  // Behind both local headers, the .cfg and the header of the first block; all records are in that block.
+  const auto first = std::ranges::search(whole, log.parts[0]);
+  ASSERT_FALSE(first.empty());
+  const auto start = static_cast<std::size_t>(first.begin() - whole.begin());
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const std::span cut(whole.data(), size);
+    ASSERT_FALSE(LogView::open(cut)) << size;
+    const auto left = LogView::open_cut(cut);
+    if (size < start) {
+      EXPECT_TRUE(!left || left->index().records.empty()) << size;
+      continue;
+    }
+    ASSERT_TRUE(left) << size;
+    const auto next = std::ranges::upper_bound(log.ends, size - start);
+    ASSERT_EQ(left->index().records.size(), static_cast<std::size_t>(next - log.ends.begin()) - 1) << size;
+  }
+}
+
+TEST(Crash, of_several_blocks_none_is_lost) {
+  std::vector<Bytes> parts;
+  for (int i = 0; i < 40; ++i) {
+    parts.push_back(encode(patterned_image(i), 0));  // 3.8 kB each, as they are: three blocks
+  }
+  Bytes dat = joined(parts);
+  dat.insert(dat.end(), dat_terminator.begin(), dat_terminator.end());
+  Bytes archive = packed(dat);
+  archive.resize(archive.size() - 30);  // into the end record
+  const auto left = LogView::open_cut(archive);
+  ASSERT_TRUE(left);
+  ASSERT_EQ(left->index().records.size(), 40U);
+  EXPECT_EQ(*left->image(left->index().records[39]), patterned_image(39));
+}
+
 }  // namespace
 }  // namespace sonard::glf::testing

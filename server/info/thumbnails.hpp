@@ -1,0 +1,17 @@
+// Small pictures of the pings of a log.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "server/logs/recording.hpp"
+
+namespace sonard::server {
+
+/// Writes each `every`-th ping of each head as a fan seen from above, FOLDER/<name or id>_000012.png, 0 being
+/// the head's first. Makes the folder; overwrites.
+/// @return how many. @throws LogError naming the file that cannot be written or the head that cannot be drawn
+std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
+                               const std::filesystem::path& folder, std::uint64_t every);
+
+}  // namespace sonard::server

@@ -1,0 +1,99 @@
+#include "server/logs/glf_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "protocol/glf/log_time.hpp"
+
+namespace sonard::server {
+namespace {
+
+glf::LogView opened(const LogFile& file, bool& cut) {
+  auto view = glf::LogView::open(file.bytes());
+  if (view) {
+    return std::move(*view);
+  }
+  if (file.kind() == LogKind::glf) {
+    if (auto left = glf::LogView::open_cut(file.bytes())) {
+      cut = true;
+      return std::move(*left);
+    }
+  }
+  throw file.error(to_string(view.error()));
+}
+
+RecordedSettings settings_of(const glf::ImageRecord& image) {
+  RecordedSettings settings;
+  settings.lines = static_cast<int>(image.lines);
+  settings.beams = static_cast<int>(image.beams);
+  settings.sound_speed_mps = image.sound_speed_mps;
+  settings.line_step_m = image.sound_speed_mps / 2.0 / image.modulation_frequency_hz;
+  settings.sound_speed_from_config = (image.ping_flags & glf::ping_flag_bits::manual_sound_speed) != 0;
+  settings.gain_percent = image.gain_percent;
+  return settings;
+}
+
+// Other programs' logs may hold anything.
+bool makes_sense(const glf::ImageRecord& image) {
+  return image.lines > 0 && image.beams > 0 && image.modulation_frequency_hz > 0 &&
+         std::isfinite(image.sound_speed_mps) && image.sound_speed_mps > 0.0F;
+}
+
+}  // namespace
+
+GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file, cut_)) {
+  const auto& records = view_.index().records;
+  for (std::size_t place = 0; place < records.size(); ++place) {
+    if (records[place].type != glf::RecordType::image) {
+      continue;
+    }
+    const auto image = view_.image_outline(records[place]);
+    const std::optional<std::int64_t> time_ns =
+        image ? glf::unix_ns(image->transmit_time_s, 0) : std::optional<std::int64_t>{};
+    if (!time_ns || !plausible_time(*time_ns) || !makes_sense(*image)) {
+      ++bad_images_;
+      continue;
+    }
+    RecordedHead& head = this->head({}, image->origin.device_id);
+    if (head.images.empty()) {
+      head.bearings_rad.resize(image->bearings_rad.size());
+      // bearing_for_log() undoes itself, and its sign is that of our frame: port is positive.
+      std::ranges::copy(image->bearings_rad, head.bearings_rad.begin());
+    }
+    head.images.push_back({*time_ns, settings_of(*image), place});
+  }
+  sort_images();
+}
+
+std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const {
+  auto record = view_.image(view_.index().records.at(image.place));
+  if (!record) {
+    throw file_.error(to_string(record.error()));
+  }
+  return std::move(record->pixels);
+}
+
+std::vector<std::string> GlfRecording::problems() const {
+  const glf::DatIndex& index = view_.index();
+  std::vector<std::string> problems;
+  if (cut_) {
+    problems.emplace_back("cut: the end of the archive is missing");
+  }
+  if (index.tail_size > 0) {
+    problems.push_back(
+        fmt::format("cut or damaged: of {} bytes after the last whole record no more can be read ({})",
+                    index.tail_size, index.tail_error ? to_string(*index.tail_error) : "no record"));
+  } else if (!index.closed && !cut_) {
+    problems.emplace_back("not closed: still being written, or its writer went away");
+  }
+  if (const std::uint64_t damaged = index.damaged_records + bad_images_; damaged > 0) {
+    problems.push_back(fmt::format("{} images make no sense and are left out", damaged));
+  }
+  return problems;
+}
+
+}  // namespace sonard::server

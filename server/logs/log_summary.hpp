@@ -1,0 +1,65 @@
+// What is in a log, in numbers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/logs/recording.hpp"
+
+namespace sonard::server {
+
+/// Images in a row, or not, that were made with the same settings.
+struct SettingsCount {
+  RecordedSettings settings;
+  std::uint64_t pings = 0;
+};
+
+/// Times of pings: how regularly they came.
+struct PingRate {
+  double median_interval_s = 0.0;  ///< 0 with less than two pings
+  std::uint64_t gaps = 0;          ///< intervals of more than twice the median
+  double longest_gap_s = 0.0;      ///< 0 without gaps
+
+  double rate_hz() const { return median_interval_s > 0.0 ? 1.0 / median_interval_s : 0.0; }
+};
+
+/// @param times_ns rising
+PingRate ping_rate(const std::vector<std::int64_t>& times_ns);
+
+struct HeadSummary {
+  std::string name;                     ///< empty where the log has none
+  std::uint16_t id = 0;                 ///< sonar ID, or node
+  bool scanning = false;                ///< a Micron: a ping is a line of one beam; else a Gemini
+  std::vector<SettingsCount> settings;  ///< in order of appearance
+  std::vector<std::int64_t> times_ns;   ///< of pings, rising; the clock is that of RecordedImage
+
+  std::uint64_t pings() const { return times_ns.size(); }
+};
+
+struct LogSummary {
+  std::string path;
+  LogKind kind = LogKind::glf;
+  std::uint64_t size_bytes = 0;
+  std::optional<bool> closed;  ///< nullopt: logs of this kind do not say
+  bool local_time = false;     ///< times are those of an unknown zone, counted as if that were UTC
+  std::optional<std::pair<std::int64_t, std::int64_t>> span_ns;  ///< first and last time of anything
+  std::vector<HeadSummary> heads;
+  std::vector<std::pair<std::string, std::uint64_t>> other_records;  ///< what, and how many
+  std::vector<std::string> problems;                                 ///< one phrase each
+};
+
+/// @throws LogError when the log is broken from its start
+LogSummary summarise(const LogFile& file);
+
+/// Adds a ping; times come in any order, and summarise() sorts them.
+void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings);
+HeadSummary& head_of(LogSummary& log, const std::string& name, std::uint16_t id, bool scanning);
+/// Leaves out what is no plausible_time().
+void include(LogSummary& log, std::int64_t time_ns);
+void count(LogSummary& log, const std::string& what, std::uint64_t records = 1);
+
+}  // namespace sonard::server

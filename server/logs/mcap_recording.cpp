@@ -1,0 +1,105 @@
+#include "server/logs/mcap_recording.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "protocol/log/log_messages.hpp"
+
+namespace sonard::server {
+namespace {
+
+mcap::Reader opened(const LogFile& file) {
+  auto reader = mcap::Reader::open(file.bytes());
+  if (!reader) {
+    throw file.error(to_string(reader.error()));
+  }
+  return std::move(*reader);
+}
+
+bool makes_sense(const log::SonarImage& image) {
+  return !log::problem_of(image) && plausible_time(image.transmit_time_ns()) && image.range_lines() > 0 &&
+         image.beams() > 0 && image.device_id() <= std::numeric_limits<std::uint16_t>::max() &&
+         std::isfinite(image.metres_per_line()) && image.metres_per_line() > 0.0 &&
+         std::isfinite(image.sound_speed_mps()) && image.sound_speed_mps() > 0.0;
+}
+
+RecordedSettings settings_of(const log::SonarImage& image) {
+  RecordedSettings settings;
+  settings.lines = static_cast<int>(image.range_lines());
+  settings.beams = static_cast<int>(image.beams());
+  settings.line_step_m = image.metres_per_line();
+  settings.sound_speed_mps = image.sound_speed_mps();
+  settings.gain_percent = image.gain_percent();
+  settings.frequency_hz = image.frequency_hz();
+  return settings;
+}
+
+}  // namespace
+
+McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(file)) {
+  const std::set<std::uint16_t> channels = channels_of("sonard.log.SonarImage");
+  if (channels.empty()) {
+    return;  // no channel would mean all of them
+  }
+  mcap::MessageCursor cursor = reader_.messages(channels);
+  while (const std::optional<mcap::Message> message = cursor.next()) {
+    add(message->data);
+  }
+  unreadable_ = cursor.error();
+  sort_images();
+}
+
+void McapRecording::add(std::span<const std::uint8_t> message) {
+  const auto image = log::decode<log::SonarImage>(message);
+  if (!image || !makes_sense(*image)) {
+    ++bad_messages_;
+    return;
+  }
+  RecordedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()));
+  if (head.images.empty()) {
+    head.bearings_rad.assign(image->bearings_rad().begin(), image->bearings_rad().end());
+  }
+  head.images.push_back({image->transmit_time_ns(), settings_of(*image), messages_.size()});
+  messages_.push_back(message);
+}
+
+std::vector<std::uint8_t> McapRecording::pixels(const RecordedImage& image) const {
+  const auto message = log::decode<log::SonarImage>(messages_.at(image.place));
+  if (!message) {
+    throw file_.error("an image cannot be read");  // it could when the log was opened
+  }
+  return {message->pixels().begin(), message->pixels().end()};
+}
+
+std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) const {
+  std::set<std::uint16_t> ids;
+  for (const mcap::Channel& channel : reader_.summary().channels) {
+    const mcap::Schema* const found = reader_.summary().schema(channel.schema_id);
+    if (found != nullptr && found->name == schema && found->encoding == log::encoding_name) {
+      ids.insert(channel.id);
+    }
+  }
+  return ids;
+}
+
+std::vector<std::string> McapRecording::problems() const {
+  std::vector<std::string> problems;
+  if (!reader_.finished()) {
+    problems.emplace_back("not closed: cut, still being written, or its writer went away");
+  }
+  for (const std::optional<WireError>& error : {reader_.stopped_by(), unreadable_}) {
+    if (error) {
+      problems.push_back(fmt::format("damaged: what follows cannot be read ({})", to_string(*error)));
+    }
+  }
+  if (bad_messages_ > 0) {
+    problems.push_back(fmt::format("{} images make no sense and are left out", bad_messages_));
+  }
+  return problems;
+}
+
+}  // namespace sonard::server

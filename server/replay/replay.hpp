@@ -1,0 +1,17 @@
+// `sonard replay`: a recording, served as the device that made it.
+#pragma once
+
+#include <optional>
+
+#include "server/config/config.hpp"
+#include "server/replay/replay_schedule.hpp"
+
+namespace sonard::server {
+
+/// Serves until the last ping is sent, or a signal ends it.
+/// @param config addresses and timing of the heads; nullopt: on loopback
+/// @return exit code, as serve()
+/// @throws LogError, StartError
+int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing);
+
+}  // namespace sonard::server

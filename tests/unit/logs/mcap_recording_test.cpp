@@ -1,0 +1,145 @@
+// Images of sonard's own log, and what a summary says of one.
+#include <gtest/gtest.h>
+
+#include "protocol/log/log_messages.hpp"
+#include "protocol/mcap/writer.hpp"
+#include "server/logs/log_summary.hpp"
+#include "server/logs/mcap_recording.hpp"
+#include "tests/unit/logs/temporary_log.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr std::int64_t start_ns = 1'795'184'553'000'000'000;
+
+log::SonarImage image(std::uint64_t number) {
+  log::SonarImage image;
+  image.set_head("bow");
+  image.set_device_id(600);
+  image.set_ping_number(number);
+  image.set_transmit_time_ns(start_ns + static_cast<std::int64_t>(number) * 100'000'000);
+  image.set_range_lines(3);
+  image.set_beams(2);
+  image.set_pixels(std::string{'a', 'b', 'c', 'd', 'e', static_cast<char>(number)});
+  image.add_bearings_rad(0.5);
+  image.add_bearings_rad(-0.5);
+  image.set_metres_per_line(0.25);
+  image.set_sound_speed_mps(1500.0);
+  image.set_gain_percent(40.0);
+  image.set_frequency_hz(723'380.0);
+  return image;
+}
+
+log::ScanLine line(std::uint64_t number) {
+  log::ScanLine line;
+  line.set_head("mast");
+  line.set_device_id(2);
+  line.set_transmit_time_ns(start_ns + static_cast<std::int64_t>(number) * 50'000'000);
+  line.set_bins(std::string(200, 'x'));
+  line.set_metres_per_bin(0.05);
+  line.set_sound_speed_mps(1500.0);
+  return line;
+}
+
+struct McapLog {
+  mcap::Writer writer{"test", 1000};
+  std::uint16_t images, lines, poses;
+
+  McapLog() {
+    images = channel(*log::SonarImage::descriptor(), "/bow/image");
+    lines = channel(*log::ScanLine::descriptor(), "/mast/line");
+    poses = channel(*log::PoseUsed::descriptor(), "/poses");
+  }
+  std::uint16_t channel(const google::protobuf::Descriptor& message, const std::string& topic) {
+    return writer.add_channel(
+        writer.add_schema(message.full_name(), log::encoding_name, log::schema_data(message)), topic,
+        log::encoding_name);
+  }
+  void add(std::uint16_t to, std::int64_t time_ns, const google::protobuf::MessageLite& message) {
+    const auto time = static_cast<std::uint64_t>(time_ns);
+    writer.add_message(to, time, time, log::encode(message));
+  }
+};
+
+/// Five images, the one of number 2 written last, and what else there may be.
+McapLog small_log() {
+  McapLog log;
+  for (const std::uint64_t number : {0, 1, 3, 4, 2}) {
+    log.add(log.images, start_ns + 1, image(number));
+  }
+  for (std::uint64_t number = 0; number < 7; ++number) {
+    log.add(log.lines, start_ns + 2, line(number));
+  }
+  log.add(log.poses, start_ns + 900'000'000, log::PoseUsed{});
+  return log;
+}
+
+TEST(McapRecording, has_every_image_in_the_order_of_time) {
+  McapLog log = small_log();
+  log.writer.finish();
+  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const LogFile file(temporary.path());
+  const McapRecording recording(file);
+  ASSERT_EQ(recording.heads().size(), 1U);
+  const RecordedHead& head = recording.heads()[0];
+  EXPECT_EQ(head.name, "bow");
+  EXPECT_EQ(head.device_id, 600);
+  EXPECT_EQ(head.bearings_rad, (std::vector<double>{0.5, -0.5}));
+  ASSERT_EQ(head.images.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(head.images[i].time_ns, start_ns + static_cast<std::int64_t>(i) * 100'000'000);
+    EXPECT_EQ(recording.pixels(head.images[i]),
+              (std::vector<std::uint8_t>{'a', 'b', 'c', 'd', 'e', static_cast<std::uint8_t>(i)}));
+  }
+  EXPECT_EQ(head.images[0].settings.lines, 3);
+  EXPECT_EQ(head.images[0].settings.range_m(), 0.75);
+  EXPECT_TRUE(recording.closed());
+  EXPECT_TRUE(recording.problems().empty());
+}
+
+TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
+  McapLog log = small_log();
+  log::SonarImage wrong = image(9);
+  wrong.set_range_lines(4);  // 6 pixels are no 8
+  log.add(log.images, start_ns, wrong);
+  log.writer.finish();
+  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const LogFile file(temporary.path());
+  const McapRecording recording(file);
+  EXPECT_EQ(recording.heads().at(0).images.size(), 5U);
+  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 images make no sense and are left out"}));
+}
+
+TEST(McapRecording, summary_counts_all_kinds) {
+  McapLog log = small_log();
+  log.writer.finish();
+  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const LogSummary summary = summarise(LogFile(temporary.path()));
+  EXPECT_EQ(summary.kind, LogKind::mcap);
+  EXPECT_EQ(summary.closed, true);
+  EXPECT_FALSE(summary.local_time);
+  ASSERT_EQ(summary.heads.size(), 2U);
+  EXPECT_EQ(summary.heads[0].pings(), 5U);
+  EXPECT_EQ(summary.heads[0].settings.at(0).settings.frequency_hz, 723'380.0);
+  EXPECT_TRUE(summary.heads[1].scanning);
+  EXPECT_EQ(summary.heads[1].id, 2);
+  EXPECT_EQ(summary.heads[1].pings(), 7U);
+  EXPECT_EQ(summary.heads[1].settings.at(0).settings.range_m(), 10.0);
+  EXPECT_EQ(summary.other_records,
+            (std::vector<std::pair<std::string, std::uint64_t>>{{"sonard.log.PoseUsed messages", 1}}));
+  EXPECT_EQ(summary.span_ns, (std::pair{start_ns, start_ns + 900'000'000}));
+}
+
+TEST(McapRecording, an_unfinished_one_has_its_whole_chunks) {
+  McapLog log = small_log();
+  log.writer.end_chunk();
+  std::vector<std::uint8_t> bytes = log.writer.take();
+  bytes.resize(bytes.size() - 20);
+  const test::TemporaryLog temporary(".mcap", bytes);
+  const LogSummary summary = summarise(LogFile(temporary.path()));
+  EXPECT_EQ(summary.closed, false);
+  EXPECT_FALSE(summary.problems.empty());
+}
+
+}  // namespace
+}  // namespace sonard::server
