@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -21,7 +20,7 @@ constexpr const char* part_prefix = ".part-";
 constexpr mode_t file_mode = 0644;  // mkstemp makes files for the owner alone
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& doing) {
-  throw OutputError(path, "cannot " + doing + ": " + std::strerror(errno));
+  throw OutputError(path, "cannot " + doing + ": " + std::generic_category().message(errno));
 }
 
 bool is_part(const std::string& name) {
