@@ -21,6 +21,11 @@ double main_gain_db(std::uint16_t main_gain) {
   return base_db + 8.0 + (variable - 1000.0) * (50.0 - 8.0) / (3700.0 - 1000.0);
 }
 
+double gain_percent(std::uint16_t spreading) {
+  const double known = std::clamp<double>(spreading, spreading_at_0_percent, spreading_at_100_percent);
+  return std::max(0.0, 100.0 + percent_per_neper * std::log(known / spreading_at_100_percent));
+}
+
 double spreading_gain_db(std::uint16_t spreading, const GainLaw& law) {
   // Why this law: both client libraries offer a linear slider in percent and a user expects equal steps of it
   // to sound equal, so dB is taken as linear in percent. `spreading` is all that travels, and the two

@@ -22,6 +22,9 @@ struct GainLaw {
 /// dB at 3700, flat above).
 double main_gain_db(std::uint16_t main_gain);
 
+/// The gain that a client of the early library set to send this `spreading`, 0..100 percent.
+double gain_percent(std::uint16_t spreading);
+
 /// Level relative to GainLaw::reference_spreading; rises with `spreading` and is flat at both ends.
 double spreading_gain_db(std::uint16_t spreading, const GainLaw& law);
 

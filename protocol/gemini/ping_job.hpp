@@ -23,9 +23,10 @@ struct PingJob {
   /// which is true.
   double assumed_sound_speed_mps = 0.0;
   bool sixteen_bit = false;
-  double pulse_s = 0.0;  ///< duration of the tone that is transmitted
-  bool transmit = true;  ///< false: the head only listens, there are no echoes but there is noise
-  double gain_db = 0.0;  ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
+  double pulse_s = 0.0;        ///< duration of the tone that is transmitted
+  bool transmit = true;        ///< false: the head only listens, there are no echoes but there is noise
+  double gain_db = 0.0;        ///< relative to 50 percent gain and nominal main gain (gain_law.hpp)
+  double gain_percent = 50.0;  ///< what the client set, by gemini::gain_percent(): for logs
 
   /// Lines of the image; a remainder of native lines that fills no whole line is not sent.
   int lines() const { return native_lines >> compression_log2; }

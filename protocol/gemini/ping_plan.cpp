@@ -44,6 +44,7 @@ PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   job.pulse_s = config.tx_length / carrier_hz;
   job.transmit = config.tx_length != 0;
   job.gain_db = receive_gain_db(config.main_gain, config.spreading, device.gain);
+  job.gain_percent = gain_percent(config.spreading);
   return job;
 }
 
