@@ -31,3 +31,23 @@ function(sonard_program name)
   add_executable(${name} ${ARGN})
   target_link_libraries(${name} PRIVATE sonard_flags)
 endfunction()
+
+# sonard_proto_library(NAME PROTO IMPORTED...): the generated code of PROTO.proto, a path in the source tree, and the
+# libraries of the files that it imports. It compiles under its own rules, so it stays apart and its header is a
+# SYSTEM one.
+function(sonard_proto_library name proto)
+  find_package(Protobuf REQUIRED)
+  set(generated ${PROJECT_BINARY_DIR}/generated)
+  add_custom_command(
+    OUTPUT ${generated}/${proto}.pb.cc ${generated}/${proto}.pb.h
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${generated}
+    COMMAND protobuf::protoc --proto_path=${PROJECT_SOURCE_DIR} --cpp_out=${generated} ${proto}.proto
+    DEPENDS ${PROJECT_SOURCE_DIR}/${proto}.proto
+    VERBATIM)
+  add_library(${name} STATIC ${generated}/${proto}.pb.cc ${generated}/${proto}.pb.h)
+  target_include_directories(${name} SYSTEM PUBLIC ${generated})
+  target_link_libraries(${name} PUBLIC protobuf::libprotobuf ${ARGN})
+  if(SONARD_SANITIZE)
+    target_compile_options(${name} PRIVATE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer)
+  endif()
+endfunction()

@@ -4,11 +4,14 @@
 set -euo pipefail
 list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
 
+# What is installed under its own name, or provided by a package of another: where node is not Debian's it brings npm.
+provided=$(dpkg-query -W -f '${db:Status-Status},${Provides}\n' | sed -n 's/^installed,//p' | tr ',' '\n' | sed 's/^ *//; s/ .*//')
 missing=()
 for section in "$@"; do
   grep -qx "\[$section\]" "$list" || { echo "$list has no section [$section]" >&2; exit 64; }
   while read -r package; do
-    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
+    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
+      grep -qx "$package" <<<"$provided" || missing+=("$package")
   done < <(awk -v want="[$section]" '/^\[/ { inside = ($0 == want); next } inside && NF && !/^#/' "$list")
 done
 ((${#missing[@]})) || exit 0

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "protocol/pose/pose.pb.h"
+#include "protocol/pose/pose_message.hpp"
 
 namespace sonard::pose {
 namespace {
@@ -22,9 +22,8 @@ Vec3 read(const Vector3& v) {
 
 /// Checks a pose of a message and turns it into our axes.
 Result<Transform, PoseError> read(const Pose& message, Axes axes, std::string_view field) {
-  const Quaternion& q = message.orientation();
-  Transform transform{read(message.position_m()), {q.w(), q.x(), q.y(), q.z()}};
-  const TransformFault fault = normalize(transform);
+  Transform transform;
+  const TransformFault fault = pose::read(message, transform);
   if (fault != TransformFault::none) {
     return PoseError{Kind::bad_value, field, describe(fault)};
   }
@@ -66,15 +65,6 @@ void write(const Vec3& v, Vector3& message) {
   message.set_x(v.x);
   message.set_y(v.y);
   message.set_z(v.z);
-}
-
-void write(const Transform& transform, Pose& message) {
-  write(transform.position_m, *message.mutable_position_m());
-  Quaternion& q = *message.mutable_orientation();
-  q.set_w(transform.orientation.w);
-  q.set_x(transform.orientation.x);
-  q.set_y(transform.orientation.y);
-  q.set_z(transform.orientation.z);
 }
 
 /// Value and length of the varint at the front of a buffer. length 0: not complete; -1: longer than any
@@ -149,7 +139,7 @@ std::vector<std::uint8_t> encode(const PoseSample& sample) {
   PoseUpdate update;
   update.set_time_ns(sample.time_ns);
   update.set_frame(FRAME_ENU_FLU);
-  write(sample.T_world_vehicle, *update.mutable_vehicle());
+  pose::write(sample.T_world_vehicle, *update.mutable_vehicle());
   if (sample.twist) {
     write(sample.twist->linear_mps, *update.mutable_twist()->mutable_linear_mps());
     write(sample.twist->angular_radps, *update.mutable_twist()->mutable_angular_radps());
@@ -157,7 +147,7 @@ std::vector<std::uint8_t> encode(const PoseSample& sample) {
   for (const NamedTransform& body : sample.bodies) {
     BodyPose& message = *update.add_bodies();
     message.set_name(body.name);
-    write(body.T_world_body, *message.mutable_pose());
+    pose::write(body.T_world_body, *message.mutable_pose());
   }
   std::vector<std::uint8_t> bytes(update.ByteSizeLong());
   update.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));

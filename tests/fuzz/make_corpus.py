@@ -8,6 +8,7 @@ micron/frames/     one example each, and streams of some
 micron/device/     scripts for fuzz_micron_device: what a host sends to a head
 micron/host/       scripts for fuzz_micron_host: what a head sends to a host
 glf/log/           small logs, bare and in every kind of archive
+mcap/, pcapng/     small files, whole and cut
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
 for another reason (inputs that once failed) are left alone.
@@ -192,6 +193,53 @@ def glf_logs():
     yield "compressed", glf_archive(both, zipfile.ZIP_DEFLATED, 9)
 
 
+def mcap_record(opcode, content):
+    return struct.pack("<BQ", opcode, len(content)) + content
+
+
+def mcap_string(text):
+    return struct.pack("<I", len(text)) + text
+
+
+def mcap_files():
+    """Laid out by the MCAP specification, as tests/unit/mcap/bytes_test.cpp is."""
+    magic = b"\x89MCAP0\r\n"
+    head = magic + mcap_record(1, mcap_string(b"") + mcap_string(b"w"))
+    schema = mcap_record(3, struct.pack("<H", 1) + mcap_string(b"S") + mcap_string(b"pb") + mcap_string(b"\7"))
+    channel = mcap_record(4, struct.pack("<HH", 1, 1) + mcap_string(b"/c") + mcap_string(b"pb") + struct.pack("<I", 0))
+    chunks = b""
+    for times in ((50, 10), (30, 60)):
+        records = schema + channel
+        entries = b""
+        for sequence, time in enumerate(times):
+            entries += struct.pack("<QQ", time, len(records))
+            records += mcap_record(5, struct.pack("<HIQQ", 1, sequence, time, time) + b"data")
+        chunks += mcap_record(6, struct.pack("<QQQI", min(times), max(times), len(records), zlib.crc32(records)) +
+                              mcap_string(b"") + struct.pack("<Q", len(records)) + records)
+        chunks += mcap_record(7, struct.pack("<HI", 1, len(entries)) + entries)
+    data = head + chunks
+    end = mcap_record(15, struct.pack("<I", zlib.crc32(data)))
+    footer = struct.pack("<BQQQ", 2, 20, len(data) + len(end), 0)
+    summary = schema + channel
+    yield "no_end", data
+    yield "cut", data[:-40]
+    yield "no_chunk_index", data + end + summary + footer + struct.pack("<I", zlib.crc32(summary + footer)) + magic
+    yield "no_summary_crc", data + end + summary + footer + struct.pack("<I", 0) + magic
+
+
+def pcapng_block(kind, body):
+    length = struct.pack("<I", len(body) + 12)
+    return struct.pack("<I", kind) + length + body + length
+
+
+def pcapng_files():
+    section = pcapng_block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
+    interface = pcapng_block(1, struct.pack("<HHI", 101, 0, 0))
+    packet = pcapng_block(6, struct.pack("<IIIII", 0, 1, 2, 5, 5) + b"hello\0\0\0")
+    yield "two_packets", section + interface + 2 * packet
+    yield "cut", (section + interface + packet)[:-5]
+
+
 def write(folder, name, data):
     target = CORPUS / folder
     target.mkdir(parents=True, exist_ok=True)
@@ -207,7 +255,8 @@ def main():
         if path.stat().st_size < 100))
     for folder, scripts in (("gemini/device", device_scripts()), ("gemini/surface", surface_scripts()),
                             ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
-                            ("glf/log", glf_logs())):
+                            ("glf/log", glf_logs()),
+                            ("mcap", mcap_files()), ("pcapng", pcapng_files())):
         for name, script in scripts:
             write(folder, name, script)
 

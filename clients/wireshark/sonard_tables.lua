@@ -1,0 +1,66 @@
+-- What the dissectors of both sonars share: fields of Wireshark from a table of fields, and a message shown by it.
+-- The tables (sonard_gemini_fields.lua, sonard_micron_fields.lua) say how each message is laid out; the dissectors
+-- load this file themselves.
+local tables = {}
+
+-- Runs of bytes longer than this are shown as one value.
+local most_values = 8
+
+local integers = { [1] = ProtoField.uint8, [2] = ProtoField.uint16, [4] = ProtoField.uint32, [8] = ProtoField.uint64 }
+
+-- The field of Wireshark for one entry. `format`: "hex", "ipv4", or nil for decimal.
+local function make_field(abbreviation, entry, format)
+  local size, name, count = entry[2], entry[3], entry[4] or 1
+  if not integers[size] or (size == 1 and count > most_values) then
+    return ProtoField.bytes(abbreviation, name)
+  end
+  if format == "ipv4" then
+    return ProtoField.ipv4(abbreviation, name)
+  end
+  return integers[size](abbreviation, name, format == "hex" and base.HEX or base.DEC)
+end
+
+-- Makes the fields of all `messages`, PREFIX.MESSAGE.NAME, and returns them with those of `extra` in one list for the
+-- protocol. `formats` is by "MESSAGE.NAME".
+function tables.make_fields(prefix, messages, formats, extra)
+  local fields = {}
+  for _, field in pairs(extra) do
+    table.insert(fields, field)
+  end
+  for message, layout in pairs(messages) do
+    layout.proto_fields = {}
+    for i, entry in ipairs(layout.fields) do
+      local key = message .. "." .. entry[3]
+      layout.proto_fields[i] = make_field(prefix .. "." .. key, entry, formats[key])
+      table.insert(fields, layout.proto_fields[i])
+    end
+  end
+  return fields
+end
+
+-- Shows in `tree` what `layout` says of `tvb`, offsets counted from `base`. Fields beyond layout.minimum may be
+-- missing. Returns false when one before it is.
+function tables.add(tree, tvb, layout, base)
+  for i, entry in ipairs(layout.fields) do
+    local offset, size, count = base + entry[1], entry[2], entry[4] or 1
+    if offset + size * count > tvb:len() then
+      return entry[1] >= layout.minimum
+    end
+    local field = layout.proto_fields[i]
+    if not integers[size] or (size == 1 and count > most_values) then
+      tree:add(field, tvb(offset, size * count))
+    else
+      for k = 0, count - 1 do
+        tree:add_le(field, tvb(offset + k * size, size))
+      end
+    end
+  end
+  return tvb:len() - base >= layout.minimum
+end
+
+-- Whether bit number `bit` of `value` is set.
+function tables.has_bit(value, bit)
+  return math.floor(value / 2 ^ bit) % 2 == 1
+end
+
+return tables

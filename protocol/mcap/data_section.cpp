@@ -1,0 +1,198 @@
+#include "protocol/mcap/data_section.hpp"
+
+#include <algorithm>
+
+namespace sonard::mcap {
+namespace {
+
+/// Takes in one record of a chunk; unknown ones are skipped.
+std::optional<WireError> take(const Record& record, Chunk& chunk) {
+  if (record.is(Opcode::schema)) {
+    auto schema = read_schema(record);
+    if (!schema) {
+      return schema.error();
+    }
+    chunk.schemas.push_back(std::move(*schema));
+  } else if (record.is(Opcode::channel)) {
+    auto channel = read_channel(record);
+    if (!channel) {
+      return channel.error();
+    }
+    chunk.channels.push_back(std::move(*channel));
+  } else if (record.is(Opcode::message)) {
+    const auto message = read_message(record);
+    if (!message) {
+      return message.error();
+    }
+    chunk.messages.push_back(*message);
+    chunk.indexes[message->channel_id].push_back({message->log_time_ns, record.offset});
+  }
+  return std::nullopt;
+}
+
+void set_times(Chunk& chunk) {
+  if (chunk.messages.empty()) {
+    return;
+  }
+  const auto [first, last] = std::ranges::minmax_element(chunk.messages, {}, &Message::log_time_ns);
+  chunk.start_time_ns = first->log_time_ns;
+  chunk.end_time_ns = last->log_time_ns;
+}
+
+/// The state of scan_data_section().
+class Scanner {
+ public:
+  explicit Scanner(std::size_t start) { section_.end = start; }
+
+  /// @return false: stop here
+  bool take(const Record& record) {
+    if (record.is(Opcode::data_end)) {
+      section_.ended = true;
+      return false;
+    }
+    const auto error = take_in(record);
+    if (error) {
+      section_.error = error;
+      return false;
+    }
+    section_.end = record.end();
+    return true;
+  }
+
+  DataSection done() && { return std::move(section_); }
+
+ private:
+  std::optional<WireError> take_in(const Record& record) {
+    if (record.is(Opcode::chunk)) {
+      return take_chunk(record);
+    }
+    if (record.is(Opcode::message_index)) {
+      return take_message_index(record);
+    }
+    if (record.is(Opcode::schema)) {
+      return put(read_schema(record));
+    }
+    if (record.is(Opcode::channel)) {
+      return put(read_channel(record));
+    }
+    if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
+        record.opcode == 0) {  // zeros: a part of the disk that was never written
+      return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
+    }
+    return std::nullopt;
+  }
+
+  template <class Value>
+  std::optional<WireError> put(Result<Value, WireError> value) {
+    if (!value) {
+      return value.error();
+    }
+    add_once(section_.summary, std::move(*value));
+    return std::nullopt;
+  }
+
+  std::optional<WireError> take_chunk(const Record& record) {
+    auto chunk = read_chunk(record);
+    if (!chunk) {
+      return chunk.error();
+    }
+    for (Schema& schema : chunk->schemas) {
+      add_once(section_.summary, std::move(schema));
+    }
+    for (Channel& channel : chunk->channels) {
+      add_once(section_.summary, std::move(channel));
+    }
+    for (const auto& [channel_id, entries] : chunk->indexes) {
+      section_.summary.message_counts[channel_id] += entries.size();
+    }
+    ChunkIndex& index = section_.summary.chunks.emplace_back();
+    index.start_time_ns = chunk->start_time_ns;
+    index.end_time_ns = chunk->end_time_ns;
+    index.offset = record.offset;
+    index.length = record.end() - record.offset;
+    index.records_size = chunk->records_size;
+    section_.last_chunk_end = record.end();
+    section_.last_indexes = std::move(chunk->indexes);
+    return std::nullopt;
+  }
+
+  std::optional<WireError> take_message_index(const Record& record) {
+    ByteReader reader{record.content};
+    const std::uint16_t channel_id = reader.u16le("message_index.channel_id");
+    if (!reader.ok() || section_.summary.chunks.empty()) {
+      return WireError{WireErrorReason::bad_value, record.offset, "message_index"};
+    }
+    ChunkIndex& chunk = section_.summary.chunks.back();
+    chunk.message_index_offsets[channel_id] = record.offset;
+    chunk.message_index_length += record.end() - record.offset;
+    return std::nullopt;
+  }
+
+  DataSection section_;
+};
+
+}  // namespace
+
+Result<Chunk, WireError> read_chunk(const Record& record) {
+  ByteReader reader{record.content};
+  reader.skip(16, "chunk.times");
+  const std::size_t size_offset = reader.offset();
+  const std::uint64_t records_size = reader.u64le("chunk.uncompressed_size");
+  const std::size_t crc_offset = reader.offset();
+  const std::uint32_t crc = reader.u32le("chunk.uncompressed_crc");
+  const std::size_t compression_offset = reader.offset();
+  const std::string compression = read_string(reader, "chunk.compression");
+  const std::uint64_t stored_size = reader.u64le("chunk.records");
+  const std::size_t records_offset = reader.offset();
+  const ByteView records = reader.bytes(static_cast<std::size_t>(stored_size), "chunk.records");
+  if (!compression.empty()) {
+    reader.fail_at(compression_offset, WireErrorReason::bad_value, "chunk.compression");
+  }
+  if (records_size != stored_size) {
+    reader.fail_at(size_offset, WireErrorReason::bad_length, "chunk.uncompressed_size");
+  }
+  if (crc != 0 && crc != crc32(records)) {
+    reader.fail_at(crc_offset, WireErrorReason::bad_value, "chunk.uncompressed_crc");
+  }
+  if (!reader.ok()) {
+    return shifted(*reader.error(), record.content_offset());
+  }
+  Chunk chunk;
+  chunk.records_size = records_size;
+  for (std::size_t offset = 0; offset < records.size();) {
+    const auto inner = record_at(records, offset);
+    if (!inner) {
+      return WireError{WireErrorReason::bad_length, record.content_offset() + records_offset + offset,
+                       "chunk.records"};
+    }
+    if (const auto error = take(*inner, chunk)) {
+      return shifted(*error, record.content_offset() + records_offset);
+    }
+    offset = inner->end();
+  }
+  set_times(chunk);
+  return chunk;
+}
+
+Result<DataSection, WireError> scan_data_section(ByteView file) {
+  if (file.size() < magic.size()) {
+    return WireError{WireErrorReason::truncated, file.size(), "magic"};
+  }
+  if (!std::ranges::equal(file.first(magic.size()), magic)) {
+    return WireError{WireErrorReason::bad_value, 0, "magic"};
+  }
+  auto record = record_at(file, magic.size());
+  if (!record) {
+    return WireError{WireErrorReason::truncated, magic.size(), "header"};
+  }
+  if (!record->is(Opcode::header)) {
+    return WireError{WireErrorReason::bad_value, magic.size(), "header"};
+  }
+  Scanner scanner{record->end()};
+  do {
+    record = record_at(file, record->end());
+  } while (record && scanner.take(*record));
+  return std::move(scanner).done();
+}
+
+}  // namespace sonard::mcap

@@ -1,0 +1,46 @@
+// Going through the data section of an MCAP file, record by record.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "protocol/mcap/summary.hpp"
+
+namespace sonard::mcap {
+
+/// By channel, in the order of the chunk.
+using MessageIndexes = std::map<std::uint16_t, std::vector<IndexEntry>>;
+
+/// A chunk record taken apart: sizes and CRC are right and every record in it is whole and readable.
+struct Chunk {
+  std::vector<Schema> schemas;
+  std::vector<Channel> channels;
+  std::vector<Message> messages;  ///< their data view the file
+  MessageIndexes indexes;
+  std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 when there is no message
+  std::uint64_t end_time_ns = 0;    ///< latest log time; 0 when there is no message
+  std::uint64_t records_size = 0;
+};
+
+/// Requires record.is(Opcode::chunk). A compressed chunk is an error: sonard writes none.
+Result<Chunk, WireError> read_chunk(const Record& record);
+
+/// What is whole at the front of a file.
+struct DataSection {
+  Summary summary;
+  std::size_t end = 0;  ///< where the whole records end: of DataEnd, or of the first that is not whole
+  bool ended = false;   ///< DataEnd stands at `end`
+  std::size_t last_chunk_end = 0;  ///< without its message indexes; 0 when there is no chunk
+  MessageIndexes last_indexes;     ///< what the last chunk's message indexes are
+  /// Why it went no further, when neither DataEnd nor the end of the bytes stopped it. What follows is not
+  /// lost to a reader that knows better.
+  std::optional<WireError> error;
+};
+
+/// Reads all of it, from the magic on. An error when not even magic and header are whole, or are no MCAP
+/// file's. A message outside of a chunk ends the whole part, as a record that cannot be read does.
+Result<DataSection, WireError> scan_data_section(ByteView file);
+
+}  // namespace sonard::mcap

@@ -1,0 +1,86 @@
+#include "protocol/mcap/reader.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace sonard::mcap {
+
+// ---- MessageCursor
+
+MessageCursor::MessageCursor(ByteView file, std::vector<ChunkIndex> chunks, std::set<std::uint16_t> channels)
+    : file_(file), chunks_(std::move(chunks)), channels_(std::move(channels)) {
+  std::ranges::stable_sort(chunks_, {}, &ChunkIndex::start_time_ns);
+}
+
+bool MessageCursor::Later::operator()(const Due& a, const Due& b) const {
+  return std::tie(a.message.log_time_ns, a.position) > std::tie(b.message.log_time_ns, b.position);
+}
+
+std::optional<Message> MessageCursor::next() {
+  if (!open_due_chunks() || due_.empty()) {
+    return std::nullopt;
+  }
+  const Message message = due_.top().message;
+  due_.pop();
+  return message;
+}
+
+/// Opens chunks until none that is closed can hold an earlier message than those at hand.
+/// @return false when one cannot be read
+bool MessageCursor::open_due_chunks() {
+  while (!error_ && next_chunk_ < chunks_.size() &&
+         (due_.empty() || chunks_[next_chunk_].start_time_ns <= due_.top().message.log_time_ns)) {
+    if (!open(chunks_[next_chunk_++])) {
+      return false;
+    }
+  }
+  return !error_;
+}
+
+bool MessageCursor::open(const ChunkIndex& index) {
+  const auto offset = static_cast<std::size_t>(index.offset);
+  const auto record = record_at(file_, offset);
+  if (!record || !record->is(Opcode::chunk) || record->end() - offset != index.length) {
+    error_ = WireError{WireErrorReason::bad_value, offset, "chunk_index.chunk_start_offset"};
+    return false;
+  }
+  const auto chunk = read_chunk(*record);
+  if (!chunk) {
+    error_ = chunk.error();
+    return false;
+  }
+  // What a message before the stated start would do to the order is worse than not reading on.
+  if (chunk->start_time_ns < index.start_time_ns) {
+    error_ = WireError{WireErrorReason::bad_value, offset, "chunk_index.message_start_time"};
+    return false;
+  }
+  for (const Message& message : chunk->messages) {
+    if (channels_.empty() || channels_.contains(message.channel_id)) {
+      due_.push({message, static_cast<std::size_t>(message.data.data() - file_.data())});
+    }
+  }
+  return true;
+}
+
+// ---- Reader
+
+Result<Reader, WireError> Reader::open(ByteView file) {
+  if (auto summary = read_summary(file)) {
+    return Reader{file, std::move(*summary)};
+  }
+  auto section = scan_data_section(file);
+  if (!section) {
+    return section.error();
+  }
+  Reader reader{file, std::move(section->summary)};
+  reader.finished_ = false;
+  reader.stopped_by_ = section->error;
+  return reader;
+}
+
+MessageCursor Reader::messages(std::set<std::uint16_t> channels) const {
+  return {file_, summary_.chunks, std::move(channels)};
+}
+
+}  // namespace sonard::mcap

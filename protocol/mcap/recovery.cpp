@@ -1,0 +1,50 @@
+#include "protocol/mcap/recovery.hpp"
+
+#include "protocol/mcap/writer.hpp"
+
+namespace sonard::mcap {
+namespace {
+
+/// Brings back the message indexes of the last chunk where some are missing.
+void complete_last_indexes(const DataSection& section, Recovery& recovery) {
+  if (recovery.summary.chunks.empty()) {
+    return;
+  }
+  ChunkIndex& last = recovery.summary.chunks.back();
+  if (last.message_index_offsets.size() == section.last_indexes.size()) {
+    return;
+  }
+  recovery.keep_size = section.last_chunk_end;
+  last.message_index_offsets.clear();
+  append_message_indexes(recovery.end, recovery.keep_size, section.last_indexes, last);
+}
+
+}  // namespace
+
+Result<Recovery, WireError> recover(ByteView file) {
+  Recovery recovery;
+  if (auto summary = read_summary(file)) {
+    recovery.keep_size = file.size();
+    recovery.summary = std::move(*summary);
+    return recovery;
+  }
+  auto section = scan_data_section(file);
+  if (!section) {
+    return section.error();
+  }
+  if (section->error && section->error->field == "chunk.compression") {
+    return *section->error;  // it is not broken, but none of ours
+  }
+  recovery.keep_size = section->end;
+  recovery.lost_size = section->ended ? 0 : file.size() - section->end;
+  recovery.summary = std::move(section->summary);
+  complete_last_indexes(*section, recovery);
+
+  std::uint32_t crc = crc32(file.first(static_cast<std::size_t>(recovery.keep_size)));
+  crc = crc32(recovery.end, crc);
+  const Bytes end = make_end(recovery.summary, recovery.keep_size + recovery.end.size(), crc);
+  recovery.end.insert(recovery.end.end(), end.begin(), end.end());
+  return recovery;
+}
+
+}  // namespace sonard::mcap

@@ -1,0 +1,112 @@
+#include "protocol/mcap/writer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "protocol/common/byte_writer.hpp"
+
+namespace sonard::mcap {
+namespace {
+
+/// Ids of schemas start from 1: 0 says that there is none (Channel).
+template <class Value>
+std::uint16_t next_id(const std::vector<Value>& values) {
+  assert(values.size() < 65'535);
+  return static_cast<std::uint16_t>(values.size() + 1);
+}
+
+}  // namespace
+
+Writer::Writer(std::string_view library, std::size_t chunk_bytes) : chunk_bytes_(chunk_bytes) {
+  pending_.assign(magic.begin(), magic.end());
+  append_header(pending_, "", library);
+  add_to_crc(0);
+}
+
+std::uint16_t Writer::add_schema(std::string_view name, std::string_view encoding, ByteView data) {
+  const Schema& schema = summary_.schemas.emplace_back(Schema{
+      next_id(summary_.schemas), std::string{name}, std::string{encoding}, Bytes{data.begin(), data.end()}});
+  append(records_, schema);
+  return schema.id;
+}
+
+std::uint16_t Writer::add_channel(std::uint16_t schema_id, std::string_view topic,
+                                  std::string_view message_encoding,
+                                  std::map<std::string, std::string> metadata) {
+  const Channel& channel =
+      summary_.channels.emplace_back(Channel{next_id(summary_.channels), schema_id, std::string{topic},
+                                             std::string{message_encoding}, std::move(metadata)});
+  append(records_, channel);
+  return channel.id;
+}
+
+void Writer::add_message(std::uint16_t channel_id, std::uint64_t log_time_ns, std::uint64_t publish_time_ns,
+                         ByteView data) {
+  assert(summary_.channel(channel_id) != nullptr);
+  start_time_ns_ = indexes_.empty() ? log_time_ns : std::min(start_time_ns_, log_time_ns);
+  end_time_ns_ = std::max(end_time_ns_, log_time_ns);
+  indexes_[channel_id].push_back({log_time_ns, records_.size()});
+  append(records_, Message{channel_id, sequences_[channel_id]++, log_time_ns, publish_time_ns, data});
+  ++summary_.message_counts[channel_id];
+  if (records_.size() >= chunk_bytes_) {
+    end_chunk();
+  }
+}
+
+void Writer::end_chunk() {
+  if (records_.empty()) {
+    return;
+  }
+  const std::size_t start = pending_.size();
+  ChunkIndex& chunk = summary_.chunks.emplace_back();
+  chunk.start_time_ns = start_time_ns_;
+  chunk.end_time_ns = end_time_ns_;
+  chunk.offset = file_size();
+  chunk.records_size = records_.size();
+  {
+    const RecordScope record{pending_, Opcode::chunk};
+    ByteWriter writer{pending_};
+    writer.u64le(start_time_ns_);
+    writer.u64le(end_time_ns_);
+    writer.u64le(records_.size());
+    writer.u32le(crc32(records_));
+    writer.u32le(0);  // compression: an empty string
+    writer.u64le(records_.size());
+    writer.bytes(records_);
+  }
+  chunk.length = file_size() - chunk.offset;
+  append_message_indexes(pending_, taken_size_, indexes_, chunk);
+  add_to_crc(start);
+  records_.clear();
+  indexes_.clear();
+  start_time_ns_ = 0;
+  end_time_ns_ = 0;
+}
+
+void Writer::finish() {
+  end_chunk();
+  const Bytes end = make_end(summary_, file_size(), data_crc_);
+  pending_.insert(pending_.end(), end.begin(), end.end());
+}
+
+Bytes Writer::take() {
+  taken_size_ += pending_.size();
+  return std::exchange(pending_, {});
+}
+
+void Writer::add_to_crc(std::size_t pending_start) {
+  data_crc_ = crc32(ByteView{pending_}.subspan(pending_start), data_crc_);
+}
+
+void append_message_indexes(Bytes& out, std::uint64_t file_offset, const MessageIndexes& indexes,
+                            ChunkIndex& chunk) {
+  const std::size_t start = out.size();
+  for (const auto& [channel_id, entries] : indexes) {
+    chunk.message_index_offsets[channel_id] = file_offset + out.size();
+    append_message_index(out, channel_id, entries);
+  }
+  chunk.message_index_length = out.size() - start;
+}
+
+}  // namespace sonard::mcap

@@ -1,0 +1,175 @@
+#include "protocol/pcapng/blocks.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "protocol/common/byte_reader.hpp"
+#include "protocol/common/byte_writer.hpp"
+
+namespace sonard::pcapng {
+namespace {
+
+constexpr std::uint32_t byte_order_magic = 0x1A2B3C4D;
+constexpr std::size_t block_overhead = 12;  // type, and the length twice
+constexpr std::uint8_t nanoseconds = 9;     // a power of ten
+
+namespace options {
+constexpr std::uint16_t end = 0;
+constexpr std::uint16_t application = 4;  // of a section
+constexpr std::uint16_t name = 2;         // of an interface
+constexpr std::uint16_t resolution = 9;   // of an interface's times
+}  // namespace options
+
+ByteView as_bytes(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::size_t padding(std::size_t size) {
+  return (4 - size % 4) % 4;
+}
+
+void write_padded(ByteWriter& writer, ByteView bytes) {
+  writer.bytes(bytes);
+  writer.zeros(padding(bytes.size()));
+}
+
+void write_option(ByteWriter& writer, std::uint16_t code, ByteView value) {
+  writer.u16le(code);
+  writer.u16le(static_cast<std::uint16_t>(value.size()));
+  write_padded(writer, value);
+}
+
+void append_block(Bytes& out, BlockType type, ByteView body) {
+  ByteWriter writer{out};
+  const auto length = static_cast<std::uint32_t>(body.size() + block_overhead);
+  writer.u32le(static_cast<std::uint32_t>(type));
+  writer.u32le(length);
+  writer.bytes(body);
+  writer.u32le(length);
+}
+
+bool is(const Block& block, BlockType type) {
+  return block.type == static_cast<std::uint32_t>(type);
+}
+
+}  // namespace
+
+Writer::Writer(std::string_view application) {
+  Bytes body;
+  ByteWriter writer{body};
+  writer.u32le(byte_order_magic);
+  writer.u16le(1);  // version
+  writer.u16le(0);
+  writer.u64le(UINT64_MAX);  // length of the section: not said
+  write_option(writer, options::application, as_bytes(application));
+  write_option(writer, options::end, {});
+  append_block(pending_, BlockType::section_header, body);
+}
+
+std::uint32_t Writer::add_interface(std::string_view name) {
+  Bytes body;
+  ByteWriter writer{body};
+  writer.u16le(link_type_raw);
+  writer.u16le(0);
+  writer.u32le(0);  // no limit to the size of a packet
+  write_option(writer, options::name, as_bytes(name));
+  write_option(writer, options::resolution, std::span{&nanoseconds, 1});
+  write_option(writer, options::end, {});
+  append_block(pending_, BlockType::interface_description, body);
+  return interfaces_++;
+}
+
+void Writer::add_packet(std::uint32_t interface, std::uint64_t time_ns, ByteView packet) {
+  assert(interface < interfaces_ && packet.size() <= max_packet_size);
+  Bytes body;
+  body.reserve(20 + packet.size() + padding(packet.size()));
+  ByteWriter writer{body};
+  writer.u32le(interface);
+  writer.u32le(static_cast<std::uint32_t>(time_ns >> 32));  // high word first
+  writer.u32le(static_cast<std::uint32_t>(time_ns));
+  writer.u32le(static_cast<std::uint32_t>(packet.size()));  // captured
+  writer.u32le(static_cast<std::uint32_t>(packet.size()));  // on the wire
+  write_padded(writer, packet);
+  append_block(pending_, BlockType::enhanced_packet, body);
+}
+
+Bytes Writer::take() {
+  return std::exchange(pending_, {});
+}
+
+Result<std::optional<Block>, WireError> block_at(ByteView bytes, std::size_t offset) {
+  const auto nothing = std::optional<Block>{};
+  if (offset >= bytes.size()) {
+    return nothing;
+  }
+  ByteReader reader{bytes.subspan(offset)};
+  const std::uint32_t type = reader.u32le("block_type");
+  const std::size_t length = reader.u32le("block_length");
+  if (!reader.ok()) {
+    return nothing;
+  }
+  if (length < block_overhead || length % 4 != 0) {
+    return WireError{WireErrorReason::bad_length, offset + 4, "block_length"};
+  }
+  const ByteView body = reader.bytes(length - block_overhead, "body");
+  const std::size_t repeated = reader.u32le("block_length");
+  if (!reader.ok()) {
+    return nothing;
+  }
+  if (repeated != length) {
+    return WireError{WireErrorReason::bad_length, offset + length - 4, "block_length"};
+  }
+  return std::optional{Block{type, offset, body}};
+}
+
+Result<Packet, WireError> read_packet(const Block& block) {
+  ByteReader reader{block.body};
+  Packet packet;
+  packet.interface = reader.u32le("interface");
+  packet.time_ns = std::uint64_t{reader.u32le("time")} << 32;
+  packet.time_ns |= reader.u32le("time");
+  const std::size_t size = reader.u32le("captured_size");
+  reader.skip(4, "original_size");
+  packet.bytes = reader.bytes(size, "packet");
+  if (!reader.ok()) {
+    WireError error = *reader.error();
+    error.offset += block.offset + 8;
+    return error;
+  }
+  return packet;
+}
+
+Result<Recovery, WireError> recover(ByteView file) {
+  const auto first = block_at(file, 0);
+  if (!first) {
+    return first.error();
+  }
+  if (!*first) {
+    return WireError{WireErrorReason::truncated, file.size(), "section_header"};
+  }
+  const Block& section = **first;
+  if (!is(section, BlockType::section_header) ||
+      ByteReader{section.body}.u32le("magic") != byte_order_magic) {
+    return WireError{WireErrorReason::bad_value, 0, "section_header"};
+  }
+  Recovery recovery{.keep_size = section.end()};
+  while (true) {
+    const auto block = block_at(file, recovery.keep_size);
+    if (!block || !*block) {
+      return recovery;
+    }
+    if (is(**block, BlockType::enhanced_packet)) {
+      const auto packet = read_packet(**block);
+      if (!packet || packet->interface >= recovery.interfaces) {
+        return recovery;
+      }
+      ++recovery.packets;
+    } else if (is(**block, BlockType::interface_description)) {
+      ++recovery.interfaces;
+    }
+    recovery.keep_size = (*block)->end();
+  }
+}
+
+}  // namespace sonard::pcapng

@@ -1,0 +1,60 @@
+// The messages of log files: their description goes with them, and images that do not add up are told.
+#include "protocol/log/log_messages.hpp"
+
+#include <google/protobuf/descriptor.pb.h>
+#include <google/protobuf/dynamic_message.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace sonard::log {
+namespace {
+
+SonarImage image() {
+  SonarImage message;
+  message.set_head("bow");
+  message.set_range_lines(2);
+  message.set_beams(3);
+  message.set_pixels("abcdef");
+  for (const double bearing : {0.5, 0.0, -0.5}) {
+    message.add_bearings_rad(bearing);
+  }
+  message.mutable_t_world_sonar()->mutable_position_m()->set_z(-3);
+  return message;
+}
+
+TEST(LogMessages, schema_alone_is_enough_to_read_a_message) {
+  google::protobuf::FileDescriptorSet set;
+  const auto bytes = schema_data(*SonarImage::descriptor());
+  ASSERT_TRUE(set.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
+  google::protobuf::DescriptorPool pool;  // one that knows nothing of ours
+  for (const auto& file : set.file()) {
+    ASSERT_NE(pool.BuildFile(file), nullptr) << file.name() << " comes before what it imports";
+  }
+  const auto* descriptor = pool.FindMessageTypeByName("sonard.log.SonarImage");
+  ASSERT_NE(descriptor, nullptr);
+  google::protobuf::DynamicMessageFactory factory;
+  const std::unique_ptr<google::protobuf::Message> read{factory.GetPrototype(descriptor)->New()};
+  const auto encoded = encode(image());
+  ASSERT_TRUE(read->ParseFromArray(encoded.data(), static_cast<int>(encoded.size())));
+  EXPECT_EQ(read->GetReflection()->GetString(*read, descriptor->FindFieldByName("pixels")), "abcdef");
+}
+
+TEST(LogMessages, an_image_has_a_pixel_and_a_bearing_for_each_beam) {
+  EXPECT_FALSE(problem_of(image()));
+  SonarImage few = image();
+  few.set_pixels("abcde");
+  EXPECT_EQ(problem_of(few), "2 lines of 3 beams have 5 pixels");
+  SonarImage bearings = image();
+  bearings.add_bearings_rad(1);
+  EXPECT_EQ(problem_of(bearings), "3 beams have 4 bearings");
+}
+
+TEST(LogMessages, bytes_of_something_else_are_refused) {
+  const auto encoded = encode(image());
+  EXPECT_TRUE(decode<SonarImage>(encoded));
+  EXPECT_FALSE(decode<SonarImage>(std::span{encoded}.first(encoded.size() - 1)));
+}
+
+}  // namespace
+}  // namespace sonard::log
