@@ -13,6 +13,7 @@ class io_context;
 namespace sonard::server {
 
 class PoseHistory;
+class Recorder;
 class RenderService;
 
 /// What a head needs of the daemon. Everything outlives the head.
@@ -23,6 +24,7 @@ struct HeadServices {
   const PoseHistory& poses;
   std::optional<double> water_surface_z_m;  ///< height above which a sonar is out of the water
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
+  Recorder* recorder = nullptr;             ///< null: nothing is recorded
 };
 
 /// A device on its transport. Constructor and destructor belong to the thread that owns the io_context while
