@@ -24,7 +24,7 @@ class LogFile {
 
   /// Makes the file. Call it once.
   void begin(const std::filesystem::path& path);
-  /// A piece after which the file is whole, or can be made so.
+  /// A piece after which the file is whole, or can be made so. Goes nowhere before begin().
   void append(std::span<const std::uint8_t> piece);
   void sync();
   /// Nothing is written after that.

@@ -161,6 +161,9 @@ std::uint16_t McapLog::channel(const std::string& topic) {
 }
 
 void McapLog::flush(TimePoint now) {
+  if (!file().begun()) {
+    return;  // what the writer has, the beginning of the file, waits for it
+  }
   if (image_waits_ || now - flushed_at_ >= longest_chunk) {
     writer_.end_chunk();
     image_waits_ = false;

@@ -78,6 +78,12 @@ void PcapngLog::add(const RecordingEvent& event, const std::vector<pcapng::Bytes
   }
 }
 
+void PcapngLog::flush(TimePoint) {
+  if (file().begun()) {  // before, what the writer has is the beginning of the file
+    file().append(writer_.take());
+  }
+}
+
 void PcapngLog::close() {
   flush({});
   file().end();

@@ -17,7 +17,7 @@ class PcapngLog final : public Log {
   explicit PcapngLog(const LogSetting& setting);
 
   void write(const RecordingEvent& event) override;
-  void flush(TimePoint) override { file().append(writer_.take()); }
+  void flush(TimePoint now) override;
   void close() override;
 
  private:
