@@ -214,7 +214,7 @@ inline const HeadConfig& common(const AnyHeadConfig& head) {
 /// The clock that names of logs and times in .glf logs show.
 enum class RecordingZone { utc, local };
 
-/// When what was written is forced onto the disk (docs/logs.md 4).
+/// When what was written is forced onto the disk (docs/logs.md, "Recording").
 enum class RecordingSync {
   never,         ///< when the kernel likes
   on_close,      ///< a file when it is closed

@@ -1,4 +1,4 @@
-// The .dat of one Gemini while it grows (docs/logs.md 1, 4).
+// The .dat of one Gemini while it grows (docs/logs.md 1 and "Recording").
 #pragma once
 
 #include "server/recording/log.hpp"

@@ -1,4 +1,4 @@
-// Makes a .glf of a .dat, a slice at a time (docs/logs.md 1.1, 4).
+// Makes a .glf of a .dat, a slice at a time (docs/logs.md 1.1 and "Recording").
 #pragma once
 
 #include <cstdint>

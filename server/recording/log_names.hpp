@@ -1,4 +1,4 @@
-// What files of a recording are called (docs/logs.md 4).
+// What files of a recording are called (docs/logs.md, "Recording").
 #pragma once
 
 #include <cstdint>

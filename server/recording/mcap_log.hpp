@@ -1,4 +1,4 @@
-// The MCAP file of all heads (docs/logs.md 2, 4).
+// The MCAP file of all heads (docs/logs.md, "MCAP" and "Recording").
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// The capture of all heads, for Wireshark (docs/logs.md 3, 4).
+// The capture of all heads, for Wireshark (docs/logs.md, "pcapng" and "Recording").
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// Makes whole what a daemon that was killed has left behind (docs/logs.md 4).
+// Makes whole what a daemon that was killed has left behind (docs/logs.md, "Recording").
 #pragma once
 
 #include <filesystem>
