@@ -22,11 +22,6 @@ std::int32_t utc_offset_s(RecordingZone zone) {
   return static_cast<std::int32_t>(local.tm_gmtoff);
 }
 
-bool is_image(const RecordingEvent& event) {
-  return std::holds_alternative<GeminiPingServed>(event.what) ||
-         std::holds_alternative<MicronLineSent>(event.what);
-}
-
 }  // namespace
 
 LogSet::LogSet(const RecordingConfig& config, const std::vector<RecordedHead>& heads, TimePoint begin,
@@ -50,13 +45,15 @@ LogSet::LogSet(const RecordingConfig& config, const std::vector<RecordedHead>& h
   }
 }
 
-bool LogSet::write(const RecordingEvent& event) {
+void LogSet::write(const RecordingEvent& event) {
   for (const std::unique_ptr<Log>& log : logs_) {
     log->write(event);
   }
-  return !is_image(event) || std::ranges::any_of(logs_, [](const std::unique_ptr<Log>& log) {
-    return log->file().begun() && !log->file().failed();
-  });
+}
+
+bool LogSet::any_good() const {
+  return std::ranges::any_of(
+      logs_, [](const std::unique_ptr<Log>& log) { return log->file().begun() && !log->file().failed(); });
 }
 
 void LogSet::flush(TimePoint now) {

@@ -20,8 +20,9 @@ class LogSet {
   LogSet(const LogSet&) = delete;  // logs refer to its setting
   LogSet& operator=(const LogSet&) = delete;
 
-  /// @return false when no log could take it.
-  bool write(const RecordingEvent& event);
+  void write(const RecordingEvent& event);
+  /// False when there is no log that could be written, up to the last event.
+  bool any_good() const;
   void flush(TimePoint now);
   void sync();
   /// True when the next event belongs into new logs.

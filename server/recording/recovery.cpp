@@ -139,7 +139,12 @@ bool is_packed(const fs::path& dat, const glf::DatIndex& index) {
          packed->index().whole_size == index.whole_size;
 }
 
-/// True when it is to be packed.
+bool begins_like_a_record(const fs::path& dat) {
+  const MappedFile file(dat);
+  return !file.bytes().empty() && file.bytes().front() == '*';
+}
+
+/// True when it is to be packed, which also removes one without a whole record.
 bool recover_dat(const fs::path& path) {
   glf::DatIndex index;
   {
@@ -152,13 +157,15 @@ bool recover_dat(const fs::path& path) {
     spdlog::info("recording: removed {}, which was packed", path.string());
     return false;
   }
-  if (index.tail_error && index.tail_error->reason != WireErrorReason::truncated) {
+  const bool cut = !index.tail_error || index.tail_error->reason == WireErrorReason::truncated;
+  if (!cut || (index.records.empty() && !begins_like_a_record(path))) {
     keep_as_damaged(path, index.whole_size);
   } else {
     spdlog::info("recording: recovered {}: {} records, {} bytes of an unfinished one cut off", path.string(),
                  index.records.size(), index.tail_size);
   }
-  return !index.records.empty();
+  std::error_code ignored;
+  return fs::exists(path, ignored);
 }
 
 void recover_file(const fs::path& path, std::vector<fs::path>& dats) {
