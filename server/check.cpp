@@ -33,6 +33,7 @@ class Check {
   CheckReport run(bool try_addresses) {
     check_world();
     check_poses();
+    check_recording();
     for (std::size_t i = 0; i < config_.heads.size(); ++i) {
       check_head(i);
     }
@@ -52,6 +53,7 @@ class Check {
 
   void check_world();
   void check_poses();
+  void check_recording();
   void check_head(std::size_t index);
   void describe(const GeminiHeadConfig& head);
   void describe(const MicronHeadConfig& head);
@@ -98,6 +100,21 @@ void Check::check_world() {
   } catch (const render::WorldError& error) {
     problem("world.file", error.what());
   }
+}
+
+void Check::check_recording() {
+  if (!config_.recording) {
+    return;
+  }
+  const RecordingConfig& recording = *config_.recording;
+  std::error_code error;
+  if (std::filesystem::exists(recording.directory, error) &&
+      !std::filesystem::is_directory(recording.directory, error)) {
+    problem("recording.directory", fmt::format("{} is no folder", recording.directory.string()));
+  }
+  report_.summary.push_back(fmt::format("records  into {}:{}{}{}", recording.directory.string(),
+                                        recording.glf ? " glf" : "", recording.mcap ? " mcap" : "",
+                                        recording.pcapng ? " pcapng" : ""));
 }
 
 void Check::check_poses() {

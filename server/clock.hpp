@@ -23,6 +23,15 @@ class SteadyClock final : public Clock {
   TimePoint now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
 };
 
+/// What to add to a time of SteadyClock to have nanoseconds since the Unix epoch, as of now: the wall clock
+/// may be set meanwhile.
+inline std::chrono::nanoseconds unix_time_offset() {
+  const TimePoint before = std::chrono::steady_clock::now().time_since_epoch();
+  const auto wall = std::chrono::system_clock::now().time_since_epoch();
+  const TimePoint after = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(wall) - (before + (after - before) / 2);
+}
+
 /// The same instant for an Asio steady_timer.
 inline std::chrono::steady_clock::time_point to_steady(TimePoint time) {
   return std::chrono::steady_clock::time_point{time};

@@ -28,6 +28,7 @@
 #include "server/exit_codes.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/pose/pose_source.hpp"
+#include "server/recording/recorder.hpp"
 
 namespace sonard::server {
 namespace {
@@ -105,6 +106,18 @@ std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<AnyHeadConfi
   return dumps;
 }
 
+// Null when nothing is recorded.
+std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
+  if (!config.recording) {
+    return nullptr;
+  }
+  try {
+    return std::make_unique<Recorder>(*config.recording, recorded_heads(config.heads));
+  } catch (const RecordingError& error) {
+    throw StartError("recording.directory", exit_config, error.what());
+  }
+}
+
 // Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
 // `io_`, and with it sources, history and heads; each RenderService has a render thread. Scanning heads have
 // one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that takes a
@@ -141,6 +154,7 @@ class Daemon {
   PoseHistory poses_;
   std::vector<std::unique_ptr<PoseSource>> sources_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
+  std::unique_ptr<Recorder> recorder_;                           // null when nothing is recorded
   std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
   std::string ready_line_;
@@ -153,12 +167,13 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       poses_(config.poses),
       sources_(make_sources(io_, config, clock_, poses_)),
       dumps_(make_dumps(config.heads)),
+      recorder_(make_recorder(config)),
       fan_renderer_(make_renderer_of(false, config, make_renderer)),
       beam_renderer_(make_renderer_of(true, config, make_renderer)) {
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     RenderService& renderer = *(is_scanning(config.heads[i]) ? beam_renderer_ : fan_renderer_);
-    const HeadServices services{io_,         clock_,   renderer, poses_, world.water_surface_z_m,
-                                config.skip, playback_};
+    const HeadServices services{io_,         clock_,    renderer,       poses_, world.water_surface_z_m,
+                                config.skip, playback_, recorder_.get()};
     try {
       heads_.push_back(make_head(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
@@ -236,6 +251,9 @@ int Daemon::run() {
   }
   io_work.reset();
   io_thread.join();
+  if (recorder_) {
+    recorder_->stop();
+  }
   return exit_code_;
 }
 

@@ -410,6 +410,9 @@ std::vector<Outgoing> Device::take_outgoing() {
 std::optional<PingJob> Device::take_job() {
   return impl_->pinger().take_job();
 }
+std::optional<ServedPing> Device::take_served() {
+  return impl_->pinger().take_served();
+}
 std::optional<std::uint64_t> Device::called_off() const {
   return impl_->pinger().called_off();
 }

@@ -10,6 +10,7 @@
 
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/device_counters.hpp"
+#include "protocol/gemini/encoded_ping.hpp"
 #include "protocol/gemini/ping_job.hpp"
 #include "protocol/gemini/shared_bytes.hpp"
 
@@ -81,6 +82,9 @@ class Device {
   /// A ping to render. Each call empties it. Every job taken must be answered once, by on_image() or
   /// on_image_failed(): the next job waits for that, so at most one is outstanding.
   std::optional<PingJob> take_job();
+  /// The ping that has gone onto the wire since the last call: its head is among the datagrams, or about to
+  /// be. Call it after each advance(), which begins one at most.
+  std::optional<ServedPing> take_served();
   /// The ping whose job is out though nobody wants its image any more: surface gone, reboot, new settings. It
   /// must still be answered; on_image_failed() without rendering it will do. nullopt: there is none.
   std::optional<std::uint64_t> called_off() const;

@@ -23,9 +23,12 @@ class EncodedPing {
   /// beam_count samples, of the width that head.ext_mode states.
   EncodedPing(const PingHead& head, std::uint16_t line_scale, const PingImage& image);
 
+  const PingHead& head() const { return head_; }
   int line_count() const { return head_.line_count(); }
   /// Head, lines and tail: line_count() + 2.
   int datagram_count() const { return line_count() + 2; }
+  /// Bytes of memory that all copies share.
+  std::size_t shared_size() const { return bytes_->size(); }
   /// In the order of sending: 0 is the head, 1.. the lines, the last one the tail.
   SharedBytes datagram(int index) const;
 
@@ -43,6 +46,12 @@ class EncodedPing {
   std::uint16_t line_scale_;
   std::shared_ptr<const std::vector<std::uint8_t>> bytes_;
   std::vector<std::uint32_t> offsets_;  ///< of each datagram, and the end of the last
+};
+
+/// A ping that has begun to leave, for those who keep what a head said.
+struct ServedPing {
+  std::uint64_t ping_number = 0;  ///< that of its job
+  EncodedPing ping;
 };
 
 }  // namespace sonard::gemini

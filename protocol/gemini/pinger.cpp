@@ -247,6 +247,7 @@ void Pinger::put_on_wire() {
   drop_retries(acquisition_->encoded->line_count());
   last_retry_arrival_.reset();
   last_retry_activity_.reset();
+  served_ = ServedPing{acquisition_->ping_number, *acquisition_->encoded};
   transmission_.emplace(std::move(*acquisition_->encoded), acquisition_->transmit_time,
                         acquisition_->plan.job.compression_log2);
   acquisition_.reset();

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "protocol/gemini/device_config.hpp"
@@ -51,6 +52,8 @@ class Pinger {
   void advance(TimePoint now, std::vector<SharedBytes>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<PingJob> take_job();
+  /// See Device::take_served().
+  std::optional<ServedPing> take_served() { return std::exchange(served_, std::nullopt); }
   /// See Device::called_off().
   std::optional<std::uint64_t> called_off() const { return acquisition_ ? std::nullopt : unanswered_; }
 
@@ -110,6 +113,7 @@ class Pinger {
 
   // On the wire.
   std::optional<PingTransmission> transmission_;
+  std::optional<ServedPing> served_;  ///< not yet taken
   RetryQueue retries_;
   std::optional<TimePoint> last_retry_arrival_;   ///< about the ping in transmission_
   std::optional<TimePoint> last_retry_activity_;  ///< arrival or service

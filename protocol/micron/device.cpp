@@ -356,6 +356,9 @@ std::vector<std::vector<std::uint8_t>> Device::take_outgoing() {
 std::optional<MicronJob> Device::take_job() {
   return impl_->scanner().take_job();
 }
+std::optional<SentLine> Device::take_sent_line() {
+  return impl_->scanner().take_sent_line();
+}
 std::optional<std::uint64_t> Device::called_off() const {
   return impl_->scanner().called_off();
 }

@@ -69,6 +69,8 @@ class Device {
   /// A ping to render. Each call empties it. Every job taken must be answered once, by on_line() or
   /// on_line_failed(): the next job waits for that, so at most one is outstanding.
   std::optional<MicronJob> take_job();
+  /// The line that has left since the last call. Call it after each advance(), which sends one at most.
+  std::optional<SentLine> take_sent_line();
   /// The ping whose job is out though nobody wants its line any more: new parameters, reboot. It must still
   /// be answered; on_line_failed() without rendering it will do. nullopt: there is none.
   std::optional<std::uint64_t> called_off() const;

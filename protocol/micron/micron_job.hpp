@@ -42,4 +42,11 @@ struct MicronLine {
   std::vector<std::uint8_t> samples;
 };
 
+/// A line that has left, for those who keep what a head said.
+struct SentLine {
+  std::uint64_t ping_number = 0;
+  bool eight_bit = true;
+  std::vector<std::uint8_t> bins;  ///< as they travelled: 0..255, or 0..15 where a line has 4 bits a bin
+};
+
 }  // namespace sonard::micron

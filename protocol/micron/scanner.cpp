@@ -162,6 +162,18 @@ void Scanner::on_line_failed(TimePoint now, std::uint64_t ping_number) {
   }
 }
 
+std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
+  const HeadCommand& parameters = *parameters_;
+  if (parameters.has(control_bits::eight_bit)) {
+    return ping.samples;
+  }
+  std::vector<std::uint8_t> values(ping.samples.size());
+  std::ranges::transform(ping.samples, values.begin(), [&](std::uint8_t amplitude) {
+    return to_four_bit(amplitude, parameters.ad_low, parameters.ad_span);
+  });
+  return values;
+}
+
 std::vector<std::uint8_t> Scanner::make_line(const Ping& ping) const {
   const HeadCommand& parameters = *parameters_;
   HeadData line;
@@ -187,17 +199,14 @@ std::vector<std::uint8_t> Scanner::make_line(const Ping& ping) const {
     line.data = ping.samples;
     return encode(line, config_.node);
   }
-  std::vector<std::uint8_t> values(ping.samples.size());
-  std::ranges::transform(ping.samples, values.begin(), [&](std::uint8_t amplitude) {
-    return to_four_bit(amplitude, parameters.ad_low, parameters.ad_span);
-  });
-  const auto packed = pack_nibbles(values, config_.nibble_order);
+  const auto packed = pack_nibbles(bins_of(ping), config_.nibble_order);
   line.data = packed;
   return encode(line, config_.node);
 }
 
 void Scanner::send_line(std::vector<std::vector<std::uint8_t>>& out) {
   out.push_back(make_line(*ping_));
+  sent_ = SentLine{ping_->number, parameters_->has(control_bits::eight_bit), bins_of(*ping_)};
   ++counters_.lines_sent;
   link_free_at_ = ping_->line_due + line_timing(*parameters_, config_, 0).send;
   end_ping();

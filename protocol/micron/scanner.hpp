@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "protocol/micron/device_config.hpp"
@@ -42,6 +43,8 @@ class Scanner {
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<MicronJob> take_job();
+  /// See Device::take_sent_line().
+  std::optional<SentLine> take_sent_line() { return std::exchange(sent_, std::nullopt); }
   /// See Device::called_off().
   std::optional<std::uint64_t> called_off() const { return ping_ ? std::nullopt : unanswered_; }
 
@@ -64,6 +67,7 @@ class Scanner {
   std::optional<TimePoint> ping_due() const;
   std::optional<TimePoint> line_due() const;
   void start_ping(TimePoint now, TimePoint due);
+  std::vector<std::uint8_t> bins_of(const Ping& ping) const;
   std::vector<std::uint8_t> make_line(const Ping& ping) const;
   void send_line(std::vector<std::vector<std::uint8_t>>& out);
   void end_ping();
@@ -90,6 +94,7 @@ class Scanner {
   // What it does.
   std::uint64_t next_ping_number_ = 0;
   std::optional<Ping> ping_;
+  std::optional<SentLine> sent_;             ///< not yet taken
   std::optional<MicronJob> job_;             ///< not yet taken
   std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
   TimePoint free_since_{};                   ///< when the last ping ended, or its job was answered

@@ -211,6 +211,29 @@ inline const HeadConfig& common(const AnyHeadConfig& head) {
   return std::visit([](const HeadConfig& any) -> const HeadConfig& { return any; }, head);
 }
 
+/// The clock that names of logs and times in .glf logs show.
+enum class RecordingZone { utc, local };
+
+/// When what was written is forced onto the disk (docs/logs.md, "Recording").
+enum class RecordingSync {
+  never,         ///< when the kernel likes
+  on_close,      ///< a file when it is closed
+  every_second,  ///< that, and all open files once a second
+};
+
+/// Logs of what the heads say.
+struct RecordingConfig {
+  std::filesystem::path directory;  ///< made when it is not there; one daemon at a time uses it
+  bool glf = true;                  ///< Geminis only
+  bool mcap = true;
+  bool pcapng = true;
+  std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< a file of this size or more ends all files
+  std::chrono::nanoseconds rotate_after{std::chrono::hours{1}};  ///< > 0; and so does this time
+  RecordingZone zone = RecordingZone::utc;
+  RecordingSync sync = RecordingSync::on_close;
+  std::size_t queue_bytes = std::size_t{128} << 20;  ///< what does not fit is dropped
+};
+
 struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
@@ -221,6 +244,7 @@ struct DaemonConfig {
   WaterConfig water;
   PoseConfig poses;
   std::vector<AnyHeadConfig> heads;  ///< at least one
+  std::optional<RecordingConfig> recording;
 };
 
 }  // namespace sonard::server

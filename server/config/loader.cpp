@@ -156,6 +156,33 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   }
 }
 
+void read_recording(YamlSection& section, const std::filesystem::path& folder, RecordingConfig& recording) {
+  std::string path;
+  section.require("directory", "a folder for the logs");
+  section.text("directory", path);
+  recording.directory = folder / path;
+  section.boolean("glf", recording.glf);
+  section.boolean("mcap", recording.mcap);
+  section.boolean("pcapng", recording.pcapng);
+  if (!recording.glf && !recording.mcap && !recording.pcapng) {
+    section.report("directory", "no kind of log is to be written (expected glf, mcap or pcapng to be true)");
+  }
+  std::uint64_t mebibytes = recording.rotate_bytes >> 20;
+  section.integer("rotate_mib", mebibytes, 1, 1800);  // a .glf holds 1907 MiB, and a ping may still come
+  recording.rotate_bytes = mebibytes << 20;
+  double minutes = std::chrono::duration<double, std::ratio<60>>(recording.rotate_after).count();
+  section.number("rotate_min", minutes, Range::from(0.05, 10'080.0));
+  recording.rotate_after = std::chrono::nanoseconds{static_cast<std::int64_t>(minutes * 60e9)};
+  section.choice("zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}});
+  section.choice("sync", recording.sync,
+                 {{"never", RecordingSync::never},
+                  {"on_close", RecordingSync::on_close},
+                  {"every_second", RecordingSync::every_second}});
+  mebibytes = recording.queue_bytes >> 20;
+  section.integer("queue_mib", mebibytes, 1, 16'384);
+  recording.queue_bytes = mebibytes << 20;
+}
+
 void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWarning>& warnings) {
   HeadContext context;
   context.folder = config.file.parent_path();
@@ -182,6 +209,9 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
   root.require("poses", "a mapping that says where poses come from");
   root.section("poses", [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
   root.section("sampling", [&](YamlSection& section) { read_sampling(section, context.sampling); });
+  root.section("recording", [&](YamlSection& section) {
+    read_recording(section, context.folder, config.recording.emplace());
+  });
   root.require("heads", "a list of sonar heads");
   root.sections("heads",
                 [&](YamlSection& section) { config.heads.push_back(read_head(section, context, warnings)); });

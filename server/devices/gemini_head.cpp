@@ -19,6 +19,7 @@
 #include "server/devices/interfaces.hpp"
 #include "server/devices/playback.hpp"
 #include "server/devices/udp_endpoint.hpp"
+#include "server/recording/head_recording.hpp"
 
 namespace sonard::server {
 namespace {
@@ -33,6 +34,14 @@ void keep_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePo
     earliest = other;
   }
 }
+
+/// What a log keeps of the job that is out: a ping comes onto the wire before the next job is taken.
+struct PingToRecord {
+  std::uint64_t number = 0;
+  TimePoint transmit_time{};
+  double gain_percent = 0.0;
+  std::shared_ptr<const PosesUsed> poses;
+};
 
 }  // namespace
 
@@ -54,11 +63,14 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   asio::steady_timer report_timer;
   std::uint64_t not_allowed = 0;
   GeminiHeadLog log;
+  HeadRecording recording;
+  std::optional<PingToRecord> ping_to_record;
   bool running = false;
 
   void start();
   void stop();
   void listen();
+  Endpoint own_end() const;
   void listen_for_triggers();
   GeminiHeadCounters total() const;
 
@@ -71,6 +83,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void drop_unheard_job(TimePoint now);
   void schedule();
 
+  void record_served();
   void send(TimePoint now, const std::vector<gemini::Outgoing>& outgoing);
   void address_status(const gemini::SharedBytes& bytes, std::vector<Datagram>& datagrams) const;
   Ipv4 source_address() const;
@@ -113,7 +126,8 @@ GeminiHead::Impl::Impl(const GeminiHeadConfig& head_config, int stream_number,
       from_surface(config.link.from_surface, ~config.link.seed),  // the two directions draw apart
       timer(services.io),
       report_timer(services.io),
-      log(config.name) {
+      log(config.name),
+      recording(services.recorder, stream_number, services.clock) {
   if (config.trigger) {
     trigger = std::make_unique<UdpEndpoint>(services.io, *config.trigger);
   }
@@ -148,6 +162,14 @@ void GeminiHead::Impl::stop() {
 
 // Handlers hold the head weakly: one that is still queued when the head is gone does nothing.
 void GeminiHead::Impl::listen() {
+  UdpEndpoint::Sent sent;
+  if (recording.on()) {
+    sent = [weak = weak_from_this()](std::span<const Datagram> datagrams) {
+      if (const auto self = weak.lock()) {
+        self->recording.datagrams(datagrams, /*to_client=*/true, self->own_end());
+      }
+    };
+  }
   socket->start(
       [weak = weak_from_this()](const Datagram& datagram) {
         if (const auto self = weak.lock()) {
@@ -158,7 +180,14 @@ void GeminiHead::Impl::listen() {
         if (const auto self = weak.lock()) {
           self->pump();
         }
-      });
+      },
+      std::move(sent));
+}
+
+// Where datagrams come from, as far as that is known.
+Endpoint GeminiHead::Impl::own_end() const {
+  const Endpoint local = socket->local_endpoint();
+  return {local.address != 0 ? local.address : addresses.alternate, local.port};
 }
 
 void GeminiHead::Impl::listen_for_triggers() {
@@ -190,6 +219,9 @@ void GeminiHead::Impl::on_datagram(const Datagram& datagram) {
     ++not_allowed;
     log.stranger(datagram.remote.address);
     return;
+  }
+  if (recording.on()) {
+    recording.datagrams({&datagram, 1}, /*to_client=*/false, own_end());
   }
   from_surface.push(services.clock.now(), datagram);
   pump();
@@ -235,6 +267,7 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
   device.set_out_of_water(out_of_water(now));
   offer_recorded(now);
   device.advance(now);
+  record_served();
   send(now, device.take_outgoing());
   while (const std::optional<gemini::PingJob> job = device.take_job()) {
     if (render(*job)) {
@@ -244,6 +277,7 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
     // ahead, it may ask for the next ping at once; each turn moves on by a ping period, so this ends.
     device.on_image_failed(now, job->ping_number);
     device.advance(now);
+    record_served();
     send(now, device.take_outgoing());
   }
   drop_unheard_job(now);  // the surface has just timed out
@@ -281,11 +315,21 @@ void GeminiHead::Impl::schedule() {
 // ---- Sending
 // -------------------------------------------------------------------------------------------------
 
+void GeminiHead::Impl::record_served() {
+  std::optional<gemini::ServedPing> served = device.take_served();
+  if (served && ping_to_record && ping_to_record->number == served->ping_number) {
+    recording.gemini_ping({std::move(*served), ping_to_record->transmit_time, ping_to_record->gain_percent,
+                           std::move(ping_to_record->poses)});
+    ping_to_record.reset();
+  }
+}
+
 void GeminiHead::Impl::send(TimePoint now, const std::vector<gemini::Outgoing>& outgoing) {
   std::vector<Datagram> datagrams;
   datagrams.reserve(outgoing.size());
   for (const gemini::Outgoing& item : outgoing) {
     if (item.to == gemini::Outgoing::To::status) {
+      recording.gemini_status(item.bytes);
       address_status(item.bytes, datagrams);
     } else {
       datagrams.push_back({{item.surface, config.surface_port}, item.reply_from, item.bytes});
@@ -372,6 +416,11 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   if (!T_world_sonar) {
     rendering.count_missing_pose();
     return false;
+  }
+  if (recording.on()) {
+    ping_to_record = {job.ping_number, job.transmit_time, job.gain_percent,
+                      rendering.poses_used(job.transmit_time)};
+    recording.posed(ping_to_record->poses);
   }
   const std::uint64_t transmit_us = device.clock_us(job.transmit_time);
   log.ping(job, transmit_us, *T_world_sonar);

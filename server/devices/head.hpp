@@ -14,6 +14,7 @@ namespace sonard::server {
 
 class Playback;
 class PoseHistory;
+class Recorder;
 class RenderService;
 
 /// What a head needs of the daemon. Everything outlives the head.
@@ -25,6 +26,7 @@ struct HeadServices {
   std::optional<double> water_surface_z_m;  ///< height above which a sonar is out of the water
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
   Playback* playback = nullptr;             ///< for heads whose DeviceConfig::plays_back is set
+  Recorder* recorder = nullptr;             ///< null: nothing is recorded
 };
 
 /// A device on its transport. Constructor and destructor belong to the thread that owns the io_context while

@@ -17,6 +17,16 @@ std::optional<render::Pose> HeadRendering::T_world_mount(TimePoint time) const {
   return vehicle->T_world_vehicle * config_.T_vehicle_sonar;
 }
 
+std::shared_ptr<const PosesUsed> HeadRendering::poses_used(TimePoint time) const {
+  const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
+  if (!vehicle) {
+    return nullptr;
+  }
+  return std::make_shared<const PosesUsed>(PosesUsed{time, vehicle->T_world_vehicle,
+                                                     vehicle->T_world_vehicle * config_.T_vehicle_sonar,
+                                                     services_.poses.bodies_at(time)});
+}
+
 void HeadRendering::submit(HeadPing ping, RenderService::Done done) const {
   RenderJob job;
   job.stream = stream_;

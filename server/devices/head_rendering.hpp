@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "renderer/sonar_settings.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
+#include "server/recording/events.hpp"
 #include "server/render_service.hpp"
 
 namespace sonard::server {
@@ -42,6 +44,9 @@ class HeadRendering {
   /// Where the mount of the head is; of a time to come, as far as the twist of the newest pose says. nullopt:
   /// there is no pose, or only a stale one that is not to be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
+
+  /// The same, with all that a log keeps of it.
+  std::shared_ptr<const PosesUsed> poses_used(TimePoint time) const;
 
   void submit(HeadPing ping, RenderService::Done done) const;
   /// Counts an answer, and logs what is wrong with it, the same thing once. @return whether there are

@@ -15,6 +15,7 @@
 #include "server/devices/micron_head_log.hpp"
 #include "server/devices/micron_settings.hpp"
 #include "server/devices/serial/serial_link.hpp"
+#include "server/recording/head_recording.hpp"
 
 namespace sonard::server {
 namespace {
@@ -35,7 +36,8 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
         rendering(config, stream, services),
         timer(services.io),
         report_timer(services.io),
-        log(config.name) {}
+        log(config.name),
+        recording(services.recorder, stream, services.clock) {}
 
   const MicronHeadConfig config;
   const HeadServices services;
@@ -47,6 +49,9 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
   DeadlineTimer timer;
   asio::steady_timer report_timer;
   MicronHeadLog log;
+  HeadRecording recording;
+  micron::MicronJob job_to_record;                   // the one that is out
+  std::shared_ptr<const PosesUsed> poses_to_record;  // of the same
   bool running = false;
 
   void start();
@@ -57,6 +62,7 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
   void on_rendered(std::uint64_t ping_number, RenderResult result);
   void pump();
   void advance_device(TimePoint now);
+  void record_sent();
   void drop_unheard_job(TimePoint now);
   bool render(const micron::MicronJob& job);
   void schedule();
@@ -86,6 +92,14 @@ SerialAddresses MicronHead::addresses() const {
 // Handlers hold the head weakly: one that is still queued when the head is gone does nothing.
 void MicronHead::Impl::start() {
   running = true;
+  decltype(SerialPortEvents::passed) passed;
+  decltype(SerialPortEvents::ended) ended;
+  if (recording.on()) {  // a copy: it holds no reference to the head
+    passed = [to = recording](const WireEnds& ends, bool to_client, std::span<const std::uint8_t> bytes) {
+      to.piece(ends, to_client, bytes);
+    };
+    ended = [to = recording](const WireEnds& ends) { to.client_left(ends); };
+  }
   link.start(
       [weak = weak_from_this()](std::span<const std::uint8_t> bytes, const std::string&) {
         if (const auto self = weak.lock()) {
@@ -96,7 +110,8 @@ void MicronHead::Impl::start() {
         if (const auto self = weak.lock()) {
           self->device.on_host_gone();
         }
-      });
+      },
+      std::move(passed), std::move(ended));
   for (const std::string& port : link.descriptions()) {
     spdlog::info("head={} serves {}", config.name, port);
   }
@@ -154,6 +169,7 @@ void MicronHead::Impl::pump() {
 void MicronHead::Impl::advance_device(TimePoint now) {
   drop_unheard_job(now);  // new parameters have called it off, and the next ping waits for its answer
   device.advance(now);
+  record_sent();
   while (const std::optional<micron::MicronJob> job = device.take_job()) {
     if (render(*job)) {
       return;
@@ -162,6 +178,14 @@ void MicronHead::Impl::advance_device(TimePoint now) {
     // one of the lines that are owed, so this ends.
     device.on_line_failed(now, job->ping_number);
     device.advance(now);
+    record_sent();
+  }
+}
+
+void MicronHead::Impl::record_sent() {
+  std::optional<micron::SentLine> line = device.take_sent_line();
+  if (line && recording.on() && poses_to_record && line->ping_number == job_to_record.ping_number) {
+    recording.micron_line({std::move(*line), job_to_record, poses_to_record});
   }
 }
 
@@ -179,6 +203,11 @@ bool MicronHead::Impl::render(const micron::MicronJob& job) {
   if (!T_world_mount) {
     rendering.count_missing_pose();
     return false;
+  }
+  if (recording.on()) {
+    job_to_record = job;
+    poses_to_record = rendering.poses_used(job.transmit_time);
+    recording.posed(poses_to_record);
   }
   const auto since_power_up =
       std::chrono::duration_cast<std::chrono::microseconds>(job.transmit_time - power_up);

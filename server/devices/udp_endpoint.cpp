@@ -124,6 +124,7 @@ struct UdpEndpoint::Impl : std::enable_shared_from_this<UdpEndpoint::Impl> {
   Endpoint local;
   Receive receive;
   std::function<void()> drained;
+  Sent sent_hook;
   std::deque<Datagram> queue;
   bool waiting_to_write = false;
   std::set<int> reported_errors;
@@ -175,9 +176,10 @@ void UdpEndpoint::Impl::open(const Endpoint& bind) {
   local = {bound.address().to_v4().to_uint(), bound.port()};
 }
 
-void UdpEndpoint::start(Receive receive, std::function<void()> drained) {
+void UdpEndpoint::start(Receive receive, std::function<void()> drained, Sent sent) {
   impl_->receive = std::move(receive);
   impl_->drained = std::move(drained);
+  impl_->sent_hook = std::move(sent);
   impl_->wait_readable();
 }
 
@@ -307,6 +309,10 @@ bool UdpEndpoint::Impl::send_batch() {
       sendmmsg(socket.native_handle(), outgoing.headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT);
   if (sent > 0) {
     counters.sent += static_cast<std::uint64_t>(sent);
+    if (sent_hook) {
+      const std::vector<Datagram> gone(queue.begin(), queue.begin() + sent);
+      sent_hook(gone);
+    }
     queue.erase(queue.begin(), queue.begin() + sent);
     return true;
   }

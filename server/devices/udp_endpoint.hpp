@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -49,6 +50,7 @@ class UdpEndpoint {
   static constexpr std::size_t most_queued = 65536;
 
   using Receive = std::function<void(const Datagram&)>;
+  using Sent = std::function<void(std::span<const Datagram>)>;
 
   /// Binds. Port 0 lets the kernel choose.
   /// @throws SocketError
@@ -57,8 +59,9 @@ class UdpEndpoint {
   UdpEndpoint(const UdpEndpoint&) = delete;
   UdpEndpoint& operator=(const UdpEndpoint&) = delete;
 
-  /// Begins to receive. `drained` is called each time after a full socket has taken all that was waiting.
-  void start(Receive receive, std::function<void()> drained = {});
+  /// Begins to receive. `drained` is called each time after a full socket has taken all that was waiting,
+  /// `sent` with what the kernel has taken, in order.
+  void start(Receive receive, std::function<void()> drained = {}, Sent sent = {});
   /// Sends now what the socket takes; the rest follows, in order, as it drains.
   void send(std::vector<Datagram> datagrams);
   /// True while datagrams wait for the socket.

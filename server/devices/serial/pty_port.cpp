@@ -109,6 +109,7 @@ struct PtyPort::Impl : std::enable_shared_from_this<PtyPort::Impl> {
   void leave();
   void stop();
   std::string description() const;
+  WireEnds ends() const { return {WireTransport::pty, {}, {}, path}; }
 
   SerialPtyConfig config;
   stream_descriptor master;
@@ -168,6 +169,9 @@ void PtyPort::Impl::on_readable() {
   }
   if (length > 0) {
     counters.bytes_in += length;
+    if (events.passed) {
+      events.passed(ends(), /*to_client=*/false, {buffer.data(), length});
+    }
     events.received({buffer.data(), length}, "pty " + path);
   }
   if (master.is_open()) {
@@ -183,6 +187,9 @@ void PtyPort::Impl::leave() {
     reset_slave(path);
   } catch (const SocketError& error) {  // the next client may find what this one did not read
     spdlog::warn("serial {}: {}", description(), error.what());
+  }
+  if (events.ended) {
+    events.ended(ends());
   }
   events.left("pty " + path);
   if (master.is_open()) {
@@ -234,6 +241,9 @@ void PtyPort::send(std::span<const std::uint8_t> frame) {
   }
   if (impl_->writer.send(frame, impl_)) {
     impl_->counters.bytes_out += frame.size();
+    if (impl_->events.passed) {
+      impl_->events.passed(impl_->ends(), /*to_client=*/true, frame);
+    }
   } else {
     ++impl_->counters.frames_dropped;
   }

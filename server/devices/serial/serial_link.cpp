@@ -54,6 +54,8 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
   DeadlineTimer timer;
   Receive receive;
   Left left;
+  decltype(SerialPortEvents::passed) passed;
+  decltype(SerialPortEvents::ended) ended;
   bool running = false;
   bool pumping = false;
   SerialLinkCounters counters;  // those of the ports are added when asked for
@@ -91,7 +93,8 @@ void SerialLink::Impl::start() {
                                   if (const auto self = weak.lock()) {
                                     self->take({peer, {}});
                                   }
-                                }};
+                                },
+                                passed, ended};
   for (SerialPort* port : ports) {
     spdlog::info("serial {}: waits for clients", port->description());
     port->start(events);
@@ -195,9 +198,12 @@ SerialLink::~SerialLink() {
   impl_->stop();
 }
 
-void SerialLink::start(Receive receive, Left left) {
+void SerialLink::start(Receive receive, Left left, decltype(SerialPortEvents::passed) passed,
+                       decltype(SerialPortEvents::ended) ended) {
   impl_->receive = std::move(receive);
   impl_->left = std::move(left);
+  impl_->passed = std::move(passed);
+  impl_->ended = std::move(ended);
   impl_->start();
 }
 

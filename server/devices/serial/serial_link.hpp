@@ -66,7 +66,9 @@ class SerialLink {
   SerialLink(const SerialLink&) = delete;
   SerialLink& operator=(const SerialLink&) = delete;
 
-  void start(Receive receive, Left left);
+  /// @param passed, ended as SerialPortEvents has them, of all ports; empty: nobody is told
+  void start(Receive receive, Left left, decltype(SerialPortEvents::passed) passed = {},
+             decltype(SerialPortEvents::ended) ended = {});
   void stop();
   /// A whole frame, for everybody who is connected.
   void send(std::vector<std::uint8_t> frame);

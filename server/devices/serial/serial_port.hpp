@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "server/recording/events.hpp"
+
 namespace sonard::server {
 
 /// Most bytes taken from a client with one system call; longer than any command of a device.
@@ -26,6 +28,11 @@ struct SerialPortEvents {
   std::function<void(std::span<const std::uint8_t> bytes, const std::string& peer)> received;
   /// The client is gone; what it had begun to say will not be finished.
   std::function<void(const std::string& peer)> left;
+  /// Optional. Bytes have passed the socket or terminal, before they wait for anything here; a frame that a
+  /// client takes in two parts is told once, with the first.
+  std::function<void(const WireEnds& ends, bool to_client, std::span<const std::uint8_t> bytes)> passed;
+  /// Optional. The stream of that client is over.
+  std::function<void(const WireEnds& ends)> ended;
 };
 
 /// Belongs to the I/O thread, as every handler of its does. The constructors open what they serve and throw

@@ -85,7 +85,8 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
       : port_(std::move(port)),
         socket_(std::move(socket)),
         writer_(socket_),
-        peer_("tcp " + endpoint_text(peer)) {}
+        peer_("tcp " + endpoint_text(peer)),
+        ends_{WireTransport::tcp, peer, port_->local, {}} {}
 
   void read() {
     socket_.async_read_some(asio::buffer(buffer_),
@@ -97,6 +98,9 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
   void send(std::span<const std::uint8_t> frame) {
     if (writer_.send(frame, shared_from_this())) {
       port_->counters.bytes_out += frame.size();
+      if (port_->events.passed) {
+        port_->events.passed(ends_, /*to_client=*/true, frame);
+      }
     } else {
       ++port_->counters.frames_dropped;
     }
@@ -117,10 +121,16 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
       close();
       port_->sessions.erase(shared_from_this());
       spdlog::info("serial {}: {} left", port_->description(), peer_);
+      if (port_->events.ended) {
+        port_->events.ended(ends_);
+      }
       port_->events.left(peer_);
       return;
     }
     port_->counters.bytes_in += length;
+    if (port_->events.passed) {
+      port_->events.passed(ends_, /*to_client=*/false, {buffer_.data(), length});
+    }
     port_->events.received({buffer_.data(), length}, peer_);
     if (socket_.is_open()) {
       read();
@@ -131,6 +141,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
   tcp::socket socket_;
   FrameWriter<tcp::socket> writer_;
   std::string peer_;
+  WireEnds ends_;
   std::array<std::uint8_t, serial_read_bytes> buffer_{};
 };
 

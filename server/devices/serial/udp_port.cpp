@@ -17,6 +17,11 @@ struct UdpPort::Impl : std::enable_shared_from_this<UdpPort::Impl> {
   void on_datagram(const Datagram& datagram);
   void meet(const Datagram& datagram);
   void stop();
+  /// Requires a peer.
+  WireEnds ends() const {
+    const Endpoint local = socket.local_endpoint();
+    return {WireTransport::udp, *peer, {reply_from != 0 ? reply_from : local.address, local.port}, {}};
+  }
   std::string description() const { return "udp " + endpoint_text(socket.local_endpoint()); }
 
   UdpEndpoint socket;
@@ -42,6 +47,9 @@ void UdpPort::Impl::on_datagram(const Datagram& datagram) {
   }
   reply_from = datagram.local;
   counters.bytes_in += datagram.bytes.size();
+  if (running && events.passed) {
+    events.passed(ends(), /*to_client=*/false, datagram.bytes);
+  }
   if (running) {
     events.received(datagram.bytes, peer_name);
   }
@@ -94,6 +102,9 @@ void UdpPort::send(std::span<const std::uint8_t> frame) {
   }
   impl_->counters.bytes_out += frame.size();
   const gemini::SharedBytes bytes(std::vector<std::uint8_t>(frame.begin(), frame.end()));
+  if (impl_->events.passed) {
+    impl_->events.passed(impl_->ends(), /*to_client=*/true, frame);
+  }
   impl_->socket.send({{*impl_->peer, impl_->reply_from, bytes}});
 }
 

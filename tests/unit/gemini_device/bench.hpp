@@ -137,6 +137,7 @@ class Bench {
   TimePoint now{};
   std::vector<Sent> sent;
   std::vector<PingJob> jobs;
+  std::vector<ServedPing> served;
 
   void raw(std::span<const std::uint8_t> bytes, Ipv4 from = surface_address, Ipv4 to = head_address) {
     device.on_datagram(now, from, to, bytes);
@@ -217,6 +218,9 @@ class Bench {
  private:
   void step() {
     device.advance(now);
+    if (std::optional<ServedPing> begun = device.take_served()) {
+      served.push_back(std::move(*begun));
+    }
     const auto deadline = device.next_deadline();
     timer_ = TimePoint::max();
     if (deadline) {

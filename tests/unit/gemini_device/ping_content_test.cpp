@@ -114,6 +114,40 @@ TEST(PingContent, PingIdWrapsAt256WithTheUpperByteZero) {
   EXPECT_EQ(bench.all<PingTail>().back().second.ping_id, heads.back().second.ping_id);
 }
 
+TEST(PingContent, WhatIsServedIsWhatIsSent) {
+  Bench bench;
+  bench.command(ping_of(40, RunMode::continuous, 40ms));
+  bench.run_connected(2s);
+  const auto heads = bench.all<PingHead>();
+  ASSERT_GT(heads.size(), 10U);
+  ASSERT_EQ(bench.served.size(), heads.size());
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    EXPECT_EQ(bench.served[i].ping_number, i);
+    EXPECT_EQ(bench.served[i].ping.head(), heads[i].second);
+    EXPECT_EQ(bench.served[i].ping.datagram_count(), 42);
+  }
+  std::size_t at = 0;
+  for (const ServedPing& served : bench.served) {
+    for (int line = 0; line < 40 && at < bench.all<PingLine>().size(); ++line, ++at) {
+      const auto datagram = served.ping.datagram(1 + line);
+      EXPECT_EQ(std::get<PingLine>(*decode_report({datagram.data(), datagram.size()})),
+                bench.all<PingLine>()[at].second);
+    }
+    if (at > 400) {
+      break;
+    }
+  }
+}
+
+TEST(PingContent, APingThatIsCalledOffBeforeItsHeadIsNotServed) {
+  Bench bench;
+  bench.renderer_answers = false;
+  bench.command(ping_of(40));
+  bench.run_connected(1s);
+  EXPECT_EQ(bench.jobs.size(), 1U);
+  EXPECT_TRUE(bench.served.empty());
+}
+
 struct Compression {
   int range_compression;
   int applied;

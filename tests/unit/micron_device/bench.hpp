@@ -80,6 +80,7 @@ class Bench {
   TimePoint now{};
   std::vector<Sent> sent;
   std::vector<MicronJob> jobs;
+  std::vector<SentLine> sent_lines;
 
   void raw(std::span<const std::uint8_t> bytes) {
     device.on_bytes(now, bytes);
@@ -179,6 +180,9 @@ class Bench {
     const auto deadline = device.next_deadline();
     timer_ = deadline.value_or(TimePoint::max());
     EXPECT_GT(timer_, now) << "the head would keep its caller spinning";
+    if (std::optional<SentLine> line = device.take_sent_line()) {
+      sent_lines.push_back(std::move(*line));
+    }
     for (Bytes& frame : device.take_outgoing()) {
       sent.push_back({now, std::move(frame)});
       EXPECT_EQ(next_frame(sent.back().bytes, max_report_frame_size),

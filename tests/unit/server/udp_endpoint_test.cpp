@@ -70,7 +70,9 @@ TEST_F(UdpEndpointTest, BurstLargerThanTheSocketBufferArrivesInOrder) {
   receiver.start(collect());
   UdpEndpoint sender(io, {loopback_1, 0});
   bool drained = false;
-  sender.start([](const Datagram&) {}, [&] { drained = true; });
+  std::vector<Datagram> told;
+  sender.start([](const Datagram&) {}, [&] { drained = true; },
+               [&](std::span<const Datagram> sent) { told.insert(told.end(), sent.begin(), sent.end()); });
   // The receiver reads on the same thread, so it cannot keep up by itself: send in portions its buffer can
   // hold.
   constexpr int portions = 40;
@@ -93,6 +95,10 @@ TEST_F(UdpEndpointTest, BurstLargerThanTheSocketBufferArrivesInOrder) {
   }
   EXPECT_EQ(sender.counters().sent, received.size());
   EXPECT_FALSE(sender.blocked());
+  ASSERT_EQ(told.size(), received.size());  // in order, each once
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    ASSERT_EQ(told[i].bytes[0] | told[i].bytes[1] << 8, static_cast<int>(i));
+  }
 }
 
 TEST_F(UdpEndpointTest, AddressInUseIsAnErrorThatNamesIt) {

@@ -1,0 +1,59 @@
+// Makes a .glf of a .dat, a slice at a time (docs/logs.md 1.1 and "Recording").
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "protocol/glf/deflate.hpp"
+#include "protocol/glf/packer.hpp"
+#include "server/config/config.hpp"
+#include "server/recording/append_file.hpp"
+
+namespace sonard::server {
+
+/// Of a .dat that nobody writes any more, finished or not: what follows its last whole record is cut off, and
+/// the terminator put behind it. The .glf has its own name only when all of it is on the disk; the .dat goes
+/// after that. So a power cut, or kill -9, at any moment leaves one of the two.
+///
+/// Where the .glf cannot be written, that is logged and the .dat stays: it is a log too, and packed when the
+/// daemon starts the next time.
+class GlfPacking {
+ public:
+  /// Nothing happens before the first step().
+  GlfPacking(std::filesystem::path dat, RecordingSync sync) : dat_path_(std::move(dat)), sync_(sync) {}
+
+  /// Goes on with it for one slice: at most slice_bytes are copied and, unless RecordingSync::never, waited
+  /// for, which takes about as long as a disk takes for that. @return false when it is done or given up.
+  bool step();
+
+  static constexpr std::uint64_t slice_bytes = 16 * glf::pack_block_size;
+
+ private:
+  // Each returns false when it is done or given up.
+  bool begin();
+  bool close_dat();
+  bool copy_slice();
+  bool finish();
+  bool good(const std::error_code& error);
+  bool give_up(const std::string& why);
+  glf::Packer packer() const;
+
+  std::filesystem::path dat_path_;
+  RecordingSync sync_;
+  bool begun_ = false;
+  std::string stem_;
+  std::string config_xml_;
+  glf::CivilTime closed_;
+  std::uint64_t dat_size_ = 0;
+  std::uint64_t copied_ = 0;
+  glf::Crc32 crc_;
+  std::ifstream dat_;
+  AppendFile glf_;
+  std::vector<std::uint8_t> slice_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,60 @@
+// What all logs of a recording have in common.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "server/recording/events.hpp"
+#include "server/recording/log_file.hpp"
+
+namespace sonard::server {
+
+/// A head as its logs name it.
+struct RecordedHead {
+  std::string name;
+  std::uint16_t device_id = 0;  ///< sonar ID of a Gemini, node of a Micron
+  bool is_gemini = true;
+  std::uint8_t gemini_number = 0;  ///< 0..9, counted over the Geminis of the configuration
+};
+
+/// The same for all logs that begin together. Both clocks are read when they begin and hold for all of them,
+/// so that times in a log never jump.
+struct LogSetting {
+  const RecordingConfig& config;
+  const std::vector<RecordedHead>& heads;  ///< by RecordingEvent::head
+  std::chrono::nanoseconds unix_offset{};  ///< from TimePoint to Unix time
+  std::int32_t utc_offset_s = 0;           ///< of the zone of the logs
+  std::string stem;                        ///< of names
+
+  std::int64_t unix_ns(TimePoint time) const { return (time + unix_offset).count(); }
+};
+
+/// A file that takes what it understands of the events. The file is made when the first such event comes.
+class Log {
+ public:
+  explicit Log(const LogSetting& setting) : setting_(setting), file_(setting.config.sync) {}
+  virtual ~Log() = default;
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+
+  virtual void write(const RecordingEvent& event) = 0;
+  /// Hands to the file what was written so far, so that it survives the end of this process.
+  /// @param now of the last event
+  virtual void flush(TimePoint now) = 0;
+  /// Nothing is written after that.
+  virtual void close() = 0;
+
+  LogFile& file() { return file_; }
+  const LogFile& file() const { return file_; }
+
+ protected:
+  const LogSetting& setting() const { return setting_; }
+
+ private:
+  const LogSetting& setting_;
+  LogFile file_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,50 @@
+#include "server/recording/log_file.hpp"
+
+#include <spdlog/spdlog.h>
+
+namespace sonard::server {
+
+void LogFile::begin(const std::filesystem::path& path) {
+  begun_ = true;
+  std::error_code error;
+  file_ = AppendFile::create(path, error);
+  if (error) {
+    fail(error);
+    return;
+  }
+  spdlog::info("recording: writes {}", path.string());
+}
+
+void LogFile::append(std::span<const std::uint8_t> piece) {
+  if (!file_.is_open() || piece.empty()) {
+    return;
+  }
+  if (const std::error_code error = file_.append(piece)) {
+    fail(error);
+  }
+}
+
+void LogFile::sync() {
+  if (!file_.is_open()) {
+    return;
+  }
+  if (const std::error_code error = file_.sync()) {
+    fail(error);
+  }
+}
+
+void LogFile::end() {
+  if (sync_ != RecordingSync::never) {
+    sync();
+  }
+  file_.close();
+}
+
+void LogFile::fail(const std::error_code& error) {
+  failed_ = true;
+  file_.close();
+  spdlog::error("recording: cannot write {}: {}; this log ends here, serving goes on", file_.path().string(),
+                error.message());
+}
+
+}  // namespace sonard::server

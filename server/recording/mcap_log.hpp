@@ -1,0 +1,47 @@
+// The MCAP file of all heads (docs/logs.md, "MCAP" and "Recording").
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "protocol/mcap/writer.hpp"
+#include "server/recording/log.hpp"
+
+namespace sonard::server {
+
+/// Everything: images, lines, poses, and the bytes of both directions. A chunk is written with the image or
+/// line that it ends with, and after `longest_chunk` at the latest: a process that is killed loses no image
+/// that was taken from the queue, and bytes of so much time.
+class McapLog final : public Log {
+ public:
+  static constexpr std::chrono::milliseconds longest_chunk{200};
+
+  explicit McapLog(const LogSetting& setting);
+
+  void write(const RecordingEvent& event) override;
+  void flush(TimePoint now) override;
+  void close() override;
+
+ private:
+  void add(int head, TimePoint time, const GeminiPingServed& ping);
+  void add(int head, TimePoint time, const MicronLineSent& line);
+  void add(int head, TimePoint time, const PingPosed& pose);
+  void add(int head, TimePoint time, const WirePassed& wire);
+  void add(int, TimePoint, const GeminiStatusSent&) {}  // is among the bytes
+  void add(int, TimePoint, const ClientLeft&) {}
+
+  template <class Message>
+  void add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns, const Message& message);
+  template <class Message>
+  std::uint16_t channel(const std::string& topic);
+  const std::string& name(int head) const { return setting().heads[static_cast<std::size_t>(head)].name; }
+
+  mcap::Writer writer_;
+  std::map<std::string, std::uint16_t> schemas_;   ///< by name
+  std::map<std::string, std::uint16_t> channels_;  ///< by topic
+  bool image_waits_ = false;
+  TimePoint flushed_at_{};
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,35 @@
+// The capture of all heads, for Wireshark (docs/logs.md, "pcapng" and "Recording").
+#pragma once
+
+#include <map>
+#include <tuple>
+
+#include "protocol/pcapng/blocks.hpp"
+#include "protocol/pcapng/packets.hpp"
+#include "server/recording/log.hpp"
+
+namespace sonard::server {
+
+/// An interface for each head. A stream that goes on from a file before this one begins anew here, with a
+/// connection of its own.
+class PcapngLog final : public Log {
+ public:
+  explicit PcapngLog(const LogSetting& setting);
+
+  void write(const RecordingEvent& event) override;
+  void flush(TimePoint now) override;
+  void close() override;
+
+ private:
+  using StreamKey = std::tuple<int, std::uint32_t, std::uint16_t, std::string>;  ///< head, client, or pty
+
+  void write_datagrams(const RecordingEvent& event, const WirePassed& wire);
+  void write_stream(const RecordingEvent& event, const WirePassed& wire);
+  void end_stream(const RecordingEvent& event, const WireEnds& ends);
+  void add(const RecordingEvent& event, const std::vector<pcapng::Bytes>& packets);
+
+  pcapng::Writer writer_;
+  std::map<StreamKey, pcapng::TcpConversation> streams_;
+};
+
+}  // namespace sonard::server

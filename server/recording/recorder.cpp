@@ -1,0 +1,248 @@
+#include "server/recording/recorder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <deque>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "server/recording/glf_packing.hpp"
+#include "server/recording/log_set.hpp"
+#include "server/recording/recovery.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int nice_value = 5;  // a third of the processor time of a thread that serves, where they compete
+constexpr std::chrono::milliseconds look_again{100};  // for chunks and syncs that are due without an event
+constexpr std::chrono::seconds sync_period{1};
+constexpr std::chrono::seconds report_period{10};
+
+/// The right to use a folder, which ends with the process.
+class DirectoryLock {
+ public:
+  explicit DirectoryLock(const fs::path& directory) {
+    std::error_code error;
+    fs::create_directories(directory, error);
+    fd_ = error ? -1 : ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (!error && fd_ < 0) {
+      error = {errno, std::generic_category()};
+    }
+    if (!error && access(directory.c_str(), W_OK) != 0) {
+      error = {errno, std::generic_category()};
+    }
+    if (error) {
+      throw RecordingError(fmt::format("cannot write into {}: {}", directory.string(), error.message()));
+    }
+    if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      throw RecordingError(fmt::format("another daemon records into {}", directory.string()));
+    }
+  }
+  ~DirectoryLock() { ::close(fd_); }
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+
+ private:
+  int fd_ = -1;
+};
+
+bool has_room(const fs::path& directory) {
+  std::error_code error;
+  const fs::space_info space = fs::space(directory, error);
+  return !error && space.available >= Recorder::least_room_bytes;
+}
+
+}  // namespace
+
+struct Recorder::Impl {
+  Impl(const RecordingConfig& recording, std::vector<RecordedHead> recorded)
+      : config(recording), heads(std::move(recorded)), lock(config.directory), queue(config.queue_bytes) {}
+
+  void run();
+  void record(const RecordingEvent& event);
+  void look_after_logs();
+  void begin_set(TimePoint now);
+  void end_set();
+  void pack_slice();
+  void report_drops();
+  void log_totals() const;
+  RecorderCounters counters() const;
+
+  const RecordingConfig config;
+  const std::vector<RecordedHead> heads;
+  DirectoryLock lock;
+  EventQueue queue;
+  SteadyClock clock;
+  std::atomic<bool> stopping{false};
+  std::atomic<std::uint64_t> images{0}, images_lost{0}, logs_written{0}, logs_failed{0};
+
+  // Of the recorder's thread.
+  std::optional<LogSet> set;
+  std::deque<GlfPacking> packings;
+  TimePoint synced_at{};
+  TimePoint reported_at{};
+  std::uint64_t drops_reported = 0;
+  bool without_room = false;
+
+  std::thread thread;  // last: it uses all of the above
+};
+
+Recorder::Recorder(const RecordingConfig& config, std::vector<RecordedHead> heads)
+    : impl_(std::make_unique<Impl>(config, std::move(heads))) {
+  for (const fs::path& dat : recover_logs(config.directory)) {
+    impl_->packings.emplace_back(dat, config.sync);
+  }
+  impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
+}
+
+Recorder::~Recorder() {
+  stop();
+}
+
+void Recorder::push(RecordingEvent event) {
+  impl_->queue.push(std::move(event));
+}
+
+void Recorder::stop() {
+  if (!impl_->stopping.exchange(true)) {
+    impl_->queue.wake();
+    impl_->thread.join();
+    impl_->log_totals();
+  }
+}
+
+RecorderCounters Recorder::counters() const {
+  return impl_->counters();
+}
+
+RecorderCounters Recorder::Impl::counters() const {
+  return {queue.dropped(), images, images_lost, logs_written, logs_failed};
+}
+
+void Recorder::Impl::run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice_value);
+  for (bool last = false; !last;) {
+    queue.wait(packings.empty() ? look_again : std::chrono::milliseconds{0});
+    last = stopping;  // before the queue is looked at: what was pushed before stop() is in it
+    for (RecordingEvent& event : queue.take()) {
+      record(event);
+      queue.done(event);
+      event.what = ClientLeft{};  // gives its memory back now
+    }
+    look_after_logs();
+    pack_slice();
+  }
+  end_set();
+  while (!packings.empty()) {
+    pack_slice();
+  }
+}
+
+void Recorder::Impl::record(const RecordingEvent& event) {
+  if (set && set->is_over(event.time)) {
+    end_set();
+  }
+  if (!set) {
+    begin_set(event.time);
+  }
+  set->write(event);
+  set->flush(clock.now());
+  if (std::holds_alternative<GeminiPingServed>(event.what) ||
+      std::holds_alternative<MicronLineSent>(event.what)) {
+    ++images;
+    images_lost += set->any_good() ? 0 : 1;
+  }
+}
+
+void Recorder::Impl::look_after_logs() {
+  const TimePoint now = clock.now();
+  if (set) {
+    set->flush(now);
+    if (config.sync == RecordingSync::every_second && now - synced_at >= sync_period) {
+      set->sync();
+      synced_at = now;
+    }
+  }
+  if (now - reported_at >= report_period) {
+    reported_at = now;
+    report_drops();
+  }
+}
+
+void Recorder::Impl::begin_set(TimePoint now) {
+  const bool room = has_room(config.directory);
+  if (!room && !without_room) {
+    spdlog::error("recording: {} has no room for new logs; nothing is recorded, serving goes on",
+                  config.directory.string());
+  }
+  without_room = !room;
+  set.emplace(config, heads, now, room);
+}
+
+void Recorder::Impl::end_set() {
+  if (!set) {
+    return;
+  }
+  const LogSet::Closed closed = set->close();
+  set.reset();
+  logs_written += closed.written;
+  logs_failed += closed.failed;
+  for (const fs::path& dat : closed.dats) {
+    packings.emplace_back(dat, config.sync);
+  }
+}
+
+void Recorder::Impl::pack_slice() {
+  if (!packings.empty() && !packings.front().step()) {
+    packings.pop_front();
+  }
+}
+
+void Recorder::Impl::report_drops() {
+  const DroppedEvents dropped = queue.dropped();
+  if (dropped.total() > drops_reported) {
+    drops_reported = dropped.total();
+    spdlog::warn("recording: too slow, dropped so far: images={} wire_pieces={} others={}", dropped.images,
+                 dropped.pieces, dropped.others);
+  }
+}
+
+void Recorder::Impl::log_totals() const {
+  const RecorderCounters total = counters();
+  spdlog::info(
+      "recording ends: images={} images_lost={} logs_written={} logs_failed={} dropped_images={} "
+      "dropped_wire_pieces={} dropped_others={}",
+      total.images, total.images_lost, total.logs_written, total.logs_failed, total.dropped.images,
+      total.dropped.pieces, total.dropped.others);
+}
+
+std::vector<RecordedHead> recorded_heads(const std::vector<AnyHeadConfig>& heads) {
+  constexpr std::uint8_t most_numbered = 9;
+  std::vector<RecordedHead> recorded;
+  std::uint8_t geminis = 0;
+  for (const AnyHeadConfig& head : heads) {
+    if (const auto* gemini = std::get_if<GeminiHeadConfig>(&head)) {
+      recorded.push_back({gemini->name, gemini->device.sonar_id, true, geminis});
+      geminis = static_cast<std::uint8_t>(std::min<int>(geminis + 1, most_numbered));
+    } else {
+      const auto& micron = std::get<MicronHeadConfig>(head);
+      recorded.push_back({micron.name, micron.device.node, false, 0});
+    }
+  }
+  return recorded;
+}
+
+}  // namespace sonard::server

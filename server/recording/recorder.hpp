@@ -1,0 +1,70 @@
+// Writes down what the heads say, on a thread of its own.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "server/clock.hpp"
+#include "server/config/config.hpp"
+#include "server/recording/event_queue.hpp"
+#include "server/recording/log.hpp"
+
+namespace sonard::server {
+
+/// The folder of the logs cannot be used. what() names it and the reason.
+struct RecordingError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// They only grow.
+struct RecorderCounters {
+  DroppedEvents dropped;           ///< the queue was full
+  std::uint64_t images = 0;        ///< pings and scan lines that came through the queue
+  std::uint64_t images_lost = 0;   ///< of those: in no log, for none could be written
+  std::uint64_t logs_written = 0;  ///< closed without a failure
+  std::uint64_t logs_failed = 0;   ///< could not be written, to the end or at all
+};
+
+/// The thread has a lower priority than those that serve. It takes events off the queue, encodes and
+/// compresses them, and writes; nobody waits for it. What does not fit the queue is dropped, counted, and
+/// shown in the log.
+///
+/// All logs of a daemon begin and end together, so that files of one name cover the same time. When one is
+/// full, or time is over, the next event begins new ones. The .dat of the old ones are packed meanwhile, a
+/// slice between any two looks at the queue: while it copies 1 MiB and waits for the disk events gather, at
+/// most for as long as that takes.
+///
+/// Disk full, or any other error of a file: that file is given up (LogFile), the others go on. The next logs
+/// begin only where there is room for them; until then events are taken and thrown away.
+class Recorder {
+ public:
+  /// Free space without which no logs are begun.
+  static constexpr std::uint64_t least_room_bytes = std::uint64_t{16} << 20;
+
+  /// Makes the folder, locks it against other daemons and recovers what is in it (recovery.hpp), then starts
+  /// the thread.
+  /// @throws RecordingError
+  Recorder(const RecordingConfig& config, std::vector<RecordedHead> heads);
+  /// As stop().
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Any thread; never waits. An event that does not fit the queue is dropped and counted.
+  void push(RecordingEvent event);
+  /// Writes what was pushed before, closes and packs the logs, and says in the log what was done. Harmless
+  /// when called again.
+  void stop();
+
+  RecorderCounters counters() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// By their places in the configuration.
+std::vector<RecordedHead> recorded_heads(const std::vector<AnyHeadConfig>& heads);
+
+}  // namespace sonard::server

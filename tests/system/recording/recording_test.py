@@ -1,0 +1,481 @@
+#!/usr/bin/env python3
+"""What the daemon records, against what its clients received, by readers that share no code with it.
+
+    recording_test.py --programs DIR --npm DIR [--kills N] [TestCase.test_name ...]
+"""
+
+import argparse
+import collections
+import glob
+import json
+import math
+import os
+import random
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+
+HERE = os.path.abspath(os.path.dirname(__file__))
+SOURCE = os.path.join(HERE, "..", "..", "..")
+sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests", "support")]
+import glf_reader  # noqa: E402
+import pcapng_reader  # noqa: E402
+import wire  # noqa: E402
+from lab import HEAD_ADDRESS, REPORT_PORT, SURFACE_ADDRESS, Lab, need  # noqa: E402
+
+WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+DISSECTORS = os.path.join(SOURCE, "clients", "wireshark")
+PROGRAMS = None
+NPM = None
+KILLS = 50
+START_S = 60
+PATIENCE_S = 60
+
+CONFIG = """
+log: {{level: debug}}
+backend: ray
+world: {{file: {world}}}
+poses:
+  initial: {{position_m: [0, 0, 0]}}
+  udp: {{bind: 127.0.0.1:14600}}
+sampling: {{preset: grid, views: 3, columns_per_view: 64, rows: 32}}
+recording: {{directory: {directory}{recording}}}
+heads:
+  - name: bow
+    type: gemini_720i
+    sonar_id: 513
+    network:
+      alternate_address: {head}
+      netmask: 255.255.255.0
+      bind: {head}
+      allow: [10.61.19.0/24]
+    timing: {{min_ping_period_ms: 10, retry_hold_ms: 100, retry_hold_max_ms: 5000}}
+    acoustics:
+      seed: {seed}
+      azimuth_pattern: ideal
+      pulse: point
+      physical: {{speckle: {speckle}, noise: {noise}}}
+{more}"""
+
+MICRON = """
+  - name: stern
+    type: micron
+    serial:
+      tcp: [{{bind: {head}:4001, allow: [10.61.19.0/24]}}]
+      pty: [{{link: {folder}/micron}}]
+"""
+
+
+def key_values(line):
+    return dict(item.split("=", 1) for item in line.split() if "=" in item)
+
+
+def crc_text(data):
+    return f"{zlib.crc32(data):08x}"
+
+
+def rle_decode(data, beams):
+    """docs/protocols/gemini.md 6.8"""
+    out, at = bytearray(), 0
+    while at < len(data) and len(out) < beams:
+        if data[at] == 0:
+            out += bytes(data[at + 1])
+            at += 2
+        else:
+            out.append(0 if data[at] == 1 else data[at])
+            at += 1
+    return bytes(out[:beams]) + bytes(beams - len(out[:beams]))
+
+
+class WirePing:
+    """A ping put together from its datagrams, of any width and coding (docs/protocols/gemini.md 6)."""
+
+    def __init__(self, head, time_ns):
+        self.head = wire.Ping(head)
+        self.time_ns = time_ns
+        self.eight_bit = bool(self.head.ext_mode & 4)
+        self.coded = head[44] >= 3 and self.eight_bit
+        self.lines = {}
+
+    def add(self, datagram):
+        if datagram[9] == self.head.id & 0xFF:
+            line = struct.unpack_from("<H", datagram, 10)[0] & 0x7FFF
+            data = datagram[16:]
+            self.lines[line] = rle_decode(data, 256) if self.coded else data[:256 if self.eight_bit else 512]
+
+    def complete(self):
+        return len(self.lines) == self.head.count
+
+    def samples(self):
+        return b"".join(self.lines[i] for i in range(self.head.count))
+
+    def pixels(self):
+        return self.samples() if self.eight_bit else self.samples()[::2]  # the high byte comes first
+
+
+def pings_of(packets):
+    """Every complete ping of a capture, in order."""
+    pings = []
+    for packet in packets:
+        if packet.protocol != "udp" or packet.target[1] != REPORT_PORT:
+            continue
+        kind = wire.message_type(packet.payload)
+        if kind == wire.PING_HEAD and not struct.unpack_from("<H", packet.payload, 8)[0] & 0x100:  # not a repetition
+            pings.append(WirePing(packet.payload, packet.time_ns))
+        elif kind == wire.PING_LINE and pings:
+            pings[-1].add(packet.payload)
+    return [ping for ping in pings if ping.complete()]
+
+
+class RecordingTest(unittest.TestCase):
+    def setUp(self):
+        need("ip")
+        self.folder = tempfile.TemporaryDirectory(prefix="sonard-recording-")
+        self.addCleanup(self.folder.cleanup)
+        self.logs = os.path.join(self.folder.name, "logs")
+        self.lab = Lab()
+        self.lab.__enter__()
+        self.addCleanup(self.lab.__exit__)
+
+    # ---- Set-up ----
+
+    def start_daemon(self, recording="", seed=513, noisy=True, more=""):
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(CONFIG.format(world=WORLD, directory=self.logs, recording=recording, head=HEAD_ADDRESS, seed=seed,
+                                     speckle="per_ping" if noisy else "off", noise="true" if noisy else "false",
+                                     more=more.format(head=HEAD_ADDRESS, folder=self.folder.name)))
+        daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), "run", path)
+        daemon.wait_for_line("sonard ready", START_S)
+        return daemon
+
+    def start_viewer(self, *options, range_m=4):
+        return self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "--surface-address", SURFACE_ADDRESS,
+                              "--head", HEAD_ADDRESS, "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait",
+                              str(PATIENCE_S), "--range", str(range_m), *options)
+
+    def end_daemon(self, daemon):
+        code, _ = daemon.terminate(30)
+        self.assertEqual(code, 0, daemon.tail())
+
+    def received(self, viewer):
+        """What the client says of its complete pings."""
+        pings = [key_values(line) for line in viewer.output().splitlines() if line.startswith("ping ")]
+        return [ping for ping in pings if ping["lines_lost"] == "0" and "crc32" in ping]
+
+    # ---- The logs ----
+
+    def files(self, suffix):
+        return sorted(glob.glob(os.path.join(self.logs, "*" + suffix)))
+
+    def check_folder(self):
+        """Everything is closed, and nothing else is there."""
+        for name in os.listdir(self.logs):
+            self.assertRegex(name, r"^log_\d{4}-\d\d-\d\d-\d{6}(_bow)?(-\d+)?\.(glf|mcap|pcapng)$")
+
+    def glf_images(self):
+        images = []
+        for path in self.files(".glf"):
+            subprocess.run(["unzip", "-tqq", path], check=True, capture_output=True)
+            images += glf_reader.read(path).images
+        return images
+
+    def mcap_messages(self):
+        """By kind."""
+        files = self.files(".mcap")
+        output = subprocess.run(["node", "--max-old-space-size=1500", "read_mcap.js", *files], cwd=NPM, check=True,
+                                capture_output=True).stdout
+        by_kind = collections.defaultdict(list)
+        for file in json.loads(output):
+            for message in file["messages"]:
+                by_kind[message["kind"]].append(message)
+        return by_kind
+
+    def packets(self):
+        return [packet for path in self.files(".pcapng") for packet in pcapng_reader.read(path)]
+
+
+class Logs(RecordingTest):
+    def check_pings(self, viewer, daemon, count):
+        """Every ping that was received is in every log, once, with its pixels, bearings, times and pose."""
+        received = self.received(viewer)
+        self.assertEqual(len(received), count)
+        images, messages = self.glf_images(), self.mcap_messages()
+        captured = pings_of(self.packets())
+        self.assertGreaterEqual(len(images), count)
+        self.assertEqual(len({crc_text(ping.samples()) for ping in captured}), len(captured))
+
+        by_crc = {crc_text(ping.samples()): ping for ping in captured}
+        glf = {image.header.time_s: image for image in images}
+        self.assertEqual(len(glf), len(images))
+        mcap = {crc["crc32"]: crc for crc in messages["image"]}
+        glf_by_crc = {zlib.crc32(image.pixels): image for image in images}
+        logged = {int(key_values(line)["transmit_us"]): line for line in daemon.output().splitlines()
+                  if " ping number=" in line}
+        first = None
+        for ping in received:
+            self.assertIn(ping["crc32"], by_crc, "not in the capture")
+            on_wire = by_crc[ping["crc32"]]
+            self.assertEqual(on_wire.head.transmit_us, int(ping["transmit_us"]))
+            pixels = on_wire.pixels()
+            self.assertIn(zlib.crc32(pixels), glf_by_crc, "not in the .glf")
+            self.assertIn(zlib.crc32(pixels), mcap, "not in the MCAP file")
+            image, message = glf_by_crc[zlib.crc32(pixels)], mcap[zlib.crc32(pixels)]
+            self.assertEqual(image.pixels, pixels)
+            self.assertEqual(message["size"], len(pixels))
+            self.assertEqual((image.lines, image.beams), (int(ping["lines"]), 256))
+            self.assertEqual((message["lines"], message["beams"]), (image.lines, 256))
+            self.check_geometry(image, message, on_wire)
+            first = first or (int(ping["transmit_us"]), image.header.time_s)
+            self.check_times(image, message, on_wire, int(ping["transmit_us"]), first)
+            self.check_pose(message, logged[int(ping["transmit_us"])])
+        return images, messages
+
+    def check_geometry(self, image, message, on_wire):
+        self.assertEqual((image.header.device_id, image.header.node_id, message["device_id"]), (513, 100, 513))
+        step_m = wire.line_step_m(1500.0) * (1 << on_wire.head.compression)
+        self.assertAlmostEqual(image.metres_per_line * image.lines, step_m * image.lines, delta=0.001)
+        self.assertAlmostEqual(message["metres_per_line"], step_m, delta=1e-9)
+        self.assertEqual((image.sound_speed_mps, message["sound_speed_mps"], image.gain_percent), (1500, 1500, 50))
+        self.assertAlmostEqual(message["gain_percent"], 50, delta=0.5)
+        self.assertEqual(image.ping_flags, 0x8000)
+        self.assertEqual(len(image.bearings_rad), 256)
+        for beam in range(256):  # positive to port in both: minus the wire's
+            self.assertAlmostEqual(image.bearings_rad[beam], -wire.bearing_rad(beam), delta=1e-12)
+            self.assertAlmostEqual(message["bearings_rad"][beam], -wire.bearing_rad(beam), delta=1e-12)
+
+    def check_times(self, image, message, on_wire, transmit_us, first):
+        self.assertEqual(image.transmit_time_s, image.header.time_s)
+        unix_ns = int(message["transmit_ns"])
+        self.assertEqual(message["publish_time"], message["transmit_ns"])
+        self.assertAlmostEqual(image.header.unix_s, unix_ns / 1e9, delta=2e-6)
+        self.assertAlmostEqual(image.header.time_s - first[1], (transmit_us - first[0]) / 1e6, delta=3e-6)
+        self.assertLess(abs(time.time() - unix_ns / 1e9), 120)
+        # The head of a ping leaves after the pulse, and is noted when it has left.
+        self.assertGreaterEqual(on_wire.time_ns, unix_ns)
+        self.assertLess(on_wire.time_ns - unix_ns, 2e9)
+
+    def check_pose(self, message, logged):
+        """The pose in the log of the daemon is the one that was rendered."""
+        position = [float(part) for part in logged.split("position_m=[")[1].split("]")[0].split(", ")]
+        for said, rendered in zip(message["sonar"], position):
+            self.assertAlmostEqual(said, rendered, delta=0.00051)
+        self.assertIsNotNone(message["vehicle"])
+
+    def test_every_ping_is_in_every_log(self):
+        daemon = self.start_daemon(recording=", rotate_mib: 8")
+        trajectory = os.path.join(self.folder.name, "ahead.csv")
+        with open(trajectory, "w", encoding="utf-8") as file:
+            file.write("t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n60,2,0,0,0,0,0,1\n")
+        caster = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "posecast"), trajectory, "--seconds", "60")
+        viewer = self.start_viewer("--pings", "120", "--continuous", "40")
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        caster.kill()
+        self.end_daemon(daemon)
+        self.check_folder()
+        self.assertGreater(len(self.files(".mcap")), 2, "the logs have not been rotated")
+        self.assertEqual(len(self.files(".mcap")), len(self.files(".pcapng")))
+        _, messages = self.check_pings(viewer, daemon, 120)
+        moved = [message["vehicle"] for message in messages["image"]]
+        self.assertGreater(math.dist(moved[0], moved[-1]), 0.01, "the vehicle did not move")
+        posed = {message["time"]: message["vehicle"] for message in messages["pose"]}
+        for image in messages["image"]:
+            self.assertEqual(posed[image["transmit_ns"]], image["vehicle"])
+        self.assertIn("dropped_images=0 dropped_wire_pieces=0", daemon.output())
+        # Both directions, byte for byte the same in MCAP and capture.
+        self.assertEqual(
+            [(message["to_client"], message["log_time"], message["crc32"]) for message in messages["wire"]],
+            [(packet.target[1] == REPORT_PORT, str(packet.time_ns), zlib.crc32(packet.payload))
+             for packet in self.packets()])
+        self.assertGreater(sum(not message["to_client"] for message in messages["wire"]), 1)
+        for message in messages["wire"]:
+            self.assertIn(message["peer"].split(":")[0], (SURFACE_ADDRESS, "255.255.255.255"))
+
+    def test_what_is_compressed_coded_or_of_16_bits(self):
+        for number, options in enumerate((["--compression", "2"], ["--rle", "60"], ["--bits", "16"])):
+            with self.subTest(options=options):
+                self.logs = os.path.join(self.folder.name, f"logs{number}")
+                daemon = self.start_daemon()
+                viewer = self.start_viewer("--pings", "8", *options)
+                self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+                self.end_daemon(daemon)
+                self.check_folder()
+                self.check_pings(viewer, daemon, 8)
+
+    def test_target_to_port_is_on_the_port_side(self):
+        """A sphere of radius 0.5 m at (3, 2) m, x forward and y to port: 33.69 degrees to port, 8 to either side."""
+        daemon = self.start_daemon(noisy=False)
+        viewer = self.start_viewer("--pings", "2", "--gain", "100")
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        self.end_daemon(daemon)
+        image = self.glf_images()[0]
+        message = self.mcap_messages()["image"][0]
+        lit = [beam for beam in range(256) if any(image.row(line)[beam] for line in range(image.lines))]
+        self.assertTrue(lit)
+        self.assertEqual(zlib.crc32(image.pixels), message["crc32"])
+        for table in (image.bearings_rad, message["bearings_rad"]):
+            for beam in lit:
+                self.assertAlmostEqual(math.degrees(table[beam]), 33.69, delta=9)
+
+    def test_a_micron_on_tcp_and_on_a_terminal(self):
+        daemon = self.start_daemon(more=MICRON)
+        link = os.path.join(self.folder.name, "micron")
+        raw = [os.path.join(self.folder.name, f"raw{i}") for i in range(2)]
+        ways = [(self.lab.surface, ["--tcp", f"{HEAD_ADDRESS}:4001"]), (self.lab.head, ["--tty", link, "--four-bit"])]
+        for path, (where, way) in zip(raw, ways):
+            viewer = self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--bins", "300", "--lines",
+                                    "25", "--raw", path, "--quiet", "--wait", "30")
+            self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        self.end_daemon(daemon)
+        messages = self.mcap_messages()
+        recorded = {(line["bits"], line["bins"], round(line["bearing_rad"], 6)) for line in messages["line"]}
+        for path, bits in zip(raw, (8, 4)):
+            with open(path, encoding="utf-8") as file:
+                lines = [json.loads(text) for text in file]
+            self.assertGreaterEqual(len(lines), 25)
+            for line in lines:
+                turn = (line["bearing"] - 3200) * math.pi / 3200  # to starboard of ahead, 1/16 gradian
+                turn = math.atan2(math.sin(turn), math.cos(turn))
+                ways_round = {round(-turn, 6), round(turn, 6)} if abs(abs(turn) - math.pi) < 1e-9 else {round(-turn, 6)}
+                bins = line["bins"][:600]  # an odd number of nibbles is filled up
+                self.assertTrue(any((bits, bins, bearing) in recorded for bearing in ways_round), line["number"])
+        transports = {message["transport"] for message in messages["wire"] if "/stern/" in message["topic"]}
+        self.assertEqual(transports, {"TRANSPORT_TCP", "TRANSPORT_SERIAL"})
+        # The streams of the capture are those of the MCAP file.
+        for transport, port, server in (("TRANSPORT_TCP", 4001, HEAD_ADDRESS), ("TRANSPORT_SERIAL", 4001, "192.0.2.1")):
+            said = "".join(message["data"] for message in messages["wire"]
+                           if message["transport"] == transport and message["to_client"])
+            stream, expected = b"", None
+            for packet in self.packets():
+                if packet.protocol == "tcp" and packet.source == (server, port):
+                    self.assertIn(expected, (None, packet.sequence))
+                    expected = packet.sequence + len(packet.payload) + bool(packet.flags & 3)
+                    stream += packet.payload
+            self.assertEqual(stream.hex(), said)
+            self.assertGreater(len(stream), 25 * 100)
+
+    def test_tshark_finds_nothing_malformed(self):
+        need("tshark")
+        daemon = self.start_daemon(more=MICRON)
+        viewer = self.start_viewer("--pings", "5")
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        scan = self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "micron", "--tcp",
+                              f"{HEAD_ADDRESS}:4001", "--lines", "10", "--quiet", "--wait", "30")
+        self.assertEqual(scan.wait(PATIENCE_S), 0, scan.tail())
+        self.end_daemon(daemon)
+        scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
+
+        def shown(condition):
+            done = subprocess.run(["tshark", *scripts, "-r", self.files(".pcapng")[0], "-Y", condition, "-T", "fields", "-e",
+                                   "frame.number"], capture_output=True, text=True, timeout=100)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout.split()
+
+        self.assertEqual(shown("_ws.malformed || gemini_sonar.malformed || gemini_sonar.bad_value || gemini_sonar.bad_line || "
+                               "micron_sonar.malformed || micron_sonar.bad_value || micron_sonar.no_frame"), [])
+        self.assertEqual(len(shown("gemini_sonar.ping_head.end_range")), 5)
+        self.assertGreaterEqual(len(shown("micron_sonar.head_data.bearing")), 10)
+
+    def test_two_daemons_do_not_share_a_folder(self):
+        self.start_daemon()
+        second = self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonard"), "run",
+                                os.path.join(self.folder.name, "sonard.yaml"))
+        self.assertEqual(second.wait(START_S), 2, second.tail())
+        self.assertRegex(second.output(), r"sonard.yaml:\d+:\d+: recording.directory: another daemon records into ")
+
+
+class Kills(RecordingTest):
+    def test_every_log_opens_and_holds_every_ping_but_the_last(self):
+        """kill -9 at moments drawn from a seed, from before the first ping to some tens of pings later. What a life
+        leaves is recovered by the daemon of the next, which is killed in its turn, also while it recovers and packs."""
+        moments = random.Random(20261120)
+        seen = []
+        for life in range(KILLS):
+            viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
+            daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
+            if life % 10 != 9:
+                viewer.wait_for_line("^ping ", PATIENCE_S)
+            time.sleep(moments.uniform(0.0, 0.5))
+            daemon.signal(signal.SIGKILL)
+            daemon.wait(10)
+            time.sleep(0.01)  # what it sent last arrives
+            viewer.signal(signal.SIGKILL)
+            viewer.wait(10)
+            seen.append([ping["crc32"] for ping in self.received(viewer)])
+        self.end_daemon(self.start_daemon(seed=KILLS + 1))
+        self.check_folder()
+        self.assertGreater(sum(map(len, seen)), 3 * KILLS)
+        logs = {
+            "glf": [crc_text(image.pixels) for image in self.glf_images()],
+            "mcap": [f"{image['crc32']:08x}" for image in self.mcap_messages()["image"]],
+            "pcapng": [crc_text(ping.pixels()) for ping in pings_of(self.packets())],
+        }
+        for kind, recorded in logs.items():
+            self.assertEqual(len(set(recorded)), len(recorded), f"a ping is in {kind} twice")
+            recorded = set(recorded)
+            for life, pings in enumerate(seen):
+                missing = [i for i, crc in enumerate(pings[:-1]) if crc not in recorded]
+                self.assertEqual(missing, [], f"{kind} of life {life}, which saw {len(pings)} pings")
+            kept = sum(len(pings) > 0 and pings[-1] in recorded for pings in seen)
+            print(f"{kind}: {len(recorded)} pings, the last of a life in {kept} of {len(seen)}")
+
+
+class FullDisk(RecordingTest):
+    def mount(self, mebibytes):
+        os.makedirs(self.logs, exist_ok=True)
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={mebibytes}m", "tmpfs", self.logs], check=True)
+        self.addCleanup(subprocess.run, ["umount", "-l", self.logs], check=False)
+
+    def pings_per_s(self, viewer, seconds):
+        before = len(self.received(viewer))
+        time.sleep(seconds)
+        return (len(self.received(viewer)) - before) / seconds
+
+    def test_neither_stops_nor_slows_serving(self):
+        self.mount(64)
+        daemon = self.start_daemon(recording=", rotate_min: 0.1")
+        viewer = self.start_viewer("--continuous", "50")
+        viewer.wait_for_line("^ping ", PATIENCE_S, count=5)
+        with_room = self.pings_per_s(viewer, 2)
+        deadline = time.monotonic() + 60
+        while "recording: cannot" not in daemon.output() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        self.assertIn("No space left on device", daemon.output())
+        without_room = self.pings_per_s(viewer, 2)
+        print(f"pings per second: {with_room:.1f} with room, {without_room:.1f} without")
+        self.assertGreater(without_room, 0.9 * with_room)
+        daemon.wait_for_line("has no room for new logs", 60)
+        self.assertEqual(daemon.output().count("has no room for new logs"), 1, "it is said once")
+        viewer.signal(signal.SIGINT)
+        viewer.wait(10)
+        self.assertEqual([ping for ping in self.received(viewer) if ping["lines_lost"] != "0"], [])
+        code, _ = daemon.terminate(30)
+        self.assertEqual(code, 0, daemon.tail())
+        ends = key_values(daemon.wait_for_line("recording ends:", 5))
+        self.assertGreater(int(ends["logs_failed"]), 0)
+        self.assertGreater(int(ends["images_lost"]), 0)
+
+        # With room again the next daemon ends what this one could not.
+        subprocess.run(["mount", "-o", "remount,size=400m", self.logs], check=True)
+        self.end_daemon(self.start_daemon())
+        self.check_folder()
+        images = {crc_text(image.pixels) for image in self.glf_images()}
+        first = [ping["crc32"] for ping in self.received(viewer)[:20]]
+        self.assertEqual([crc for crc in first if crc not in images], [])
+        self.assertGreater(len(self.mcap_messages()["image"]), 20)
+        self.assertGreater(len(pings_of(self.packets())), 20)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--programs", required=True)
+    parser.add_argument("--npm", required=True, help="folder with read_mcap.js and its node_modules")
+    parser.add_argument("--kills", type=int, default=KILLS)
+    options, rest = parser.parse_known_args()
+    PROGRAMS, NPM, KILLS = os.path.abspath(options.programs), options.npm, options.kills
+    unittest.main(argv=[sys.argv[0], *rest])

@@ -1,0 +1,60 @@
+// Events, folders and limits for the tests of recordings.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "server/recording/events.hpp"
+#include "server/recording/log.hpp"
+
+namespace sonard::test {
+
+/// A folder of its own, removed with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Names of the files in it that end so, sorted.
+  std::vector<std::string> names(const std::string& suffix = "") const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// No file of this process may be longer than this while it lives: a full disk that needs no rights.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::uint64_t bytes);
+  ~FileSizeLimit();
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+std::vector<std::uint8_t> contents(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
+
+/// Sample of a ping at (line, beam): hard to compress, and different for every ping.
+std::uint8_t sample(std::uint64_t ping_number, int line, int beam);
+
+/// A ping of so many lines with these samples, of sonar 601.
+gemini::EncodedPing encoded_ping(std::uint64_t number, int lines, std::uint16_t ext_mode = 0x0004,
+                                 std::uint8_t rle_threshold = 0);
+server::RecordingEvent ping_event(std::uint64_t number, int lines, server::TimePoint time);
+/// One datagram of so many bytes to a client at 127.0.0.1:52900.
+server::RecordingEvent wire_event(std::size_t bytes, server::TimePoint time);
+
+/// "bow", the one head.
+std::vector<server::RecordedHead> one_gemini();
+
+}  // namespace sonard::test
