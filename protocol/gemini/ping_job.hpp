@@ -31,6 +31,7 @@ struct PingJob {
   int rle_threshold = 0;       ///< samples below it become zero when the image travels; 0: none do
   /// The RecordedPing that answers this job, whatever it asks for; nullopt: it is to be rendered.
   std::optional<std::uint64_t> record;
+  std::optional<double> recorded_gain_percent;  ///< of that RecordedPing, if it is known
 
   /// Lines of the image; a remainder of native lines that fills no whole line is not sent.
   int lines() const { return native_lines >> compression_log2; }
@@ -52,6 +53,7 @@ struct RecordedPing {
   int compression_log2 = 0;             ///< 0..4; lines * 2^n <= 65535
   double sound_speed_mps = 0.0;         ///< that the head reckoned with
   bool sound_speed_from_config = true;  ///< the surface had given it, not the velocimeter
+  std::optional<double> gain_percent;   ///< it was made with; nullopt: nobody knows
   /// Earliest transmit time; nullopt: when the surface wants it.
   std::optional<TimePoint> due;
 };

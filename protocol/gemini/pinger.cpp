@@ -160,6 +160,7 @@ void Pinger::acquire(TimePoint now) {
   job_ = asked.job;
   if (const auto offered = std::exchange(offered_, std::nullopt)) {
     job_->record = offered->record;
+    job_->recorded_gain_percent = offered->gain_percent;
   }
   job_->ping_number = acquisition_->ping_number;
   job_->transmit_time = transmit_time;

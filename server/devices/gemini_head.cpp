@@ -418,7 +418,8 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
     return false;
   }
   if (recording.on()) {
-    ping_to_record = {job.ping_number, job.transmit_time, job.gain_percent,
+    ping_to_record = {job.ping_number, job.transmit_time,
+                      job.recorded_gain_percent.value_or(job.gain_percent),
                       rendering.poses_used(job.transmit_time)};
     recording.posed(ping_to_record->poses);
   }

@@ -19,7 +19,7 @@ class GlfLog final : public Log {
  private:
   void write(const GeminiPingServed& ping);
   void write(const GeminiStatusSent& status, TimePoint time);
-  const RecordedHead& head() const { return setting().heads[static_cast<std::size_t>(head_)]; }
+  const HeadToRecord& head() const { return setting().heads[static_cast<std::size_t>(head_)]; }
 
   int head_;
 };

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "server/recording/events.hpp"
-#include "server/recording/log_file.hpp"
+#include "server/recording/growing_log.hpp"
 
 namespace sonard::server {
 
 /// A head as its logs name it.
-struct RecordedHead {
+struct HeadToRecord {
   std::string name;
   std::uint16_t device_id = 0;  ///< sonar ID of a Gemini, node of a Micron
   bool is_gemini = true;
@@ -23,7 +23,7 @@ struct RecordedHead {
 /// so that times in a log never jump.
 struct LogSetting {
   const RecordingConfig& config;
-  const std::vector<RecordedHead>& heads;  ///< by RecordingEvent::head
+  const std::vector<HeadToRecord>& heads;  ///< by RecordingEvent::head
   std::chrono::nanoseconds unix_offset{};  ///< from TimePoint to Unix time
   std::int32_t utc_offset_s = 0;           ///< of the zone of the logs
   std::string stem;                        ///< of names
@@ -46,15 +46,15 @@ class Log {
   /// Nothing is written after that.
   virtual void close() = 0;
 
-  LogFile& file() { return file_; }
-  const LogFile& file() const { return file_; }
+  GrowingLog& file() { return file_; }
+  const GrowingLog& file() const { return file_; }
 
  protected:
   const LogSetting& setting() const { return setting_; }
 
  private:
   const LogSetting& setting_;
-  LogFile file_;
+  GrowingLog file_;
 };
 
 }  // namespace sonard::server

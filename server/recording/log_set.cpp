@@ -24,7 +24,7 @@ std::int32_t utc_offset_s(RecordingZone zone) {
 
 }  // namespace
 
-LogSet::LogSet(const RecordingConfig& config, const std::vector<RecordedHead>& heads, TimePoint begin,
+LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads, TimePoint begin,
                bool has_room)
     : setting_{config, heads, unix_time_offset(), utc_offset_s(config.zone), {}}, begin_(begin) {
   setting_.stem =

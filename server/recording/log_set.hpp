@@ -14,7 +14,7 @@ class LogSet {
  public:
   /// @param begin of the first event
   /// @param has_room false: everything is thrown away
-  LogSet(const RecordingConfig& config, const std::vector<RecordedHead>& heads, TimePoint begin,
+  LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads, TimePoint begin,
          bool has_room);
   ~LogSet() = default;
   LogSet(const LogSet&) = delete;  // logs refer to its setting

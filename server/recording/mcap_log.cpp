@@ -52,7 +52,7 @@ log::SonarImage to_message(const GeminiPingServed& ping, const std::string& head
   return image;
 }
 
-log::ScanLine to_message(const MicronLineSent& sent, const RecordedHead& head, std::int64_t transmit_ns) {
+log::ScanLine to_message(const MicronLineSent& sent, const HeadToRecord& head, std::int64_t transmit_ns) {
   log::ScanLine line;
   line.set_head(head.name);
   line.set_device_id(head.device_id);

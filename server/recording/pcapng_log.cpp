@@ -18,7 +18,7 @@ pcapng::ByteView view(const gemini::SharedBytes& bytes) {
 }  // namespace
 
 PcapngLog::PcapngLog(const LogSetting& setting) : Log(setting), writer_("sonard " SONARD_VERSION) {
-  for (const RecordedHead& head : setting.heads) {
+  for (const HeadToRecord& head : setting.heads) {
     writer_.add_interface(head.name);  // its number is the place of the head
   }
 }

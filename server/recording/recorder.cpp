@@ -68,7 +68,7 @@ bool has_room(const fs::path& directory) {
 }  // namespace
 
 struct Recorder::Impl {
-  Impl(const RecordingConfig& recording, std::vector<RecordedHead> recorded)
+  Impl(const RecordingConfig& recording, std::vector<HeadToRecord> recorded)
       : config(recording), heads(std::move(recorded)), lock(config.directory), queue(config.queue_bytes) {}
 
   void run();
@@ -82,7 +82,7 @@ struct Recorder::Impl {
   RecorderCounters counters() const;
 
   const RecordingConfig config;
-  const std::vector<RecordedHead> heads;
+  const std::vector<HeadToRecord> heads;
   DirectoryLock lock;
   EventQueue queue;
   SteadyClock clock;
@@ -100,7 +100,7 @@ struct Recorder::Impl {
   std::thread thread;  // last: it uses all of the above
 };
 
-Recorder::Recorder(const RecordingConfig& config, std::vector<RecordedHead> heads)
+Recorder::Recorder(const RecordingConfig& config, std::vector<HeadToRecord> heads)
     : impl_(std::make_unique<Impl>(config, std::move(heads))) {
   for (const fs::path& dat : recover_logs(config.directory)) {
     impl_->packings.emplace_back(dat, config.sync);
@@ -229,9 +229,9 @@ void Recorder::Impl::log_totals() const {
       total.dropped.pieces, total.dropped.others);
 }
 
-std::vector<RecordedHead> recorded_heads(const std::vector<AnyHeadConfig>& heads) {
+std::vector<HeadToRecord> recorded_heads(const std::vector<AnyHeadConfig>& heads) {
   constexpr std::uint8_t most_numbered = 9;
-  std::vector<RecordedHead> recorded;
+  std::vector<HeadToRecord> recorded;
   std::uint8_t geminis = 0;
   for (const AnyHeadConfig& head : heads) {
     if (const auto* gemini = std::get_if<GeminiHeadConfig>(&head)) {

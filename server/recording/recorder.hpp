@@ -35,8 +35,8 @@ struct RecorderCounters {
 /// slice between any two looks at the queue: while it copies 1 MiB and waits for the disk events gather, at
 /// most for as long as that takes.
 ///
-/// Disk full, or any other error of a file: that file is given up (LogFile), the others go on. The next logs
-/// begin only where there is room for them; until then events are taken and thrown away.
+/// Disk full, or any other error of a file: that file is given up (GrowingLog), the others go on. The next
+/// logs begin only where there is room for them; until then events are taken and thrown away.
 class Recorder {
  public:
   /// Free space without which no logs are begun.
@@ -45,7 +45,7 @@ class Recorder {
   /// Makes the folder, locks it against other daemons and recovers what is in it (recovery.hpp), then starts
   /// the thread.
   /// @throws RecordingError
-  Recorder(const RecordingConfig& config, std::vector<RecordedHead> heads);
+  Recorder(const RecordingConfig& config, std::vector<HeadToRecord> heads);
   /// As stop().
   ~Recorder();
   Recorder(const Recorder&) = delete;
@@ -65,6 +65,6 @@ class Recorder {
 };
 
 /// By their places in the configuration.
-std::vector<RecordedHead> recorded_heads(const std::vector<AnyHeadConfig>& heads);
+std::vector<HeadToRecord> recorded_heads(const std::vector<AnyHeadConfig>& heads);
 
 }  // namespace sonard::server

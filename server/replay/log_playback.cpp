@@ -72,12 +72,14 @@ std::optional<WireForm> wire_form(const RecordedSettings& settings) {
     return std::nullopt;
   }
   WireForm form;
-  form.ping = {.record = 0,
-               .lines = settings.lines,
-               .compression_log2 = compression_log2,
-               .sound_speed_mps = settings.sound_speed_mps,
-               .sound_speed_from_config = settings.sound_speed_from_config,
-               .due = std::nullopt};
+  form.ping = {
+      .record = 0,
+      .lines = settings.lines,
+      .compression_log2 = compression_log2,
+      .sound_speed_mps = settings.sound_speed_mps,
+      .sound_speed_from_config = settings.sound_speed_from_config,
+      .gain_percent = settings.gain_percent >= 0.0 ? std::optional(settings.gain_percent) : std::nullopt,
+      .due = std::nullopt};
   form.exact = std::abs(lines_per_line / (1 << compression_log2) - 1.0) < step_tolerance;
   return form;
 }

@@ -545,7 +545,7 @@ void SlicePatcher::weigh_by_pattern(const ElevationPattern& pattern) {
     const float weight = (w1 * by_low + wm * by_middle + w2 * by_high) / (by_low + by_middle + by_high);
     solid_angle[i] *= weight;
     const float steeper = range_tilt[i] + 0.5F * (w2 - w1) / weight;
-    range_tilt[i] = (range_tilt[i] != 0.0F) & (weight > 0) ? steeper : range_tilt[i];
+    range_tilt[i] = ((range_tilt[i] != 0.0F) & (weight > 0)) ? steeper : range_tilt[i];
   }
 }
 

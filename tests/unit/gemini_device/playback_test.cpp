@@ -19,6 +19,7 @@ RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::
           .compression_log2 = 2,
           .sound_speed_mps = 1480.5,
           .sound_speed_from_config = true,
+          .gain_percent = 31.5,
           .due = due};
 }
 
@@ -83,6 +84,7 @@ TEST_F(Playback, TheJobSaysWhatWasAskedForAndWhichRecordAnswers) {
   bench.command(asked);
   ASSERT_EQ(bench.jobs.size(), 1U);
   EXPECT_EQ(bench.jobs[0].record, 7U);
+  EXPECT_EQ(bench.jobs[0].recorded_gain_percent, 31.5);
   EXPECT_EQ(bench.jobs[0].native_lines, 500);
   EXPECT_EQ(bench.jobs[0].rle_threshold, 9);
 }

@@ -101,7 +101,7 @@ RecordingEvent wire_event(std::size_t bytes, TimePoint time) {
               true, server::WireTransport::udp, {}, {{{0x7F000001, 52900}, {0x7F000002, 52901}, data}}}};
 }
 
-std::vector<server::RecordedHead> one_gemini() {
+std::vector<server::HeadToRecord> one_gemini() {
   return {{"bow", 601, true, 0}};
 }
 

@@ -55,6 +55,6 @@ server::RecordingEvent ping_event(std::uint64_t number, int lines, server::TimeP
 server::RecordingEvent wire_event(std::size_t bytes, server::TimePoint time);
 
 /// "bow", the one head.
-std::vector<server::RecordedHead> one_gemini();
+std::vector<server::HeadToRecord> one_gemini();
 
 }  // namespace sonard::test

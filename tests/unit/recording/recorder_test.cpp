@@ -260,7 +260,7 @@ TEST(RecordedHeads, NumberTheGeminis) {
   heads.emplace_back(gemini);
   heads.emplace_back(micron);
   heads.emplace_back(gemini);
-  const std::vector<RecordedHead> recorded = recorded_heads(heads);
+  const std::vector<HeadToRecord> recorded = recorded_heads(heads);
   EXPECT_EQ(recorded[0].name, "a");
   EXPECT_EQ(recorded[0].device_id, 77);
   EXPECT_EQ(recorded[0].gemini_number, 0);

@@ -23,7 +23,7 @@ constexpr int pings = 3;
 struct RecoveryTest : testing::Test {
   test::TemporaryFolder folder;
   RecordingConfig config;
-  std::vector<RecordedHead> heads = test::one_gemini();
+  std::vector<HeadToRecord> heads = test::one_gemini();
   LogSetting setting{config, heads, {}, 0, "stem"};
 
   RecoveryTest() { config.directory = folder.path(); }

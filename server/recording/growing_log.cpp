@@ -1,10 +1,10 @@
-#include "server/recording/log_file.hpp"
+#include "server/recording/growing_log.hpp"
 
 #include <spdlog/spdlog.h>
 
 namespace sonard::server {
 
-void LogFile::begin(const std::filesystem::path& path) {
+void GrowingLog::begin(const std::filesystem::path& path) {
   begun_ = true;
   std::error_code error;
   file_ = AppendFile::create(path, error);
@@ -15,7 +15,7 @@ void LogFile::begin(const std::filesystem::path& path) {
   spdlog::info("recording: writes {}", path.string());
 }
 
-void LogFile::append(std::span<const std::uint8_t> piece) {
+void GrowingLog::append(std::span<const std::uint8_t> piece) {
   if (!file_.is_open() || piece.empty()) {
     return;
   }
@@ -24,7 +24,7 @@ void LogFile::append(std::span<const std::uint8_t> piece) {
   }
 }
 
-void LogFile::sync() {
+void GrowingLog::sync() {
   if (!file_.is_open()) {
     return;
   }
@@ -33,14 +33,14 @@ void LogFile::sync() {
   }
 }
 
-void LogFile::end() {
+void GrowingLog::end() {
   if (sync_ != RecordingSync::never) {
     sync();
   }
   file_.close();
 }
 
-void LogFile::fail(const std::error_code& error) {
+void GrowingLog::fail(const std::error_code& error) {
   failed_ = true;
   file_.close();
   spdlog::error("recording: cannot write {}: {}; this log ends here, serving goes on", file_.path().string(),

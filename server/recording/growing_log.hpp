@@ -13,9 +13,9 @@ namespace sonard::server {
 
 /// A file that fails is given up: that is logged, once, and what else is written to it goes nowhere. It ends
 /// with the last piece that was written whole. Serving does not depend on it.
-class LogFile {
+class GrowingLog {
  public:
-  explicit LogFile(RecordingSync sync) : sync_(sync) {}
+  explicit GrowingLog(RecordingSync sync) : sync_(sync) {}
 
   bool begun() const { return begun_; }
   bool failed() const { return failed_; }
