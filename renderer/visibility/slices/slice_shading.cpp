@@ -109,7 +109,7 @@ bool has_plain_facets(const TriangleMesh& mesh) {
 NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
                                float middle_t) {
   // Rows: the axes of the slice.
-  const glm::vec3 along(slice.cosine, slice.sine, 0), across(-slice.sine, slice.cosine, 0), up(0, 0, 1);
+  const glm::vec3 along(slice.cosine, slice.sine, 0), across(-slice.sine, slice.cosine, 0);
   const auto in_slice = [&](const glm::vec3& v) {
     return glm::vec3(glm::dot(along, v), glm::dot(across, v), v.z);
   };
