@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "clients/sonarview/compare/glf_image.hpp"
 #include "clients/sonarview/compare/npy_file.hpp"
 #include "clients/sonarview/compare/turn_file.hpp"
 #include "renderer/picture/fan_image.hpp"
@@ -25,11 +26,15 @@ struct Source {
   std::string number;
 };
 
+bool is_log(const std::filesystem::path& file) {
+  return file.extension() == ".glf" || file.extension() == ".dat";
+}
+
 Source split(const std::string& word) {
   const std::size_t mark = word.rfind('#');
   if (mark != std::string::npos) {
     const std::filesystem::path file = word.substr(0, mark);
-    if (file.extension() == ".csv" || file.extension() == ".jsonl") {
+    if (file.extension() == ".csv" || file.extension() == ".jsonl" || is_log(file)) {
       return {file, word.substr(mark + 1)};
     }
   }
@@ -106,6 +111,9 @@ cv::Mat load_frame(const std::string& word) {
   }
   if (source.file.extension() == ".jsonl") {
     return scaled(read_turn(source.file, number_of(source, "TURN")));
+  }
+  if (is_log(source.file)) {
+    return scaled(picture::raw_polar_image(read_glf_image(source.file, number_of(source, "IMAGE"))));
   }
   if (source.file.extension() == ".npy") {
     return scaled(read_ping(source.file));

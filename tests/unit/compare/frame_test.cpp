@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -123,6 +125,37 @@ TEST_F(Frame, OtherFilesAreRefused) {
   expect_refused(write("none.npy", npy("|u1", "(0, 3)", "")), "has no samples");
   expect_refused(write("huge.npy", npy("|u1", "(999999, 999999)", "")), "too many samples");
   expect_refused(write("text.jsonl", "no line\n") + "#0", "text.jsonl:1:");
+}
+
+// Two lines of three beams, laid out by docs/logs.md 1.3 and 1.4: raw pixels, zeros where nothing is said.
+std::string dat_of(const std::string& pixels) {
+  const auto bytes = [](std::uint64_t value, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+      text.push_back(static_cast<char>(value >> (8 * i)));
+    }
+    return text;
+  };
+  const auto f64 = [&](double value) { return bytes(std::bit_cast<std::uint64_t>(value), 8); };
+  const auto f32 = [&](float value) { return bytes(std::bit_cast<std::uint32_t>(value), 4); };
+  const std::string body = bytes(1, 2) + bytes(0xEFEF, 2) + bytes(3, 2) + bytes(0, 4) + bytes(2, 4) +
+                           bytes(0, 2) + bytes(0, 4) + bytes(3, 4) + bytes(1, 2) + bytes(6, 4) + pixels +
+                           f64(1.0) + f64(0.0) + f64(-1.0) + bytes(0, 4) + bytes(18'750, 4) + f32(120.0F) +
+                           f64(1.5) + bytes(0, 2) + f32(1500.0F) + bytes(50, 2) + bytes(0, 4) +
+                           bytes(0xDEDE, 2);
+  return "*" + bytes(2, 1) + bytes(21 + body.size(), 4) + f64(1.5) + bytes(0, 1) + bytes(1194, 2) +
+         bytes(100, 2) + bytes(0, 2) + body;
+}
+
+TEST_F(Frame, ImagesOfALogAreCounted) {
+  const std::string log = write("log.dat", dat_of("abcdef") + dat_of("uvwxyz") + "\xDE\xDE");
+  const cv::Mat frame = load_frame(log + "#1");
+  ASSERT_EQ(frame.size(), cv::Size(3, 2));
+  EXPECT_EQ(frame.at<double>(1, 0), 'u');  // the near line is at the bottom
+  EXPECT_EQ(frame.at<double>(0, 2), 'z');
+  expect_refused(log + "#2", "has no image 2, but 2");
+  expect_refused(log + "#", "expected");
+  expect_refused(write("other.glf", "PK, or not") + "#0", "is not a log");
 }
 
 }  // namespace
