@@ -46,10 +46,9 @@ class PathTest : public ::testing::TestWithParam<PathCase> {
 
 inline auto path_cases() {
   using render::Backend, render::Sampling;
-  return ::testing::Values(PathCase{Backend::raster, Sampling::Preset::fast},
-                           PathCase{Backend::raster, Sampling::Preset::normal},
-                           PathCase{Backend::ray, Sampling::Preset::fast},
-                           PathCase{Backend::ray, Sampling::Preset::normal});
+  return ::testing::Values(
+      PathCase{Backend::raster, Sampling::Preset::fast}, PathCase{Backend::raster, Sampling::Preset::normal},
+      PathCase{Backend::ray, Sampling::Preset::fast}, PathCase{Backend::ray, Sampling::Preset::normal});
 }
 
 inline std::string path_case_name(const ::testing::TestParamInfo<PathCase>& info) {
