@@ -33,26 +33,14 @@ inline float facets(float c2, float strength, float variance) {
 }  // namespace
 
 void FacetArrays::lay_out(const std::vector<VisiblePiece>& pieces, const std::vector<PartSurface>& parts,
-                          const std::vector<NormalRun>& runs, const std::vector<std::uint32_t>& original,
                           bool everywhere) {
   if (pieces.size() > heard_.size()) {
-    for (auto* array :
-         {&at_h_, &at_s_, &at_z_, &x_h_, &x_s_, &x_z_, &t_h_, &t_s_, &t_z_, &strength_, &variance_,
-          &least_cosine_, &heard_, &slopes_per_t_, &slopes_across_, &mean_, &moment_, &rise_}) {
+    for (auto* array : {&strength_, &variance_, &least_cosine_, &heard_, &slopes_per_t_, &slopes_across_,
+                        &mean_, &moment_, &rise_}) {
       array->resize(pieces.size() + pieces.size() / 2);
     }
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const NormalRun& run = runs[original[i]];
-    at_h_[i] = run.at.x;
-    at_s_[i] = run.at.y;
-    at_z_[i] = run.at.z;
-    x_h_[i] = run.per_x.x;
-    x_s_[i] = run.per_x.y;
-    x_z_[i] = run.per_x.z;
-    t_h_[i] = run.per_t.x;
-    t_s_[i] = run.per_t.y;
-    t_z_[i] = run.per_t.z;
     const PartSurface& part = parts[pieces[i].triangle->part];
     const bool never = part.normal_map || (!everywhere && !(part.backscatter.facet_strength > 0));
     strength_[i] = never ? 0.0F : part.backscatter.facet_strength;
@@ -64,12 +52,12 @@ void FacetArrays::lay_out(const std::vector<VisiblePiece>& pieces, const std::ve
 /// From how direction d and normal n, both of unit length, change in the middle: off a mirror they differ by
 /// d - n or d + n. Incidences up to half of the turn away are heard too: cos(phi - a) <= cos phi + a sin phi.
 SONARD_SIMD_CLONES
-void FacetArrays::find_turns(const PieceArrays& pieces, float width_rad) {
+void FacetArrays::find_turns(const PieceArrays& pieces, const NormalArrays& normals, float width_rad) {
   const float* __restrict low = pieces.low.data();
   const float* __restrict high = pieces.high.data();
-  const float* __restrict at_h = at_h_.data(), * __restrict at_s = at_s_.data(), * __restrict at_z = at_z_.data();
-  const float* __restrict x_h = x_h_.data(), * __restrict x_s = x_s_.data(), * __restrict x_z = x_z_.data();
-  const float* __restrict t_h = t_h_.data(), * __restrict t_s = t_s_.data(), * __restrict t_z = t_z_.data();
+  const float* __restrict at_h = normals.at_h.data(), * __restrict at_s = normals.at_s.data(), * __restrict at_z = normals.at_z.data();
+  const float* __restrict x_h = normals.h_per_x.data(), * __restrict x_s = normals.s_per_x.data(), * __restrict x_z = normals.z_per_x.data();
+  const float* __restrict t_h = normals.h_per_t.data(), * __restrict t_s = normals.s_per_t.data(), * __restrict t_z = normals.z_per_t.data();
   const float* __restrict variance = variance_.data();
   const float* __restrict least_cosine = least_cosine_.data();
   float* __restrict heard = heard_.data();
@@ -108,12 +96,12 @@ void FacetArrays::find_turns(const PieceArrays& pieces, float width_rad) {
 }
 
 SONARD_SIMD_CLONES
-void FacetArrays::hear(const PieceArrays& pieces, float width_rad) {
+void FacetArrays::hear(const PieceArrays& pieces, const NormalArrays& normals, float width_rad) {
   const float* __restrict low = pieces.low.data();
   const float* __restrict high = pieces.high.data();
-  const float* __restrict at_h = at_h_.data(), * __restrict at_s = at_s_.data(), * __restrict at_z = at_z_.data();
-  const float* __restrict x_h = x_h_.data(), * __restrict x_s = x_s_.data(), * __restrict x_z = x_z_.data();
-  const float* __restrict t_h = t_h_.data(), * __restrict t_s = t_s_.data(), * __restrict t_z = t_z_.data();
+  const float* __restrict at_h = normals.at_h.data(), * __restrict at_s = normals.at_s.data(), * __restrict at_z = normals.at_z.data();
+  const float* __restrict x_h = normals.h_per_x.data(), * __restrict x_s = normals.s_per_x.data(), * __restrict x_z = normals.z_per_x.data();
+  const float* __restrict t_h = normals.h_per_t.data(), * __restrict t_s = normals.s_per_t.data(), * __restrict t_z = normals.z_per_t.data();
   const float* __restrict strength = strength_.data();
   const float* __restrict variance = variance_.data();
   float* __restrict mean = mean_.data();

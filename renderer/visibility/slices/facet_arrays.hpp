@@ -3,12 +3,11 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
+#include "renderer/visibility/slices/normal_arrays.hpp"
 #include "renderer/visibility/slices/part_surface.hpp"
 #include "renderer/visibility/slices/piece_arrays.hpp"
-#include "renderer/visibility/slices/slice_shading.hpp"
 
 namespace sonard::render {
 
@@ -16,16 +15,14 @@ namespace sonard::render {
 /// where facets turn little across; is_wide() says where it is not. Arrays never shrink.
 class FacetArrays {
  public:
-  /// Of the pieces in `pieces`. @param runs, original their normals: runs[original[i]] are those of piece i
   /// @param everywhere facets are looked at whatever the incidence
   void lay_out(const std::vector<VisiblePiece>& pieces, const std::vector<PartSurface>& parts,
-               const std::vector<NormalRun>& runs, const std::vector<std::uint32_t>& original,
                bool everywhere);
 
   /// How the direction of the echo turns, and where facets may be heard.
-  void find_turns(const PieceArrays& pieces, float width_rad);
+  void find_turns(const PieceArrays& pieces, const NormalArrays& normals, float width_rad);
   /// What they answer.
-  void hear(const PieceArrays& pieces, float width_rad);
+  void hear(const PieceArrays& pieces, const NormalArrays& normals, float width_rad);
 
   /// Whether facets are heard anywhere between both ends and both sides: of what answers no, all facets echo
   /// less than SkipRule::facet_kernel allows. May answer yes where there are none.
@@ -46,8 +43,7 @@ class FacetArrays {
  private:
   static constexpr float most_across = 2.5F;
 
-  std::vector<float> at_h_, at_s_, at_z_, x_h_, x_s_, x_z_, t_h_, t_s_, t_z_;  ///< NormalRun
-  std::vector<float> strength_, variance_, least_cosine_;                      ///< Backscatter
+  std::vector<float> strength_, variance_, least_cosine_;  ///< Backscatter
   std::vector<float> heard_, slopes_per_t_, slopes_across_;
   std::vector<float> mean_, moment_, rise_;
 };

@@ -23,7 +23,6 @@ struct PlacedPart {
   std::shared_ptr<const MeshClusters> clusters;
   glm::mat3 R_sonar_part{1.0F};
   glm::vec3 t_sonar_part_m{0.0F};
-  bool plain = false;  ///< facets look like what they are: no bumps, nor rounded by vertex normals
 };
 
 /// A triangle that may be in the fan, in the sonar frame.
@@ -33,7 +32,6 @@ struct FanTriangle {
   std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
   /// Much taller than wide, as seen from the sonar: the leg of a frame, a pole. A slice beside it misses it.
   bool thin = false;
-  bool plain = false;    ///< PlacedPart
   bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
   /// Between which it lies; -pi to pi where it may hold the sonar's vertical axis.
   float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;

@@ -54,14 +54,13 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
       measure_shading();
     }
     if (request.any_facets) {
-      facets_.lay_out(*pieces_, request.parts, runs_, original_,
-                      request.surface.facets == Facets::everywhere);
-      facets_.find_turns(seen_, request.slice.width_rad);
+      facets_.lay_out(*pieces_, request.parts, request.surface.facets == Facets::everywhere);
+      facets_.find_turns(seen_, normals_, request.slice.width_rad);
     }
     find_tilts(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
   if (request.any_facets) {
-    facets_.hear(seen_, request.slice.width_rad);
+    facets_.hear(seen_, normals_, request.slice.width_rad);
   }
   const std::uint64_t without_facets = shade(request);
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
@@ -155,14 +154,10 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
 void SlicePatcher::lay_out(const Request& request) {
   seen_.lay_out(*pieces_);
   if (seen_.size() > plain_.size()) {
-    for (auto* array : {&range_low_,       &range_mid_,       &range_high_,
-                        &smear_low_,       &smear_high_,      &cosine_,
-                        &solid_angle_,     &response_,        &plain_,
-                        &range_tilt_,      &cosine_tilt_,     &cosine_mid_,
-                        &echo_tilt_,       &displaced_,       &by_azimuth_low_,
-                        &by_azimuth_high_, &aside_,           &response_without_facets_,
-                        &shading_h_,       &shading_s_,       &shading_z_,
-                        &shading_h_per_t_, &shading_s_per_t_, &shading_z_per_t_}) {
+    for (auto* array :
+         {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
+          &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_,
+          &by_azimuth_low_, &by_azimuth_high_, &aside_, &response_without_facets_}) {
       array->resize(seen_.size());
     }
     mapped_.resize(seen_.size());
@@ -171,14 +166,8 @@ void SlicePatcher::lay_out(const Request& request) {
   for (std::size_t i = 0; i < seen_.count; ++i) {
     plain_[i] = as_cosine && !is_mapped(request, (*pieces_)[i]) ? 1.0F : 0.0F;
   }
-  for (std::size_t i = 0; !runs_.empty() && i < seen_.count; ++i) {
-    const NormalRun& run = runs_[original_[i]];
-    shading_h_[i] = run.at.x;
-    shading_s_[i] = run.at.y;
-    shading_z_[i] = run.at.z;
-    shading_h_per_t_[i] = run.per_t.x;
-    shading_s_per_t_[i] = run.per_t.y;
-    shading_z_per_t_[i] = run.per_t.z;
+  if (!runs_.empty()) {
+    normals_.lay_out(runs_, original_);
   }
 }
 
@@ -245,12 +234,12 @@ void SlicePatcher::measure_shading() {
   const auto count = pieces_->size();
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
-  const float* __restrict at_h = shading_h_.data();
-  const float* __restrict at_s = shading_s_.data();
-  const float* __restrict at_z = shading_z_.data();
-  const float* __restrict h_per_t = shading_h_per_t_.data();
-  const float* __restrict s_per_t = shading_s_per_t_.data();
-  const float* __restrict z_per_t = shading_z_per_t_.data();
+  const float* __restrict at_h = normals_.at_h.data();
+  const float* __restrict at_s = normals_.at_s.data();
+  const float* __restrict at_z = normals_.at_z.data();
+  const float* __restrict h_per_t = normals_.h_per_t.data();
+  const float* __restrict s_per_t = normals_.s_per_t.data();
+  const float* __restrict z_per_t = normals_.z_per_t.data();
   float* __restrict cos_phi = cosine_.data();
   float* __restrict cosine_tilt = cosine_tilt_.data();
   float* __restrict cosine_mid = cosine_mid_.data();

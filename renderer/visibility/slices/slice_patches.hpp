@@ -94,6 +94,7 @@ class SlicePatcher {
   /// Of each piece of the request; empty where all are shaded by their planes and no facets are looked at.
   std::vector<NormalRun> runs_;
   std::vector<std::uint32_t> original_, divided_original_;  ///< of each piece, its number in `runs_`
+  NormalArrays normals_;                                    ///< `runs_` of each piece, if there are any
   FacetArrays facets_;
   PieceArrays seen_;
   PieceEnds ends_;
@@ -106,10 +107,8 @@ class SlicePatcher {
   std::vector<float> echo_tilt_;    ///< of both
   std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_, response_without_facets_;
-  std::vector<float> aside_;  ///< where in its wedge the echo has its middle, 1/2 at the port side
-  std::vector<float> shading_h_, shading_s_, shading_z_;                    ///< NormalRun::at
-  std::vector<float> shading_h_per_t_, shading_s_per_t_, shading_z_per_t_;  ///< NormalRun::per_t
-  std::vector<MappedIncidence> mapped_;                                     ///< in its middle
+  std::vector<float> aside_;             ///< where in its wedge the echo has its middle, 1/2 at the port side
+  std::vector<MappedIncidence> mapped_;  ///< in its middle
 };
 
 }  // namespace sonard::render

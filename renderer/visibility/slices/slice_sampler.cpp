@@ -83,8 +83,7 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   if (surface.backscatter.facet_strength > 0) {
     any_facets_ = true;
   }
-  const bool plain_facets = has_plain_facets(*part.mesh);
-  surface.vertex_normals = !(skip_.on(SkipRule::geometric_normals) && plain_facets);
+  surface.vertex_normals = !(skip_.on(SkipRule::geometric_normals) && has_plain_facets(*part.mesh));
   skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
   if (!part.normal_map && skip_.on(SkipRule::absent_normal_map)) {
     skipped_parts_.add(SkipRule::absent_normal_map);
@@ -98,7 +97,7 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
   surface.mesh = shape.mesh;
   parts_.push_back({T_world_body_.size(), part.T_body_part});
-  placed_.push_back({shape.clusters, {}, {}, plain_facets && !part.normal_map});
+  placed_.push_back({shape.clusters, {}, {}});
   surfaces_.push_back(std::move(surface));
 }
 
