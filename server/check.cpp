@@ -129,6 +129,10 @@ void Check::check_poses() {
   if (poses.tcp) {
     sources.push_back("TCP " + endpoint_text(poses.tcp->bind));
   }
+  if (poses.mavlink) {
+    sources.push_back(fmt::format("MAVLink UDP {} (system {})", endpoint_text(poses.mavlink->bind),
+                                  poses.mavlink->system_id));
+  }
   if (poses.trajectory) {
     try {
       const pose::Trajectory trajectory =

@@ -290,8 +290,8 @@ void Daemon::stop_io() {
   for (const std::unique_ptr<PoseSource>& source : sources_) {
     source->stop();
     const PoseSourceCounters& done = source->counters();
-    spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}", source->description(),
-                 done.samples, done.malformed, done.bad_value, done.refused);
+    spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}{}", source->description(),
+                 done.samples, done.malformed, done.bad_value, done.refused, source->details());
   }
   for (const std::unique_ptr<Head>& head : heads_) {
     head->stop();

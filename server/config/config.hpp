@@ -75,6 +75,23 @@ struct TcpPoseInput {
   int max_clients = 8;  ///< further connections are closed at once
 };
 
+/// Which messages of a MAVLink vehicle say where it is.
+enum class MavlinkMessages {
+  automatic,       ///< ODOMETRY where it comes, else the others
+  odometry,        ///< ODOMETRY
+  local_position,  ///< LOCAL_POSITION_NED with ATTITUDE or ATTITUDE_QUATERNION
+};
+
+/// A UDP socket that listens to a MAVLink vehicle (docs/simulators/ardusub.md).
+struct MavlinkPoseInput {
+  Endpoint bind;
+  AllowList allow;
+  std::uint8_t system_id = 1;     ///< the vehicle, 1..255
+  std::uint8_t component_id = 1;  ///< the part of it that is believed, 1..255; 1: the autopilot
+  MavlinkMessages messages = MavlinkMessages::automatic;
+  render::Pose T_world_local;  ///< where the origin of its positions is, in axes east, north, up
+};
+
 /// A trajectory file played in real time from the start of the daemon.
 struct TrajectoryInput {
   std::filesystem::path file;  ///< CSV or TUM, told apart by its content (docs/poses.md)
@@ -94,6 +111,7 @@ struct PoseConfig {
   std::optional<render::Pose> T_world_vehicle_initial;
   std::optional<UdpPoseInput> udp;
   std::optional<TcpPoseInput> tcp;
+  std::optional<MavlinkPoseInput> mavlink;
   std::optional<TrajectoryInput> trajectory;
   /// Past the newest pose the twist is followed this long (without a twist the pose is held); >= 0.
   std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};

@@ -91,6 +91,19 @@ void read_trajectory(YamlSection& section, const std::filesystem::path& folder, 
                  {{"enu_flu", pose::Axes::enu_flu}, {"ned_frd", pose::Axes::ned_frd}});
 }
 
+void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
+  section.require("bind", expected_endpoint);
+  section.parsed("bind", mavlink.bind, &parse_endpoint, expected_endpoint);
+  read_allow_list(section, mavlink.bind.address, mavlink.allow);
+  section.integer("system_id", mavlink.system_id, 1, 255);
+  section.integer("component_id", mavlink.component_id, 1, 255);
+  section.choice("messages", mavlink.messages,
+                 {{"auto", MavlinkMessages::automatic},
+                  {"odometry", MavlinkMessages::odometry},
+                  {"local_position", MavlinkMessages::local_position}});
+  section.section("origin", [&](YamlSection& inner) { read_pose(inner, mavlink.T_world_local); });
+}
+
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.section("initial", [&](YamlSection& inner) {
     inner.require("position_m", "a list of three numbers");
@@ -109,19 +122,20 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
     read_allow_list(inner, tcp.bind.address, tcp.allow);
     inner.integer("max_clients", tcp.max_clients, 1, 1000);
   });
+  section.section("mavlink", [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
   section.section("trajectory",
                   [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
   section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0));
   section.choice("stale", poses.stale_policy,
                  {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}});
 
-  const bool live = poses.udp || poses.tcp;
+  const bool live = poses.udp || poses.tcp || poses.mavlink;
   if (live && poses.trajectory) {
     section.report("trajectory",
                    "the trajectory and a live input would fight over the vehicle (expected one of them)");
   }
   if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
-    section.report("initial", "nothing gives a pose (expected initial, udp, tcp or trajectory)");
+    section.report("initial", "nothing gives a pose (expected initial, udp, tcp, mavlink or trajectory)");
   }
 }
 

@@ -24,6 +24,9 @@ std::vector<PlannedSocket> planned_udp_sockets(const DaemonConfig& config) {
   if (config.poses.udp) {
     sockets.push_back({config.poses.udp->bind, "poses.udp.bind"});
   }
+  if (config.poses.mavlink) {
+    sockets.push_back({config.poses.mavlink->bind, "poses.mavlink.bind"});
+  }
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     if (const auto* gemini = std::get_if<GeminiHeadConfig>(&config.heads[i])) {
       sockets.push_back(

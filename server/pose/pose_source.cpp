@@ -1,5 +1,6 @@
 #include "server/pose/pose_source.hpp"
 
+#include "server/pose/mavlink_pose_source.hpp"
 #include "server/pose/tcp_pose_source.hpp"
 #include "server/pose/trajectory_pose_source.hpp"
 #include "server/pose/udp_pose_source.hpp"
@@ -15,6 +16,9 @@ std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_conte
   }
   if (config.tcp) {
     sources.push_back(std::make_unique<TcpPoseSource>(io, *config.tcp, clock, sink));
+  }
+  if (config.mavlink) {
+    sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink));
   }
   if (config.trajectory) {
     sources.push_back(std::make_unique<TrajectoryPoseSource>(io, *config.trajectory, clock, sink));

@@ -53,6 +53,8 @@ class PoseSource {
   /// "pose stream udp 127.0.0.1:14600"; with the port that the kernel chose, once started.
   virtual std::string description() const = 0;
   virtual const PoseSourceCounters& counters() const = 0;
+  /// More that a source counts, " name=number" each, for the log when it ends.
+  virtual std::string details() const { return {}; }
 };
 
 /// One source per input that is configured. `clock` and `io` outlive them.

@@ -9,6 +9,7 @@ micron/device/     scripts for fuzz_micron_device: what a host sends to a head
 micron/host/       scripts for fuzz_micron_host: what a head sends to a host
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
+mavlink/           datagrams of each message, signed, among others, broken
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
 for another reason (inputs that once failed) are left alone.
@@ -240,6 +241,38 @@ def pcapng_files():
     yield "cut", (section + interface + packet)[:-5]
 
 
+def mavlink_crc(data):
+    crc = 0xFFFF
+    for byte in data:
+        low = byte ^ (crc & 0xFF)
+        low = (low ^ low << 4) & 0xFF
+        crc = crc >> 8 ^ low << 8 ^ low << 3 ^ low >> 4
+        crc &= 0xFFFF
+    return crc
+
+
+def mavlink_frame(message, seed, payload, version=2, flags=0):
+    if version == 2:
+        body = bytes([len(payload), flags, 0, 0, 1, 1]) + struct.pack("<I", message)[:3] + payload
+    else:
+        body = bytes([len(payload), 0, 1, 1, message]) + payload
+    frame = bytes([0xFD if version == 2 else 0xFE]) + body + struct.pack("<H", mavlink_crc(body + bytes([seed])))
+    return frame + (13 * b"s" if flags & 1 else b"")
+
+
+def mavlink_datagrams():
+    attitude = struct.pack("<I6f", 1000, 0.1, 0.2, 0.3, 1, 2, 3)
+    quaternion = struct.pack("<I7f", 1000, 1, 0, 0, 0, 1, 2, 3)
+    position = struct.pack("<I6f", 1000, 1, 2, 3, 4, 5, 6)
+    odometry = struct.pack("<Q13f", 1000000, 1, 2, 3, 1, 0, 0, 0, 1, 2, 3, 4, 5, 6) + bytes(168) + bytes([1, 12])
+    heartbeat = mavlink_frame(0, 50, bytes([0, 0, 0, 0, 12, 3, 81, 4, 3]))
+    yield "pair", heartbeat + mavlink_frame(30, 39, attitude, 1) + mavlink_frame(32, 185, position)
+    yield "quaternion_signed", mavlink_frame(31, 246, quaternion, flags=1) + heartbeat
+    yield "odometry", mavlink_frame(331, 91, odometry)
+    yield "among_others", mavlink_frame(1, 124, bytes(31)) + heartbeat + mavlink_frame(1, 124, bytes(31), 1)
+    yield "broken", b"\xfd\x1e\0\xfe\xff" + mavlink_frame(32, 184, position) + mavlink_frame(32, 185, position[:9], 1)
+
+
 def write(folder, name, data):
     target = CORPUS / folder
     target.mkdir(parents=True, exist_ok=True)
@@ -255,7 +288,8 @@ def main():
         if path.stat().st_size < 100))
     for folder, scripts in (("gemini/device", device_scripts()), ("gemini/surface", surface_scripts()),
                             ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
-                            ("glf/log", glf_logs()), ("mcap", mcap_files()), ("pcapng", pcapng_files())):
+                            ("glf/log", glf_logs()), ("mcap", mcap_files()), ("pcapng", pcapng_files()),
+                            ("mavlink", mavlink_datagrams())):
         for name, script in scripts:
             write(folder, name, script)
 

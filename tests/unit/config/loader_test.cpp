@@ -347,6 +347,34 @@ TEST_F(Loader, warns_of_what_cannot_work_but_may_be_meant) {
               ElementsAre(HasSubstr("10.0.0.1 gets status packets but is not in `allow`")));
 }
 
+TEST_F(Loader, reads_mavlink) {
+  const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
+  const auto with = [&](const std::string& mavlink) {
+    std::string text = minimal_config;
+    return text.replace(text.find(initial), initial.size(), "  mavlink: {" + mavlink + "}\n");
+  };
+  EXPECT_THAT(complaints(with("system_id: 0, messages: all")),
+              testing::UnorderedElementsAre(HasSubstr("poses.mavlink.bind: missing"),
+                                            HasSubstr("poses.mavlink.system_id: is"),
+                                            HasSubstr("poses.mavlink.messages: 'all' is not understood")));
+  const MavlinkPoseInput plain = load(with("bind: 127.0.0.1:14660")).config.poses.mavlink.value();
+  EXPECT_EQ(plain.bind, (Endpoint{0x7F000001, 14660}));
+  EXPECT_EQ(plain.system_id, 1);
+  EXPECT_EQ(plain.component_id, 1);
+  EXPECT_EQ(plain.messages, MavlinkMessages::automatic);
+  EXPECT_EQ(plain.T_world_local.position_m, glm::dvec3(0));
+  const MavlinkPoseInput full =
+      load(with("bind: 127.0.0.1:1, system_id: 7, component_id: 197, messages: local_position, "
+                "origin: {position_m: [1, 2, 3], rpy_deg: [0, 0, -90]}"))
+          .config.poses.mavlink.value();
+  EXPECT_EQ(full.system_id, 7);
+  EXPECT_EQ(full.component_id, 197);
+  EXPECT_EQ(full.messages, MavlinkMessages::local_position);
+  EXPECT_EQ(full.T_world_local.position_m, glm::dvec3(1, 2, 3));
+  // North of the vehicle is east of the world.
+  EXPECT_NEAR((full.T_world_local.orientation * glm::dvec3(0, 1, 0)).x, 1, 1e-12);
+}
+
 TEST_F(Loader, wants_a_source_of_poses) {
   const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
   const std::string world = "world: {file: w.sdf}\n";

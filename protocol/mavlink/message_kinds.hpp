@@ -1,0 +1,43 @@
+// Which messages are known: number, checksum seed and length of each, from the definitions in minimal.xml
+// (HEARTBEAT) and common.xml (the others) of the MAVLink project.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace sonard::mavlink {
+
+enum class MessageId : std::uint32_t {
+  heartbeat = 0,
+  attitude = 30,
+  attitude_quaternion = 31,
+  local_position_ned = 32,
+  odometry = 331,
+};
+
+struct MessageKind {
+  MessageId id;
+  std::uint8_t seed;      ///< CRC_EXTRA
+  std::size_t base_size;  ///< payload without extension fields: as long as version 1 sends it
+};
+
+inline constexpr std::array<MessageKind, 5> message_kinds{{
+    {MessageId::heartbeat, 50, 9},
+    {MessageId::attitude, 39, 28},
+    {MessageId::attitude_quaternion, 246, 32},
+    {MessageId::local_position_ned, 185, 28},
+    {MessageId::odometry, 91, 230},
+}};
+
+/// nullptr for a number that is not known.
+constexpr const MessageKind* kind_of(std::uint32_t id) {
+  for (const MessageKind& kind : message_kinds) {
+    if (static_cast<std::uint32_t>(kind.id) == id) {
+      return &kind;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace sonard::mavlink

@@ -1,0 +1,94 @@
+// The messages that say where a vehicle is, as they are defined in common.xml of the MAVLink project. Fields
+// keep their names and frames; docs/frames-and-units.md says what becomes of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+#include "protocol/common/result.hpp"
+#include "protocol/common/wire_error.hpp"
+#include "protocol/mavlink/frames.hpp"
+
+namespace sonard::mavlink {
+
+/// MAV_FRAME, as far as an odometry has to do with it.
+enum class MavFrame : std::uint8_t {
+  local_ned = 1,   ///< north, east, down from a point of the earth
+  body_ned = 8,    ///< for velocities: the axes of the vehicle (an older word for body_frd)
+  body_frd = 12,   ///< forward, right, down: the axes of the vehicle
+  local_frd = 20,  ///< level, fixed to the earth, x in any direction: where the vehicle began, for example
+};
+
+/// ATTITUDE (30). From NED to the vehicle by yaw, then pitch, then roll. Radians, and radians per second
+/// about the vehicle's own axes (forward, right, down).
+struct Attitude {
+  std::uint32_t time_boot_ms = 0;
+  float roll = 0.0F;
+  float pitch = 0.0F;
+  float yaw = 0.0F;
+  float rollspeed = 0.0F;
+  float pitchspeed = 0.0F;
+  float yawspeed = 0.0F;
+
+  bool operator==(const Attitude&) const = default;
+};
+
+/// ATTITUDE_QUATERNION (31). Takes coordinates in FRD to NED; q1 is the real part. The extension
+/// repr_offset_q, which is about displays, is not read.
+struct AttitudeQuaternion {
+  std::uint32_t time_boot_ms = 0;
+  float q1 = 1.0F;
+  float q2 = 0.0F;
+  float q3 = 0.0F;
+  float q4 = 0.0F;
+  float rollspeed = 0.0F;
+  float pitchspeed = 0.0F;
+  float yawspeed = 0.0F;
+
+  bool operator==(const AttitudeQuaternion&) const = default;
+};
+
+/// LOCAL_POSITION_NED (32). Metres and metres per second, north, east, down.
+struct LocalPositionNed {
+  std::uint32_t time_boot_ms = 0;
+  float x = 0.0F;
+  float y = 0.0F;
+  float z = 0.0F;
+  float vx = 0.0F;
+  float vy = 0.0F;
+  float vz = 0.0F;
+
+  bool operator==(const LocalPositionNed&) const = default;
+};
+
+/// ODOMETRY (331), without its covariances and extensions. `q` (w, x, y, z) takes coordinates in the vehicle
+/// to `frame_id`; velocities are in the axes of `child_frame_id`, turn rates about those of the vehicle. What
+/// is not known is NaN.
+struct Odometry {
+  std::uint64_t time_usec = 0;  ///< since boot, or Unix time
+  float x = 0.0F;
+  float y = 0.0F;
+  float z = 0.0F;
+  std::array<float, 4> q{1.0F, 0.0F, 0.0F, 0.0F};
+  float vx = 0.0F;
+  float vy = 0.0F;
+  float vz = 0.0F;
+  float rollspeed = 0.0F;
+  float pitchspeed = 0.0F;
+  float yawspeed = 0.0F;
+  MavFrame frame_id = MavFrame::local_ned;       ///< any byte
+  MavFrame child_frame_id = MavFrame::body_frd;  ///< any byte
+
+  bool operator==(const Odometry&) const = default;
+};
+
+/// monostate: a message that says nothing about a pose.
+using Message = std::variant<std::monostate, Attitude, AttitudeQuaternion, LocalPositionNed, Odometry>;
+
+/// Of a frame that FrameReader handed out. Zeros that version 2 cut off are put back; bytes beyond the fields
+/// that are read (extensions) are ignored. An error only for a frame of version 1 that is shorter than its
+/// message.
+Result<Message, WireError> decode(const Frame& frame);
+
+}  // namespace sonard::mavlink

@@ -1,0 +1,100 @@
+// From MAVLink messages to poses of the vehicle.
+#pragma once
+
+#include <bitset>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "protocol/mavlink/messages.hpp"
+#include "protocol/pose/pose_codec.hpp"
+#include "server/clock.hpp"
+#include "server/config/config.hpp"
+
+namespace sonard::server {
+
+/// They only grow.
+struct MavlinkPoseCounters {
+  std::uint64_t bad_value = 0;         ///< not finite, no rotation, or out of bounds
+  std::uint64_t unknown_frame = 0;     ///< ODOMETRY whose frame_id has no place in the world
+  std::uint64_t without_attitude = 0;  ///< LOCAL_POSITION_NED that no attitude was near enough to
+  std::uint64_t not_wanted = 0;        ///< of the kind that is not configured, or gives way to ODOMETRY
+  std::uint64_t clock_restarts = 0;    ///< the vehicle began its clock again
+};
+
+/// The messages of one vehicle, one by one; reads no clock and no socket.
+///
+/// ODOMETRY is a pose by itself. LOCAL_POSITION_NED is one together with the attitude at its time, told by
+/// time_boot_ms: that of a message of the same time, or between two at most `longest_gap` apart on the
+/// shortest arc. A position that is newer than every attitude waits for the next one. When the next position
+/// comes before it, the nearest attitude serves, turned on by its own rates, if it is within `nearest_limit`.
+/// ATTITUDE and ATTITUDE_QUATERNION are worth the same.
+///
+/// Time stamps become times of ours by what the clock was when the first message arrived; the clock since
+/// boot and that of ODOMETRY are two. A clock that goes back by more than PoseHistory::reset_threshold has
+/// begun again (a reboot, a simulation that was reset): positions and attitudes of before are forgotten, and
+/// poses go back by as much, so that PoseHistory forgets too. time_boot_ms begins again after 49.7 days, too.
+class MavlinkPoses {
+ public:
+  explicit MavlinkPoses(const MavlinkPoseInput& input);
+
+  /// @return the pose that is known by this message, if it is one more: converted to enu_flu, as decode() of
+  /// the pose stream vouches for it.
+  std::optional<pose::PoseSample> take(const mavlink::Message& message, TimePoint arrival);
+
+  const MavlinkPoseCounters& counters() const { return counters_; }
+
+  static constexpr std::int64_t longest_gap_ns = 500'000'000;
+  static constexpr std::int64_t nearest_limit_ns = 100'000'000;
+  /// With `messages: auto`, ODOMETRY goes before LOCAL_POSITION_NED while it came within this time.
+  static constexpr std::chrono::nanoseconds odometry_precedence = std::chrono::seconds{2};
+
+ private:
+  /// A clock of the vehicle.
+  struct VehicleClock {
+    std::optional<std::int64_t> offset_ns;  ///< ours minus the vehicle's, when the first message arrived
+    std::int64_t newest_ns = 0;
+  };
+  struct Heading {
+    pose::Quat q_ned_frd;
+    pose::Vec3 rates_frd_radps;
+  };
+  struct Place {
+    std::int64_t time_ns = 0;
+    pose::Vec3 position_ned_m;
+    pose::Vec3 velocity_ned_mps;
+  };
+
+  std::optional<pose::PoseSample> take_message(std::monostate, TimePoint arrival);
+  std::optional<pose::PoseSample> take_message(const mavlink::Attitude& attitude, TimePoint arrival);
+  std::optional<pose::PoseSample> take_message(const mavlink::AttitudeQuaternion& attitude,
+                                               TimePoint arrival);
+  std::optional<pose::PoseSample> take_message(const mavlink::LocalPositionNed& position, TimePoint arrival);
+  std::optional<pose::PoseSample> take_message(const mavlink::Odometry& odometry, TimePoint arrival);
+
+  std::optional<pose::PoseSample> add(std::int64_t boot_ns, Heading heading, TimePoint arrival);
+  std::optional<pose::PoseSample> joined(const Place& place, const std::optional<Heading>& heading);
+  std::optional<Heading> between(std::int64_t time_ns) const;
+  std::optional<Heading> nearest(std::int64_t time_ns) const;
+  bool pair_is_wanted(TimePoint arrival) const;
+  /// True when it began again.
+  bool observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint arrival);
+  /// Checked, converted, and put where `origin` says; nullopt, counted, when it means nothing.
+  std::optional<pose::PoseSample> sample(std::int64_t time_ns, pose::Transform T_ned_frd,
+                                         const std::optional<pose::Velocity>& twist_frd);
+  std::optional<pose::Velocity> twist_of(const mavlink::Odometry& odometry);
+  void complain(std::uint64_t count, const std::string& problem) const;
+
+  MavlinkMessages wanted_;
+  pose::Transform T_world_local_;
+  VehicleClock boot_clock_, odometry_clock_;
+  std::map<std::int64_t, Heading> headings_;  // by the vehicle's time since boot
+  std::optional<Place> waiting_;
+  std::optional<TimePoint> last_odometry_;
+  std::bitset<256> frames_said_, velocity_frames_said_;
+  MavlinkPoseCounters counters_;
+};
+
+}  // namespace sonard::server
