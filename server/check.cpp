@@ -112,6 +112,10 @@ void Check::check_poses() {
   if (poses.tcp) {
     sources.push_back("TCP " + endpoint_text(poses.tcp->bind));
   }
+  if (poses.ignition) {
+    sources.push_back(
+        fmt::format("ignition {} entity '{}'", poses.ignition->topic, poses.ignition->vehicle.name));
+  }
   if (poses.trajectory) {
     try {
       const pose::Trajectory trajectory =
