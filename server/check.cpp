@@ -133,6 +133,10 @@ void Check::check_poses() {
     sources.push_back(fmt::format("MAVLink UDP {} (system {})", endpoint_text(poses.mavlink->bind),
                                   poses.mavlink->system_id));
   }
+  if (poses.ignition) {
+    sources.push_back(
+        fmt::format("ignition {} entity '{}'", poses.ignition->topic, poses.ignition->vehicle.name));
+  }
   if (poses.trajectory) {
     try {
       const pose::Trajectory trajectory =

@@ -87,6 +87,8 @@ std::vector<std::unique_ptr<PoseSource>> make_sources(asio::io_context& io, cons
         [&poses](const pose::PoseSample& sample, TimePoint arrival) { poses.insert(sample, arrival); });
   } catch (const pose::TrajectoryError& error) {
     throw StartError("poses.trajectory.file", exit_config, error.what());
+  } catch (const PoseSourceError& error) {
+    throw StartError("poses.ignition", exit_config, error.what());
   }
 }
 

@@ -100,6 +100,27 @@ struct TrajectoryInput {
   pose::Axes axes = pose::Axes::enu_flu;
 };
 
+/// Something that a simulator gives the pose of, by its name there.
+struct SimulatorEntity {
+  std::string name;
+  /// What the pose of each is relative to, from a model that stands in the world inwards; empty: the pose of
+  /// the entity is in the world.
+  std::vector<std::string> parents;
+};
+
+/// A topic of Gazebo (Ignition or gz transport) with poses (docs/simulators/gazebo.md).
+struct IgnitionPoseInput {
+  struct Body {
+    SimulatorEntity entity;
+    std::string body;  ///< of our world
+  };
+  std::string topic;
+  std::string partition;          ///< empty: that of IGN_PARTITION
+  SimulatorEntity vehicle;        ///< carrier of the sonars
+  render::Pose T_entity_vehicle;  ///< mount of the vehicle frame on that entity
+  std::vector<Body> bodies;
+};
+
 /// What a head does when the newest pose is older than the extrapolation limit.
 enum class StalePolicy {
   hold,     ///< goes on pinging from the last pose
@@ -113,6 +134,7 @@ struct PoseConfig {
   std::optional<TcpPoseInput> tcp;
   std::optional<MavlinkPoseInput> mavlink;
   std::optional<TrajectoryInput> trajectory;
+  std::optional<IgnitionPoseInput> ignition;
   /// Past the newest pose the twist is followed this long (without a twist the pose is held); >= 0.
   std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};
   StalePolicy stale_policy = StalePolicy::hold;

@@ -104,6 +104,44 @@ void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
   section.section("origin", [&](YamlSection& inner) { read_pose(inner, mavlink.T_world_local); });
 }
 
+std::optional<std::string> any_text(std::string_view text) {
+  return text.empty() ? std::nullopt : std::optional(std::string(text));
+}
+
+/// `name_key` and "parents", which says what a relative pose is relative to.
+void read_entity(YamlSection& section, std::string_view name_key, bool relative, SimulatorEntity& entity) {
+  section.require(name_key, "the name of an entity of the simulator");
+  section.text(name_key, entity.name);
+  section.parsed_list("parents", entity.parents, &any_text, "names of entities, the outermost first");
+  if (!relative && section.has("parents")) {
+    section.report("parents", "poses in the world have no parents (expected only with `frame: relative`)");
+  }
+}
+
+void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
+  enum class Frame { world, relative };
+  Frame frame = Frame::world;
+  section.require("topic", "a topic such as /world/ocean/dynamic_pose/info");
+  section.text("topic", ignition.topic);
+  section.text("partition", ignition.partition);
+  section.require("frame", "world, or relative for poses that are relative to parents");
+  section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}});
+  const bool relative = frame == Frame::relative;
+  read_entity(section, "vehicle", relative, ignition.vehicle);
+  if (relative) {
+    section.require("parents",
+                    "what the vehicle's pose is relative to, the outermost first; [] for a model "
+                    "that stands in the world");
+  }
+  section.section("mount", [&](YamlSection& inner) { read_pose(inner, ignition.T_entity_vehicle); });
+  section.sections("bodies", [&](YamlSection& inner) {
+    IgnitionPoseInput::Body& body = ignition.bodies.emplace_back();
+    read_entity(inner, "entity", relative, body.entity);
+    inner.require("body", "the name of a model of the world");
+    inner.text("body", body.body);
+  });
+}
+
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.section("initial", [&](YamlSection& inner) {
     inner.require("position_m", "a list of three numbers");
@@ -125,17 +163,19 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   section.section("mavlink", [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
   section.section("trajectory",
                   [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
+  section.section("ignition", [&](YamlSection& inner) { read_ignition(inner, poses.ignition.emplace()); });
   section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0));
   section.choice("stale", poses.stale_policy,
                  {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}});
 
-  const bool live = poses.udp || poses.tcp || poses.mavlink;
+  const bool live = poses.udp || poses.tcp || poses.mavlink || poses.ignition;
   if (live && poses.trajectory) {
     section.report("trajectory",
                    "the trajectory and a live input would fight over the vehicle (expected one of them)");
   }
   if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
-    section.report("initial", "nothing gives a pose (expected initial, udp, tcp, mavlink or trajectory)");
+    section.report("initial",
+                   "nothing gives a pose (expected initial, udp, tcp, mavlink, ignition or trajectory)");
   }
 }
 

@@ -1,5 +1,6 @@
 #include "server/pose/pose_source.hpp"
 
+#include "server/pose/ignition_pose_source.hpp"
 #include "server/pose/mavlink_pose_source.hpp"
 #include "server/pose/tcp_pose_source.hpp"
 #include "server/pose/trajectory_pose_source.hpp"
@@ -19,6 +20,13 @@ std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_conte
   }
   if (config.mavlink) {
     sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink));
+  }
+  if (config.ignition) {
+#ifdef SONARD_HAS_IGNITION
+    sources.push_back(std::make_unique<IgnitionPoseSource>(io, *config.ignition, clock, sink));
+#else
+    throw PoseSourceError("this sonard was built without Ignition Transport");
+#endif
   }
   if (config.trajectory) {
     sources.push_back(std::make_unique<TrajectoryPoseSource>(io, *config.trajectory, clock, sink));

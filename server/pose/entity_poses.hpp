@@ -1,0 +1,55 @@
+// From the entities of a simulator to our vehicle and bodies.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/common/result.hpp"
+#include "protocol/pose/pose_codec.hpp"
+#include "server/config/config.hpp"
+
+namespace sonard::server {
+
+/// What a simulator said at one instant, unchecked. Axes are ENU and FLU.
+struct EntityPoses {
+  std::optional<std::int64_t> time_ns;  ///< simulated time; nullopt: the message has no stamp
+  std::vector<pose::NamedTransform> entities;
+};
+
+/// Finds the configured entities in each message, and composes poses that are relative to parents. What is
+/// not configured is ignored. Reads no clock and no socket.
+class EntityMap {
+ public:
+  explicit EntityMap(const IgnitionPoseInput& input);
+
+  /// The message as a sample of ours. A body that is not in the message stays where it was, so it is left
+  /// out.
+  /// @return a text when there is no pose of the vehicle in it, one that is needed means nothing, or a name
+  /// that is needed is not unique: no image is better than one from a wrong place
+  Result<pose::PoseSample, std::string> map(const EntityPoses& poses);
+
+  /// Names that came and are not configured: those that were new since the last call, at most max_ignored in
+  /// all.
+  std::vector<std::string> take_ignored();
+
+  static constexpr std::size_t max_ignored = 256;
+
+ private:
+  bool is_configured(std::string_view name) const;
+  void note_ignored(const EntityPoses& poses);
+
+  SimulatorEntity vehicle_;
+  pose::Transform T_entity_vehicle_;
+  std::vector<IgnitionPoseInput::Body> bodies_;
+  std::set<std::string, std::less<>> configured_;
+  std::set<std::string, std::less<>> ignored_;
+  std::vector<std::string> new_ignored_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,208 @@
+// The one file that includes the headers of Ignition, which take seconds to compile.
+#include "server/pose/ignition_pose_source.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ignition/msgs/pose.pb.h>
+#include <ignition/msgs/pose_v.pb.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <bit>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <ignition/transport/Node.hh>
+#include <mutex>
+#include <utility>
+
+#include "server/pose/entity_poses.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+struct Message {
+  std::string type;
+  std::string bytes;
+  TimePoint arrival;
+};
+
+std::optional<std::int64_t> stamp_ns(const ignition::msgs::Header& header) {
+  if (!header.has_stamp()) {
+    return std::nullopt;
+  }
+  // Beyond this, seconds as nanoseconds would overflow; EntityMap refuses it.
+  const std::int64_t seconds = std::min<std::int64_t>(header.stamp().sec(), 9'000'000'000);
+  return seconds * 1'000'000'000 + header.stamp().nsec();
+}
+
+pose::NamedTransform entity(const ignition::msgs::Pose& pose) {
+  const auto& p = pose.position();
+  const auto& q = pose.orientation();
+  return {pose.name(), {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+Result<EntityPoses, std::string> parse(const Message& message) {
+  const std::string_view name = std::string_view(message.type).substr(message.type.rfind('.') + 1);
+  EntityPoses poses;
+  if (name == "Pose_V") {
+    ignition::msgs::Pose_V list;
+    if (!list.ParseFromString(message.bytes)) {
+      return fmt::format("its bytes are no {}", message.type);
+    }
+    poses.time_ns = stamp_ns(list.header());
+    for (const ignition::msgs::Pose& pose : list.pose()) {
+      poses.entities.push_back(entity(pose));
+    }
+    return poses;
+  }
+  if (name == "Pose") {
+    ignition::msgs::Pose pose;
+    if (!pose.ParseFromString(message.bytes)) {
+      return fmt::format("its bytes are no {}", message.type);
+    }
+    poses.time_ns = stamp_ns(pose.header());
+    poses.entities.push_back(entity(pose));
+    return poses;
+  }
+  return fmt::format("its type is {} (expected Pose_V or Pose)", message.type);
+}
+
+}  // namespace
+
+// Lives as long as any handler that is queued on the io_context. `waiting` and `stopped` are shared with the
+// thread of the transport, by `mutex`; all else belongs to the I/O thread.
+struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSource::Impl> {
+  Impl(asio::io_context& context, IgnitionPoseInput configured, const Clock& used_clock, PoseSink poses_go_to)
+      : io(context),
+        input(std::move(configured)),
+        clock(used_clock),
+        sink(std::move(poses_go_to)),
+        entities(input) {}
+
+  void on_message(const char* data, std::size_t size, const std::string& type);
+  void take(const Message& message);
+  void deliver(const pose::PoseSample& sample, TimePoint arrival);
+  void complain(std::uint64_t count, const std::string& problem) const;
+
+  asio::io_context& io;
+  IgnitionPoseInput input;
+  const Clock& clock;
+  PoseSink sink;
+  EntityMap entities;
+  PoseSourceCounters counters;
+  std::mutex mutex;
+  int waiting = 0;
+  std::uint64_t crowded = 0;
+  bool stopped = false;
+};
+
+// On a thread of the transport. Reading the clock and queueing under one lock keeps arrivals in order.
+void IgnitionPoseSource::Impl::on_message(const char* data, std::size_t size, const std::string& type) {
+  const std::scoped_lock lock(mutex);
+  if (stopped) {
+    return;
+  }
+  if (waiting == max_waiting) {
+    ++crowded;
+    return;
+  }
+  ++waiting;
+  asio::post(io, [self = shared_from_this(), message = Message{type, {data, size}, clock.now()}] {
+    self->take(message);
+  });
+}
+
+void IgnitionPoseSource::Impl::take(const Message& message) {
+  std::uint64_t dropped = 0;
+  {
+    const std::scoped_lock lock(mutex);
+    --waiting;
+    if (stopped) {
+      return;
+    }
+    dropped = std::exchange(crowded, 0);
+  }
+  for (; dropped > 0; --dropped) {
+    complain(++counters.refused, "too many wait");
+  }
+  const auto parsed = parse(message);
+  if (!parsed) {
+    complain(++counters.malformed, parsed.error());
+    return;
+  }
+  const auto mapped = entities.map(*parsed);
+  if (const std::vector<std::string> ignored = entities.take_ignored(); !ignored.empty()) {
+    spdlog::info("ignition {}: entities without a part here: {}", input.topic, fmt::join(ignored, ", "));
+  }
+  if (!mapped) {
+    complain(++counters.bad_value, mapped.error());
+    return;
+  }
+  deliver(*mapped, message.arrival);
+}
+
+void IgnitionPoseSource::Impl::deliver(const pose::PoseSample& sample, TimePoint arrival) {
+  if (++counters.samples == 1) {
+    const pose::Vec3& p = sample.T_world_vehicle.position_m;
+    spdlog::info("ignition {}: the vehicle is entity '{}', first at ({:.3f}, {:.3f}, {:.3f}), time {:.3f} s",
+                 input.topic, input.vehicle.name, p.x, p.y, p.z, 1e-9 * static_cast<double>(sample.time_ns));
+  }
+  sink(sample, arrival);
+}
+
+void IgnitionPoseSource::Impl::complain(std::uint64_t count, const std::string& problem) const {
+  if (std::has_single_bit(count)) {
+    spdlog::warn("ignition {}: message dropped: {} ({} so far)", input.topic, problem, count);
+  }
+}
+
+// Ends with the source and on its thread, never on that of the transport: there its destructor would wait for
+// itself.
+struct IgnitionPoseSource::Subscription {
+  explicit Subscription(const ignition::transport::NodeOptions& options) : node(options) {}
+  ignition::transport::Node node;
+};
+
+IgnitionPoseSource::IgnitionPoseSource(asio::io_context& io, IgnitionPoseInput input, const Clock& clock,
+                                       PoseSink sink)
+    : impl_(std::make_shared<Impl>(io, std::move(input), clock, std::move(sink))) {}
+
+IgnitionPoseSource::~IgnitionPoseSource() {
+  IgnitionPoseSource::stop();
+}
+
+void IgnitionPoseSource::start() {
+  const IgnitionPoseInput& input = impl_->input;
+  ignition::transport::NodeOptions options;
+  if (!input.partition.empty() && !options.SetPartition(input.partition)) {
+    throw PoseSourceError(fmt::format("ignition: '{}' is no partition", input.partition));
+  }
+  subscription_ = std::make_unique<Subscription>(options);
+  const auto receive = [impl = impl_](const char* data, std::size_t size,
+                                      const ignition::transport::MessageInfo& info) {
+    impl->on_message(data, size, info.Type());
+  };
+  if (!subscription_->node.SubscribeRaw(input.topic, receive)) {
+    throw PoseSourceError(fmt::format("ignition: cannot subscribe to '{}'", input.topic));
+  }
+}
+
+void IgnitionPoseSource::stop() {
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    impl_->stopped = true;
+  }
+  subscription_.reset();
+}
+
+std::string IgnitionPoseSource::description() const {
+  return fmt::format("ignition {} entity '{}'", impl_->input.topic, impl_->input.vehicle.name);
+}
+
+const PoseSourceCounters& IgnitionPoseSource::counters() const {
+  return impl_->counters;
+}
+
+}  // namespace sonard::server
