@@ -58,9 +58,12 @@ class Mavlink(link_test.LinkTest):
                               *(str(number) for number in numbers))
 
     def range_ahead(self):
-        """Of the first echo in the middle beam, metres; None without one."""
+        """Of the first echo in the middle beam, metres; None without one, or without a ping: there is no pose yet."""
         self.surface.send(wire.ping_config(513, lines=840, spreading=293))  # 7 m
-        ping = self.surface.next_ping()
+        try:
+            ping = self.surface.next_ping(seconds=2)
+        except AssertionError:
+            return None
         first = next((i for i in range(ping.count) if ping.lines[i][128] > 0), None)
         return None if first is None else first * wire.line_step_m(1500.0)
 
