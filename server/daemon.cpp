@@ -27,6 +27,7 @@
 #include "server/devices/udp_endpoint.hpp"
 #include "server/exit_codes.hpp"
 #include "server/pose/pose_history.hpp"
+#include "server/pose/pose_intake.hpp"
 #include "server/pose/pose_source.hpp"
 #include "server/recording/recorder.hpp"
 
@@ -80,11 +81,10 @@ std::string head_key(std::size_t index, const char* rest) {
 }
 
 std::vector<std::unique_ptr<PoseSource>> make_sources(asio::io_context& io, const DaemonConfig& config,
-                                                      const Clock& clock, PoseHistory& poses) {
+                                                      const Clock& clock, const PoseSink& sink,
+                                                      const PoseHold& hold) {
   try {
-    return make_pose_sources(
-        io, config.poses, clock,
-        [&poses](const pose::PoseSample& sample, TimePoint arrival) { poses.insert(sample, arrival); });
+    return make_pose_sources(io, config.poses, clock, sink, hold);
   } catch (const pose::TrajectoryError& error) {
     throw StartError("poses.trajectory.file", exit_config, error.what());
   } catch (const PoseSourceError& error) {
@@ -142,6 +142,8 @@ class Daemon {
   std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
                                                   const RendererFactory& make_renderer);
   void start_sources();
+  void poses_changed();
+  std::optional<std::chrono::nanoseconds> spare_poses() const;
   void end_when_played();
   void run_io();
   void stop_io();
@@ -154,6 +156,7 @@ class Daemon {
   Playback* playback_;  // may be null
   asio::steady_timer playback_timer_;
   PoseHistory poses_;
+  PoseIntake intake_;
   std::vector<std::unique_ptr<PoseSource>> sources_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
   std::unique_ptr<Recorder> recorder_;                           // null when nothing is recorded
@@ -167,7 +170,11 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     : playback_(playback),
       playback_timer_(io_),
       poses_(config.poses),
-      sources_(make_sources(io_, config, clock_, poses_)),
+      intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return spare_poses(); }}),
+      sources_(make_sources(
+          io_, config, clock_,
+          [this](const pose::PoseSample& sample, TimePoint arrival) { intake_.take(sample, arrival); },
+          [this] { return intake_.hold(); })),
       dumps_(make_dumps(config.heads)),
       recorder_(make_recorder(config)),
       fan_renderer_(make_renderer_of(false, config, make_renderer)),
@@ -222,6 +229,21 @@ void Daemon::start_sources() {
     }
     spdlog::info("{}", source->description());
   }
+}
+
+void Daemon::poses_changed() {
+  for (const std::unique_ptr<Head>& head : heads_) {
+    head->poses_changed();
+  }
+}
+
+std::optional<std::chrono::nanoseconds> Daemon::spare_poses() const {
+  std::optional<std::chrono::nanoseconds> most;
+  for (const std::unique_ptr<Head>& head : heads_) {
+    const auto spare = head->spare_poses();
+    most = most ? std::max(most, spare) : spare;
+  }
+  return most;
 }
 
 int Daemon::run() {
@@ -295,6 +317,7 @@ void Daemon::stop_io() {
     spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}{}", source->description(),
                  done.samples, done.malformed, done.bad_value, done.refused, source->details());
   }
+  intake_.stop();
   for (const std::unique_ptr<Head>& head : heads_) {
     head->stop();
   }

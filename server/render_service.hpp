@@ -38,6 +38,7 @@ struct RenderJob {
   int stream = 0;                 ///< one per head, 0, 1, 2, ...
   std::string head;               ///< name of the head, for logs and dumps
   std::uint64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
+  std::int64_t pose_ns = 0;       ///< the same on the clock of the poses, for dumps
   render::PingRequest request;
   std::vector<PosedBody> bodies;  ///< moved before the ping is rendered
 };

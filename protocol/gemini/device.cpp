@@ -398,6 +398,12 @@ void Device::on_trigger(TimePoint now) {
 void Device::offer(const std::optional<RecordedPing>& ping) {
   impl_->pinger().offer(ping);
 }
+std::optional<PingWish> Device::ping_wish() const {
+  return impl_->pinger().wish();
+}
+void Device::permit_ping() {
+  impl_->pinger().permit();
+}
 void Device::advance(TimePoint now) {
   impl_->advance(now);
 }

@@ -69,6 +69,10 @@ class Device {
   /// For DeviceConfig::plays_back: the ping to send when the surface next wants one, in place of the one
   /// offered before. Gone when its job is out; without one no ping begins.
   void offer(const std::optional<RecordedPing>& ping);
+  /// For DeviceConfig::waits_for_permission: the ping that it would begin next; nullopt: none.
+  std::optional<PingWish> ping_wish() const;
+  /// That ping begins with the next advance(), which is not before PingWish::from.
+  void permit_ping();
 
   /// Runs everything due at `now`. Call after every on_*() and at next_deadline(). Calls that come late are
   /// made up for within the pacing rules: no more than DeviceConfig::burst_lines ping datagrams leave at

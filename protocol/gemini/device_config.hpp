@@ -49,6 +49,9 @@ struct DeviceConfig {
 
   /// The head sends the pings that Device::offer() names, and no others.
   bool plays_back = false;
+  /// A ping begins when Device::permit_ping() says so, and at no time of the head's own: whoever permits
+  /// keeps to PingWish. For pings that follow a simulated time.
+  bool waits_for_permission = false;
 };
 
 }  // namespace sonard::gemini

@@ -59,7 +59,8 @@ void Pinger::on_trigger(TimePoint now) {
     return;
   }
   // An edge is a moment; a head that is busy cannot make up for it later.
-  if (suspended_ || single_ || acquisition_ || unanswered_ || sending() || now < earliest_start_) {
+  const bool too_early = now < earliest_start_ && !config_.waits_for_permission;
+  if (suspended_ || single_ || acquisition_ || unanswered_ || sending() || too_early) {
     ++counters_.pings_suppressed;
     return;
   }
@@ -112,18 +113,31 @@ const PingPlan* Pinger::wanted_plan() const {
   return programme_ && programme_->mode == RunMode::continuous ? &*programme_ : nullptr;
 }
 
-// The rate rules (8.4): not before the previous tail was sent, nor before its last echo is back, nor more
-// often than the head can. nullopt while no ping can be started or none is wanted.
-std::optional<TimePoint> Pinger::next_transmit_time() const {
-  if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr ||
-      (config_.plays_back && !offered_)) {
-    return std::nullopt;
+// The rate rules (8.4) between two starts: not before the last echo is back, nor more often than the head
+// can.
+std::chrono::nanoseconds Pinger::period_of(const PingPlan& plan) const {
+  return std::max(config_.min_ping_period, plan.listening_time());
+}
+
+// In time of the head. Where another time rules, whoever permits a ping has kept the rules in that one.
+TimePoint Pinger::earliest_by_rate() const {
+  if (config_.waits_for_permission) {
+    return single_ ? single_->asked_at : boot_time_;
   }
   TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
   if (offered_) {
     wanted_at = std::max(wanted_at, offered_->due.value_or(wanted_at));
   }
-  const TimePoint time = std::max(wanted_at, earliest_start_);
+  return std::max(wanted_at, earliest_start_);
+}
+
+// Nor before the previous tail was sent. nullopt while no ping can be started or none is wanted.
+std::optional<TimePoint> Pinger::next_transmit_time() const {
+  if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr ||
+      (config_.plays_back && !offered_)) {
+    return std::nullopt;
+  }
+  const TimePoint time = earliest_by_rate();
   if (!sending()) {
     return transmission_ ? std::max(time, transmission_->tail_sent_at().value_or(time)) : time;
   }
@@ -132,12 +146,27 @@ std::optional<TimePoint> Pinger::next_transmit_time() const {
                                          : std::nullopt;
 }
 
+std::optional<PingWish> Pinger::wish() const {
+  const auto transmit_time = next_transmit_time();
+  if (!transmit_time) {
+    return std::nullopt;
+  }
+  const PingPlan& plan = *wanted_plan();
+  const auto interval = single_ ? std::chrono::nanoseconds{0} : plan.interval;
+  return PingWish{*transmit_time - config_.render_lead, std::max(interval, period_of(plan)),
+                  plan.listening_time()};
+}
+
 std::optional<TimePoint> Pinger::acquisition_due() const {
+  if (config_.waits_for_permission && !permitted_) {
+    return std::nullopt;
+  }
   const auto transmit_time = next_transmit_time();
   return transmit_time ? std::optional(*transmit_time - config_.render_lead) : std::nullopt;
 }
 
 void Pinger::acquire(TimePoint now) {
+  permitted_ = false;
   const PingPlan asked = *wanted_plan();
   const PingPlan plan = offered_ ? held_to(*offered_, asked, config_) : asked;
   TimePoint transmit_time = *next_transmit_time();
@@ -156,7 +185,7 @@ void Pinger::acquire(TimePoint now) {
   }
   acquisition_ =
       Acquisition{plan, next_ping_number_++, transmit_time, asked_at, earliest_start_, std::nullopt, {}};
-  earliest_start_ = transmit_time + std::max(config_.min_ping_period, plan.listening_time());
+  earliest_start_ = transmit_time + period_of(plan);
   job_ = asked.job;
   if (const auto offered = std::exchange(offered_, std::nullopt)) {
     job_->record = offered->record;

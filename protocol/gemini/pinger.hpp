@@ -39,6 +39,9 @@ class Pinger {
   void set_inter_packet_gap(std::chrono::nanoseconds gap) { pacer_.set_gap(gap); }
   void set_out_of_water(bool out_of_water) { out_of_water_ = out_of_water; }
   void offer(const std::optional<RecordedPing>& ping) { offered_ = ping; }
+  /// See Device::ping_wish().
+  std::optional<PingWish> wish() const;
+  void permit() { permitted_ = true; }
 
   /// The surface goes offline: no further pings. One that is on the wire is finished.
   void stop();
@@ -77,7 +80,9 @@ class Pinger {
   };
 
   const PingPlan* wanted_plan() const;
+  std::chrono::nanoseconds period_of(const PingPlan& plan) const;
   bool sending() const { return transmission_ && !transmission_->finished(); }
+  TimePoint earliest_by_rate() const;
   std::optional<TimePoint> next_transmit_time() const;
   std::optional<TimePoint> acquisition_due() const;
   std::optional<TimePoint> head_due() const;
@@ -103,6 +108,7 @@ class Pinger {
   bool out_of_water_ = false;
   bool pings_out_of_water_ = false;  ///< by the newest configuration
   std::optional<RecordedPing> offered_;
+  bool permitted_ = false;
 
   // Acquired.
   std::uint64_t next_ping_number_ = 0;

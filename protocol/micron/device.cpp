@@ -344,6 +344,12 @@ void Device::power_cycle(TimePoint now) {
 void Device::lose_step() {
   impl_->scanner().lose_step();
 }
+std::optional<PingWish> Device::ping_wish() const {
+  return impl_->scanner().wish();
+}
+void Device::permit_ping() {
+  impl_->scanner().permit();
+}
 void Device::advance(TimePoint now) {
   impl_->advance(now);
 }

@@ -58,6 +58,11 @@ class Device {
   /// The motor loses its step: lines say so until new parameters come.
   void lose_step();
 
+  /// For DeviceConfig::waits_for_permission: the ping that it would begin next; nullopt: none.
+  std::optional<PingWish> ping_wish() const;
+  /// That ping begins with the next advance(), which is not before PingWish::from.
+  void permit_ping();
+
   /// Runs everything due at `now`. Call after every on_*() and at next_deadline().
   void advance(TimePoint now);
   /// When advance() is next needed; always later than the last advance(). nullopt: only after an event.

@@ -55,6 +55,10 @@ struct DeviceConfig {
   /// Time between lines instead of the one that follows from parameters and link; 0: as fast as they are
   /// rendered. >= 0
   std::optional<std::chrono::nanoseconds> line_period;
+
+  /// A ping begins when Device::permit_ping() says so, as soon as one is owed, and its line leaves when it is
+  /// there: whoever permits keeps to PingWish. For pings that follow a simulated time.
+  bool waits_for_permission = false;
 };
 
 }  // namespace sonard::micron

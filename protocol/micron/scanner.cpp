@@ -97,25 +97,48 @@ void Scanner::take_up_position(TimePoint begin) {
 
 // ---- Pings
 
-std::optional<TimePoint> Scanner::ping_due() const {
+std::optional<TimePoint> Scanner::ping_possible() const {
   if (!placed_ || !parameters_ || owed_ == 0 || ping_ || unanswered_) {
     return std::nullopt;
   }
-  return std::max({ready_at_, owed_since_, free_since_, next_ping_at_});
+  const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
+  // Where another time rules, whoever permits a ping has kept the pace in that one.
+  return config_.waits_for_permission ? possible : std::max(possible, next_ping_at_);
+}
+
+std::optional<PingWish> Scanner::wish() const {
+  const auto possible = ping_possible();
+  if (!possible) {
+    return std::nullopt;
+  }
+  const LineTiming timing = line_timing(*parameters_, config_, parameters_->step);
+  return PingWish{*possible, std::max(config_.line_period.value_or(timing.period(config_)), timing.listen),
+                  timing.listen};
+}
+
+std::optional<TimePoint> Scanner::ping_due() const {
+  return config_.waits_for_permission && !permitted_ ? std::nullopt : ping_possible();
 }
 
 std::optional<TimePoint> Scanner::line_due() const {
   return ping_ && !ping_->samples.empty() ? std::optional{ping_->line_due} : std::nullopt;
 }
 
+TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) const {
+  if (config_.waits_for_permission) {
+    return transmit_time;
+  }
+  return config_.line_period ? transmit_time + std::min(line_after, *config_.line_period)
+                             : std::max(transmit_time + line_after, link_free_at_);
+}
+
 void Scanner::start_ping(TimePoint now, TimePoint due) {
+  permitted_ = false;
   const LineTiming timing = line_timing(*parameters_, config_, 0);
   Ping ping;
   ping.number = next_ping_number_++;
   ping.transmit_time = std::max(due, now - lateness_allowed);
-  const nanoseconds line_after = timing.listen + config_.line_overhead;
-  ping.line_due = config_.line_period ? ping.transmit_time + std::min(line_after, *config_.line_period)
-                                      : std::max(ping.transmit_time + line_after, link_free_at_);
+  ping.line_due = line_due_of(ping.transmit_time, timing.listen + config_.line_overhead);
   job_ = make_line_job(*parameters_, config_, sweep_.bearing());
   job_->ping_number = ping.number;
   job_->transmit_time = ping.transmit_time;

@@ -38,6 +38,9 @@ class Scanner {
   void on_line(TimePoint now, const MicronLine& line);
   void on_line_failed(TimePoint now, std::uint64_t ping_number);
   void lose_step() { motor_error_ = true; }
+  /// See Device::ping_wish().
+  std::optional<PingWish> wish() const;
+  void permit() { permitted_ = true; }
 
   /// Appends the frames due at `now` to `out`.
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
@@ -64,8 +67,10 @@ class Scanner {
 
   void settle(TimePoint now);
   void take_up_position(TimePoint begin);
+  std::optional<TimePoint> ping_possible() const;
   std::optional<TimePoint> ping_due() const;
   std::optional<TimePoint> line_due() const;
+  TimePoint line_due_of(TimePoint transmit_time, std::chrono::nanoseconds line_after) const;
   void start_ping(TimePoint now, TimePoint due);
   std::vector<std::uint8_t> bins_of(const Ping& ping) const;
   std::vector<std::uint8_t> make_line(const Ping& ping) const;
@@ -92,6 +97,7 @@ class Scanner {
   TimePoint owed_since_{};
 
   // What it does.
+  bool permitted_ = false;
   std::uint64_t next_ping_number_ = 0;
   std::optional<Ping> ping_;
   std::optional<SentLine> sent_;             ///< not yet taken

@@ -127,6 +127,13 @@ enum class StalePolicy {
   silence,  ///< sends status packets only, until a pose arrives
 };
 
+/// What time it is for the pings.
+enum class PingClock {
+  wall,       ///< the time of this machine
+  source,     ///< that of the stamps of the poses; a ping that would come too late to keep up is left out
+  lock_step,  ///< the same, but every ping is made, however long it takes: publishers by TCP have to wait
+};
+
 struct PoseConfig {
   /// T_world_vehicle that holds until the first pose arrives; without it the heads answer but do not ping.
   std::optional<render::Pose> T_world_vehicle_initial;
@@ -138,6 +145,7 @@ struct PoseConfig {
   /// Past the newest pose the twist is followed this long (without a twist the pose is held); >= 0.
   std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};
   StalePolicy stale_policy = StalePolicy::hold;
+  PingClock clock = PingClock::wall;
 };
 
 /// Where the 1 Hz status packets go.

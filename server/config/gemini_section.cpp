@@ -187,6 +187,7 @@ GeminiHeadConfig read_gemini_head(YamlSection& section, const HeadContext& conte
   GeminiHeadConfig head;
   apply_water(context, carrier_hz, head, warnings);
   head.device.water_sound_speed_mps = context.water_sound_speed_mps;
+  head.device.waits_for_permission = context.pings_by_source;
   read_common(section, context, head);
   read_identity(section, head);
   section.require("network", "a mapping with alternate_address and netmask");

@@ -19,6 +19,7 @@ struct HeadContext {
   /// Speed the water really has; 0: that of the ping configuration.
   double water_sound_speed_mps = 0.0;
   render::Sampling sampling;
+  bool pings_by_source = false;  ///< by the clock of the source of the poses
 };
 
 /// A problem that is worth saying but no reason to stop.

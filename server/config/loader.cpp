@@ -167,6 +167,9 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0));
   section.choice("stale", poses.stale_policy,
                  {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}});
+  section.choice(
+      "clock", poses.clock,
+      {{"wall", PingClock::wall}, {"source", PingClock::source}, {"lock_step", PingClock::lock_step}});
 
   const bool live = poses.udp || poses.tcp || poses.mavlink || poses.ignition;
   if (live && poses.trajectory) {
@@ -176,6 +179,11 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
     section.report("initial",
                    "nothing gives a pose (expected initial, udp, tcp, mavlink, ignition or trajectory)");
+  }
+  if (!live && !poses.trajectory && poses.clock != PingClock::wall) {
+    section.report("clock",
+                   "no source of poses has a clock (expected wall, or udp, tcp, mavlink, ignition or "
+                   "trajectory beside it)");
   }
 }
 
@@ -262,6 +270,7 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
   config.water = context.water;
   root.require("poses", "a mapping that says where poses come from");
   root.section("poses", [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
+  context.pings_by_source = config.poses.clock != PingClock::wall;
   root.section("sampling", [&](YamlSection& section) { read_sampling(section, context.sampling); });
   root.section("recording", [&](YamlSection& section) {
     read_recording(section, context.folder, config.recording.emplace());

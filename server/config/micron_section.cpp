@@ -71,6 +71,7 @@ MicronHeadConfig read_micron_head(YamlSection& section, const HeadContext& conte
   MicronHeadConfig head;
   apply_water(context, carrier_hz, head, warnings);
   // What turns its times into ranges; hosts reckon with 1500 m/s (docs/protocols/micron.md 4).
+  head.device.waits_for_permission = context.pings_by_source;
   if (context.water_sound_speed_mps > 0.0) {
     head.device.water_sound_speed_mps = context.water_sound_speed_mps;
   }

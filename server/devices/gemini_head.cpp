@@ -79,9 +79,11 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void pump();
   void take_from_surface(TimePoint now);
   void advance_device(TimePoint now);
+  void advance_and_render(TimePoint now);
   void offer_recorded(TimePoint now);
+  bool permit_ping(TimePoint now);
   void drop_unheard_job(TimePoint now);
-  void schedule();
+  void schedule(TimePoint now);
 
   void record_served();
   void send(TimePoint now, const std::vector<gemini::Outgoing>& outgoing);
@@ -91,7 +93,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void check_interface() const;
 
   bool render(const gemini::PingJob& job);
-  bool out_of_water(TimePoint now) const;
+  bool out_of_water(TimePoint pose_time) const;
 
   void report_every_period();
 };
@@ -108,6 +110,14 @@ void GeminiHead::start() {
 }
 void GeminiHead::stop() {
   impl_->stop();
+}
+void GeminiHead::poses_changed() {
+  if (impl_->config.device.waits_for_permission) {
+    impl_->pump();
+  }
+}
+std::optional<std::chrono::nanoseconds> GeminiHead::spare_poses() const {
+  return impl_->rendering.spare_poses();
 }
 GeminiHeadCounters GeminiHead::counters() const {
   return impl_->total();
@@ -252,7 +262,7 @@ void GeminiHead::Impl::pump() {
   socket->send(to_surface.take_due(now));
   log.surface(device.surface());
   follow_addresses();
-  schedule();
+  schedule(now);
 }
 
 void GeminiHead::Impl::take_from_surface(TimePoint now) {
@@ -264,8 +274,15 @@ void GeminiHead::Impl::take_from_surface(TimePoint now) {
 
 void GeminiHead::Impl::advance_device(TimePoint now) {
   drop_unheard_job(now);  // a command has called it off, and the next ping waits for its answer
-  device.set_out_of_water(out_of_water(now));
+  device.set_out_of_water(out_of_water(services.poses.present(now)));
   offer_recorded(now);
+  do {
+    advance_and_render(now);
+  } while (permit_ping(now));
+  drop_unheard_job(now);  // the surface has just timed out
+}
+
+void GeminiHead::Impl::advance_and_render(TimePoint now) {
   device.advance(now);
   record_served();
   send(now, device.take_outgoing());
@@ -280,7 +297,26 @@ void GeminiHead::Impl::advance_device(TimePoint now) {
     record_served();
     send(now, device.take_outgoing());
   }
-  drop_unheard_job(now);  // the surface has just timed out
+}
+
+// By the clock of the source. True when a ping begins with the next advance().
+bool GeminiHead::Impl::permit_ping(TimePoint now) {
+  if (!config.device.waits_for_permission) {
+    return false;
+  }
+  if (device.surface() == 0) {
+    rendering.rest();
+  }
+  const std::optional<gemini::PingWish> wish = device.ping_wish();
+  if (!wish) {
+    rendering.rest_when_idle(now);
+    return false;
+  }
+  if (wish->from > now || !rendering.begin_ping(now, wish->period, wish->listening)) {
+    return false;
+  }
+  device.permit_ping();
+  return true;
 }
 
 void GeminiHead::Impl::offer_recorded(TimePoint now) {
@@ -298,11 +334,16 @@ void GeminiHead::Impl::drop_unheard_job(TimePoint now) {
   }
 }
 
-void GeminiHead::Impl::schedule() {
+void GeminiHead::Impl::schedule(TimePoint now) {
   std::optional<TimePoint> deadline = from_surface.next_due();
   keep_earlier(deadline, to_surface.next_due());
   if (!socket->blocked()) {
     keep_earlier(deadline, device.next_deadline());
+    // A wish that is due already waits for poses, which wake the head themselves.
+    if (const auto wish = device.ping_wish();
+        config.device.waits_for_permission && wish && wish->from > now) {
+      keep_earlier(deadline, wish->from);
+    }
   }
   timer.set(deadline, [weak = weak_from_this()] {
     if (const auto self = weak.lock()) {
@@ -412,7 +453,8 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   if (job.record) {
     services.playback->started(stream, job);
   }
-  const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(job.transmit_time);
+  const TimePoint pose_time = rendering.pose_time(job.transmit_time);
+  const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(pose_time);
   if (!T_world_sonar) {
     rendering.count_missing_pose();
     return false;
@@ -426,8 +468,8 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   const std::uint64_t transmit_us = device.clock_us(job.transmit_time);
   log.ping(job, transmit_us, *T_world_sonar);
   // A recorded ping goes to the recording under the number that it has there.
-  rendering.submit({job.record.value_or(job.ping_number), job.transmit_time, transmit_us, *T_world_sonar,
-                    rendering.T_world_mount(job.transmit_time + gemini::acoustic_time(job.native_lines)),
+  rendering.submit({job.record.value_or(job.ping_number), pose_time, transmit_us, *T_world_sonar,
+                    rendering.T_world_mount(pose_time + gemini::acoustic_time(job.native_lines)),
                     to_sonar_settings(job, config)},
                    [weak = weak_from_this(), number = job.ping_number](RenderResult result) {
                      if (const auto self = weak.lock()) {
@@ -437,11 +479,11 @@ bool GeminiHead::Impl::render(const gemini::PingJob& job) {
   return true;
 }
 
-bool GeminiHead::Impl::out_of_water(TimePoint now) const {
+bool GeminiHead::Impl::out_of_water(TimePoint pose_time) const {
   if (!services.water_surface_z_m) {
     return false;
   }
-  const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(now);
+  const std::optional<render::Pose> T_world_sonar = rendering.T_world_mount(pose_time);
   return T_world_sonar && T_world_sonar->position_m.z > *services.water_surface_z_m;
 }
 

@@ -22,6 +22,8 @@ class GeminiHead final : public Head {
 
   void start() override;
   void stop() override;
+  void poses_changed() override;
+  std::optional<std::chrono::nanoseconds> spare_poses() const override;
 
   GeminiHeadCounters counters() const;
 

@@ -1,6 +1,7 @@
 // What the daemon knows of any head.
 #pragma once
 
+#include <chrono>
 #include <optional>
 
 #include "renderer/skip_ledger.hpp"
@@ -43,6 +44,11 @@ class Head {
 
   virtual void start() = 0;
   virtual void stop() = 0;
+
+  /// PoseHistory has one more: a ping by the clock of the source may have waited for it.
+  virtual void poses_changed() = 0;
+  /// See PingTimes::spare().
+  virtual std::optional<std::chrono::nanoseconds> spare_poses() const = 0;
 };
 
 }  // namespace sonard::server

@@ -9,6 +9,38 @@
 
 namespace sonard::server {
 
+HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
+    : config_(config), stream_(stream), services_(services) {
+  if (services.poses.ping_clock() != PingClock::wall) {
+    ping_times_.emplace(services.poses);
+  }
+}
+
+bool HeadRendering::begin_ping(TimePoint now, std::chrono::nanoseconds period,
+                               std::chrono::nanoseconds listening) {
+  last_wanted_ = now;
+  ping_time_ = ping_times_->begin(period, listening);
+  return ping_time_.has_value();
+}
+
+void HeadRendering::rest() {
+  if (ping_times_) {
+    ping_times_->rest();
+  }
+}
+
+void HeadRendering::rest_when_idle(TimePoint now) {
+  if (submitted_) {
+    last_wanted_ = now;
+  } else if (now - last_wanted_ > longest_pause) {
+    rest();
+  }
+}
+
+std::optional<std::chrono::nanoseconds> HeadRendering::spare_poses() const {
+  return ping_times_ ? ping_times_->spare() : std::nullopt;
+}
+
 std::optional<render::Pose> HeadRendering::T_world_mount(TimePoint time) const {
   const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
   if (!vehicle) {
@@ -17,28 +49,32 @@ std::optional<render::Pose> HeadRendering::T_world_mount(TimePoint time) const {
   return vehicle->T_world_vehicle * config_.T_vehicle_sonar;
 }
 
-std::shared_ptr<const PosesUsed> HeadRendering::poses_used(TimePoint time) const {
+std::shared_ptr<const PosesUsed> HeadRendering::poses_used(TimePoint transmit_time) const {
+  const TimePoint time = pose_time(transmit_time);
   const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
   if (!vehicle) {
     return nullptr;
   }
-  return std::make_shared<const PosesUsed>(PosesUsed{time, vehicle->T_world_vehicle,
+  return std::make_shared<const PosesUsed>(PosesUsed{transmit_time, vehicle->T_world_vehicle,
                                                      vehicle->T_world_vehicle * config_.T_vehicle_sonar,
                                                      services_.poses.bodies_at(time)});
 }
 
-void HeadRendering::submit(HeadPing ping, RenderService::Done done) const {
+void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
+  submitted_ = true;
   RenderJob job;
   job.stream = stream_;
   job.head = config_.name;
   job.transmit_us = ping.transmit_us;
   job.request = {ping.T_world_sonar, std::move(ping.settings), ping.number, config_.seed,
                  ping.T_world_sonar_at_end};
-  job.bodies = services_.poses.bodies_at(ping.transmit_time);
+  job.pose_ns = services_.poses.stamp_at(ping.pose_time);
+  job.bodies = services_.poses.bodies_at(ping.pose_time);
   services_.renderer.submit(std::move(job), std::move(done));
 }
 
 bool HeadRendering::take(const RenderResult& result) {
+  submitted_ = false;
   if (result.error.empty()) {
     ++counters_.pings_rendered;
     const render::PingStatistics& spent = result.statistics;
@@ -58,6 +94,7 @@ bool HeadRendering::withdraw() {
   if (!services_.skip.on(render::SkipRule::nobody_listening) || !services_.renderer.withdraw(stream_)) {
     return false;
   }
+  submitted_ = false;
   counters_.skipped.add(render::SkipRule::nobody_listening);
   return true;
 }

@@ -12,6 +12,7 @@
 #include "renderer/sonar_settings.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
+#include "server/pose/ping_times.hpp"
 #include "server/recording/events.hpp"
 #include "server/render_service.hpp"
 
@@ -28,7 +29,7 @@ struct RenderCounters {
 /// One ping of a head, as it goes to the render thread.
 struct HeadPing {
   std::uint64_t number = 0;
-  TimePoint transmit_time{};
+  TimePoint pose_time{};          ///< of the transmission, as PoseHistory takes it
   std::uint64_t transmit_us = 0;  ///< of the clock of the head
   render::Pose T_world_sonar;
   std::optional<render::Pose> T_world_sonar_at_end;  ///< when the last echo is heard; nullopt: not known
@@ -38,17 +39,31 @@ struct HeadPing {
 /// Belongs to the I/O thread, as its head does.
 class HeadRendering {
  public:
-  HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
-      : config_(config), stream_(stream), services_(services) {}
+  HeadRendering(const HeadConfig& config, int stream, const HeadServices& services);
+
+  /// The time of a ping's poses, as PoseHistory takes it, that is transmitted at a time of the head's own:
+  /// this, or what PingTimes said when it was permitted.
+  TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
+
+  /// By the clock of the source: whether the ping that the head wants may begin. Then it does.
+  bool begin_ping(TimePoint now, std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
+  /// By the clock of the source: nobody wants pings.
+  void rest();
+  /// By the clock of the source: no ping is wanted now. A client that asks for one after the other may take
+  /// so long between two.
+  void rest_when_idle(TimePoint now);
+  static constexpr std::chrono::seconds longest_pause{3};
+  /// See PingTimes::spare().
+  std::optional<std::chrono::nanoseconds> spare_poses() const;
 
   /// Where the mount of the head is; of a time to come, as far as the twist of the newest pose says. nullopt:
   /// there is no pose, or only a stale one that is not to be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
 
-  /// The same, with all that a log keeps of it.
-  std::shared_ptr<const PosesUsed> poses_used(TimePoint time) const;
+  /// The same, with all that a log keeps of it, as of a ping that is transmitted at `transmit_time`.
+  std::shared_ptr<const PosesUsed> poses_used(TimePoint transmit_time) const;
 
-  void submit(HeadPing ping, RenderService::Done done) const;
+  void submit(HeadPing ping, RenderService::Done done);
   /// Counts an answer, and logs what is wrong with it, the same thing once. @return whether there are
   /// samples.
   bool take(const RenderResult& result);
@@ -62,6 +77,10 @@ class HeadRendering {
   const HeadConfig& config_;
   int stream_;
   HeadServices services_;
+  std::optional<PingTimes> ping_times_;  ///< by the clock of the source
+  std::optional<TimePoint> ping_time_;   ///< on that clock, of the ping that began last
+  TimePoint last_wanted_{};              ///< on the clock of this machine
+  bool submitted_ = false;               ///< and not answered
   RenderCounters counters_;
   std::string last_error_;
 };

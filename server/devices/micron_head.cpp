@@ -62,10 +62,12 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
   void on_rendered(std::uint64_t ping_number, RenderResult result);
   void pump();
   void advance_device(TimePoint now);
+  void advance_and_render(TimePoint now);
   void record_sent();
+  bool permit_ping(TimePoint now);
   void drop_unheard_job(TimePoint now);
   bool render(const micron::MicronJob& job);
-  void schedule();
+  void schedule(TimePoint now);
   void report_every_period();
 };
 
@@ -81,6 +83,14 @@ void MicronHead::start() {
 }
 void MicronHead::stop() {
   impl_->stop();
+}
+void MicronHead::poses_changed() {
+  if (impl_->config.device.waits_for_permission) {
+    impl_->pump();
+  }
+}
+std::optional<std::chrono::nanoseconds> MicronHead::spare_poses() const {
+  return impl_->rendering.spare_poses();
 }
 MicronHeadCounters MicronHead::counters() const {
   return impl_->total();
@@ -109,6 +119,7 @@ void MicronHead::Impl::start() {
       [weak = weak_from_this()](const std::string&) {
         if (const auto self = weak.lock()) {
           self->device.on_host_gone();
+          self->rendering.rest();
         }
       },
       std::move(passed), std::move(ended));
@@ -163,11 +174,17 @@ void MicronHead::Impl::pump() {
     link.send(std::move(frame));
   }
   log.state(device.state(now));
-  schedule();
+  schedule(now);
 }
 
 void MicronHead::Impl::advance_device(TimePoint now) {
   drop_unheard_job(now);  // new parameters have called it off, and the next ping waits for its answer
+  do {
+    advance_and_render(now);
+  } while (permit_ping(now));
+}
+
+void MicronHead::Impl::advance_and_render(TimePoint now) {
   device.advance(now);
   record_sent();
   while (const std::optional<micron::MicronJob> job = device.take_job()) {
@@ -180,6 +197,23 @@ void MicronHead::Impl::advance_device(TimePoint now) {
     device.advance(now);
     record_sent();
   }
+}
+
+// By the clock of the source. True when a ping begins with the next advance().
+bool MicronHead::Impl::permit_ping(TimePoint now) {
+  if (!config.device.waits_for_permission) {
+    return false;
+  }
+  const std::optional<micron::PingWish> wish = device.ping_wish();
+  if (!wish) {
+    rendering.rest_when_idle(now);
+    return false;
+  }
+  if (wish->from > now || !rendering.begin_ping(now, wish->period, wish->listening)) {
+    return false;
+  }
+  device.permit_ping();
+  return true;
 }
 
 void MicronHead::Impl::record_sent() {
@@ -199,7 +233,8 @@ void MicronHead::Impl::drop_unheard_job(TimePoint now) {
 // False when this ping cannot be made.
 bool MicronHead::Impl::render(const micron::MicronJob& job) {
   log.settings(job);
-  const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(job.transmit_time);
+  const TimePoint pose_time = rendering.pose_time(job.transmit_time);
+  const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);
   if (!T_world_mount) {
     rendering.count_missing_pose();
     return false;
@@ -211,13 +246,12 @@ bool MicronHead::Impl::render(const micron::MicronJob& job) {
   }
   const auto since_power_up =
       std::chrono::duration_cast<std::chrono::microseconds>(job.transmit_time - power_up);
-  std::optional<render::Pose> T_world_at_end =
-      rendering.T_world_mount(job.transmit_time + job.listening_time());
+  std::optional<render::Pose> T_world_at_end = rendering.T_world_mount(pose_time + job.listening_time());
   if (T_world_at_end) {  // the motor rests meanwhile
     T_world_at_end = T_world_transducer(*T_world_at_end, job);
   }
   HeadPing ping{job.ping_number,
-                job.transmit_time,
+                pose_time,
                 static_cast<std::uint64_t>(since_power_up.count()),
                 T_world_transducer(*T_world_mount, job),
                 T_world_at_end,
@@ -231,8 +265,12 @@ bool MicronHead::Impl::render(const micron::MicronJob& job) {
   return true;
 }
 
-void MicronHead::Impl::schedule() {
-  const std::optional<TimePoint> deadline = device.next_deadline();
+void MicronHead::Impl::schedule(TimePoint now) {
+  std::optional<TimePoint> deadline = device.next_deadline();
+  // A wish that is due already waits for poses, which wake the head themselves.
+  if (const auto wish = device.ping_wish(); config.device.waits_for_permission && wish && wish->from > now) {
+    deadline = deadline ? std::min(*deadline, wish->from) : wish->from;
+  }
   timer.set(deadline, [weak = weak_from_this()] {
     if (const auto self = weak.lock()) {
       self->timer.passed();

@@ -21,6 +21,8 @@ class MicronHead final : public Head {
 
   void start() override;
   void stop() override;
+  void poses_changed() override;
+  std::optional<std::chrono::nanoseconds> spare_poses() const override;
 
   MicronHeadCounters counters() const;
   /// Where its clients reach it.

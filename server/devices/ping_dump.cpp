@@ -30,7 +30,7 @@ PingDump::PingDump(std::filesystem::path folder, std::string head)
   if (error || !index_) {
     throw std::runtime_error(fmt::format("cannot write {}", index.string()));
   }
-  index_ << "number,id,transmit_us,lines,beams,crc32\n" << std::flush;
+  index_ << "number,id,transmit_us,lines,beams,crc32,pose_ns\n" << std::flush;
 }
 
 void PingDump::write(const RenderJob& job, const render::PingSamples& samples) {
@@ -39,8 +39,8 @@ void PingDump::write(const RenderJob& job, const render::PingSamples& samples) {
   std::ofstream file(path, std::ios::binary);
   file << npy_bytes({samples.lines, samples.beams, samples.u8, samples.u16});
   file.close();
-  index_ << fmt::format("{},{},{},{},{},{:08x}\n", number, number % 256, job.transmit_us, samples.lines,
-                        samples.beams, samples_crc32(samples))
+  index_ << fmt::format("{},{},{},{},{},{:08x},{}\n", number, number % 256, job.transmit_us, samples.lines,
+                        samples.beams, samples_crc32(samples), job.pose_ns)
          << std::flush;
   if ((!file || !index_) && !failed_) {
     failed_ = true;

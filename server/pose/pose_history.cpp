@@ -15,13 +15,27 @@ std::chrono::nanoseconds longest_delay(std::chrono::nanoseconds extrapolation_li
   return std::min<std::chrono::nanoseconds>(std::chrono::milliseconds{50}, extrapolation_limit / 2);
 }
 
+std::size_t points_kept(PingClock clock, std::size_t by_wall_clock) {
+  switch (clock) {
+    case PingClock::wall:
+      break;
+    case PingClock::source:
+      return PoseHistory::source_points;
+    case PingClock::lock_step:
+      return PoseHistory::lock_step_points;
+  }
+  return by_wall_clock;
+}
+
 }  // namespace
 
 PoseHistory::PoseHistory(const PoseConfig& config)
     : initial_(config.T_world_vehicle_initial),
       limit_(config.extrapolation_limit),
       stale_policy_(config.stale_policy),
-      clock_(longest_delay(config.extrapolation_limit)) {}
+      ping_clock_(config.clock),
+      clock_(longest_delay(config.extrapolation_limit)),
+      vehicle_(points_kept(config.clock, vehicle_points)) {}
 
 void PoseHistory::insert(const pose::PoseSample& sample, TimePoint arrival) {
   restart_if_clock_went_back(sample.time_ns);
@@ -33,8 +47,12 @@ void PoseHistory::insert(const pose::PoseSample& sample, TimePoint arrival) {
   }
 }
 
+bool PoseHistory::would_restart(std::int64_t time_ns) const {
+  return !vehicle_.empty() && time_ns < vehicle_.newest().time_ns - reset_threshold.count();
+}
+
 void PoseHistory::restart_if_clock_went_back(std::int64_t time_ns) {
-  if (vehicle_.empty() || time_ns >= vehicle_.newest().time_ns - reset_threshold.count()) {
+  if (!would_restart(time_ns)) {
     return;
   }
   ++counters_.clock_restarts;
@@ -64,7 +82,7 @@ void PoseHistory::insert_body(const pose::NamedTransform& body, std::int64_t tim
       }
       return;
     }
-    track = bodies_.emplace(body.name, PoseTrack{body_points}).first;
+    track = bodies_.emplace(body.name, PoseTrack{points_kept(ping_clock_, body_points)}).first;
   }
   track->second.insert({time_ns, body.T_world_body, std::nullopt});
 }
@@ -73,7 +91,7 @@ std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
   if (vehicle_.empty()) {
     return initial_ ? std::optional{PoseEstimate{*initial_, PoseQuality::initial, {}}} : std::nullopt;
   }
-  const std::int64_t time_ns = clock_.stamp_at(time);
+  const std::int64_t time_ns = stamp_at(time);
   const std::chrono::nanoseconds age{time_ns - vehicle_.newest().time_ns};
   if (age > limit_ && stale_policy_ == StalePolicy::silence) {
     return std::nullopt;
@@ -90,11 +108,36 @@ std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
   return estimate;
 }
 
+TimePoint PoseHistory::present(TimePoint now) const {
+  return ping_clock_ == PingClock::wall || vehicle_.empty() ? now : TimePoint{vehicle_.newest().time_ns};
+}
+
+std::int64_t PoseHistory::stamp_at(TimePoint time) const {
+  if (vehicle_.empty()) {
+    return 0;
+  }
+  return ping_clock_ == PingClock::wall ? clock_.stamp_at(time) : time.count();
+}
+
+std::optional<TimePoint> PoseHistory::oldest() const {
+  return vehicle_.empty() ? std::nullopt : std::optional{TimePoint{vehicle_.oldest().time_ns}};
+}
+
+std::optional<TimePoint> PoseHistory::newest() const {
+  return vehicle_.empty() ? std::nullopt : std::optional{TimePoint{vehicle_.newest().time_ns}};
+}
+
+std::optional<TimePoint> PoseHistory::known_from(TimePoint time) const {
+  const auto known = vehicle_.empty() ? std::nullopt : vehicle_.known_from(time.count(), limit_.count());
+  return known ? std::optional{TimePoint{*known}} : std::nullopt;
+}
+
 std::vector<PosedBody> PoseHistory::bodies_at(TimePoint time) const {
   std::vector<PosedBody> posed;
   posed.reserve(bodies_.size());
+  const std::int64_t time_ns = stamp_at(time);
   for (const auto& [name, track] : bodies_) {
-    posed.push_back({name, to_render(track.at(clock_.stamp_at(time), 0))});
+    posed.push_back({name, to_render(track.at(time_ns, 0))});
   }
   return posed;
 }

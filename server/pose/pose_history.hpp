@@ -53,18 +53,38 @@ struct PoseHistoryCounters {
 /// is forgotten then. Two publishers with different clocks would make that happen at every message; it is
 /// counted and logged (the 1st, 2nd, 4th, 8th ... time).
 ///
+/// With a PingClock of the source, times asked about are the publisher's own, and PublisherClock is not
+/// needed: the answers then follow from the stamps alone, whenever they came.
+///
 /// Before the first pose the initial one holds, without ever getting stale. Without one there is no pose.
 class PoseHistory {
  public:
   explicit PoseHistory(const PoseConfig& config);
 
+  PingClock ping_clock() const { return ping_clock_; }
+
   /// A message of a publisher (decode() and the trajectory parser vouch for its numbers) and when it arrived,
   /// which does not go backwards.
   void insert(const pose::PoseSample& sample, TimePoint arrival);
 
+  /// A message with this stamp would be taken for one of a clock that was set back.
+  bool would_restart(std::int64_t time_ns) const;
+
   /// The vehicle at a time, usually about now. nullopt: no pose yet and no initial one, or the newest is too
   /// old and the policy is `silence`.
   std::optional<PoseEstimate> at(TimePoint time) const;
+
+  /// The time to ask at() about for what is now: `now`, or, by the clock of the source, its newest stamp.
+  TimePoint present(TimePoint now) const;
+  /// The publisher's time at a time that at() may be asked about; 0 before the first pose.
+  std::int64_t stamp_at(TimePoint time) const;
+  /// By the clock of the source: of the poses of the vehicle that are kept; nullopt: there are none.
+  std::optional<TimePoint> oldest() const;
+  std::optional<TimePoint> newest() const;
+  /// By the clock of the source: the earliest time from `time` on at which the vehicle is known, not after
+  /// its newest pose, and not in a gap that is longer than the extrapolation limit. nullopt: there is none
+  /// yet.
+  std::optional<TimePoint> known_from(TimePoint time) const;
 
   /// Every named body heard of since the last clock restart, at a time. Bodies have no twist: past their
   /// newest pose they rest. They never get stale.
@@ -77,6 +97,10 @@ class PoseHistory {
   /// ones.
   static constexpr std::size_t vehicle_points = 256;
   static constexpr std::size_t body_points = 64;
+  /// Of each by the clock of the source, as pings come after the poses; and in lock-step, where they may come
+  /// long after: 40 s at 100 Hz.
+  static constexpr std::size_t source_points = 512;
+  static constexpr std::size_t lock_step_points = 4096;
   /// Whole-world pose lists of a simulator fit.
   static constexpr std::size_t max_bodies = 1024;
 
@@ -88,8 +112,9 @@ class PoseHistory {
   std::optional<render::Pose> initial_;
   std::chrono::nanoseconds limit_;
   StalePolicy stale_policy_;
+  PingClock ping_clock_;
   PublisherClock clock_;
-  PoseTrack vehicle_{vehicle_points};
+  PoseTrack vehicle_;
   std::map<std::string, PoseTrack> bodies_;
   PoseHistoryCounters counters_;
 };

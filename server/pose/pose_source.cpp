@@ -10,13 +10,13 @@ namespace sonard::server {
 
 std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
                                                            const PoseConfig& config, const Clock& clock,
-                                                           const PoseSink& sink) {
+                                                           const PoseSink& sink, const PoseHold& hold) {
   std::vector<std::unique_ptr<PoseSource>> sources;
   if (config.udp) {
     sources.push_back(std::make_unique<UdpPoseSource>(io, *config.udp, clock, sink));
   }
   if (config.tcp) {
-    sources.push_back(std::make_unique<TcpPoseSource>(io, *config.tcp, clock, sink));
+    sources.push_back(std::make_unique<TcpPoseSource>(io, *config.tcp, clock, sink, hold));
   }
   if (config.mavlink) {
     sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink));

@@ -26,6 +26,9 @@ struct PoseSourceError : std::runtime_error {
 /// Takes each pose and the time of its arrival. Called on the I/O thread.
 using PoseSink = std::function<void(const pose::PoseSample&, TimePoint arrival)>;
 
+/// True while publishers that can wait are to wait: the pings are behind. Asked on the I/O thread.
+using PoseHold = std::function<bool()>;
+
 /// They only grow.
 struct PoseSourceCounters {
   std::uint64_t samples = 0;    ///< delivered
@@ -62,6 +65,6 @@ class PoseSource {
 /// built without Ignition Transport, and the configuration asks for it
 std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
                                                            const PoseConfig& config, const Clock& clock,
-                                                           const PoseSink& sink);
+                                                           const PoseSink& sink, const PoseHold& hold);
 
 }  // namespace sonard::server

@@ -40,6 +40,16 @@ PoseTrack::Placed PoseTrack::insert(const TrackPoint& point) {
   return placed;
 }
 
+std::optional<std::int64_t> PoseTrack::known_from(std::int64_t time_ns, std::int64_t gap_ns) const {
+  const auto next = std::lower_bound(points_.begin(), points_.end(), time_ns,
+                                     [](const TrackPoint& p, std::int64_t t) { return p.time_ns < t; });
+  if (next == points_.end()) {
+    return std::nullopt;
+  }
+  const bool first = next == points_.begin();
+  return first || next->time_ns - std::prev(next)->time_ns > gap_ns ? next->time_ns : time_ns;
+}
+
 pose::Transform PoseTrack::at(std::int64_t time_ns, std::int64_t limit_ns) const {
   const auto later = std::upper_bound(points_.begin(), points_.end(), time_ns,
                                       [](std::int64_t t, const TrackPoint& p) { return t < p.time_ns; });

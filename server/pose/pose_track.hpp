@@ -44,6 +44,10 @@ class PoseTrack {
   /// Before the oldest point it is there.
   pose::Transform at(std::int64_t time_ns, std::int64_t limit_ns) const;
 
+  /// The earliest time from `time_ns` on that is at a point, or between two that are at most `gap_ns` apart;
+  /// nullopt: after the newest point. Must not be empty.
+  std::optional<std::int64_t> known_from(std::int64_t time_ns, std::int64_t gap_ns) const;
+
   static constexpr double teleport_mps = 100.0;
 
  private:

@@ -31,10 +31,11 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   class Session;
 
   Impl(asio::io_context& io, TcpPoseInput configured, const Clock& used_clock, PoseSink poses_go_to,
-       std::chrono::milliseconds timeout)
+       PoseHold publishers_wait, std::chrono::milliseconds timeout)
       : input(std::move(configured)),
         clock(used_clock),
         sink(std::move(poses_go_to)),
+        hold(std::move(publishers_wait)),
         message_timeout(timeout),
         acceptor(io),
         retry(io) {}
@@ -49,6 +50,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   TcpPoseInput input;
   const Clock& clock;
   PoseSink sink;
+  PoseHold hold;
   std::chrono::milliseconds message_timeout;
   tcp::acceptor acceptor;
   asio::steady_timer retry;
@@ -64,6 +66,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       : source_(std::move(source)),
         socket_(std::move(socket)),
         timer_(socket_.get_executor()),
+        hold_timer_(socket_.get_executor()),
         peer_(peer),
         buffer_(pose::max_frame_bytes) {}
 
@@ -79,6 +82,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     error_code ignored;
     socket_.close(ignored);
     timer_.cancel(ignored);
+    hold_timer_.cancel(ignored);
     source_->sessions.erase(shared_from_this());
   }
 
@@ -95,9 +99,24 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     filled_ += length;
     const bool finished_a_message = take_frames(source_->clock.now());
     if (socket_.is_open()) {
+      read_on(finished_a_message);
+    }
+  }
+
+  /// Reads when publishers need not wait, which is asked now and then.
+  void read_on(bool finished_a_message) {
+    if (!source_->hold || !source_->hold()) {
       watch_unfinished_message(finished_a_message);
       read();
+      return;
     }
+    stop_watching();  // it is not for the publisher to finish its message now
+    hold_timer_.expires_after(std::chrono::milliseconds{2});
+    hold_timer_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error && self->socket_.is_open()) {
+        self->read_on(false);
+      }
+    });
   }
 
   /// Delivers every whole message in the buffer and keeps the rest. @return true when there was one.
@@ -147,9 +166,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   /// Gives a message that has begun its deadline, which further bytes of it do not move.
   void watch_unfinished_message(bool finished_a_message) {
     if (filled_ == 0) {
-      unfinished_ = false;
-      error_code ignored;
-      timer_.cancel(ignored);
+      stop_watching();
       return;
     }
     if (unfinished_ && !finished_a_message) {
@@ -166,6 +183,12 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     });
   }
 
+  void stop_watching() {
+    unfinished_ = false;
+    error_code ignored;
+    timer_.cancel(ignored);
+  }
+
   void close_faulty(const std::string& reason) {
     ++source_->counters.closed;
     spdlog::warn("pose stream tcp {}: {} closed: {}", endpoint_text(source_->local), endpoint_text(peer_),
@@ -176,6 +199,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   std::shared_ptr<Impl> source_;
   tcp::socket socket_;
   asio::steady_timer timer_;
+  asio::steady_timer hold_timer_;
   Endpoint peer_;
   std::vector<std::uint8_t> buffer_;
   std::size_t filled_ = 0;
@@ -271,8 +295,9 @@ void TcpPoseSource::Impl::stop() {
 }
 
 TcpPoseSource::TcpPoseSource(asio::io_context& io, TcpPoseInput input, const Clock& clock, PoseSink sink,
-                             std::chrono::milliseconds message_timeout)
-    : impl_(std::make_shared<Impl>(io, std::move(input), clock, std::move(sink), message_timeout)) {}
+                             PoseHold hold, std::chrono::milliseconds message_timeout)
+    : impl_(std::make_shared<Impl>(io, std::move(input), clock, std::move(sink), std::move(hold),
+                                   message_timeout)) {}
 
 TcpPoseSource::~TcpPoseSource() {
   impl_->stop();

@@ -12,10 +12,12 @@ namespace sonard::server {
 /// - leaves a message unfinished for longer than `message_timeout`.
 /// A message with a value that means nothing (NaN) is dropped, and the connection stays. So does one on which
 /// nothing comes: a paused simulation keeps its connection.
+/// While `hold` says so nothing is read, so that a publisher waits in its own send() before long.
 class TcpPoseSource final : public PoseSource {
  public:
+  /// `hold` may be empty: nobody waits then.
   TcpPoseSource(boost::asio::io_context& io, TcpPoseInput input, const Clock& clock, PoseSink sink,
-                std::chrono::milliseconds message_timeout = std::chrono::seconds{5});
+                PoseHold hold = {}, std::chrono::milliseconds message_timeout = std::chrono::seconds{5});
   ~TcpPoseSource() override;
 
   void start() override;

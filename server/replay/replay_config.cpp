@@ -83,6 +83,7 @@ void check_span(const std::vector<PlayedHead>& played, const LogFile& file) {
 /// A head that keeps to the times of the recording.
 void hold_to_recording(GeminiHeadConfig& head) {
   head.device.plays_back = true;
+  head.device.waits_for_permission = false;
   head.device.min_ping_period = std::chrono::milliseconds{1};
   head.device.render_lead = {};
 }

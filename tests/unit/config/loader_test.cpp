@@ -375,6 +375,24 @@ TEST_F(Loader, reads_mavlink) {
   EXPECT_NEAR((full.T_world_local.orientation * glm::dvec3(0, 1, 0)).x, 1, 1e-12);
 }
 
+TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
+  const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
+  const std::string world = "world: {file: w.sdf}\n";
+  const auto loaded = [&](const std::string& clock) {
+    return load(world + "poses: {udp: {bind: 127.0.0.1:1}" + clock + "}\n" + heads).config;
+  };
+  EXPECT_EQ(loaded("").poses.clock, PingClock::wall);
+  EXPECT_FALSE(std::get<GeminiHeadConfig>(loaded("").heads.at(0)).device.waits_for_permission);
+  EXPECT_EQ(loaded(", clock: source").poses.clock, PingClock::source);
+  EXPECT_EQ(loaded(", clock: lock_step").poses.clock, PingClock::lock_step);
+  EXPECT_TRUE(
+      std::get<GeminiHeadConfig>(loaded(", clock: lock_step").heads.at(0)).device.waits_for_permission);
+  EXPECT_THAT(complaints(world + "poses: {udp: {bind: 127.0.0.1:1}, clock: sim}\n" + heads),
+              ElementsAre(HasSubstr("poses.clock: ")));
+  EXPECT_THAT(complaints(world + "poses: {initial: {position_m: [0, 0, 0]}, clock: source}\n" + heads),
+              ElementsAre(HasSubstr("poses.clock: no source of poses has a clock")));
+}
+
 TEST_F(Loader, wants_a_source_of_poses) {
   const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
   const std::string world = "world: {file: w.sdf}\n";

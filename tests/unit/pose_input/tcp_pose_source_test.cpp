@@ -23,7 +23,7 @@ class TcpPoseSourceTest : public SourceTest {
  protected:
   std::unique_ptr<TcpPoseSource> started(TcpPoseInput input = {{localhost, 0}, loopback, 8},
                                          milliseconds timeout = std::chrono::seconds{5}) {
-    auto source = std::make_unique<TcpPoseSource>(io_, std::move(input), clock_, sink_, timeout);
+    auto source = std::make_unique<TcpPoseSource>(io_, std::move(input), clock_, sink_, PoseHold{}, timeout);
     source->start();
     return source;
   }

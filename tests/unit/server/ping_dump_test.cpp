@@ -47,13 +47,14 @@ TEST_F(PingDumpTest, WritesNumpyFileAndIndexRow) {
   RenderJob job;
   job.request.ping_number = 257;
   job.transmit_us = 1234567;
+  job.pose_ns = 5678;
   render::PingSamples samples;
   samples.beams = 3;
   samples.lines = 3;
   samples.u8 = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   dump.write(job, samples);
   EXPECT_EQ(contents(folder / "bow.csv"),
-            "number,id,transmit_us,lines,beams,crc32\n257,1,1234567,3,3,cbf43926\n");
+            "number,id,transmit_us,lines,beams,crc32,pose_ns\n257,1,1234567,3,3,cbf43926,5678\n");
 
   // NumPy format 1.0: magic, version, header length; header and preamble together a multiple of 64.
   const std::string file = contents(folder / "bow-00000257.npy");

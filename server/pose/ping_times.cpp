@@ -1,0 +1,96 @@
+#include "server/pose/ping_times.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace sonard::server {
+namespace {
+
+using std::chrono::nanoseconds;
+
+// The 1st, 2nd, 4th, 8th ... time.
+void note(std::uint64_t& count, std::uint64_t more, const char* reason) {
+  const std::uint64_t before = std::exchange(count, count + more);
+  if (std::bit_width(before) != std::bit_width(count)) {
+    spdlog::warn("pings are left out: {} ({} so far)", reason, count);
+  }
+}
+
+// Rounds up, whatever the sign.
+nanoseconds whole_periods(nanoseconds way, nanoseconds period) {
+  const auto whole = way / period;
+  return (whole + (way > whole * period ? 1 : 0)) * period;
+}
+
+}  // namespace
+
+std::optional<TimePoint> PingTimes::begin(nanoseconds period, nanoseconds listening) {
+  follow_restart();
+  period_ = period;
+  listening_ = listening;
+  const auto newest = poses_.newest();
+  if (!newest) {
+    return std::nullopt;
+  }
+  if (last_) {
+    next_ = *last_ + period;
+  } else if (!next_) {
+    next_ = whole_periods(*newest, period);
+  }
+  leave_out(period, listening);
+  if (*next_ + listening > *newest) {
+    return std::nullopt;
+  }
+  last_ = next_;
+  next_.reset();
+  return last_;
+}
+
+void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
+  const auto skip_to = [&](TimePoint time) {
+    const nanoseconds way = whole_periods(time - *next_, period);
+    *next_ += way;
+    if (last_) {
+      *last_ += way;
+    }
+    return static_cast<std::uint64_t>(way / period);
+  };
+  const TimePoint newest = *poses_.newest();
+  if (const TimePoint oldest = *poses_.oldest(); *next_ < oldest) {
+    note(counters_.lost, skip_to(oldest), "their poses were overtaken by too many newer ones");
+  }
+  if (poses_.ping_clock() == PingClock::source && *next_ + listening + period <= newest) {
+    // Down to the last one that could begin.
+    counters_.left_out += skip_to(newest - listening - period + nanoseconds{1});
+  }
+  for (auto known = poses_.known_from(*next_); known && *known > *next_; known = poses_.known_from(*next_)) {
+    note(counters_.unknown, skip_to(*known),
+         "the poses around them are further apart than poses.extrapolation_limit_ms");
+  }
+}
+
+void PingTimes::follow_restart() {
+  if (restarts_ != poses_.counters().clock_restarts) {
+    restarts_ = poses_.counters().clock_restarts;
+    rest();
+  }
+}
+
+void PingTimes::rest() {
+  last_.reset();
+  next_.reset();
+}
+
+std::optional<nanoseconds> PingTimes::spare() const {
+  const auto newest = poses_.newest();
+  const bool of_this_clock = restarts_ == poses_.counters().clock_restarts;
+  if (!newest || !of_this_clock || !(next_ || last_)) {
+    return std::nullopt;
+  }
+  return *newest - listening_ - (next_ ? *next_ : *last_ + period_);
+}
+
+}  // namespace sonard::server

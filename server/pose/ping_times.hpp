@@ -1,0 +1,55 @@
+// When a head pings by the clock of the source of the poses.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "server/clock.hpp"
+#include "server/pose/pose_history.hpp"
+
+namespace sonard::server {
+
+/// They only grow.
+struct PingTimesCounters {
+  std::uint64_t left_out = 0;  ///< by PingClock::source: the head could not keep up
+  std::uint64_t unknown =
+      0;  ///< the source was silent for longer than the extrapolation limit, or set its clock
+  std::uint64_t lost = 0;  ///< in lock-step: the poses of the time were no longer kept
+};
+
+/// The times of one head's pings, on the publisher's clock. A ping is due one period after the last one, the
+/// first one at a whole number of periods; and it may begin when every pose until its last echo is there, so
+/// that nothing of it is a guess. Which pings there are, and what they show, follows from the stamps alone.
+///
+/// Belongs to the I/O thread; reads no clock.
+class PingTimes {
+ public:
+  /// `poses` outlives it; its PingClock is not PingClock::wall.
+  explicit PingTimes(const PoseHistory& poses) : poses_(poses) {}
+
+  /// The transmit time of a ping that is wanted, which is then taken to begin; nullopt: its poses are not
+  /// there yet. `period` > 0, `listening` >= 0.
+  std::optional<TimePoint> begin(std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
+  /// Nobody wants pings any more: the next one is a first one.
+  void rest();
+
+  /// By how much the poses there are exceed what the next ping needs, if it is like the last one that was
+  /// wanted; negative: it has to wait for poses. nullopt: nobody wants pings.
+  std::optional<std::chrono::nanoseconds> spare() const;
+
+  const PingTimesCounters& counters() const { return counters_; }
+
+ private:
+  void follow_restart();
+  void leave_out(std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
+
+  const PoseHistory& poses_;
+  std::uint64_t restarts_ = 0;
+  std::optional<TimePoint> last_;                    ///< begun
+  std::optional<TimePoint> next_;                    ///< awaited
+  std::chrono::nanoseconds period_{}, listening_{};  ///< that were asked for last
+  PingTimesCounters counters_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,87 @@
+// Pings that begin when somebody else says so: a simulated time rules.
+#include "bench.hpp"
+#include "protocol/micron/line_timing.hpp"
+
+namespace sonard::micron {
+namespace {
+
+DeviceConfig waiting() {
+  DeviceConfig config;
+  config.waits_for_permission = true;
+  return config;
+}
+
+struct Permission : ::testing::Test {
+  Bench bench{waiting()};
+
+  /// Permits what is wished for by now, as a server does.
+  bool permit() {
+    const auto wish = bench.device.ping_wish();
+    if (!wish || wish->from > bench.now) {
+      return false;
+    }
+    bench.device.permit_ping();
+    bench.raw({});
+    return true;
+  }
+};
+
+TEST_F(Permission, NothingIsWishedForUntilLinesAreOwed) {
+  EXPECT_FALSE(bench.device.ping_wish());
+  bench.make_ready(all_round());
+  EXPECT_FALSE(bench.device.ping_wish());
+  bench.command(SendData{});
+  EXPECT_TRUE(bench.device.ping_wish());
+}
+
+TEST_F(Permission, NothingIsSentWithoutIt) {
+  bench.make_ready(all_round());
+  bench.command(SendData{});
+  bench.run_for(5s);
+  EXPECT_TRUE(bench.jobs.empty());
+  EXPECT_TRUE(bench.all<HeadData>().empty());
+  EXPECT_GE(bench.all<Alive>().size(), 4U) << "the head lives on in its own time";
+}
+
+TEST_F(Permission, TheWishSaysHowLinesFollow) {
+  bench.make_ready(all_round());
+  bench.command(SendData{});
+  ASSERT_TRUE(bench.device.ping_wish());
+  const LineTiming timing = line_timing(all_round(), waiting(), 32);
+  EXPECT_EQ(bench.device.ping_wish()->period, timing.period(waiting()));
+  EXPECT_EQ(bench.device.ping_wish()->listening, timing.listen);
+}
+
+TEST_F(Permission, LinesAreTheSameAndInOrderHoweverFast) {
+  bench.make_ready(all_round());
+  std::vector<HeadData> lines;
+  for (int line = 0; line < 20; ++line) {
+    if (line % 2 == 0) {
+      bench.command(SendData{});  // two lines
+    }
+    ASSERT_TRUE(permit());
+    bench.run_for(1ms);  // no head turns as fast as that by its own clock
+  }
+  ASSERT_EQ(bench.all<HeadData>().size(), 20U);
+
+  Bench own;
+  own.make_ready(all_round());
+  const std::vector<HeadData> expected = own.scan(20);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(bench.all<HeadData>()[i].second.bearing, expected[i].bearing);
+  }
+}
+
+TEST_F(Permission, ALinePeriodOfNothingStillListens) {
+  DeviceConfig config = waiting();
+  config.line_period = 0ns;
+  Bench as_fast_as_rendered(config);
+  as_fast_as_rendered.make_ready(all_round());
+  as_fast_as_rendered.command(SendData{});
+  const auto wish = as_fast_as_rendered.device.ping_wish();
+  ASSERT_TRUE(wish);
+  EXPECT_EQ(wish->period, wish->listening);
+}
+
+}  // namespace
+}  // namespace sonard::micron
