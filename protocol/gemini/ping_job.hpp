@@ -37,13 +37,6 @@ struct PingJob {
   int lines() const { return native_lines >> compression_log2; }
 };
 
-/// The ping that a head would begin next, were it permitted (DeviceConfig::waits_for_permission).
-struct PingWish {
-  TimePoint from{};                      ///< not before this
-  std::chrono::nanoseconds period{};     ///< from the last ping to this one, by the rate rules
-  std::chrono::nanoseconds listening{};  ///< until its last echo is back
-};
-
 /// The rendered samples of a job: PingJob::lines() lines of beam_count samples, line after line from short
 /// range to long, each from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others.
 struct PingImage {

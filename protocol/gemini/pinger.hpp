@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/common/ping_wish.hpp"
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/device_counters.hpp"
 #include "protocol/gemini/pacer.hpp"

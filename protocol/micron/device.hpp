@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "protocol/common/ping_wish.hpp"
 #include "protocol/micron/device_config.hpp"
 #include "protocol/micron/device_counters.hpp"
 #include "protocol/micron/micron_job.hpp"

@@ -35,13 +35,6 @@ struct MicronJob {
   }
 };
 
-/// The ping that a head would begin next, were it permitted (DeviceConfig::waits_for_permission).
-struct PingWish {
-  TimePoint from{};                      ///< not before this
-  std::chrono::nanoseconds period{};     ///< from the last ping to this one, if nobody waits
-  std::chrono::nanoseconds listening{};  ///< until its last echo is back
-};
-
 /// The rendered samples of a job: MicronJob::bins of them, from near to far, 0..255 = 0..80 dB of receiver
 /// output (docs/protocols/micron.md 6.3).
 struct MicronLine {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/common/ping_wish.hpp"
 #include "protocol/micron/device_config.hpp"
 #include "protocol/micron/device_counters.hpp"
 #include "protocol/micron/line_timing.hpp"

@@ -307,12 +307,7 @@ bool GeminiHead::Impl::permit_ping(TimePoint now) {
   if (device.surface() == 0) {
     rendering.rest();
   }
-  const std::optional<gemini::PingWish> wish = device.ping_wish();
-  if (!wish) {
-    rendering.rest_when_idle(now);
-    return false;
-  }
-  if (wish->from > now || !rendering.begin_ping(now, wish->period, wish->listening)) {
+  if (!rendering.begin_ping(now, device.ping_wish())) {
     return false;
   }
   device.permit_ping();

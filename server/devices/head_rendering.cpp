@@ -16,10 +16,16 @@ HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadSer
   }
 }
 
-bool HeadRendering::begin_ping(TimePoint now, std::chrono::nanoseconds period,
-                               std::chrono::nanoseconds listening) {
+bool HeadRendering::begin_ping(TimePoint now, const std::optional<PingWish>& wish) {
+  if (!wish) {
+    rest_when_idle(now);
+    return false;
+  }
+  if (wish->from > now) {
+    return false;
+  }
   last_wanted_ = now;
-  ping_time_ = ping_times_->begin(period, listening);
+  ping_time_ = ping_times_->begin(wish->period, wish->listening);
   return ping_time_.has_value();
 }
 

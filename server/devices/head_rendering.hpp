@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "protocol/common/ping_wish.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
@@ -45,13 +46,12 @@ class HeadRendering {
   /// this, or what PingTimes said when it was permitted.
   TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
 
-  /// By the clock of the source: whether the ping that the head wants may begin. Then it does.
-  bool begin_ping(TimePoint now, std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
+  /// By the clock of the source: whether the ping that the head wants, if it does, may begin. Then it does.
+  bool begin_ping(TimePoint now, const std::optional<PingWish>& wish);
   /// By the clock of the source: nobody wants pings.
   void rest();
-  /// By the clock of the source: no ping is wanted now. A client that asks for one after the other may take
-  /// so long between two.
-  void rest_when_idle(TimePoint now);
+  /// A client that asks for one ping after the other may take so long between two; after that nobody wants
+  /// any.
   static constexpr std::chrono::seconds longest_pause{3};
   /// See PingTimes::spare().
   std::optional<std::chrono::nanoseconds> spare_poses() const;
@@ -74,6 +74,8 @@ class HeadRendering {
   const RenderCounters& counters() const { return counters_; }
 
  private:
+  void rest_when_idle(TimePoint now);
+
   const HeadConfig& config_;
   int stream_;
   HeadServices services_;

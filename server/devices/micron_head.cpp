@@ -204,12 +204,7 @@ bool MicronHead::Impl::permit_ping(TimePoint now) {
   if (!config.device.waits_for_permission) {
     return false;
   }
-  const std::optional<micron::PingWish> wish = device.ping_wish();
-  if (!wish) {
-    rendering.rest_when_idle(now);
-    return false;
-  }
-  if (wish->from > now || !rendering.begin_ping(now, wish->period, wish->listening)) {
+  if (!rendering.begin_ping(now, device.ping_wish())) {
     return false;
   }
   device.permit_ping();
