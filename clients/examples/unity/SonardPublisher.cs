@@ -8,6 +8,7 @@ public class SonardPublisher : MonoBehaviour
 {
     public string host = "127.0.0.1";
     public int port = 14600;
+    public Transform[] bodies = new Transform[0]; // other things that move, named as in sonard's world
 
     UdpClient udp;
     Rigidbody body;
@@ -15,7 +16,7 @@ public class SonardPublisher : MonoBehaviour
     public void Start()
     {
         udp = new UdpClient(host, port);
-        body = GetComponent<Rigidbody>(); // without one, poses come without a velocity
+        body = GetComponent<Rigidbody>(); // without one, poses come with a velocity of 0
     }
 
     public void FixedUpdate()
@@ -28,13 +29,19 @@ public class SonardPublisher : MonoBehaviour
             v = transform.InverseTransformDirection(body.GetPointVelocity(p));
             turn = transform.InverseTransformDirection(body.angularVelocity);
         }
-        byte[] message = new PoseMessage(Time.fixedTimeAsDouble, FromUnity.Position(p.x, p.y, p.z),
-                                         FromUnity.Orientation(q.x, q.y, q.z, q.w),
-                                         FromUnity.Velocity(v.x, v.y, v.z),
-                                         FromUnity.TurnRate(turn.x, turn.y, turn.z)).ToArray();
+        PoseMessage message = new PoseMessage(
+            Time.fixedTimeAsDouble, FromUnity.Position(p.x, p.y, p.z), FromUnity.Orientation(q.x, q.y, q.z, q.w),
+            FromUnity.Velocity(v.x, v.y, v.z), FromUnity.TurnRate(turn.x, turn.y, turn.z));
+        foreach (Transform other in bodies)
+        {
+            p = other.position;
+            q = other.rotation;
+            message.AddBody(other.name, FromUnity.Position(p.x, p.y, p.z), FromUnity.Orientation(q.x, q.y, q.z, q.w));
+        }
+        byte[] datagram = message.ToArray();
         try
         {
-            udp.Send(message, message.Length);
+            udp.Send(datagram, datagram.Length);
         }
         catch (SocketException)
         {

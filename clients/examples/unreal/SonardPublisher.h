@@ -6,7 +6,9 @@
 #include "Components/ActorComponent.h"
 #include "Components/PrimitiveComponent.h"
 #include "CoreMinimal.h"
+#include "Engine/World.h"
 #include "GameFramework/Actor.h"
+#include "IPAddress.h"
 #include "SocketSubsystem.h"
 #include "Sockets.h"
 #include "SonardPose.h"
@@ -52,9 +54,9 @@ class USonardPublisher : public UActorComponent {
     const FQuat Rotation = Vehicle->GetActorQuat();
     FVector Velocity = Vehicle->GetVelocity();
     FVector TurnRate = FVector::ZeroVector;
-    const UPrimitiveComponent* Root = Cast<UPrimitiveComponent>(Vehicle->GetRootComponent());
+    UPrimitiveComponent* Root = Cast<UPrimitiveComponent>(Vehicle->GetRootComponent());
     if (Root && Root->IsSimulatingPhysics()) {
-      Velocity = const_cast<UPrimitiveComponent*>(Root)->GetPhysicsLinearVelocityAtPoint(Location);
+      Velocity = Root->GetPhysicsLinearVelocityAtPoint(Location);
       TurnRate = Root->GetPhysicsAngularVelocityInRadians();
     }
     const std::string Message = sonard_unreal::EncodeUpdate(

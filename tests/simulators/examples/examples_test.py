@@ -62,6 +62,11 @@ class Examples(walls.WallTest):
             self.assertEqual(once.wait(link_test.PATIENCE_S), 0, once.tail())
             with self.subTest(name):
                 self.check_ranges(expected)
+        if "body" in states:  # in front of the north wall again, with all walls 0.75 m further north
+            numbers = [*states["north"], *[0] * 6, *states["body"]]
+            self.lab.start(self.lab.head, *command, PORT, "0", *map(str, numbers))
+            with self.subTest("body"):
+                self.check_ranges({AHEAD: 3.25})
         self.end_daemon(self.daemon)
         self.assertNotIn("is refused", self.daemon.output())
 
@@ -99,7 +104,7 @@ class Examples(walls.WallTest):
                     east=(275, -50, -100, 0, 0, 0), down=(0, 0, -100, -90, -90, 0), rolled=(0, 0, -100, 0, -90, 90),
                     turning=(0, 0, -100, 0, 0, 0, 0, -500, 0, 0, 0, -TURN),
                     diving=(0, 0, -100, 0, -90, 0, 0, -500, 0, TURN, 0, 0),
-                    rolling=(0, 0, -100, 0, -90, 0, 0, 0, 500, 0, TURN, 0))
+                    rolling=(0, 0, -100, 0, -90, 0, 0, 0, 500, 0, TURN, 0), body=(0, -75, 0, 0, 0, 0))
 
     def test_unity(self):
         """East, up, north; angles about these axes; velocities in the world. A turn about up is to starboard, about right the
@@ -108,7 +113,9 @@ class Examples(walls.WallTest):
         self.follow(["mono", UNITY], north=(0, -1, 1.5, 0, 0, 0), middle=(0, -1, 0, 0, 0, 0),
                     east=(2.75, -1, 0.5, 0, 90, 0), down=(0, -1, 0, 90, 0, 0), rolled=(0, -1, 0, 0, 0, -90),
                     turning=(0, -1, 0, 0, 90, 0, 0, 0, 5, 0, -TURN, 0), diving=(0, -1, 0, 0, 0, 0, 0, 0, 5, TURN, 0, 0),
-                    rolling=(0, -1, 0, 0, 0, 0, 0, 5, 0, 0, 0, -TURN))
+                    rolling=(0, -1, 0, 0, 0, 0, 0, 5, 0, 0, 0, -TURN),
+                    # Forward is x of the model, as of the vehicle: it heads east where the world file has it.
+                    body=(0, 0, 0.75, 0, 90, 0))
 
 
 def main():

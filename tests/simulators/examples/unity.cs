@@ -1,6 +1,7 @@
 // Stands in for Unity: metres, x right, y up, z forward; angles of Quaternion.Euler, applied in the order z, x, y; velocities
 // in the world's axes. The few types of the engine that SonardPublisher.cs takes, and a scene with one vehicle.
-//   mono unity.exe PORT COUNT X Y Z EX EY EZ VX VY VZ WX WY WZ      COUNT 0: until it is ended
+//   mono unity.exe PORT COUNT X Y Z EX EY EZ VX VY VZ WX WY WZ [X Y Z EX EY EZ]      COUNT 0: until it is ended
+// The last six are position and angles of the body "walls".
 using System;
 using System.Diagnostics;
 using System.Globalization;
@@ -42,6 +43,7 @@ namespace UnityEngine
 
     public class Transform
     {
+        public string name;
         public Vector3 position;
         public Quaternion rotation;
 
@@ -83,6 +85,11 @@ public static class Scene
         vehicle.transform.rotation = UnityEngine.Quaternion.Euler(n[5], n[6], n[7]);
         vehicle.rigidbodyComponent.velocity = new UnityEngine.Vector3(n[8], n[9], n[10]);
         vehicle.rigidbodyComponent.angularVelocity = new UnityEngine.Vector3(n[11], n[12], n[13]);
+        if (n.Length == 20)
+        {
+            vehicle.bodies = new[] { new UnityEngine.Transform { name = "walls", position = new UnityEngine.Vector3(n[14], n[15], n[16]),
+                                                                 rotation = UnityEngine.Quaternion.Euler(n[17], n[18], n[19]) } };
+        }
         vehicle.Start();
         for (int i = 0; n[1] == 0 || i < n[1]; i++)
         {

@@ -47,11 +47,17 @@ int main(int argc, char** argv) {
   return sonard::test::simulate(
       argc, argv, [udp](const sonard::test::SimulatedState& state, std::uint16_t port) {
         const FQuat rotation = rotator(state.angles_rad[0], state.angles_rad[1], state.angles_rad[2]);
-        const std::string message = sonard_unreal::EncodeUpdate(
+        std::string message = sonard_unreal::EncodeUpdate(
             state.seconds, sonard_unreal::Position(vector(state.position)),
             sonard_unreal::Orientation(rotation),
             sonard_unreal::Velocity(rotation.UnrotateVector(vector(state.velocity))),
             sonard_unreal::TurnRate(rotation.UnrotateVector(vector(state.turn_rate))));
+        if (state.with_body) {
+          const auto& angles = state.body_angles_rad;
+          message +=
+              sonard_unreal::EncodeBody("walls", sonard_unreal::Position(vector(state.body_position)),
+                                        sonard_unreal::Orientation(rotator(angles[0], angles[1], angles[2])));
+        }
         sockaddr_in to{};
         to.sin_family = AF_INET;
         to.sin_port = htons(port);
