@@ -90,6 +90,17 @@ class Examples(walls.WallTest):
                     turning=(0, 0, -1, 0, 0, 0, 0, 5, 0, 0, 0, TURN), diving=(0, 0, -1, 0, 0, 90, 0, 5, 0, 0, TURN, 0),
                     rolling=(0, 0, -1, 0, 0, 90, 0, 0, 5, TURN, 0, 0))
 
+    def test_holoocean_rotations(self):
+        """Half turns and nearly so, which the places above do not have, and a rotation without any symmetry."""
+        from holoocean_pose import quaternion
+        for q in ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0.1, 0.9, -0.3, 0.2), (0.1, -0.2, 0.9, 0.3), (-0.1, 0.3, 0.2, 0.9),
+                  (0.8, -0.1, 0.3, -0.2)):
+            w, x, y, z = (part / math.hypot(*q) for part in q)
+            found = quaternion([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 0],
+                                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 0],
+                                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), 0]])
+            self.assertAlmostEqual(abs(sum(a * b for a, b in zip(found, (w, x, y, z)))), 1, places=12, msg=q)
+
     def test_stonefish(self):
         """North, east, down; roll, pitch, yaw; velocities on board."""
         self.follow(self.program("stonefish_example"), north=(1.5, 0, 1, 0, 0, 0), middle=(0, 0, 1, 0, 0, 0),
@@ -128,6 +139,7 @@ def main():
     arguments = parser.parse_args()
     link_test.PROGRAMS = os.path.abspath(arguments.programs)
     os.environ["PYTHONPATH"] = os.path.abspath(arguments.modules)
+    sys.path += [os.environ["PYTHONPATH"], os.path.join(walls.SOURCE, "clients", "examples", "holoocean")]
     UNITY = arguments.unity and os.path.abspath(arguments.unity)
     unittest.main(argv=[sys.argv[0], "-v", *arguments.tests], module=__name__)
 
