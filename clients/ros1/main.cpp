@@ -8,8 +8,11 @@
 #include <csignal>
 #include <cstdio>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "clients/posecast/pose_link.hpp"
 #include "clients/ros1/options.hpp"
@@ -148,10 +151,10 @@ class Roscast {
   std::string reason_of_silence(const std::string& topic,
                                 const std::map<std::string, std::string>& published) const {
     if (topic.empty()) {
-      return published.count("/tf") == 0 ? "no poses: nobody publishes /tf"
-                                         : "no poses from /tf: " + bridge_.why_no_vehicle();
+      return published.contains("/tf") ? "no poses from /tf: " + bridge_.why_no_vehicle()
+                                       : "no poses: nobody publishes /tf";
     }
-    if (published.count(topic) != 0) {
+    if (published.contains(topic)) {
       return fmt::format(
           "no poses from {}, though someone publishes it: is it silent, or does ROS_IP or "
           "ROS_HOSTNAME there name an address that is not reached from here?",

@@ -43,7 +43,7 @@ bool ros_master_answers() {
 }
 
 struct RosNode::Impl {
-  void on_odometry(const nav_msgs::Odometry& message) {
+  void on_odometry(const nav_msgs::Odometry& message) const {
     const pose::Velocity twist{vec3(message.twist.twist.linear), vec3(message.twist.twist.angular)};
     handlers.odometry({message.header.frame_id,
                        message.child_frame_id,
@@ -52,7 +52,7 @@ struct RosNode::Impl {
                        twist});
   }
 
-  void on_transforms(const tf2_msgs::TFMessage& message, bool is_static) {
+  void on_transforms(const tf2_msgs::TFMessage& message, bool is_static) const {
     std::vector<RosPose> transforms;
     for (const geometry_msgs::TransformStamped& one : message.transforms) {
       transforms.push_back({one.header.frame_id,
