@@ -3,7 +3,7 @@
 
     python3 sonard_bridge.py --ros-args -p topic:=/rov/odometry -p world_frame:=world
 
-No test runs this file, which takes ROS 2; they do run odometry_to_pose.py, where the conversion is.
+Tests run it without ROS 2, with a few names in place of rclpy.
 """
 import socket
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Stands in for ROS 2 and for HoloOcean: 50 messages a second, or a few, through the conversion of the example.
+"""Stands in for ROS 2 and for HoloOcean: 50 messages a second, or a few, through the example for it.
 
     python_simulators.py ros2|holoocean PORT COUNT X Y Z ROLL PITCH YAW VX VY VZ WX WY WZ      COUNT 0: until it is ended
 
@@ -41,24 +41,53 @@ def state(seconds, position, angles, velocity, turn_rate):
             "VelocitySensor": velocity, "IMUSensor": [[0, 0, 9.81], turn_rate]}
 
 
-def main():
-    simulator, port, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    sys.path.insert(0, os.path.join(EXAMPLES, simulator))
-    if simulator == "ros2":
-        from odometry_to_pose import pose_update
-        observe = odometry
-    else:
-        from holoocean_pose import pose_update
-        observe = state
-    numbers = [float(text) for text in sys.argv[4:]]
+def states(count, numbers, observe):
+    """What the simulator says, in time."""
     position, angles, velocity, turn_rate = numbers[:3], [math.radians(angle) for angle in numbers[3:6]], numbers[6:9], numbers[9:]
-    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     for i in itertools.count():
         if count and i >= count:
             break
-        seen = observe(time.monotonic(), position, angles, velocity, turn_rate)
-        udp.sendto(pose_update(seen).SerializeToString(), ("127.0.0.1", port))
+        yield observe(time.monotonic(), position, angles, velocity, turn_rate)
         time.sleep(0.02)
+
+
+def run_ros2(port, messages):
+    """The node itself, with the few names of rclpy that it takes."""
+    class Node:
+        def __init__(self, name):
+            self.name = name
+
+        def declare_parameter(self, name, default):
+            return SimpleNamespace(value=port if name == "port" else default)
+
+        def create_subscription(self, kind, topic, callback, qos):
+            self.callback = callback
+
+        def get_logger(self):
+            return SimpleNamespace(info=print, error=lambda text, throttle_duration_sec: print(text))
+
+    def spin(node):
+        for message in messages:
+            node.callback(message)
+
+    sys.modules.update({"rclpy": SimpleNamespace(init=lambda: None, spin=spin), "rclpy.node": SimpleNamespace(Node=Node),
+                        "rclpy.qos": SimpleNamespace(qos_profile_sensor_data=None),
+                        "nav_msgs": SimpleNamespace(), "nav_msgs.msg": SimpleNamespace(Odometry=None)})
+    import sonard_bridge  # noqa: F401
+
+
+def run_holoocean(port, messages):
+    from holoocean_pose import pose_update
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    for message in messages:
+        udp.sendto(pose_update(message).SerializeToString(), ("127.0.0.1", port))
+
+
+def main():
+    simulator, port, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    sys.path.insert(0, os.path.join(EXAMPLES, simulator))
+    observe, run = {"ros2": (odometry, run_ros2), "holoocean": (state, run_holoocean)}[simulator]
+    run(port, states(count, [float(text) for text in sys.argv[4:]], observe))
 
 
 main()
