@@ -30,6 +30,7 @@ constexpr int exit_done = 0;
 constexpr int exit_failed = 1;
 constexpr milliseconds patience{20};  // between two looks at signals and at the TCP connection
 constexpr seconds between_checks{2};  // of the master and its topics
+constexpr seconds silence{5};         // of a topic, before it is said
 constexpr seconds between_complaints{10};
 
 constexpr const char* odometry_type = "nav_msgs/Odometry";
@@ -142,7 +143,7 @@ class Roscast {
     // "*": subscribers are there, of any type.
     if (topic != published.end() && topic->second != odometry_type && topic->second != "*") {
       fail(fmt::format("{} carries {}, not {}", topic->first, topic->second, odometry_type));
-    } else if (now - complained_ >= between_complaints) {
+    } else if (now - last_pose_ >= silence && now - complained_ >= between_complaints) {
       complained_ = now;
       say(reason_of_silence(node.odometry_topic(), published));
     }
