@@ -61,11 +61,11 @@ void declare(CLI::App& app, Arguments& arguments) {
 
 /// @throws CLI::ValidationError
 client::Destination destination(const Arguments& arguments) {
-  const std::size_t colon = arguments.to.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == arguments.to.size()) {
+  const auto parsed = client::parse_destination(arguments.to, arguments.tcp);
+  if (!parsed) {
     throw CLI::ValidationError("--to", "expected HOST:PORT, found '" + arguments.to + "'");
   }
-  return {arguments.to.substr(0, colon), arguments.to.substr(colon + 1), arguments.tcp};
+  return *parsed;
 }
 
 std::chrono::nanoseconds to_ns(double seconds) {

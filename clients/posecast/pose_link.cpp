@@ -143,6 +143,14 @@ class TcpLink final : public ConnectedLink<tcp> {
 
 }  // namespace
 
+std::optional<Destination> parse_destination(const std::string& text, bool tcp) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) {
+    return std::nullopt;
+  }
+  return Destination{text.substr(0, colon), text.substr(colon + 1), tcp};
+}
+
 std::unique_ptr<PoseLink> connect(asio::io_context& io, const Destination& destination,
                                   OnFailure on_failure) {
   if (destination.tcp) {

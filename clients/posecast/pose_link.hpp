@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -44,6 +45,9 @@ struct Destination {
   std::string port;
   bool tcp = false;
 };
+
+/// "HOST:PORT"; nullopt where one of the two is missing.
+std::optional<Destination> parse_destination(const std::string& text, bool tcp);
 
 /// Resolves the host and connects (IPv4). `on_failure` is called once, from the io_context, when the link is
 /// lost for good: the receiver closed it, or the network is gone. That a UDP receiver is not there yet is no

@@ -148,6 +148,10 @@ class Lab:
         self._programs.append(program)
         return program
 
+    def tails(self):
+        """What every program said last, for messages of failed tests."""
+        return "\n".join(program.tail() for program in self._programs)
+
     def tc(self, namespace, *arguments):
         """Shapes the traffic that leaves by an interface."""
         _run("tc", "-netns", namespace.name, *arguments)
