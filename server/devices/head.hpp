@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "renderer/skip_ledger.hpp"
 #include "server/clock.hpp"
@@ -27,6 +28,7 @@ struct HeadServices {
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
   Playback* playback = nullptr;             ///< for heads whose DeviceConfig::plays_back is set
   Recorder* recorder = nullptr;             ///< null: nothing is recorded
+  std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
 };
 
 /// A device on its transport. Constructor and destructor belong to the thread that owns the io_context while

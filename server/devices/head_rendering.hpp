@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
+#include "server/pose/posed_body.hpp"
 #include "server/recording/events.hpp"
 #include "server/render_service.hpp"
 
@@ -59,6 +61,9 @@ class HeadRendering {
   const RenderCounters& counters() const { return counters_; }
 
  private:
+  /// Bodies as the poses say, and with them the model of the vehicle, unless it is hidden.
+  std::vector<PosedBody> bodies_at(TimePoint time) const;
+
   const HeadConfig& config_;
   int stream_;
   HeadServices services_;

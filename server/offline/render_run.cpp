@@ -98,7 +98,7 @@ class RenderRun {
   int missing_frames() const;
   void make_glf() const;
 
-  const DaemonConfig& config_;
+  DaemonConfig config_;
   const OfflineOptions& options_;
   std::size_t head_;
   Voyage voyage_;
@@ -116,9 +116,9 @@ render::RendererOptions tested(const render::RendererOptions& options) {
 }
 
 /// @throws StartError, pose::TrajectoryError where there are none
-std::unique_ptr<FrameSource> make_frames(const LoadedConfig& loaded, std::size_t head, const Voyage& voyage,
-                                         const OfflineOptions& options, BodyTruth* truth) {
-  const std::vector<AnyHeadConfig>& heads = loaded.config.heads;
+std::unique_ptr<FrameSource> make_frames(const std::vector<AnyHeadConfig>& heads, std::size_t head,
+                                         const Voyage& voyage, const OfflineOptions& options,
+                                         BodyTruth* truth) {
   try {
     check_sampling_of(heads[head]);
   } catch (const render::RequestError& error) {
@@ -140,7 +140,7 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       world_(load_world_of(config_)),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
-      frames_(make_frames(loaded, head_, voyage_, options, truth_.get())),
+      frames_(make_frames(config_.heads, head_, voyage_, options, truth_.get())),
       folder_(options.out) {
   folder_.claim(manifest(), options.overwrite);
 }

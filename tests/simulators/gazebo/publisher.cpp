@@ -1,38 +1,45 @@
-// A simulator's share of a pose topic, by the stock library: for some seconds, 50 times a second, the pose of
-// `rov` at (1, 2, -3), a quarter turn to port, and of `crab`. The stamp runs at a rate of simulated time.
-// ignition_publisher TOPIC SECONDS TIME_RATE TYPE
+// A simulator's share of a pose topic, by the stock library: entities at rest, for some seconds, 50 times a
+// second. The stamp runs at a rate of simulated time. gazebo_publisher TOPIC SECONDS TIME_RATE TYPE NAME X Y
+// Z ROLL PITCH YAW [NAME X ...] Metres, and degrees about the fixed axes x, y and z, in this order.
 #include <ignition/msgs/pose_v.pb.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ignition/math/Quaternion.hh>
 #include <ignition/transport/Node.hh>
+#include <numbers>
 #include <string>
 #include <thread>
 
 namespace {
 
-std::string world_at(double time_s) {
+constexpr int first_entity = 5;
+constexpr int words_of_entity = 7;
+
+ignition::msgs::Pose_V poses_of(char** words, int count) {
   ignition::msgs::Pose_V poses;
-  auto* const stamp = poses.mutable_header()->mutable_stamp();
-  stamp->set_sec(static_cast<std::int64_t>(time_s));
-  stamp->set_nsec(static_cast<int>((time_s - std::floor(time_s)) * 1e9));
-  for (const char* name : {"rov", "crab"}) {
+  for (int i = 0; i + words_of_entity <= count; i += words_of_entity) {
+    const auto number = [&](int word) { return std::atof(words[i + word]); };
+    const auto radians = [&](int word) { return number(word) * std::numbers::pi / 180.0; };
     auto* const pose = poses.add_pose();
-    pose->set_name(name);
-    pose->mutable_position()->set_x(1);
-    pose->mutable_position()->set_y(2);
-    pose->mutable_position()->set_z(-3);
-    pose->mutable_orientation()->set_w(std::sqrt(0.5));
-    pose->mutable_orientation()->set_z(std::sqrt(0.5));
+    pose->set_name(words[i]);
+    pose->mutable_position()->set_x(number(1));
+    pose->mutable_position()->set_y(number(2));
+    pose->mutable_position()->set_z(number(3));
+    const ignition::math::Quaterniond q(radians(4), radians(5), radians(6));
+    pose->mutable_orientation()->set_w(q.W());
+    pose->mutable_orientation()->set_x(q.X());
+    pose->mutable_orientation()->set_y(q.Y());
+    pose->mutable_orientation()->set_z(q.Z());
   }
-  return poses.SerializeAsString();
+  return poses;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
+  if (argc < first_entity + words_of_entity || (argc - first_entity) % words_of_entity != 0) {
     return 64;
   }
   ignition::transport::Node node;
@@ -40,9 +47,14 @@ int main(int argc, char** argv) {
   if (!publisher) {
     return 1;
   }
+  ignition::msgs::Pose_V poses = poses_of(argv + first_entity, argc - first_entity);
   const int count = static_cast<int>(std::atof(argv[2]) * 50);
   for (int i = 0; i < count; ++i) {
-    publisher.PublishRaw(world_at(0.02 * i * std::atof(argv[3])), argv[4]);
+    const double time_s = 0.02 * i * std::atof(argv[3]);
+    auto* const stamp = poses.mutable_header()->mutable_stamp();
+    stamp->set_sec(static_cast<std::int64_t>(time_s));
+    stamp->set_nsec(static_cast<int>((time_s - std::floor(time_s)) * 1e9));
+    publisher.PublishRaw(poses.SerializeAsString(), argv[4]);
     std::this_thread::sleep_for(std::chrono::milliseconds{20});
   }
   return 0;

@@ -1,0 +1,46 @@
+// All pose sources of a configuration, and how well each delivers.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/pose/pose_source.hpp"
+#include "server/pose/pose_statistics.hpp"
+
+namespace sonard::server {
+
+/// Belongs to the I/O thread, as its sources do; made and destroyed by whoever owns the io_context while
+/// nobody runs it. Every `report_period`, and when it is stopped, it logs a line for each source; a source
+/// that stays silent is told of once.
+class PoseInputs {
+ public:
+  /// Every pose of every source goes to `sink`.
+  /// @throws what make_pose_sources() throws
+  PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock, PoseSink sink);
+
+  /// @throws PoseSourceError
+  void start();
+  void stop();
+
+  std::size_t size() const { return sources_.size(); }
+  const PoseSource& source(std::size_t index) const { return *sources_[index]; }
+  const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
+
+  static constexpr std::chrono::seconds report_period{10};
+
+ private:
+  void report_every_period();
+  void report();
+
+  const Clock& clock_;
+  std::vector<std::unique_ptr<PoseStatistics>> statistics_;  // by source
+  std::vector<std::unique_ptr<PoseSource>> sources_;
+  std::vector<bool> told_silent_;  // by source
+  bool running_ = false;
+  boost::asio::steady_timer report_timer_;
+};
+
+}  // namespace sonard::server
