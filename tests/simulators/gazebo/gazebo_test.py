@@ -188,7 +188,7 @@ class Gazebo(link_test.LinkTest):
         sonard = os.path.join(link_test.PROGRAMS, "sonard")
         self.daemon = self.lab.start(self.lab.head, sonard, "run", SHIPPED)
         self.daemon.wait_for_line(r"sonard ready heads=1 world=gazebo_basin ", link_test.START_S)
-        self.publish(("rov", -2, 0, -2.5, 0, 0, 30), ("crate", -4, -2.5, -4.75, 0, 0, 0))
+        self.publish(("rov", -2, 0, -2.5, 0, 0, 30), ("crate", 1, 1.2, -2.7, 0, 0, 20))
         self.daemon.wait_for_line(r"the vehicle is entity 'rov', first at \(-2.000, 0.000, -2.500\)", link_test.PATIENCE_S)
         view = self.lab.start(self.lab.head, os.path.join(link_test.PROGRAMS, "sonarview"), "--pings", "3", "--quiet",
                               "--log-pings", "--wait", "60", "--ping-wait", "60", "--range", "8", "--out", self.folder.name)

@@ -72,6 +72,29 @@ TEST(Sonars, FollowTheFrameGraph) {
   expect_near(world.sonars[0].T_body_sonar.position_m, {2, 0, -1});
 }
 
+/// As vehicles usually come: a model of its own, in an older version of SDF, under the name that the world
+/// gives it.
+TEST(Sonars, ComeWithIncludedModels) {
+  const test::TempFolder folder;
+  folder.write(
+      "models/rov/model.sdf",
+      "<sdf version=\"1.6\" xmlns:sonard=\"https://sonard.dev/sdf\"><model name=\"rov\"><link name=\"bow\">"
+      "<pose>0.5 0 0 0 0 0</pose>" +
+          ball +
+          "<sensor name=\"gemini\" type=\"custom\" sonard:type=\"gemini_720i\"><pose>0 0 0.1 0 0 0</pose>"
+          "</sensor></link></model></sdf>");
+  const World world = load_world(
+      folder.write("w.sdf",
+                   "<sdf version=\"1.6\"><world name=\"w\"><include><uri>model://rov</uri><name>rov_1</name>"
+                   "<pose>7 8 9 0 0 1</pose></include></world></sdf>"),
+      {});
+  ASSERT_EQ(world.sonars.size(), 1U);
+  EXPECT_EQ(world.sonars[0].path, "rov_1::bow::gemini");
+  EXPECT_EQ(world.sonars[0].body, "rov_1");
+  expect_near(world.sonars[0].T_body_sonar.position_m, {0.5, 0, 0.1});
+  EXPECT_THAT(world.warnings, IsEmpty());
+}
+
 TEST(Sonars, AreRefusedInTheWrongPlace) {
   const std::string link = "<model name=\"m\"><link name=\"l\">" + ball;
   EXPECT_THAT(
