@@ -9,8 +9,8 @@
 namespace sonard::server {
 
 PoseInputs::PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock,
-                       PoseSink sink)
-    : clock_(clock), report_timer_(io) {
+                       PoseSink sink, std::chrono::milliseconds report_period)
+    : clock_(clock), report_period_(report_period), report_timer_(io) {
   const auto measured_sink = [&] {
     PoseStatistics& statistics =
         *statistics_.emplace_back(std::make_unique<PoseStatistics>(config.extrapolation_limit));
@@ -48,7 +48,7 @@ void PoseInputs::stop() {
 }
 
 void PoseInputs::report_every_period() {
-  report_timer_.expires_after(report_period);
+  report_timer_.expires_after(report_period_);
   // An end of this object is one of the timer, too, and calls with an error.
   report_timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error && running_) {

@@ -1,6 +1,7 @@
 // All pose sources of a configuration, and how well each delivers.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -19,7 +20,8 @@ class PoseInputs {
  public:
   /// Every pose of every source goes to `sink`.
   /// @throws what make_pose_sources() throws
-  PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock, PoseSink sink);
+  PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock, PoseSink sink,
+             std::chrono::milliseconds report_period = std::chrono::seconds{10});
 
   /// @throws PoseSourceError
   void start();
@@ -29,13 +31,12 @@ class PoseInputs {
   const PoseSource& source(std::size_t index) const { return *sources_[index]; }
   const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
 
-  static constexpr std::chrono::seconds report_period{10};
-
  private:
   void report_every_period();
   void report();
 
   const Clock& clock_;
+  std::chrono::milliseconds report_period_;
   std::vector<std::unique_ptr<PoseStatistics>> statistics_;  // by source
   std::vector<std::unique_ptr<PoseSource>> sources_;
   std::vector<bool> told_silent_;  // by source
