@@ -18,6 +18,7 @@
 #include "server/config/overlaps.hpp"
 #include "server/devices/heads.hpp"
 #include "server/devices/interfaces.hpp"
+#include "server/take_from_world.hpp"
 
 namespace sonard::server {
 namespace {
@@ -40,6 +41,7 @@ class Check {
     if (try_addresses) {
       check_addresses();
     }
+    report_.config = std::move(config_);
     return std::move(report_);
   }
 
@@ -63,7 +65,7 @@ class Check {
   void try_socket(const Endpoint& endpoint, const std::string& key);
 
   const LoadedConfig& loaded_;
-  const DaemonConfig& config_;
+  DaemonConfig config_;
   CheckReport report_;
 };
 
@@ -96,6 +98,18 @@ void Check::check_world() {
           fmt::format("         repaired: {} degenerate and {} non-finite triangles dropped, {} normals and "
                       "{} texture coordinates",
                       d.degenerate_triangles, d.non_finite_triangles, d.bad_normals, d.bad_texcoords));
+    }
+    for (const std::string& line : world.left_out) {
+      report_.summary.push_back("         left out: " + line);
+    }
+    for (const render::WorldSonar& sonar : world.sonars) {
+      report_.summary.push_back(fmt::format("sonar    {}: {} of the world", sonar.path, sonar.type));
+    }
+    for (const WorldProblem& found : take_from_world(config_, world)) {
+      problem(found.key, found.message);
+    }
+    if (!config_.vehicle_model.empty()) {
+      report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.vehicle_model));
     }
   } catch (const render::WorldError& error) {
     problem("world.file", error.what());
@@ -168,17 +182,20 @@ std::string status_text(const GeminiHeadConfig& head) {
   return fmt::format("to {}", fmt::join(hosts, ", "));
 }
 
-std::string acoustics_text(const render::SonarSettings& acoustics) {
-  return fmt::format("mode {}, absorption {:.1f} dB/km",
+/// The end of a head's line.
+std::string rest_text(const HeadConfig& head) {
+  const render::SonarSettings& acoustics = head.acoustics;
+  return fmt::format("mode {}, absorption {:.1f} dB/km{}{}",
                      acoustics.model == render::Model::paper ? "paper" : "physical",
-                     1000.0 * acoustics.physical.absorption_db_per_m);
+                     1000.0 * acoustics.physical.absorption_db_per_m,
+                     head.mount_from_world.empty() ? "" : ", mounted at " + head.mount_from_world,
+                     head.hides_vehicle ? ", vehicle hidden" : "");
 }
 
 void Check::describe(const GeminiHeadConfig& head) {
-  report_.summary.push_back(fmt::format("head     {}: Gemini 720i, ID {}, commands to {}, status {}, {}",
-                                        head.name, head.device.sonar_id,
-                                        endpoint_text({head.bind_address, head.command_port}),
-                                        status_text(head), acoustics_text(head.acoustics)));
+  report_.summary.push_back(fmt::format(
+      "head     {}: Gemini 720i, ID {}, commands to {}, status {}, {}", head.name, head.device.sonar_id,
+      endpoint_text({head.bind_address, head.command_port}), status_text(head), rest_text(head)));
 }
 
 void Check::describe(const MicronHeadConfig& head) {
@@ -194,7 +211,7 @@ void Check::describe(const MicronHeadConfig& head) {
   }
   report_.summary.push_back(fmt::format("head     {}: Micron, node {}, {} duplex, line by {}, {}", head.name,
                                         head.device.node, head.device.half_duplex ? "half" : "full",
-                                        fmt::join(ways, ", "), acoustics_text(head.acoustics)));
+                                        fmt::join(ways, ", "), rest_text(head)));
 }
 
 void Check::check_head(std::size_t index) {

@@ -12,6 +12,7 @@ struct CheckReport {
   std::vector<std::string> problems;  ///< one line each: file, line, key, what is wrong
   std::vector<std::string> warnings;  ///< the same form
   std::vector<std::string> summary;   ///< what was found, for people
+  DaemonConfig config;                ///< with what it takes from its world
 };
 
 /// Loads the world and the trajectory, grids every head's fan and, with `try_addresses`, binds each socket

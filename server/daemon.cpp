@@ -27,9 +27,10 @@
 #include "server/devices/udp_endpoint.hpp"
 #include "server/exit_codes.hpp"
 #include "server/pose/pose_history.hpp"
+#include "server/pose/pose_inputs.hpp"
 #include "server/pose/pose_intake.hpp"
-#include "server/pose/pose_source.hpp"
 #include "server/recording/recorder.hpp"
+#include "server/take_from_world.hpp"
 
 namespace sonard::server {
 namespace {
@@ -80,11 +81,10 @@ std::string head_key(std::size_t index, const char* rest) {
   return fmt::format("heads[{}].{}", index, rest);
 }
 
-std::vector<std::unique_ptr<PoseSource>> make_sources(asio::io_context& io, const DaemonConfig& config,
-                                                      const Clock& clock, const PoseSink& sink,
-                                                      const PoseHold& hold) {
+std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig& config, const Clock& clock,
+                                        const PoseSink& sink, const PoseHold& hold) {
   try {
-    return make_pose_sources(io, config.poses, clock, sink, hold);
+    return std::make_unique<PoseInputs>(io, config.poses, clock, sink, hold);
   } catch (const pose::TrajectoryError& error) {
     throw StartError("poses.trajectory.file", exit_config, error.what());
   } catch (const PoseSourceError& error) {
@@ -121,9 +121,9 @@ std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
 }
 
 // Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
-// `io_`, and with it sources, history and heads; each RenderService has a render thread. Scanning heads have
-// one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that takes a
-// hundred.
+// `io_`, and with it pose inputs, history and heads; each RenderService has a render thread. Scanning heads
+// have one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that
+// takes a hundred.
 //
 // Shutdown, in the order of run(): main is told to end by a signal or by end(). It posts stop_io(), which
 // closes every socket and cancels every timer; joins the render threads, which finish the pings they are
@@ -141,7 +141,7 @@ class Daemon {
   RenderServiceHooks hooks();
   std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
                                                   const RendererFactory& make_renderer);
-  void start_sources();
+  void start_inputs();
   void poses_changed();
   std::optional<std::chrono::nanoseconds> spare_poses() const;
   void end_when_played();
@@ -157,7 +157,7 @@ class Daemon {
   asio::steady_timer playback_timer_;
   PoseHistory poses_;
   PoseIntake intake_;
-  std::vector<std::unique_ptr<PoseSource>> sources_;
+  std::unique_ptr<PoseInputs> inputs_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
   std::unique_ptr<Recorder> recorder_;                           // null when nothing is recorded
   std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
@@ -171,7 +171,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       playback_timer_(io_),
       poses_(config.poses),
       intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return spare_poses(); }}),
-      sources_(make_sources(
+      inputs_(make_inputs(
           io_, config, clock_,
           [this](const pose::PoseSample& sample, TimePoint arrival) { intake_.take(sample, arrival); },
           [this] { return intake_.hold(); })),
@@ -181,8 +181,15 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       beam_renderer_(make_renderer_of(true, config, make_renderer)) {
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     RenderService& renderer = *(is_scanning(config.heads[i]) ? beam_renderer_ : fan_renderer_);
-    const HeadServices services{io_,         clock_,    renderer,       poses_, world.water_surface_z_m,
-                                config.skip, playback_, recorder_.get()};
+    const HeadServices services{io_,
+                                clock_,
+                                renderer,
+                                poses_,
+                                world.water_surface_z_m,
+                                config.skip,
+                                playback_,
+                                recorder_.get(),
+                                config.vehicle_model};
     try {
       heads_.push_back(make_head(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
@@ -190,7 +197,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       throw StartError(head_key(i, serial ? "serial" : "network.bind"), exit_network, error.what());
     }
   }
-  start_sources();
+  start_inputs();
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(),
                             (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
@@ -220,14 +227,11 @@ RenderServiceHooks Daemon::hooks() {
   return hooks;
 }
 
-void Daemon::start_sources() {
-  for (const std::unique_ptr<PoseSource>& source : sources_) {
-    try {
-      source->start();
-    } catch (const PoseSourceError& error) {
-      throw StartError("poses", exit_network, error.what());
-    }
-    spdlog::info("{}", source->description());
+void Daemon::start_inputs() {
+  try {
+    inputs_->start();
+  } catch (const PoseSourceError& error) {
+    throw StartError("poses", exit_network, error.what());
   }
 }
 
@@ -311,12 +315,7 @@ void Daemon::run_io() {
 
 void Daemon::stop_io() {
   playback_timer_.cancel();
-  for (const std::unique_ptr<PoseSource>& source : sources_) {
-    source->stop();
-    const PoseSourceCounters& done = source->counters();
-    spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}{}", source->description(),
-                 done.samples, done.malformed, done.bad_value, done.refused, source->details());
-  }
+  inputs_->stop();
   intake_.stop();
   for (const std::unique_ptr<Head>& head : heads_) {
     head->stop();
@@ -333,7 +332,7 @@ void Daemon::end(int exit_code) {
 
 }  // namespace
 
-render::World load_world_of(const DaemonConfig& config) {
+render::World load_world_of(DaemonConfig& config) {
   try {
     render::World world = render::load_world(config.world_file);
     for (const std::string& warning : world.warnings) {
@@ -343,6 +342,12 @@ render::World load_world_of(const DaemonConfig& config) {
       throw StartError(
           "world.file", exit_config,
           config.world_file.string() + ": the world has no triangles (expected a surface that echoes)");
+    }
+    for (const std::string& line : world.left_out) {
+      spdlog::info("world {}: left out: {}", world.name, line);
+    }
+    for (const WorldProblem& problem : take_from_world(config, world)) {
+      throw StartError(problem.key, exit_config, problem.message);
     }
     return world;
   } catch (const render::WorldError& error) {
@@ -355,7 +360,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config) {
           config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
 }
 
-int run_daemon(const DaemonConfig& config) {
+int run_daemon(DaemonConfig config) {
   const render::World world = load_world_of(config);
   for (const AnyHeadConfig& head : config.heads) {
     try {

@@ -24,9 +24,10 @@ struct StartError : std::runtime_error {
   int exit_code;    ///< of server/exit_codes.hpp
 };
 
-/// The world of a configuration. Logs what is odd about it.
+/// The world of a configuration, which takes from it what it leaves to its world (take_from_world()). Logs
+/// what is odd about it, and what is left out.
 /// @throws StartError
-render::World load_world_of(const DaemonConfig& config);
+render::World load_world_of(DaemonConfig& config);
 
 /// What a renderer is made with.
 render::RendererOptions renderer_options(const DaemonConfig& config);
@@ -36,7 +37,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config);
 /// "sonard ready". A second signal kills at once.
 /// @return exit_clean; exit_renderer when the renderer fails while serving; exit_internal
 /// @throws StartError, render::RendererError before it is ready
-int run_daemon(const DaemonConfig& config);
+int run_daemon(DaemonConfig config);
 
 /// The same with a world already loaded and any renderer; run_daemon() without rendering, for tests.
 /// @param playback what heads play back that are told to; the daemon ends when it is finished. May be null.

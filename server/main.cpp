@@ -1,4 +1,6 @@
 // The program: command line, log, and the one place where exceptions become exit codes.
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -18,6 +20,7 @@
 #include "server/daemon.hpp"
 #include "server/exit_codes.hpp"
 #include "server/info/info.hpp"
+#include "server/listen.hpp"
 #include "server/logs/log_file.hpp"
 #include "server/offline/arguments.hpp"
 #include "server/offline/output_folder.hpp"
@@ -31,7 +34,7 @@ namespace {
 constexpr const char* exit_code_help =
     "Exit codes:\n"
     "  0   ended by SIGINT or SIGTERM or with the recording, or nothing to complain about\n"
-    "  2   configuration, world, trajectory or log cannot be used\n"
+    "  2   configuration, world, trajectory or log cannot be used, or check --listen heard no pose\n"
     "  3   an address or port cannot be used\n"
     "  4   the backend asked for cannot be had, failed self-test, or the renderer failed while serving\n"
     "  5   a file or folder to write to cannot be used\n"
@@ -42,6 +45,7 @@ struct CommandLine {
   std::filesystem::path config;
   std::string log_level;  ///< empty: as the configuration says
   bool no_network = false;
+  double listen_s = 0.0;                                 ///< 0: check does not listen
   render::Backend backend = render::Backend::automatic;  ///< of selftest
   std::filesystem::path log;                             ///< of replay and info
   ReplayTiming timing;
@@ -130,6 +134,11 @@ int check(const CommandLine& arguments) {
   }
   if (report.problems.empty()) {
     fmt::print("{}: good\n", arguments.config.string());
+    if (arguments.listen_s > 0.0) {
+      spdlog::set_level(spdlog::level::warn);  // who sends what is in the report
+      return listen_to_poses(report.config.poses,
+                             std::chrono::nanoseconds(std::llround(1e9 * arguments.listen_s)));
+    }
     return exit_clean;
   }
   fmt::print("{}: {} problem{}\n", arguments.config.string(), report.problems.size(),
@@ -218,6 +227,12 @@ int main_program(int argc, char** argv) {
   check_command->add_option("CONFIG", arguments.config, "YAML file (docs/configuration.md)")->required();
   check_command->add_flag("--no-network", arguments.no_network,
                           "Do not try whether the addresses can be bound here");
+  check_command
+      ->add_option(
+          "--listen", arguments.listen_s,
+          "Then listen to the pose inputs for this many seconds and say what arrives; exit code 0 when a "
+          "pose of the vehicle does")
+      ->check(CLI::Range(0.1, 86'400.0));
 
   CLI::App* render_command = app.add_subcommand(
       "render", "Render a trajectory to pictures, arrays and a log, without serving (docs/offline.md)");

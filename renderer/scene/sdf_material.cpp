@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* material_element = "sonard:material";
 constexpr const char* water_surface_element = "sonard:water_surface_z";
+constexpr const char* sonar_attribute = "sonard:type";
 constexpr std::array<std::string_view, 5> material_numbers{
     "reflectance", "lambert_mu_db", "pressure_reflection", "rms_slope", "rms_height_mm"};
 constexpr std::array<std::string_view, 4> material_parents{"visual", "collision", "link", "model"};
@@ -83,9 +84,27 @@ void check_own_element(const sdf::ElementPtr& element, const std::string& parent
   }
 }
 
+void check_own_attributes(const sdf::ElementPtr& element) {
+  for (const auto& given : element->GetAttributes()) {
+    const std::string key = given->GetKey();
+    if (!key.starts_with("sonard:")) {
+      continue;
+    }
+    const auto parent = element->GetParent();
+    if (key != sonar_attribute || element->GetName() != "sensor" || !parent || parent->GetName() != "link" ||
+        element->Get<std::string>("type") != "custom") {
+      throw WorldError(
+          fmt::format("{}: attribute '{}' of <{}>: there is only {}, of a <sensor type=\"custom\"> "
+                      "in a <link>",
+                      place_of(element), key, element->GetName(), sonar_attribute));
+    }
+  }
+}
+
 }  // namespace
 
 void check_own_elements(const sdf::ElementPtr& root) {
+  check_own_attributes(root);
   for (auto child = root->GetFirstElement(); child; child = child->GetNextElement()) {
     if (child->GetName().starts_with("sonard:")) {
       check_own_element(child, root->GetName());
@@ -144,6 +163,13 @@ std::optional<double> water_surface_z_m(const sdf::ElementPtr& world) {
   } catch (const WorldError& error) {
     throw WorldError(fmt::format("{}: {}", place_of(given), error.what()));
   }
+}
+
+std::optional<std::string> sonar_type(const sdf::ElementPtr& element) {
+  if (element->GetName() != "sensor" || !element->HasAttribute(sonar_attribute)) {
+    return std::nullopt;
+  }
+  return element->GetAttribute(sonar_attribute)->GetAsString();
 }
 
 }  // namespace sonard::render

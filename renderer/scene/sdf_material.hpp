@@ -1,4 +1,5 @@
-// Our own elements in an SDF file: <sonard:material> and <sonard:water_surface_z>. Defined in docs/worlds.md.
+// Our own elements in an SDF file, <sonard:material> and <sonard:water_surface_z>, and our own attribute,
+// sonard:type of a <sensor>. Defined in docs/worlds.md.
 #pragma once
 
 #include <optional>
@@ -11,8 +12,8 @@
 
 namespace sonard::render {
 
-/// Refuses elements of the sonard namespace that are unknown, misplaced or there twice, so that a slip of the
-/// pen is not taken for a default.
+/// Refuses elements and attributes of the sonard namespace that are unknown, misplaced or there twice, so
+/// that a slip of the pen is not taken for a default.
 /// @throws WorldError "file:line: ..."
 void check_own_elements(const sdf::ElementPtr& root);
 
@@ -29,5 +30,8 @@ std::optional<AcousticMaterial> inherited_material(const sdf::ElementPtr& elemen
 /// <sonard:water_surface_z> of a <world>, metres.
 /// @throws WorldError "file:line: ..."
 std::optional<double> water_surface_z_m(const sdf::ElementPtr& world);
+
+/// sonard:type of a <sensor type="custom">, "gemini_720i"; nullopt for any other element.
+std::optional<std::string> sonar_type(const sdf::ElementPtr& element);
 
 }  // namespace sonard::render

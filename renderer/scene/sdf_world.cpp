@@ -25,12 +25,14 @@
 #include <sdf/Plane.hh>
 #include <sdf/Root.hh>
 #include <sdf/SemanticPose.hh>
+#include <sdf/Sensor.hh>
 #include <sdf/Sphere.hh>
 #include <sdf/Visual.hh>
 #include <sdf/World.hh>
 
 #include "renderer/scene/heightfield.hpp"
 #include "renderer/scene/image_file.hpp"
+#include "renderer/scene/left_out.hpp"
 #include "renderer/scene/materials.hpp"
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/mesh_file.hpp"
@@ -92,10 +94,6 @@ class WorldBuilder {
       for (std::uint64_t i = 0; i < world->ModelCount(); ++i) {
         add_body(*world->ModelByIndex(i));
       }
-      for (std::uint64_t i = 0; i < world->ActorCount(); ++i) {
-        world_.warnings.push_back(
-            fmt::format("{}: actors are not supported: one is left out", file_.string()));
-      }
     } else {
       world_.name = root.Model()->Name();
       add_body(*root.Model());
@@ -105,6 +103,7 @@ class WorldBuilder {
           fmt::format("{}: the world has no triangles: there is nothing to hear", file_.string()));
     }
     drop_repeated_warnings();
+    tell_what_is_left_out(root.Element());
     return std::move(world_);
   }
 
@@ -113,6 +112,14 @@ class WorldBuilder {
   void drop_repeated_warnings() {
     std::set<std::string> seen;
     std::erase_if(world_.warnings, [&](const std::string& line) { return !seen.insert(line).second; });
+  }
+
+  void tell_what_is_left_out(const sdf::ElementPtr& root) {
+    left_out_.add_elements_of(root);
+    world_.left_out = left_out_.silent();
+    for (const std::string& line : left_out_.audible()) {
+      world_.warnings.push_back(fmt::format("{}: left out: {}", file_.string(), line));
+    }
   }
 
   [[noreturn]] static void fail(const sdf::ElementPtr& element, const std::string& path,
@@ -155,6 +162,7 @@ class WorldBuilder {
       } else {
         add_collisions(body, link, T_body_model, link_path);
       }
+      add_sonars(body, link, T_body_model, link_path);
     }
     for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
       const sdf::Model& nested = *model.ModelByIndex(i);
@@ -191,9 +199,25 @@ class WorldBuilder {
     }
   }
 
+  void add_sonars(const Body& body, const sdf::Link& link, const Pose& T_body_model,
+                  const std::string& link_path) {
+    for (std::uint64_t i = 0; i < link.SensorCount(); ++i) {
+      const sdf::Sensor& sensor = *link.SensorByIndex(i);
+      if (const auto type = sonar_type(sensor.Element())) {
+        const std::string path = link_path + "::" + sensor.Name();
+        const Pose T_model_sonar = resolve(sensor.SemanticPose(), "__model__", sensor.Element(), path);
+        world_.sonars.push_back({path, *type, body.name, T_body_model * T_model_sonar});
+      }
+    }
+  }
+
   void add_shape(Body& body, const Shape& shape) {
     if (shape.geometry == nullptr) {
       fail(shape.element, shape.path, "there is no geometry");
+    }
+    if (const std::string kind = unsupported_geometry(*shape.geometry); !kind.empty()) {
+      left_out_.add_geometry(kind, shape.path);
+      return;
     }
     try {
       const auto normal_map = normal_map_of(shape);
@@ -204,6 +228,13 @@ class WorldBuilder {
     } catch (const WorldError& error) {
       fail(shape.element, shape.path, error.what());
     }
+  }
+
+  /// The name of a geometry that libsdformat knows and we do not; empty for all others.
+  static std::string unsupported_geometry(const sdf::Geometry& geometry) {
+    const auto element = geometry.Type() == sdf::GeometryType::EMPTY ? geometry.Element() : nullptr;
+    const auto kind = element ? element->GetFirstElement() : nullptr;
+    return kind && kind->GetName() != "empty" ? kind->GetName() : std::string();
   }
 
   /// The geometry as one or more meshes (a file has one per material).
@@ -233,16 +264,8 @@ class WorldBuilder {
       case sdf::GeometryType::EMPTY:
         break;
     }
-    const auto element = geometry.Element();
-    const auto kind = element ? element->GetFirstElement() : nullptr;
-    if (!kind) {
+    if (const auto element = geometry.Element(); !element || !element->GetFirstElement()) {
       throw WorldError("there is no geometry");
-    }
-    if (kind->GetName() != "empty") {
-      throw WorldError(
-          fmt::format("geometry <{}> is not supported; there are box, sphere, ellipsoid, cylinder, capsule, "
-                      "plane, heightmap, mesh",
-                      kind->GetName()));
     }
     return {};
   }
@@ -346,6 +369,7 @@ class WorldBuilder {
   fs::path file_;
   UriResolver resolver_;
   World world_;
+  LeftOut left_out_;
   std::vector<std::pair<MeshFileRequest, std::vector<MeshFilePart>>> mesh_files_;
   std::map<fs::path, std::shared_ptr<const NormalMap>> normal_maps_;
 };

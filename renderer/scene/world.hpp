@@ -74,6 +74,14 @@ struct Body {
   std::vector<BodyPart> parts;
 };
 
+/// A place for a sonar in a world: <sensor type="custom" sonard:type="..."> (docs/worlds.md).
+struct WorldSonar {
+  std::string path;   ///< "rov::sonar_link::gemini"; unique
+  std::string type;   ///< the text of sonard:type, not checked
+  std::string body;   ///< that carries it
+  Pose T_body_sonar;  ///< x is the acoustic axis, z up
+};
+
 /// What a loader had to repair or drop; shown by `sonard check`.
 struct MeshDiagnostics {
   std::size_t degenerate_triangles = 0;  ///< zero area or repeated corner: dropped
@@ -89,7 +97,10 @@ struct World {
   /// Height of the water surface in the world frame; a sonar above it is out of the water.
   std::optional<double> water_surface_z_m;
   MeshDiagnostics diagnostics;
+  std::vector<WorldSonar> sonars;
   std::vector<std::string> warnings;  ///< one line each, naming the file
+  /// What the file has that no sonar hears ("lights (2): sun, lamp"), a line for each kind.
+  std::vector<std::string> left_out;
 
   std::size_t triangle_count() const;
   /// Null when no body has this name.

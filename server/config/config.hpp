@@ -116,7 +116,7 @@ struct IgnitionPoseInput {
   };
   std::string topic;
   std::string partition;          ///< empty: that of IGN_PARTITION
-  SimulatorEntity vehicle;        ///< carrier of the sonars
+  SimulatorEntity vehicle;        ///< carrier of the sonars; without a name: DaemonConfig::vehicle_model
   render::Pose T_entity_vehicle;  ///< mount of the vehicle frame on that entity
   std::vector<Body> bodies;
 };
@@ -211,6 +211,9 @@ struct SerialLinkConfig {
 struct HeadConfig {
   std::string name;              ///< unique in the daemon; appears in every log line of this head
   render::Pose T_vehicle_sonar;  ///< mount
+  /// The sonar of the world that the mount is to be taken from (take_from_world() does); empty: none.
+  std::string mount_from_world;
+  bool hides_vehicle = false;  ///< whether DaemonConfig::vehicle_model is not in its images
   /// Everything of a ping that the device does not say by itself.
   render::SonarSettings acoustics;
   std::uint64_t seed = 1;  ///< of speckle and noise
@@ -286,6 +289,9 @@ struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
+  /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries
+  /// the sonars that heads are mounted from (take_from_world() fills it in).
+  std::string vehicle_model;
   render::Backend backend = render::Backend::automatic;
   render::GpuBinning gpu_binning = render::GpuBinning::automatic;
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)

@@ -120,6 +120,16 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
   section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0));
 }
 
+void read_mount(YamlSection& section, HeadConfig& head) {
+  section.text("from_world", head.mount_from_world);
+  read_pose(section, head.T_vehicle_sonar);
+  for (const char* key : {"position_m", "rpy_deg"}) {
+    if (section.has("from_world") && section.has(key)) {
+      section.report(key, "the world says where the head sits (expected this or from_world)");
+    }
+  }
+}
+
 /// One line for all heads: they share the water, and nearly the frequency.
 void warn_of_extrapolation(std::vector<ConfigWarning>& warnings) {
   const bool said = std::any_of(warnings.begin(), warnings.end(),
@@ -149,7 +159,8 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
   head.acoustics.sampling = context.sampling;
   section.require("name", "a name of this head for the log");
   section.text("name", head.name);
-  section.section("mount", [&](YamlSection& inner) { read_pose(inner, head.T_vehicle_sonar); });
+  section.section("mount", [&](YamlSection& inner) { read_mount(inner, head); });
+  section.boolean("hides_vehicle", head.hides_vehicle);
   section.section("dump", [&](YamlSection& inner) {
     std::string directory;
     inner.require("directory", "a folder to write to");

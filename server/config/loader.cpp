@@ -110,7 +110,6 @@ std::optional<std::string> any_text(std::string_view text) {
 
 /// `name_key` and "parents", which says what a relative pose is relative to.
 void read_entity(YamlSection& section, std::string_view name_key, bool relative, SimulatorEntity& entity) {
-  section.require(name_key, "the name of an entity of the simulator");
   section.text(name_key, entity.name);
   section.parsed_list("parents", entity.parents, &any_text, "names of entities, the outermost first");
   if (!relative && section.has("parents")) {
@@ -128,14 +127,21 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}});
   const bool relative = frame == Frame::relative;
   read_entity(section, "vehicle", relative, ignition.vehicle);
-  if (relative) {
+  const bool named = section.has("vehicle");
+  if (relative && named) {
     section.require("parents",
                     "what the vehicle's pose is relative to, the outermost first; [] for a model "
                     "that stands in the world");
   }
+  for (const char* key : {"parents", "mount"}) {
+    if (!named && section.has(key)) {
+      section.report(key, "is of `vehicle`, which is not given (expected both, or neither)");
+    }
+  }
   section.section("mount", [&](YamlSection& inner) { read_pose(inner, ignition.T_entity_vehicle); });
   section.sections("bodies", [&](YamlSection& inner) {
     IgnitionPoseInput::Body& body = ignition.bodies.emplace_back();
+    inner.require("entity", "the name of an entity of the simulator");
     read_entity(inner, "entity", relative, body.entity);
     inner.require("body", "the name of a model of the world");
     inner.text("body", body.body);
@@ -255,6 +261,7 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
     section.require("file", "an SDF world");
     section.text("file", path);
     config.world_file = context.folder / path;
+    section.text("vehicle_model", config.vehicle_model);
   });
   root.choice("backend", config.backend,
               {{"auto", render::Backend::automatic},

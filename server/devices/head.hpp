@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "renderer/skip_ledger.hpp"
 #include "server/clock.hpp"
@@ -28,6 +29,7 @@ struct HeadServices {
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
   Playback* playback = nullptr;             ///< for heads whose DeviceConfig::plays_back is set
   Recorder* recorder = nullptr;             ///< null: nothing is recorded
+  std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
 };
 
 /// A device on its transport. Constructor and destructor belong to the thread that owns the io_context while

@@ -8,6 +8,14 @@
 #include "server/pose/pose_history.hpp"
 
 namespace sonard::server {
+namespace {
+
+/// Where a hidden vehicle is: no ping reaches so far, and the renderer drops what none reaches. Always the
+/// same place, so that an unchanged scene stays one. Heads that share a renderer and hide different things
+/// each move the body for their pings.
+const render::Pose out_of_sight{{0.0, 0.0, -1e6}, {1.0, 0.0, 0.0, 0.0}};
+
+}  // namespace
 
 HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
     : config_(config), stream_(stream), services_(services) {
@@ -63,7 +71,21 @@ std::shared_ptr<const PosesUsed> HeadRendering::poses_used(TimePoint transmit_ti
   }
   return std::make_shared<const PosesUsed>(PosesUsed{transmit_time, vehicle->T_world_vehicle,
                                                      vehicle->T_world_vehicle * config_.T_vehicle_sonar,
-                                                     services_.poses.bodies_at(time)});
+                                                     bodies_at(time)});
+}
+
+std::vector<PosedBody> HeadRendering::bodies_at(TimePoint time) const {
+  std::vector<PosedBody> bodies = services_.poses.bodies_at(time);
+  const std::string& model = services_.vehicle_model;
+  if (model.empty()) {
+    return bodies;
+  }
+  std::erase_if(bodies, [&](const PosedBody& body) { return body.name == model; });
+  const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
+  if (vehicle && !config_.hides_vehicle) {
+    bodies.push_back({model, vehicle->T_world_vehicle});
+  }
+  return bodies;
 }
 
 void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
@@ -75,7 +97,10 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
   job.request = {ping.T_world_sonar, std::move(ping.settings), ping.number, config_.seed,
                  ping.T_world_sonar_at_end};
   job.pose_ns = services_.poses.stamp_at(ping.pose_time);
-  job.bodies = services_.poses.bodies_at(ping.pose_time);
+  job.bodies = bodies_at(ping.pose_time);
+  if (config_.hides_vehicle && !services_.vehicle_model.empty()) {
+    job.bodies.push_back({services_.vehicle_model, out_of_sight});
+  }
   services_.renderer.submit(std::move(job), std::move(done));
 }
 

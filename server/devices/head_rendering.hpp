@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "protocol/common/ping_wish.hpp"
 #include "renderer/pose.hpp"
@@ -14,6 +15,7 @@
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
 #include "server/pose/ping_times.hpp"
+#include "server/pose/posed_body.hpp"
 #include "server/recording/events.hpp"
 #include "server/render_service.hpp"
 
@@ -75,6 +77,8 @@ class HeadRendering {
 
  private:
   void rest_when_idle(TimePoint now);
+  /// Bodies as the poses say, and with them the model of the vehicle, unless it is hidden.
+  std::vector<PosedBody> bodies_at(TimePoint time) const;
 
   const HeadConfig& config_;
   int stream_;

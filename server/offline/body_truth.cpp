@@ -73,7 +73,23 @@ std::vector<std::string> BodyTruth::bodies() const {
   return names;
 }
 
+void BodyTruth::set_body_pose(const std::string& name, const render::Pose& T_world_body) {
+  for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
+    render::Body& body = world_.bodies[i];
+    if (body.name == name && !(body.T_world_body == T_world_body)) {
+      body.T_world_body = T_world_body;
+      balls_[i] = ball_around(body);
+      for (const auto& [number, renderer] : renderers_) {
+        renderer->set_body_pose(name, T_world_body);
+      }
+    }
+  }
+}
+
 BodyTruth::Ball BodyTruth::ball_around(const render::Body& body) {
+  if (body.parts.empty()) {
+    return {glm::dvec3(0.0), -std::numeric_limits<double>::infinity()};  // never near
+  }
   constexpr double huge = std::numeric_limits<double>::max();
   glm::dvec3 low(huge), high(-huge);
   for (const render::BodyPart& part : body.parts) {

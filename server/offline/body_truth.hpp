@@ -27,6 +27,8 @@ class BodyTruth {
   /// By id, from 1 on.
   std::vector<std::string> bodies() const;
 
+  void set_body_pose(const std::string& name, const render::Pose& T_world_body);
+
   /// For each sample of the ping, [line * beams + beam], the id of the body that gives most of its echo; 0:
   /// there is none.
   /// @throws render::RequestError, render::RendererError

@@ -12,6 +12,7 @@
 #include "server/npy/npy_file.hpp"
 #include "server/offline/json_text.hpp"
 #include "server/offline/sidecar.hpp"
+#include "server/offline/vehicle_body.hpp"
 #include "server/recording/gemini_glf.hpp"
 
 namespace sonard::server {
@@ -69,6 +70,7 @@ render::PingRequest GeminiFrames::request(int frame) const {
 
 void GeminiFrames::pass(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
+  place_vehicle(voyage_, times_.at(frame), renderer, nullptr);
   if (!renderer.pass_ping(ping, place_.stream)) {
     renderer.render_ping(ping, place_.stream);
   }
@@ -76,6 +78,7 @@ void GeminiFrames::pass(render::SonarRenderer& renderer, int frame) {
 
 Frame GeminiFrames::render(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
+  place_vehicle(voyage_, times_.at(frame), renderer, truth_);
   render::PingSamples rendered = renderer.render_ping(ping, place_.stream);
   auto samples = std::make_shared<const NpyTable>(
       NpyTable{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});

@@ -98,11 +98,11 @@ class RenderRun {
   int missing_frames() const;
   void make_glf() const;
 
-  const DaemonConfig& config_;
+  DaemonConfig config_;
   const OfflineOptions& options_;
   std::size_t head_;
-  Voyage voyage_;
   render::World world_;
+  Voyage voyage_;
   render::SonarRenderer renderer_;
   std::unique_ptr<BodyTruth> truth_;
   std::unique_ptr<FrameSource> frames_;
@@ -116,9 +116,9 @@ render::RendererOptions tested(const render::RendererOptions& options) {
 }
 
 /// @throws StartError, pose::TrajectoryError where there are none
-std::unique_ptr<FrameSource> make_frames(const LoadedConfig& loaded, std::size_t head, const Voyage& voyage,
-                                         const OfflineOptions& options, BodyTruth* truth) {
-  const std::vector<AnyHeadConfig>& heads = loaded.config.heads;
+std::unique_ptr<FrameSource> make_frames(const std::vector<AnyHeadConfig>& heads, std::size_t head,
+                                         const Voyage& voyage, const OfflineOptions& options,
+                                         BodyTruth* truth) {
   try {
     check_sampling_of(heads[head]);
   } catch (const render::RequestError& error) {
@@ -132,15 +132,28 @@ std::unique_ptr<FrameSource> make_frames(const LoadedConfig& loaded, std::size_t
   return frames;
 }
 
+/// Without the vehicle where the head hides it: its body then has no parts.
+/// @throws StartError
+render::World world_heard_by(DaemonConfig& config, std::size_t head) {
+  render::World world = load_world_of(config);
+  for (render::Body& body : world.bodies) {
+    if (common(config.heads[head]).hides_vehicle && body.name == config.vehicle_model) {
+      body.parts.clear();
+    }
+  }
+  return world;
+}
+
 RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
     : config_(loaded.config),
       options_(options),
       head_(chosen_head(loaded, options.head)),
-      voyage_(pose::load_trajectory(options.trajectory, options.axes)),
-      world_(load_world_of(config_)),
+      world_(world_heard_by(config_, head_)),
+      voyage_(pose::load_trajectory(options.trajectory, options.axes),
+              common(config_.heads[head_]).hides_vehicle ? std::string() : config_.vehicle_model),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
-      frames_(make_frames(loaded, head_, voyage_, options, truth_.get())),
+      frames_(make_frames(config_.heads, head_, voyage_, options, truth_.get())),
       folder_(options.out) {
   folder_.claim(manifest(), options.overwrite);
 }

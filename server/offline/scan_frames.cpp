@@ -14,6 +14,7 @@
 #include "server/npy/npy_file.hpp"
 #include "server/offline/json_text.hpp"
 #include "server/offline/sidecar.hpp"
+#include "server/offline/vehicle_body.hpp"
 
 namespace sonard::server {
 namespace {
@@ -98,6 +99,7 @@ render::PingRequest ScanFrames::request(int line) const {
 void ScanFrames::pass(render::SonarRenderer& renderer, int frame) {
   for (int line = first_line(frame); line < first_line(frame + 1); ++line) {
     const render::PingRequest ping = request(line);
+    place_vehicle(voyage_, times_.at(line), renderer, nullptr);
     if (!renderer.pass_ping(ping, stream_)) {
       renderer.render_ping(ping, stream_);
     }
@@ -116,6 +118,7 @@ Frame ScanFrames::render(render::SonarRenderer& renderer, int frame) {
   auto lines = std::make_shared<std::vector<picture::TurnLine>>();
   for (int column = 0; column < columns; ++column) {
     const render::PingRequest ping = request(first + column);
+    place_vehicle(voyage_, times_.at(first + column), renderer, truth_);
     picture::TurnLine line{bearings_[static_cast<std::size_t>(first + column)],
                            renderer.render_ping(ping, stream_).u8};
     const std::vector<std::uint16_t> heard =

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "protocol/pose/trajectory.hpp"
@@ -29,7 +30,11 @@ struct PingTimes {
 /// Stamps are those of the trajectory file, in nanoseconds.
 class Voyage {
  public:
-  explicit Voyage(pose::Trajectory trajectory) : trajectory_(std::move(trajectory)) {}
+  /// @param vehicle_model the body of the world that moves along; empty: none does
+  explicit Voyage(pose::Trajectory trajectory, std::string vehicle_model = {})
+      : trajectory_(std::move(trajectory)), vehicle_model_(std::move(vehicle_model)) {}
+
+  const std::string& vehicle_model() const { return vehicle_model_; }
 
   std::int64_t start_ns() const { return trajectory_.start_ns(); }
   std::int64_t end_ns() const { return trajectory_.end_ns(); }
@@ -42,6 +47,7 @@ class Voyage {
 
  private:
   pose::Trajectory trajectory_;
+  std::string vehicle_model_;
 };
 
 }  // namespace sonard::server

@@ -74,7 +74,7 @@ EntityMap::EntityMap(const IgnitionPoseInput& input)
 }
 
 Result<pose::PoseSample, std::string> EntityMap::map(const EntityPoses& poses) {
-  note_ignored(poses);
+  note(poses);
   if (!poses.time_ns) {
     return "its header has no time stamp";
   }
@@ -109,9 +109,9 @@ bool EntityMap::is_configured(std::string_view name) const {
   return configured_.find(name) != configured_.end();
 }
 
-void EntityMap::note_ignored(const EntityPoses& poses) {
+void EntityMap::note(const EntityPoses& poses) {
   for (const pose::NamedTransform& entity : poses.entities) {
-    if (ignored_.size() < max_ignored && !is_configured(entity.name) && ignored_.insert(entity.name).second) {
+    if (seen_.size() < max_seen && seen_.insert(entity.name).second && !is_configured(entity.name)) {
       new_ignored_.push_back(entity.name);
     }
   }

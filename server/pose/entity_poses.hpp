@@ -34,21 +34,23 @@ class EntityMap {
   /// that is needed is not unique: no image is better than one from a wrong place
   Result<pose::PoseSample, std::string> map(const EntityPoses& poses);
 
-  /// Names that came and are not configured: those that were new since the last call, at most max_ignored in
-  /// all.
+  /// Names that came and are not configured: those that were new since the last call, as far as seen() has
+  /// them.
   std::vector<std::string> take_ignored();
+  /// Names that came, in alphabetical order: the first max_seen of them.
+  std::vector<std::string> seen() const { return {seen_.begin(), seen_.end()}; }
 
-  static constexpr std::size_t max_ignored = 256;
+  static constexpr std::size_t max_seen = 256;
 
  private:
   bool is_configured(std::string_view name) const;
-  void note_ignored(const EntityPoses& poses);
+  void note(const EntityPoses& poses);
 
   SimulatorEntity vehicle_;
   pose::Transform T_entity_vehicle_;
   std::vector<IgnitionPoseInput::Body> bodies_;
   std::set<std::string, std::less<>> configured_;
-  std::set<std::string, std::less<>> ignored_;
+  std::set<std::string, std::less<>> seen_;
   std::vector<std::string> new_ignored_;
 };
 

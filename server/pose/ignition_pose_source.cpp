@@ -201,6 +201,15 @@ std::string IgnitionPoseSource::description() const {
   return fmt::format("ignition {} entity '{}'", impl_->input.topic, impl_->input.vehicle.name);
 }
 
+std::vector<std::string> IgnitionPoseSource::entities() const {
+  return impl_->entities.seen();
+}
+
+std::string IgnitionPoseSource::silence_hint() const {
+  return "is the simulator running, is the topic spelt as it spells it, is the partition the same, and does "
+         "multicast reach it (docs/simulators/gazebo.md)?";
+}
+
 const PoseSourceCounters& IgnitionPoseSource::counters() const {
   return impl_->counters;
 }

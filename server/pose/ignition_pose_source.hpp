@@ -20,6 +20,8 @@ class IgnitionPoseSource final : public PoseSource {
   void stop() override;
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
+  std::vector<std::string> entities() const override;
+  std::string silence_hint() const override;
 
   static constexpr int max_waiting = 16;
 

@@ -66,6 +66,7 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   udp::socket socket;
   Endpoint local;
   udp::endpoint peer;
+  std::optional<Endpoint> publisher;  // of the newest pose
   std::array<std::uint8_t, pose::max_message_bytes> buffer{};
   MavlinkPoses poses;
   mavlink::FrameCounters frames;
@@ -242,6 +243,24 @@ std::string MavlinkPoseSource::details() const {
       impl_->frames.frames, impl_->frames.bad_checksums, impl_->frames.unknown_flags,
       impl_->frames.stray_bytes, impl_->wrong_system, impl_->wrong_component, poses.unknown_frame,
       poses.without_attitude, poses.not_wanted, poses.clock_restarts);
+}
+
+std::string MavlinkPoseSource::heard() const {
+  return impl_->publisher ? fmt::format("from {} system {} component {}", endpoint_text(*impl_->publisher),
+                                        impl_->input.system_id, impl_->input.component_id)
+                          : std::string();
+}
+
+std::string MavlinkPoseSource::silence_hint() const {
+  const Heard& heard = impl_->heard;
+  if (heard.odometry + heard.position + heard.attitude + heard.other > 0) {
+    return "the vehicle is heard, but does not say where it is: ask it for positions and attitudes "
+           "(docs/simulators/ardusub.md)";
+  }
+  if (impl_->wrong_system + impl_->wrong_component > 0) {
+    return "other systems or components are heard: is poses.mavlink.system_id that of the vehicle?";
+  }
+  return PoseSource::silence_hint();
 }
 
 Endpoint MavlinkPoseSource::local_endpoint() const {

@@ -20,6 +20,8 @@ class MavlinkPoseSource final : public PoseSource {
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
   std::string details() const override;
+  std::string heard() const override;
+  std::string silence_hint() const override;
   /// Where it listens, once started.
   Endpoint local_endpoint() const;
 

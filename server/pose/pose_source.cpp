@@ -10,26 +10,27 @@ namespace sonard::server {
 
 std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
                                                            const PoseConfig& config, const Clock& clock,
-                                                           const PoseSink& sink, const PoseHold& hold) {
+                                                           const std::function<PoseSink()>& sink_of_next,
+                                                           const PoseHold& hold) {
   std::vector<std::unique_ptr<PoseSource>> sources;
   if (config.udp) {
-    sources.push_back(std::make_unique<UdpPoseSource>(io, *config.udp, clock, sink));
+    sources.push_back(std::make_unique<UdpPoseSource>(io, *config.udp, clock, sink_of_next()));
   }
   if (config.tcp) {
-    sources.push_back(std::make_unique<TcpPoseSource>(io, *config.tcp, clock, sink, hold));
+    sources.push_back(std::make_unique<TcpPoseSource>(io, *config.tcp, clock, sink_of_next(), hold));
   }
   if (config.mavlink) {
-    sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink));
+    sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink_of_next()));
   }
   if (config.ignition) {
 #ifdef SONARD_HAS_IGNITION
-    sources.push_back(std::make_unique<IgnitionPoseSource>(io, *config.ignition, clock, sink));
+    sources.push_back(std::make_unique<IgnitionPoseSource>(io, *config.ignition, clock, sink_of_next()));
 #else
     throw PoseSourceError("this sonard was built without Ignition Transport");
 #endif
   }
   if (config.trajectory) {
-    sources.push_back(std::make_unique<TrajectoryPoseSource>(io, *config.trajectory, clock, sink));
+    sources.push_back(std::make_unique<TrajectoryPoseSource>(io, *config.trajectory, clock, sink_of_next()));
   }
   return sources;
 }

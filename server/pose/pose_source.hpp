@@ -58,13 +58,24 @@ class PoseSource {
   virtual const PoseSourceCounters& counters() const = 0;
   /// More that a source counts, " name=number" each, for the log when it ends.
   virtual std::string details() const { return {}; }
+  /// Who gave the newest pose: "from 127.0.0.1:41234"; empty while there is none, and where it is known
+  /// anyway.
+  virtual std::string heard() const { return {}; }
+  /// What a simulator names, whether or not it has a part here: the first 256 names that came.
+  virtual std::vector<std::string> entities() const { return {}; }
+  /// What to look at when nothing at all has arrived, in one line.
+  virtual std::string silence_hint() const {
+    return "is the publisher running, does it send to this address and port, and is no firewall between?";
+  }
 };
 
-/// One source per input that is configured. `clock` and `io` outlive them.
+/// One source per input that is configured; `sink_of_next` is asked for the sink of each. `clock` and `io`
+/// outlive them.
 /// @throws pose::TrajectoryError when the trajectory cannot be used; PoseSourceError when this program was
 /// built without Ignition Transport, and the configuration asks for it
 std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
                                                            const PoseConfig& config, const Clock& clock,
-                                                           const PoseSink& sink, const PoseHold& hold);
+                                                           const std::function<PoseSink()>& sink_of_next,
+                                                           const PoseHold& hold);
 
 }  // namespace sonard::server

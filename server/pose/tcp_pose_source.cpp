@@ -55,6 +55,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   tcp::acceptor acceptor;
   asio::steady_timer retry;
   Endpoint local;
+  std::optional<Endpoint> publisher;  // of the newest pose
   std::set<std::shared_ptr<Session>> sessions;
   PoseSourceCounters counters;
 };
@@ -147,6 +148,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     const auto sample = pose::decode(message);
     if (sample) {
       ++source_->counters.samples;
+      source_->publisher = peer_;
       source_->sink(*sample, arrival);
       return;
     }
@@ -319,6 +321,10 @@ std::string TcpPoseSource::description() const {
 
 const PoseSourceCounters& TcpPoseSource::counters() const {
   return impl_->counters;
+}
+
+std::string TcpPoseSource::heard() const {
+  return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
 }
 
 Endpoint TcpPoseSource::local_endpoint() const {

@@ -24,6 +24,7 @@ class TcpPoseSource final : public PoseSource {
   void stop() override;
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
+  std::string heard() const override;
   /// Where it listens, once started.
   Endpoint local_endpoint() const;
   /// Publishers connected now.

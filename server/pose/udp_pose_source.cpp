@@ -34,6 +34,7 @@ struct UdpPoseSource::Impl : std::enable_shared_from_this<UdpPoseSource::Impl> {
   udp::socket socket;
   Endpoint local;
   udp::endpoint peer;
+  std::optional<Endpoint> publisher;  // of the newest pose
   // One byte more than a message may have, so that a longer datagram shows as such.
   std::array<std::uint8_t, pose::max_message_bytes + 1> buffer{};
   PoseSourceCounters counters;
@@ -89,6 +90,7 @@ void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram) {
     return;
   }
   ++counters.samples;
+  publisher = Endpoint{peer.address().to_v4().to_uint(), peer.port()};
   sink(*sample, arrival);
 }
 
@@ -123,6 +125,10 @@ std::string UdpPoseSource::description() const {
 
 const PoseSourceCounters& UdpPoseSource::counters() const {
   return impl_->counters;
+}
+
+std::string UdpPoseSource::heard() const {
+  return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
 }
 
 Endpoint UdpPoseSource::local_endpoint() const {

@@ -16,6 +16,7 @@ class UdpPoseSource final : public PoseSource {
   void stop() override;
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
+  std::string heard() const override;
   /// Where it listens, once started.
   Endpoint local_endpoint() const;
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -25,9 +26,15 @@ struct FakeRendererControl {
     const std::lock_guard lock(mutex);
     requests.push_back(request);
   }
-  void record_body(const std::string& name) {
+  void record_body(const std::string& name, const render::Pose& T_world_body) {
     const std::lock_guard lock(mutex);
     bodies.push_back(name);
+    body_poses[name] = T_world_body;
+  }
+  /// Where a body was put last.
+  render::Pose pose_of_body(const std::string& name) const {
+    const std::lock_guard lock(mutex);
+    return body_poses.at(name);
   }
   std::vector<render::PingRequest> recorded() const {
     const std::lock_guard lock(mutex);
@@ -42,6 +49,7 @@ struct FakeRendererControl {
   mutable std::mutex mutex;
   std::vector<render::PingRequest> requests;
   std::vector<std::string> bodies;
+  std::map<std::string, render::Pose> body_poses;
 };
 
 /// Sample at (line, beam) of a ping.
@@ -56,8 +64,8 @@ class FakeRenderer final : public server::PingRenderer {
   ~FakeRenderer() override { control_->destroyed = true; }
 
   std::string description() const override { return "fake"; }
-  bool set_body_pose(const std::string& body, const render::Pose&) override {
-    control_->record_body(body);
+  bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
+    control_->record_body(body, T_world_body);
     return true;
   }
 

@@ -96,6 +96,25 @@ TEST_P(Image, BodiesMove) {
   EXPECT_EQ(renderer.render_echo(request).intensity, before.intensity);
 }
 
+// As a vehicle is hidden from its own sonar.
+TEST_P(Image, ABodyOutOfReachChangesNothing) {
+  World world = bed_and_ball({8, 2, 0.5});
+  world.bodies.push_back(make_body("hull", make_sphere(1.0F, 32)));
+  world.bodies.back().T_world_body.position_m = small_request().T_world_sonar.position_m;
+  SonarRenderer renderer(world, options());
+  SonarRenderer without(bed_and_ball({8, 2, 0.5}), options());
+  for (const Sampling::Preset preset : {Sampling::Preset::grid, Sampling::Preset::fast}) {
+    PingRequest request = small_request();
+    request.settings.sampling.preset = preset;
+    request.settings.physical.multipath.level = MultipathSettings::Level::full;
+    const EchoImage seen = without.render_echo(request);
+    EXPECT_NE(renderer.render_echo(request).intensity, seen.intensity);
+    ASSERT_TRUE(renderer.set_body_pose("hull", {{0, 0, -1e6}, {1, 0, 0, 0}}));
+    EXPECT_EQ(renderer.render_echo(request).intensity, seen.intensity);
+    ASSERT_TRUE(renderer.set_body_pose("hull", request.T_world_sonar));
+  }
+}
+
 // docs/physics.md 4.3 S2: far from the origin and rotated, the picture stays.
 TEST_P(Image, FarFromTheOriginTheImageIsTheSame) {
   const PingRequest request = small_request();

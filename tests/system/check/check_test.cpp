@@ -214,7 +214,7 @@ TEST_P(ShippedConfig, is_good_without_a_warning) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
                          testing::Values("demo.yaml", "gemini-netns.yaml", "ssiv.yaml", "manifold.yaml",
-                                         "paper.yaml"),
+                                         "paper.yaml", "gazebo.yaml"),
                          [](const auto& test) {
                            std::string name = test.param;
                            name.resize(name.find('.'));

@@ -187,6 +187,25 @@ class Files(Case):
         for _, bearing in seen:
             self.assertLess(abs(bearing + math.atan2(2, 3)), half_rad)
 
+    def test_vehicle_of_the_world_moves_along_unless_hidden(self):
+        # 1.1 m ahead of the sonar is the guard of the vehicle, and 1.1 m it stays while the vehicle moves.
+        basin = os.path.join(SOURCE, "configs", "worlds", "gazebo_basin.sdf")
+        way = self.write("way.csv", CSV_HEADER + "0,0,0,-2.5,0,0,0,1\n1,1.5,0,-2.5,0,0,0,1\n")
+        for hides, expected in (("false", {1.1}), ("true", set())):
+            config = self.write("config.yaml", CONFIG.format(world=basin, dump=self.path("dump")).replace(
+                "  - name: mast", f"    mount:\n      from_world: gemini\n    hides_vehicle: {hides}\n  - name: mast"))
+            out = self.path("out_" + hides)
+            render(config, "--trajectory", way, "--out", out, "--rate", "1", "--range", "3", "--truth")
+            seen = set()
+            for name in ("ping_000000", "ping_000001"):
+                truth = self.sidecar(out, name)["truth"]
+                rov = next(body["id"] for body in truth["bodies"] if body["name"] == "rov")
+                rows, columns, ids = read_npy(os.path.join(out, truth["file"]))
+                step_m = self.sidecar(out, name)["geometry"]["line_step_m"]
+                ahead = [row * step_m for row in range(rows) if ids[row * columns + columns // 2] == rov]
+                seen |= {round(range_m, 1) for range_m in ahead[:1]}
+            self.assertEqual(seen, expected)
+
     def test_sweeps_of_a_micron(self):
         out = self.path("out")
         render(self.config(), "--trajectory", self.way(2.0, speed=0.5), "--out", out, "--head", "mast", "--rate", "150",

@@ -393,6 +393,30 @@ TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
               ElementsAre(HasSubstr("poses.clock: no source of poses has a clock")));
 }
 
+TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
+  const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
+  const auto with = [&](const std::string& ignition) {
+    std::string text = minimal_config;
+    return text.replace(text.find(initial), initial.size(), "  ignition: {topic: /p, " + ignition + "}\n");
+  };
+  EXPECT_EQ(load(with("frame: relative")).config.poses.ignition->vehicle.name, "");
+  EXPECT_EQ(load(with("frame: world, vehicle: rov")).config.poses.ignition->vehicle.name, "rov");
+  EXPECT_THAT(complaints(with("frame: relative, parents: [a], mount: {position_m: [0, 0, 1]}")),
+              testing::UnorderedElementsAre(HasSubstr("poses.ignition.parents: is of `vehicle`"),
+                                            HasSubstr("poses.ignition.mount: is of `vehicle`")));
+  EXPECT_THAT(complaints(with("frame: relative, vehicle: rov")),
+              ElementsAre(HasSubstr("poses.ignition.parents: missing")));
+}
+
+TEST_F(Loader, leaves_a_mount_to_the_world) {
+  const HeadConfig head = common(
+      load(minimal_config + "    mount: {from_world: bow}\n    hides_vehicle: true\n").config.heads[0]);
+  EXPECT_EQ(head.mount_from_world, "bow");
+  EXPECT_TRUE(head.hides_vehicle);
+  EXPECT_THAT(complaints(minimal_config + "    mount: {from_world: bow, rpy_deg: [0, 1, 0]}\n"),
+              ElementsAre(HasSubstr("heads[0].mount.rpy_deg: the world says where the head sits")));
+}
+
 TEST_F(Loader, wants_a_source_of_poses) {
   const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
   const std::string world = "world: {file: w.sdf}\n";

@@ -61,6 +61,19 @@ TEST_F(BodyTruthTest, EachBlockIsInItsBinsAndHidesTheWall) {
   EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, -port_rad), 0);  // the other side
 }
 
+TEST_F(BodyTruthTest, FollowsABodyThatMovesAndLeavesOutOneWithoutParts) {
+  world.bodies[2].parts.clear();
+  BodyTruth truth(world, {});
+  const double port_rad = std::atan2(1.0, 4.0);
+  EXPECT_EQ(at(truth.bodies_in(request), 4.0 / std::cos(port_rad) + 0.01, port_rad), 2);
+  truth.set_body_pose("port block", {{1, 0, 0}, {1, 0, 0, 0}});
+  const std::vector<std::uint16_t> ids = truth.bodies_in(request);
+  const double moved_rad = std::atan2(1.0, 5.0);
+  EXPECT_EQ(at(ids, 5.0 / std::cos(moved_rad) + 0.01, moved_rad), 2);
+  EXPECT_EQ(at(ids, 4.0 / std::cos(moved_rad) + 0.01, moved_rad), 0);
+  EXPECT_EQ(at(ids, 8.0 / std::cos(moved_rad) + 0.01, -moved_rad), 1) << "nothing is before the wall there";
+}
+
 TEST_F(BodyTruthTest, CompressedLinesBelongToWhatLiesInThem) {
   request.settings.range.compression_log2 = 2;
   BodyTruth truth(world, {});

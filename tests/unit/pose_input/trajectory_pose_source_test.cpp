@@ -79,11 +79,11 @@ TEST_F(TrajectoryPoseSourceTest, ABadFileIsReportedAtOnce) {
 
 TEST_F(TrajectoryPoseSourceTest, EachConfiguredInputBecomesASource) {
   PoseConfig config;
-  EXPECT_TRUE(make_pose_sources(io_, config, clock_, sink_, {}).empty());
+  EXPECT_TRUE(make_pose_sources(io_, config, clock_, [&] { return sink_; }, {}).empty());
   config.udp = UdpPoseInput{{localhost, 0}, loopback};
   config.tcp = TcpPoseInput{{localhost, 0}, loopback, 8};
   config.trajectory = TrajectoryInput{file(), false, 1.0, pose::Axes::enu_flu};
-  const auto sources = make_pose_sources(io_, config, clock_, sink_, {});
+  const auto sources = make_pose_sources(io_, config, clock_, [&] { return sink_; }, {});
   ASSERT_EQ(sources.size(), 3U);
   EXPECT_EQ(sources[0]->description(), "pose stream udp 127.0.0.1:0");
   EXPECT_EQ(sources[1]->description(), "pose stream tcp 127.0.0.1:0");

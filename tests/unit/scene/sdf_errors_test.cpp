@@ -132,10 +132,6 @@ const std::vector<Case> cases{
     {"no_such_submesh",
      model("<geometry><mesh><uri>quad.obj</uri><submesh><name>keel</name></submesh></mesh></geometry>"),
      {"world.sdf:4: m::l::v: ", "quad.obj: no submesh 'keel'"}},
-    {"unsupported_geometry",
-     model("<geometry><polyline><point>0 0</point><point>1 0</point><point>1 "
-           "1</point><height>1</height></polyline></geometry>"),
-     {"world.sdf:4: m::l::v: geometry <polyline> is not supported"}},
     {"no_geometry", model(""), {"world.sdf:4: m::l::v: there is no geometry"}},
     {"normal_map_without_texcoords",
      model("<geometry><mesh><uri>quad.obj</uri></mesh></geometry><material><pbr><metal><normal_map>" +

@@ -57,6 +57,7 @@ struct GeminiHeadTest : testing::Test {
   PoseConfig pose_config;
   GeminiHeadConfig config;
   std::optional<double> water_surface_z_m;
+  std::string vehicle_model;
 
   std::unique_ptr<PoseHistory> poses;
   std::unique_ptr<RenderService> service;
@@ -91,7 +92,8 @@ struct GeminiHeadTest : testing::Test {
     hooks.post = [this](std::function<void()> task) { asio::post(io, std::move(task)); };
     hooks.on_failure = [](const std::string& what) { FAIL() << what; };
     service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
-    const HeadServices services{io, clock, *service, *poses, water_surface_z_m};
+    HeadServices services{io, clock, *service, *poses, water_surface_z_m};
+    services.vehicle_model = vehicle_model;
     head = std::make_unique<GeminiHead>(config, 0, services);
     head->start();
   }
@@ -222,6 +224,30 @@ TEST_F(GeminiHeadTest, ForwardsPosesOfBodies) {
   command(ping_config);
   ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
   EXPECT_EQ(renderer->moved_bodies(), std::vector<std::string>{"door"});
+}
+
+// The pose stream has a word on the model of the vehicle, too, which does not count.
+TEST_F(GeminiHeadTest, MovesTheModelOfTheVehicleWithTheVehicle) {
+  vehicle_model = "rov";
+  start();
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  sample.T_world_vehicle.position_m = {3, 4, 5};
+  sample.bodies = {{"door", {}}, {"rov", {{-1, -1, -1}, {1, 0, 0, 0}}}};
+  poses->insert(sample, clock.now());
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  EXPECT_EQ(renderer->moved_bodies(), (std::vector<std::string>{"door", "rov"}));
+  EXPECT_EQ(renderer->pose_of_body("rov").position_m, glm::dvec3(3, 4, 5));
+}
+
+TEST_F(GeminiHeadTest, PutsAHiddenVehicleOutOfReach) {
+  vehicle_model = "rov";
+  config.hides_vehicle = true;
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return renderer->pings > 0; }));
+  EXPECT_GT(glm::length(renderer->pose_of_body("rov").position_m), 1e5);
 }
 
 TEST_F(GeminiHeadTest, DropsAndCountsStrangers) {

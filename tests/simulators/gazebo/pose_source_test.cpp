@@ -37,7 +37,8 @@ class IgnitionPoseSourceTest : public SourceTest {
   }
   static ChildProcess publisher(const std::string& topic, const std::string& time_rate,
                                 const std::string& type) {
-    return ChildProcess{{IGNITION_PUBLISHER, topic, "20", time_rate, type}};
+    return ChildProcess{{GAZEBO_PUBLISHER, topic, "20", time_rate, type, "rov", "1", "2", "-3", "0", "0",
+                         "90", "crab", "1", "2", "-3", "0", "0", "90"}};
   }
   void expect_the_pose() {
     const pose::Transform& T = delivered_.back().sample.T_world_vehicle;
@@ -122,7 +123,7 @@ TEST_F(IgnitionPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
   const auto deadline = std::chrono::steady_clock::now() + seconds{60};
   while (delivered_.empty() && std::chrono::steady_clock::now() < deadline) {
     ChildProcess tool{
-        {IGNITION_TOOL, "-t", "/tool", "-m", "ignition.msgs.Pose_V", "-p",
+        {GAZEBO_TOOL, "-t", "/tool", "-m", "ignition.msgs.Pose_V", "-p",
          "header { stamp { sec: 7 nsec: 5 } } pose { name: \"rov\" position { x: 1 y: 2 z: -3 } "
          "orientation { w: 1 z: 1 } }"}};
     run_until([&] { return !delivered_.empty() || tool.exit_status().has_value(); });

@@ -1,0 +1,39 @@
+// What an SDF file has and a world has not: one line for each kind of it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <sdf/Element.hh>
+
+namespace sonard::render {
+
+class LeftOut {
+ public:
+  /// Lights, plugins, joints, actors, other sensors, ...: all elements that no part of a world is made of.
+  void add_elements_of(const sdf::ElementPtr& root);
+  /// A shape of a kind that is not drawn, "polyline".
+  void add_geometry(const std::string& kind, const std::string& path);
+
+  /// "lights (2): sun, lamp": nothing that could be heard.
+  std::vector<std::string> silent() const { return lines(false); }
+  /// The same of what has a surface, or might have one.
+  std::vector<std::string> audible() const { return lines(true); }
+
+ private:
+  struct Kind {
+    std::string what;  ///< "lights"
+    bool audible = false;
+    std::vector<std::string> names;
+  };
+
+  void add(std::string_view what, bool audible, std::string name);
+  void add_children_of(const sdf::ElementPtr& element, const std::string& path);
+  std::vector<std::string> lines(bool audible) const;
+
+  std::vector<Kind> kinds_;  // in the order in which they came
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,119 @@
+#include "server/listen.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+
+#include "server/clock.hpp"
+#include "server/exit_codes.hpp"
+#include "server/pose/pose_inputs.hpp"
+
+namespace sonard::server {
+namespace {
+
+double seconds(std::chrono::nanoseconds time) {
+  return 1e-9 * static_cast<double>(time.count());
+}
+
+/// Roll, pitch and yaw as the configuration has them: about fixed x, y, z, positive pitch is nose down.
+std::string angles_text(const pose::Quat& q) {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  const double sine = std::fmin(1.0, std::fmax(-1.0, 2 * (q.w * q.y - q.x * q.z)));
+  return fmt::format("roll {:.1f}, pitch {:.1f}, yaw {:.1f} degrees",
+                     degrees * std::atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y)),
+                     degrees * std::asin(sine),
+                     degrees * std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)));
+}
+
+std::vector<std::string> names_of(const std::vector<pose::NamedTransform>& bodies) {
+  std::vector<std::string> names;
+  for (const pose::NamedTransform& body : bodies) {
+    names.push_back(body.name);
+  }
+  return names;
+}
+
+void print_names(const char* what, const std::vector<std::string>& names) {
+  if (!names.empty()) {
+    fmt::print("  {} {}\n", what, fmt::join(names, ", "));
+  }
+}
+
+void print_newest(const pose::PoseSample& sample) {
+  const pose::Vec3& p = sample.T_world_vehicle.position_m;
+  fmt::print("  vehicle  last at ({:.3f}, {:.3f}, {:.3f}) m east, north, up; {}; its time {:.3f} s\n", p.x,
+             p.y, p.z, angles_text(sample.T_world_vehicle.orientation),
+             1e-9 * static_cast<double>(sample.time_ns));
+  print_names("bodies  ", names_of(sample.bodies));
+}
+
+/// Why an input has given no pose.
+std::string likely_cause(const PoseSource& source) {
+  const PoseSourceCounters& counters = source.counters();
+  if (counters.bad_value > 0) {
+    return fmt::format("{} messages had no pose that can be used; the log says why", counters.bad_value);
+  }
+  if (counters.malformed > 0) {
+    return fmt::format("{} messages were none that is expected here; the log says what they were",
+                       counters.malformed);
+  }
+  if (counters.refused > 0) {
+    return "what came was refused: is the sender in the `allow` list?";
+  }
+  if (counters.connections > 0) {
+    return "somebody connected, and sent no whole message";
+  }
+  return "nothing arrived: " + source.silence_hint();
+}
+
+void print_input(const PoseSource& source, const PoseStatistics& statistics, TimePoint now) {
+  fmt::print("{}{}{}\n", source.description(), source.heard().empty() ? "" : " ", source.heard());
+  print_names("names   ", source.entities());
+  if (statistics.newest()) {
+    fmt::print("  {}\n", to_string(statistics.in_all(now)));
+    print_newest(*statistics.newest());
+  } else {
+    fmt::print("  no pose of the vehicle: {}\n", likely_cause(source));
+  }
+  if (const std::string details = source.details(); !details.empty()) {
+    fmt::print(" {}\n", details);
+  }
+}
+
+bool any_is_live(const PoseConfig& poses) {
+  return poses.udp || poses.tcp || poses.mavlink || poses.ignition;
+}
+
+}  // namespace
+
+int listen_to_poses(const PoseConfig& poses, std::chrono::nanoseconds duration) {
+  if (!any_is_live(poses)) {
+    fmt::print("nothing to listen to: the configuration has no live pose input\n");
+    return exit_config;
+  }
+  boost::asio::io_context io;
+  const SteadyClock clock;
+  bool heard = false;
+  try {
+    PoseInputs inputs(io, poses, clock, [&](const pose::PoseSample&, TimePoint) { heard = true; });
+    inputs.start();
+    fmt::print("listening for {:.1f} s\n", seconds(duration));
+    io.run_for(duration);
+    const TimePoint now = clock.now();
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      print_input(inputs.source(i), inputs.statistics(i), now);
+    }
+    inputs.stop();
+  } catch (const PoseSourceError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return exit_network;
+  }
+  return heard ? exit_clean : exit_config;
+}
+
+}  // namespace sonard::server

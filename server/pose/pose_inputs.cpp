@@ -1,0 +1,74 @@
+#include "server/pose/pose_inputs.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <boost/asio/io_context.hpp>
+
+namespace sonard::server {
+
+PoseInputs::PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock,
+                       PoseSink sink, PoseHold hold, std::chrono::milliseconds report_period)
+    : clock_(clock), report_period_(report_period), report_timer_(io) {
+  const auto measured_sink = [&] {
+    PoseStatistics& statistics =
+        *statistics_.emplace_back(std::make_unique<PoseStatistics>(config.extrapolation_limit));
+    return [&statistics, sink](const pose::PoseSample& sample, TimePoint arrival) {
+      statistics.observe(sample, arrival);
+      sink(sample, arrival);
+    };
+  };
+  sources_ = make_pose_sources(io, config, clock, measured_sink, hold);
+  told_silent_.resize(sources_.size());
+}
+
+void PoseInputs::start() {
+  for (const std::unique_ptr<PoseSource>& source : sources_) {
+    source->start();
+    spdlog::info("{}", source->description());
+  }
+  running_ = !sources_.empty();
+  if (running_) {
+    report_every_period();
+  }
+}
+
+void PoseInputs::stop() {
+  running_ = false;
+  report_timer_.cancel();
+  for (std::size_t i = 0; i < size(); ++i) {
+    sources_[i]->stop();
+    const PoseSourceCounters& done = sources_[i]->counters();
+    const std::string name = sources_[i]->description();
+    spdlog::info("{} in all: {}", name, to_string(statistics_[i]->in_all(clock_.now())));
+    spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}{}", name, done.samples,
+                 done.malformed, done.bad_value, done.refused, sources_[i]->details());
+  }
+}
+
+void PoseInputs::report_every_period() {
+  report_timer_.expires_after(report_period_);
+  // An end of this object is one of the timer, too, and calls with an error.
+  report_timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error && running_) {
+      report();
+      report_every_period();
+    }
+  });
+}
+
+void PoseInputs::report() {
+  for (std::size_t i = 0; i < size(); ++i) {
+    const PoseStatistics::Summary recent = statistics_[i]->take(clock_.now());
+    const bool silent = recent.poses == 0;
+    if (!silent || !told_silent_[i]) {
+      const std::string from = sources_[i]->heard();
+      spdlog::info("{}: {}{}{}", sources_[i]->description(), from, from.empty() ? "" : " ",
+                   to_string(recent));
+    }
+    told_silent_[i] = silent;
+  }
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,73 @@
+// How well poses come: what a user asks first when the image does not move.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "protocol/pose/pose_codec.hpp"
+#include "server/clock.hpp"
+
+namespace sonard::server {
+
+/// The poses of one source, as they arrived. Reads no clock; times do not go backwards. Belongs to the I/O
+/// thread.
+class PoseStatistics {
+ public:
+  struct Summary {
+    std::uint64_t poses = 0;
+    double rate_hz = 0.0;  ///< that arrived
+    /// Seconds of the publisher's stamps for each second of ours: 1 in real time, 0 in a pause; nullopt:
+    /// there were not two poses to tell by.
+    std::optional<double> time_rate;
+    std::optional<std::chrono::nanoseconds> age;  ///< since the newest arrived; nullopt: none ever did
+    /// Between arrivals, and from the last one until now.
+    std::chrono::nanoseconds longest_gap{0};
+    std::uint64_t gaps = 0;  ///< longer than the limit
+    std::uint64_t jumps =
+        0;  ///< faster than PoseTrack::teleport_mps from one pose to the next: put elsewhere
+    /// Stamps that went back by more than PoseHistory::reset_threshold: a simulation that was reset, or two
+    /// publishers.
+    std::uint64_t clock_restarts = 0;
+  };
+
+  /// `gap_limit`: PoseConfig::extrapolation_limit.
+  explicit PoseStatistics(std::chrono::nanoseconds gap_limit) : gap_limit_(gap_limit) {}
+
+  void observe(const pose::PoseSample& sample, TimePoint arrival);
+
+  /// Of the time since this was last called, or since the first pose.
+  Summary take(TimePoint now);
+  /// Of all the time since the first pose.
+  Summary in_all(TimePoint now) const { return summary(all_, now); }
+
+  /// As it came last; nullopt: none has.
+  const std::optional<pose::PoseSample>& newest() const { return newest_; }
+
+ private:
+  struct Period {
+    std::optional<TimePoint> begin;  // nullopt: with the first pose
+    std::uint64_t poses = 0;
+    std::int64_t stamps_ns = 0;            // by how much stamps went on
+    std::chrono::nanoseconds arrivals{0};  // and arrivals
+    std::chrono::nanoseconds longest_gap{0};
+    std::uint64_t gaps = 0;
+    std::uint64_t jumps = 0;
+    std::uint64_t clock_restarts = 0;
+  };
+
+  void observe_step(Period& period, const pose::PoseSample& sample, TimePoint arrival) const;
+  Summary summary(const Period& period, TimePoint now) const;
+
+  std::chrono::nanoseconds gap_limit_;
+  std::optional<pose::PoseSample> newest_;
+  TimePoint newest_arrival_{};
+  Period recent_, all_;
+};
+
+/// "poses=500 rate_hz=50.0 time_rate=1.00 age_ms=12 longest_gap_ms=34 gaps=0 jumps=0 clock_restarts=0"; what
+/// is not known is "-".
+std::string to_string(const PoseStatistics::Summary& summary);
+
+}  // namespace sonard::server
