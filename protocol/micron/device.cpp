@@ -344,6 +344,9 @@ void Device::power_cycle(TimePoint now) {
 void Device::lose_step() {
   impl_->scanner().lose_step();
 }
+void Device::offer(const std::optional<RecordedLine>& line) {
+  impl_->scanner().offer(line);
+}
 void Device::advance(TimePoint now) {
   impl_->advance(now);
 }
@@ -367,6 +370,9 @@ const DeviceCounters& Device::counters() const {
 }
 HeadState Device::state(TimePoint now) const {
   return impl_->state(now);
+}
+const std::optional<HeadCommand>& Device::parameters() const {
+  return impl_->scanner().parameters();
 }
 
 }  // namespace sonard::micron

@@ -55,6 +55,9 @@ struct DeviceConfig {
   /// Time between lines instead of the one that follows from parameters and link; 0: as fast as they are
   /// rendered. >= 0
   std::optional<std::chrono::nanoseconds> line_period;
+
+  /// The head sends the lines that Device::offer() names, and no others.
+  bool plays_back = false;
 };
 
 }  // namespace sonard::micron

@@ -38,6 +38,7 @@ class Scanner {
   void on_line(TimePoint now, const MicronLine& line);
   void on_line_failed(TimePoint now, std::uint64_t ping_number);
   void lose_step() { motor_error_ = true; }
+  void offer(const std::optional<RecordedLine>& line) { offered_ = line; }
 
   /// Appends the frames due at `now` to `out`.
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
@@ -58,7 +59,9 @@ class Scanner {
   struct Ping {
     std::uint64_t number = 0;
     TimePoint transmit_time{};
-    TimePoint line_due{};               ///< not earlier than this the line leaves
+    TimePoint line_due{};  ///< not earlier than this the line leaves
+    HeadData line;         ///< what it will say, but for its data
+    int bins = 0;
     std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
   };
 
@@ -67,10 +70,13 @@ class Scanner {
   std::optional<TimePoint> ping_due() const;
   std::optional<TimePoint> line_due() const;
   void start_ping(TimePoint now, TimePoint due);
+  void aim(TimePoint transmit_time);
+  void repeat(TimePoint transmit_time, const RecordedLine& recorded);
+  HeadData make_line() const;
   std::vector<std::uint8_t> bins_of(const Ping& ping) const;
-  std::vector<std::uint8_t> make_line(const Ping& ping) const;
   void send_line(std::vector<std::vector<std::uint8_t>>& out);
   void end_ping();
+  TimePoint time_of_next_ping();
   void cancel_ping();
   bool answered(TimePoint now, std::uint64_t ping_number);
 
@@ -90,6 +96,7 @@ class Scanner {
   bool motor_error_ = false;
   int owed_ = 0;  ///< lines
   TimePoint owed_since_{};
+  std::optional<RecordedLine> offered_;
 
   // What it does.
   std::uint64_t next_ping_number_ = 0;

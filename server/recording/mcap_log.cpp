@@ -6,6 +6,7 @@
 
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/log/log_messages.hpp"
+#include "protocol/micron/codec.hpp"
 #include "protocol/pose/pose_message.hpp"
 #include "server/config/addresses.hpp"
 #include "server/recording/log_names.hpp"
@@ -25,7 +26,7 @@ void set(pose::Pose& message, const render::Pose& value) {
   pose::write(pose::Transform{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}}, message);
 }
 
-std::string text(const std::vector<std::uint8_t>& bytes) {
+std::string text(std::span<const std::uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
@@ -60,7 +61,9 @@ log::ScanLine to_message(const MicronLineSent& sent, const HeadToRecord& head, s
   line.set_transmit_time_ns(transmit_ns);
   line.set_bearing_rad(-sent.job.bearing_rad);  // the device counts to starboard
   line.set_bins(text(sent.line.bins));
-  line.set_bits_per_bin(sent.line.eight_bit ? 8 : 4);
+  line.set_bits_per_bin(sent.line.line.eight_bit() ? 8 : 4);
+  line.set_wire_line(
+      text(micron::encode(micron::Report{sent.line.line}, static_cast<std::uint8_t>(head.device_id))));
   line.set_metres_per_bin(sent.job.bin_length_m);
   line.set_sound_speed_mps(sent.job.sound_speed_mps);
   line.set_gain_percent(100.0 * sent.job.gain_db / micron_full_gain_db);

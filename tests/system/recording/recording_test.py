@@ -144,13 +144,15 @@ class RecordingTest(unittest.TestCase):
 
     # ---- Set-up ----
 
-    def start_daemon(self, recording="", seed=513, noisy=True, more=""):
+    def start_daemon(self, recording="", seed=513, noisy=True, more="", play=None):
+        """Runs the configuration, or plays a log with it."""
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
             file.write(CONFIG.format(world=WORLD, directory=self.logs, recording=recording, head=HEAD_ADDRESS, seed=seed,
                                      speckle="per_ping" if noisy else "off", noise="true" if noisy else "false",
                                      more=more.format(head=HEAD_ADDRESS, folder=self.folder.name)))
-        daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), "run", path)
+        task = ["run", path] if play is None else ["replay", play, "--config", path]
+        daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), *task)
         daemon.wait_for_line("sonard ready", START_S)
         return daemon
 
@@ -158,6 +160,18 @@ class RecordingTest(unittest.TestCase):
         return self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "--surface-address", SURFACE_ADDRESS,
                               "--head", HEAD_ADDRESS, "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait",
                               str(PATIENCE_S), "--range", str(range_m), *options)
+
+    def start_scan(self, raw, *options, way=None):
+        """A client of the Micron; its lines as they came go to a file."""
+        way = way or ["--tcp", f"{HEAD_ADDRESS}:4001"]
+        where = self.lab.surface if way[0] == "--tcp" else self.lab.head
+        return self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--raw", raw, "--quiet", "--wait",
+                              "30", *options)
+
+    def scanned(self, raw):
+        """What the client got."""
+        with open(raw, encoding="utf-8") as file:
+            return [json.loads(text) for text in file]
 
     def end_daemon(self, daemon):
         code, _ = daemon.terminate(30)
@@ -326,17 +340,14 @@ class Logs(RecordingTest):
         daemon = self.start_daemon(more=MICRON)
         link = os.path.join(self.folder.name, "micron")
         raw = [os.path.join(self.folder.name, f"raw{i}") for i in range(2)]
-        ways = [(self.lab.surface, ["--tcp", f"{HEAD_ADDRESS}:4001"]), (self.lab.head, ["--tty", link, "--four-bit"])]
-        for path, (where, way) in zip(raw, ways):
-            viewer = self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--bins", "300", "--lines",
-                                    "25", "--raw", path, "--quiet", "--wait", "30")
+        for path, way, options in zip(raw, (None, ["--tty", link]), ([], ["--four-bit"])):
+            viewer = self.start_scan(path, "--bins", "300", "--lines", "25", *options, way=way)
             self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
         self.end_daemon(daemon)
         messages = self.mcap_messages()
         recorded = {(line["bits"], line["bins"], round(line["bearing_rad"], 6)) for line in messages["line"]}
         for path, bits in zip(raw, (8, 4)):
-            with open(path, encoding="utf-8") as file:
-                lines = [json.loads(text) for text in file]
+            lines = self.scanned(path)
             self.assertGreaterEqual(len(lines), 25)
             for line in lines:
                 turn = (line["bearing"] - 3200) * math.pi / 3200  # to starboard of ahead, 1/16 gradian
@@ -364,8 +375,7 @@ class Logs(RecordingTest):
         daemon = self.start_daemon(more=MICRON)
         viewer = self.start_viewer("--pings", "5")
         self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
-        scan = self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "micron", "--tcp",
-                              f"{HEAD_ADDRESS}:4001", "--lines", "10", "--quiet", "--wait", "30")
+        scan = self.start_scan(os.path.join(self.folder.name, "raw"), "--lines", "10")
         self.assertEqual(scan.wait(PATIENCE_S), 0, scan.tail())
         self.end_daemon(daemon)
         scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
@@ -387,6 +397,66 @@ class Logs(RecordingTest):
                                 os.path.join(self.folder.name, "sonard.yaml"))
         self.assertEqual(second.wait(START_S), 2, second.tail())
         self.assertRegex(second.output(), r"sonard.yaml:\d+:\d+: recording.directory: another daemon records into ")
+
+
+class Replays(RecordingTest):
+    """A log of both heads is played back as both heads, and recorded again."""
+
+    SAME = ("bins", "bits", "bearing_rad", "metres_per_bin", "gain_percent", "device_id", "wire_line")
+    ON_THE_WIRE = ("bearing", "bins", "range_scale", "control", "sweep", "gain", "ad_span", "ad_low", "ad_interval",
+                   "left_limit", "right_limit", "step", "status")
+
+    def record(self, number, scan_options, pings=0, play=None):
+        """Serves and records until the clients have what they want; what the Micron's client got, and the log's messages."""
+        self.logs = os.path.join(self.folder.name, f"logs{number}")
+        raw = os.path.join(self.folder.name, f"raw{number}")
+        daemon = self.start_daemon(more=MICRON, play=play)
+        viewer = self.start_viewer("--pings", str(pings)) if pings else None
+        scan = self.start_scan(raw, *scan_options)
+        self.assertEqual(scan.wait(PATIENCE_S), 0, scan.tail())
+        if viewer:
+            self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        if play:
+            self.assertEqual(daemon.wait(PATIENCE_S), 0, daemon.tail())
+            self.assertIn("the recording is over", daemon.output())
+        else:
+            self.end_daemon(daemon)
+        return daemon, self.scanned(raw), self.mcap_messages()
+
+    def check_same(self, first, again):
+        lines, played = first["line"], again["line"]
+        self.assertEqual([[line[key] for key in self.SAME] for line in played],
+                         [[line[key] for key in self.SAME] for line in lines])
+        self.assertEqual([image["crc32"] for image in again["image"]], [image["crc32"] for image in first["image"]])
+        # On time, but for what a busy machine adds to some.
+        shifts_ms = sorted((int(now["transmit_ns"]) - int(then["transmit_ns"])) / 1e6 for now, then in zip(played, lines))
+        self.assertLess(shifts_ms[len(shifts_ms) // 4] - shifts_ms[0], 10)
+
+    def on_the_wire(self, lines):
+        return [[line[key] for key in self.ON_THE_WIRE] for line in lines]
+
+    def test_both_heads_are_played_and_recorded_again(self):
+        options = ["--bins", "300", "--sector", "-20", "60", "--gain", "40"]
+        _, heard, first = self.record(1, [*options, "--lines", "60"], pings=10)
+        count = len(first["line"])
+        self.assertGreaterEqual(count, 60)
+        daemon, heard_again, again = self.record(2, [*options, "--lines", str(count)], pings=10, play=self.files(".mcap")[0])
+        self.check_same(first, again)
+        self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
+        self.assertIn(2, {line["sweep"] for line in heard}, "it has not turned back at the right limit")
+        self.assertNotIn("head=stern differs", daemon.output())
+
+    def test_four_bits_for_a_client_with_another_gain(self):
+        options = ["--bins", "301", "--four-bit", "--ad-low", "10", "--ad-span", "30"]
+        _, heard, first = self.record(1, [*options, "--gain", "40", "--lines", "20"])
+        count = len(first["line"])
+        daemon, heard_again, again = self.record(2, [*options, "--gain", "60", "--lines", str(count)],
+                                                 play=self.files(".mcap")[0])
+        self.check_same(first, again)
+        self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
+        self.assertEqual(daemon.output().count("head=stern differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
+                         1, daemon.tail())
+        self.assertIn(f"pings that differed from what was asked for: gain={count}", daemon.output())
 
 
 class Kills(RecordingTest):
