@@ -15,7 +15,6 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
 constexpr double gemini_frequency_hz = 723'380.0;  // docs/protocols/gemini.md 9
 constexpr double micron_frequency_hz = 700'000.0;  // docs/configuration.md, water
 constexpr double micron_full_gain_db = 80.0;       // docs/protocols/micron.md 3
@@ -139,7 +138,7 @@ template <class Message>
 void McapLog::add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns,
                           const Message& message) {
   if (!file().begun()) {
-    flushed_at_ = time;
+    flushed_at_ = chunk_begun_at_ = time;
     file().begin(mcap_path(setting().config.directory, setting().stem));
   }
   writer_.add_message(channel<Message>(topic), static_cast<std::uint64_t>(setting().unix_ns(time)),
@@ -167,18 +166,28 @@ void McapLog::flush(TimePoint now) {
   if (!file().begun()) {
     return;  // what the writer has, the beginning of the file, waits for it
   }
-  if (image_waits_ || now - flushed_at_ >= longest_chunk) {
+  if (now - chunk_begun_at_ >= longest_chunk) {
     writer_.end_chunk();
+    chunk_begun_at_ = now;
+  }
+  if (image_waits_ || now - flushed_at_ >= longest_wait) {
+    writer_.flush();
     image_waits_ = false;
     flushed_at_ = now;
   }
-  file().append(writer_.take());
+  write_taken();
+}
+
+void McapLog::write_taken() {
+  const mcap::Piece piece = writer_.take();
+  file().append(piece.append);
+  file().overwrite(piece.rewrite_offset, piece.rewrite);
 }
 
 void McapLog::close() {
   if (file().begun() && !file().failed()) {
     writer_.finish();
-    file().append(writer_.take());
+    write_taken();
   }
   file().end();
 }

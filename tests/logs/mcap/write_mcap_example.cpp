@@ -91,7 +91,7 @@ mcap::Bytes example() {
     writer.add_message(lines, time + 3, time, encode(line_of(ping)));
   }
   writer.finish();
-  return writer.take();
+  return writer.take().append;
 }
 
 /// As a writer that was killed in the middle of its third chunk from the end leaves it, and then made whole.

@@ -6,6 +6,7 @@
 
 import argparse
 import collections
+import csv
 import glob
 import json
 import math
@@ -130,6 +131,23 @@ def pings_of(packets):
         elif kind == wire.PING_LINE and pings:
             pings[-1].add(packet.payload)
     return [ping for ping in pings if ping.complete()]
+
+
+def collect(packets):
+    """The head and the lines of every ping of a capture of less than 256 pings, whatever was lost, doubled or came out of
+    order; by ping ID."""
+    heads, lines = {}, collections.defaultdict(dict)
+    for packet in packets:
+        kind = wire.message_type(packet.payload)
+        if packet.protocol != "udp" or packet.target[1] != REPORT_PORT:
+            continue
+        if kind == wire.PING_HEAD:
+            heads[struct.unpack_from("<H", packet.payload, 8)[0] & 0xFF] = wire.Ping(packet.payload)
+        elif kind == wire.PING_LINE:
+            number = struct.unpack_from("<H", packet.payload, 10)[0] & 0x7FFF
+            data = packet.payload[16:16 + 256]
+            assert lines[packet.payload[9]].setdefault(number, data) == data, "one line with two contents"
+    return heads, lines
 
 
 class RecordingTest(unittest.TestCase):
@@ -457,6 +475,65 @@ class Replays(RecordingTest):
         self.assertEqual(daemon.output().count("head=stern differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
                          1, daemon.tail())
         self.assertIn(f"pings that differed from what was asked for: gain={count}", daemon.output())
+
+
+class Faults(RecordingTest):
+    LINK = """    link:
+      seed: 7
+      to_surface: {{loss: 0.02, duplicate: 0.02, reorder: 0.02, delay_ms: 2, jitter_ms: 1}}
+      from_surface: {{loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 2, jitter_ms: 1}}
+    dump: {{directory: {folder}}}
+"""
+
+    def rendered(self):
+        """CRC-32 of every ping as the renderer handed it over, by its number."""
+        with open(os.path.join(self.folder.name, "bow.csv"), encoding="utf-8") as file:
+            return {int(row["number"]): int(row["crc32"], 16) for row in csv.DictReader(file)}
+
+    def test_a_poor_link_and_a_client_that_vanishes_and_comes_back(self):
+        daemon = self.start_daemon(more=self.LINK)
+        received = []
+        vanished = (0.1, 4.0, 0.0)  # the second time for longer than a head waits for its surface
+        for pause_s in vanished:
+            viewer = self.start_viewer("--continuous", "40")
+            viewer.wait_for_line("^ping ", PATIENCE_S, count=15)
+            time.sleep(0.015)  # in the middle of a ping
+            viewer.signal(signal.SIGKILL)
+            viewer.wait(10)
+            time.sleep(pause_s)
+            received += [int(ping["crc32"], 16) for ping in self.received(viewer)]
+        self.end_daemon(daemon)
+        self.check_folder()
+        rendered, images, messages = self.rendered(), self.glf_images(), self.mcap_messages()
+        head = key_values(next(line for line in daemon.lines if "head=bow ends:" in line))
+        recorder = key_values(next(line for line in daemon.lines if "recording ends:" in line))
+
+        # Every ping that was begun, by the count of the daemon: of those that it did not finish each client left one at most.
+        count = len(messages["image"])
+        self.assertEqual(int(recorder["images"]), count)
+        self.assertEqual(recorder["dropped_images"], "0")
+        self.assertGreaterEqual(count, int(head["pings_sent"]))
+        self.assertLessEqual(count, int(head["pings_sent"]) + len(vanished))
+        self.assertGreater(int(head["lines_resent"]), 100)
+        self.assertEqual(head["surface_timeouts"], "1")
+
+        numbers = [int(message["number"]) for message in messages["image"]]
+        self.assertLess(numbers[-1], 256)
+        self.assertEqual([message["crc32"] for message in messages["image"]], [rendered[number] for number in numbers])
+        self.assertEqual([zlib.crc32(image.pixels) for image in images], [rendered[number] for number in numbers])
+        self.assertLessEqual(set(received), {rendered[number] for number in numbers})
+
+        heads, lines = collect(self.packets())
+        whole = set()
+        for number, image in zip(numbers, images):
+            for line, data in lines[number].items():
+                self.assertEqual(data, image.row(line))
+            if len(lines[number]) == image.lines:
+                whole.add(rendered[number])
+        self.assertLessEqual(set(heads), set(numbers))
+        self.assertGreaterEqual(len(heads), count - len(vanished))  # where one was lost a client that is gone asks no more
+        self.assertLessEqual(set(received), whole)
+        self.assertGreaterEqual(len(received), 45)
 
 
 class Kills(RecordingTest):

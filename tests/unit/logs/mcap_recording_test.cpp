@@ -77,7 +77,7 @@ McapLog small_log() {
 TEST(McapRecording, has_every_image_in_the_order_of_time) {
   McapLog log = small_log();
   log.writer.finish();
-  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
   const LogFile file(temporary.path());
   const McapRecording recording(file);
   ASSERT_EQ(recording.heads().size(), 1U);
@@ -103,7 +103,7 @@ TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
   wrong.set_range_lines(4);  // 6 pixels are no 8
   log.add(log.images, start_ns, wrong);
   log.writer.finish();
-  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
   const LogFile file(temporary.path());
   const McapRecording recording(file);
   EXPECT_EQ(recording.heads().at(0).images.size(), 5U);
@@ -113,7 +113,7 @@ TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
 TEST(McapRecording, summary_counts_all_kinds) {
   McapLog log = small_log();
   log.writer.finish();
-  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
   const LogSummary summary = summarise(LogFile(temporary.path()));
   EXPECT_EQ(summary.kind, LogKind::mcap);
   EXPECT_EQ(summary.closed, true);
@@ -133,7 +133,7 @@ TEST(McapRecording, summary_counts_all_kinds) {
 TEST(McapRecording, an_unfinished_one_has_its_whole_chunks) {
   McapLog log = small_log();
   log.writer.end_chunk();
-  std::vector<std::uint8_t> bytes = log.writer.take();
+  std::vector<std::uint8_t> bytes = log.writer.take().append;
   bytes.resize(bytes.size() - 20);
   const test::TemporaryLog temporary(".mcap", bytes);
   const LogSummary summary = summarise(LogFile(temporary.path()));
