@@ -66,6 +66,8 @@ heads:
 MICRON = """
   - name: stern
     type: micron
+    timing: {{boot_ms: 0, centring_ms: 2000}}
+    acoustics: {{seed: {seed}}}
     serial:
       tcp: [{{bind: {head}:4001, allow: [10.61.19.0/24]}}]
       pty: [{{link: {folder}/micron}}]
@@ -168,7 +170,8 @@ class RecordingTest(unittest.TestCase):
         with open(path, "w", encoding="utf-8") as file:
             file.write(CONFIG.format(world=WORLD, directory=self.logs, recording=recording, head=HEAD_ADDRESS, seed=seed,
                                      speckle="per_ping" if noisy else "off", noise="true" if noisy else "false",
-                                     more=more.format(head=HEAD_ADDRESS, folder=self.folder.name)))
+                                     more=more.format(head=HEAD_ADDRESS, folder=self.folder.name,
+                                                      seed=seed)))
         task = ["run", path] if play is None else ["replay", play, "--config", path]
         daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), *task)
         daemon.wait_for_line("sonard ready", START_S)
@@ -537,39 +540,68 @@ class Faults(RecordingTest):
 
 
 class Kills(RecordingTest):
-    def test_every_log_opens_and_holds_every_ping_but_the_last(self):
-        """kill -9 at moments drawn from a seed, from before the first ping to some tens of pings later. What a life
-        leaves is recovered by the daemon of the next, which is killed in its turn, also while it recovers and packs."""
+    def end_lives(self, live, lives, daemon_options):
+        """kill -9 at moments drawn from a seed. What a life leaves is recovered by the daemon of the next, which is killed in
+        its turn, also while it recovers and packs. `live` waits until there is something to kill, says what its client got
+        when that is over, and gives all that up."""
         moments = random.Random(20261120)
         seen = []
-        for life in range(KILLS):
-            viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
-            daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
-            if life % 10 != 9:
-                viewer.wait_for_line("^ping ", PATIENCE_S)
+        for life in range(lives):
+            daemon, client, received = live(life)
             time.sleep(moments.uniform(0.0, 0.5))
             daemon.signal(signal.SIGKILL)
             daemon.wait(10)
             time.sleep(0.01)  # what it sent last arrives
-            viewer.signal(signal.SIGKILL)
-            viewer.wait(10)
-            seen.append([ping["crc32"] for ping in self.received(viewer)])
-        self.end_daemon(self.start_daemon(seed=KILLS + 1))
+            client.signal(signal.SIGKILL)
+            client.wait(10)
+            seen.append(received())
+        self.end_daemon(self.start_daemon(seed=lives + 1, **daemon_options))
         self.check_folder()
-        self.assertGreater(sum(map(len, seen)), 3 * KILLS)
-        logs = {
-            "glf": [crc_text(image.pixels) for image in self.glf_images()],
-            "mcap": [f"{image['crc32']:08x}" for image in self.mcap_messages()["image"]],
-            "pcapng": [crc_text(ping.pixels()) for ping in pings_of(self.packets())],
-        }
-        for kind, recorded in logs.items():
-            self.assertEqual(len(set(recorded)), len(recorded), f"a ping is in {kind} twice")
-            recorded = set(recorded)
-            for life, pings in enumerate(seen):
-                missing = [i for i, crc in enumerate(pings[:-1]) if crc not in recorded]
-                self.assertEqual(missing, [], f"{kind} of life {life}, which saw {len(pings)} pings")
-            kept = sum(len(pings) > 0 and pings[-1] in recorded for pings in seen)
-            print(f"{kind}: {len(recorded)} pings, the last of a life in {kept} of {len(seen)}")
+        self.assertGreater(sum(map(len, seen)), 3 * lives)
+        return seen
+
+    def check_kept(self, kind, recorded, seen):
+        """In a log of this kind is everything of every life but perhaps the last."""
+        self.assertEqual(len(set(recorded)), len(recorded), f"one is in {kind} twice")
+        recorded = set(recorded)
+        for life, pings in enumerate(seen):
+            missing = [i for i, ping in enumerate(pings[:-1]) if ping not in recorded]
+            self.assertEqual(missing, [], f"{kind} of life {life}, which saw {len(pings)}")
+        kept = sum(len(pings) > 0 and pings[-1] in recorded for pings in seen)
+        print(f"{kind}: {len(recorded)}, the last of a life in {kept} of {len(seen)}")
+
+    def test_every_log_opens_and_holds_every_ping_but_the_last(self):
+        """From before the first ping to some tens of pings later."""
+        def live(life):
+            viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
+            daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
+            if life % 10 != 9:
+                viewer.wait_for_line("^ping ", PATIENCE_S)
+            return daemon, viewer, lambda: [ping["crc32"] for ping in self.received(viewer)]
+
+        seen = self.end_lives(live, KILLS, {})
+        self.check_kept("glf", [crc_text(image.pixels) for image in self.glf_images()], seen)
+        self.check_kept("mcap", [f"{image['crc32']:08x}" for image in self.mcap_messages()["image"]], seen)
+        self.check_kept("pcapng", [crc_text(ping.pixels()) for ping in pings_of(self.packets())], seen)
+
+    def test_every_log_opens_and_holds_every_line_but_the_last(self):
+        """From before the first line of a Micron to some tens of lines later."""
+        def live(life):
+            raw = os.path.join(self.folder.name, f"raw{life}")
+            daemon = self.start_daemon(seed=life + 1, more=MICRON)
+            scan = self.start_scan(raw, "--bins", "200", "--range", "5", "--gain", "100", "--log-lines")
+            if life % 10 != 9:
+                scan.wait_for_line("^line ", PATIENCE_S)
+            return daemon, scan, lambda: [line["bins"] for line in self.scanned(raw)]
+
+        seen = self.end_lives(live, (KILLS + 1) // 2, {"more": MICRON})  # a head takes two seconds to find its centre
+        self.check_kept("mcap", [line["bins"] for line in self.mcap_messages()["line"]], seen)
+        streams = collections.defaultdict(bytes)
+        for packet in self.packets():
+            if packet.protocol == "tcp" and packet.source == (HEAD_ADDRESS, 4001):
+                streams[packet.target] += packet.payload
+        captured = b"".join(streams.values())
+        self.check_kept("pcapng", [bins for bins in sum(seen, []) if bytes.fromhex(bins) in captured], seen)
 
 
 class FullDisk(RecordingTest):
