@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the daemon records, against what its clients received, by readers that share no code with it.
 
-    recording_test.py --programs DIR --npm DIR [--kills N] [TestCase.test_name ...]
+    recording_test.py --programs DIR --npm DIR [--kills N] [--seconds N] [TestCase.test_name ...]
 """
 
 import argparse
@@ -34,6 +34,7 @@ DISSECTORS = os.path.join(SOURCE, "clients", "wireshark")
 PROGRAMS = None
 NPM = None
 KILLS = 50
+SECONDS = 10
 START_S = 60
 PATIENCE_S = 60
 
@@ -72,6 +73,10 @@ MICRON = """
       tcp: [{{bind: {head}:4001, allow: [10.61.19.0/24]}}]
       pty: [{{link: {folder}/micron}}]
 """
+
+
+COMPLAINTS = ("_ws.malformed || gemini_sonar.malformed || gemini_sonar.bad_value || gemini_sonar.bad_line || "
+              "micron_sonar.malformed || micron_sonar.bad_value || micron_sonar.no_frame")
 
 
 def key_values(line):
@@ -231,6 +236,14 @@ class RecordingTest(unittest.TestCase):
                 by_kind[message["kind"]].append(message)
         return by_kind
 
+    def frames_with(self, condition):
+        """Numbers of the frames that tshark shows."""
+        scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
+        done = subprocess.run(["tshark", *scripts, "-r", self.files(".pcapng")[0], "-Y", condition, "-T", "fields", "-e",
+                               "frame.number"], capture_output=True, text=True, timeout=100 + 3 * SECONDS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.split()
+
     def packets(self):
         return [packet for path in self.files(".pcapng") for packet in pcapng_reader.read(path)]
 
@@ -290,7 +303,7 @@ class Logs(RecordingTest):
         self.assertEqual(message["publish_time"], message["transmit_ns"])
         self.assertAlmostEqual(image.header.unix_s, unix_ns / 1e9, delta=2e-6)
         self.assertAlmostEqual(image.header.time_s - first[1], (transmit_us - first[0]) / 1e6, delta=3e-6)
-        self.assertLess(abs(time.time() - unix_ns / 1e9), 120)
+        self.assertLess(abs(time.time() - unix_ns / 1e9), 120 + 2 * SECONDS)
         # The head of a ping leaves after the pulse, and is noted when it has left.
         self.assertGreaterEqual(on_wire.time_ns, unix_ns)
         self.assertLess(on_wire.time_ns - unix_ns, 2e9)
@@ -399,18 +412,33 @@ class Logs(RecordingTest):
         scan = self.start_scan(os.path.join(self.folder.name, "raw"), "--lines", "10")
         self.assertEqual(scan.wait(PATIENCE_S), 0, scan.tail())
         self.end_daemon(daemon)
-        scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
+        self.assertEqual(self.frames_with(COMPLAINTS), [])
+        self.assertEqual(len(self.frames_with("gemini_sonar.ping_head.end_range")), 5)
+        self.assertGreaterEqual(len(self.frames_with("micron_sonar.head_data.bearing")), 10)
 
-        def shown(condition):
-            done = subprocess.run(["tshark", *scripts, "-r", self.files(".pcapng")[0], "-Y", condition, "-T", "fields", "-e",
-                                   "frame.number"], capture_output=True, text=True, timeout=100)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            return done.stdout.split()
-
-        self.assertEqual(shown("_ws.malformed || gemini_sonar.malformed || gemini_sonar.bad_value || gemini_sonar.bad_line || "
-                               "micron_sonar.malformed || micron_sonar.bad_value || micron_sonar.no_frame"), [])
-        self.assertEqual(len(shown("gemini_sonar.ping_head.end_range")), 5)
-        self.assertGreaterEqual(len(shown("micron_sonar.head_data.bearing")), 10)
+    def test_a_run_of_both_heads(self):
+        """As long as one likes: all that was received is in logs that every reader takes."""
+        need("tshark")
+        daemon = self.start_daemon(more=MICRON)
+        raw = os.path.join(self.folder.name, "raw")
+        seconds = ["--seconds", str(SECONDS)]
+        viewer = self.start_viewer("--continuous", "40", "--compression", "4", *seconds)
+        scan = self.start_scan(raw, "--gain", "100", *seconds)
+        for client in (viewer, scan):
+            self.assertEqual(client.wait(SECONDS + PATIENCE_S), 0, client.tail())
+        self.end_daemon(daemon)
+        self.check_folder()
+        self.assertIn("dropped_images=0 dropped_wire_pieces=0", daemon.output())
+        pings, lines = self.received(viewer), self.scanned(raw)
+        self.assertGreater(len(pings), 10 * SECONDS)
+        self.assertGreater(len(lines), 5 * SECONDS)
+        images, messages = self.check_pings(viewer, daemon, len(pings))
+        self.assertEqual(len(images), len(messages["image"]))
+        self.assertEqual([line["bins"] for line in messages["line"]][:len(lines)], [line["bins"] for line in lines])
+        self.assertEqual(self.frames_with(COMPLAINTS), [])
+        print(f"{SECONDS} s: {len(pings)} pings and {len(lines)} lines received; .glf {len(images)} pings, .mcap "
+              f"{ {kind: len(said) for kind, said in messages.items()} }, .pcapng {len(self.packets())} packets; bytes "
+              f"{ {name.rsplit('.')[-1]: os.path.getsize(os.path.join(self.logs, name)) for name in os.listdir(self.logs)} }")
 
     def test_two_daemons_do_not_share_a_folder(self):
         self.start_daemon()
@@ -655,6 +683,7 @@ if __name__ == "__main__":
     parser.add_argument("--programs", required=True)
     parser.add_argument("--npm", required=True, help="folder with read_mcap.js and its node_modules")
     parser.add_argument("--kills", type=int, default=KILLS)
+    parser.add_argument("--seconds", type=int, default=SECONDS, help="of test_a_run_of_both_heads")
     options, rest = parser.parse_known_args()
-    PROGRAMS, NPM, KILLS = os.path.abspath(options.programs), options.npm, options.kills
+    PROGRAMS, NPM, KILLS, SECONDS = os.path.abspath(options.programs), options.npm, options.kills, options.seconds
     unittest.main(argv=[sys.argv[0], *rest])
