@@ -127,11 +127,12 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
 void Scanner::aim(TimePoint transmit_time) {
   job_ = make_line_job(*parameters_, config_, sweep_.bearing());
   const nanoseconds line_after = line_timing(*parameters_, config_, 0).listen + config_.line_overhead;
-  ping_.emplace();
-  ping_->line = make_line();
-  ping_->bins = job_->bins;
-  ping_->line_due = config_.line_period ? transmit_time + std::min(line_after, *config_.line_period)
-                                        : std::max(transmit_time + line_after, link_free_at_);
+  Ping ping;
+  ping.line = make_line();
+  ping.bins = job_->bins;
+  ping.line_due = config_.line_period ? transmit_time + std::min(line_after, *config_.line_period)
+                                      : std::max(transmit_time + line_after, link_free_at_);
+  ping_ = std::move(ping);
 }
 
 /// No faster than its echoes came; the recording says how much slower.
@@ -139,10 +140,11 @@ void Scanner::repeat(TimePoint transmit_time, const RecordedLine& recorded) {
   job_ = make_line_job(recorded);
   motor_.place(recorded.line.bearing);
   const nanoseconds listening = job_->listening_time();
-  ping_.emplace();
-  ping_->line = recorded.line;
-  ping_->bins = recorded.bins;
-  ping_->line_due = transmit_time + std::min(listening, config_.line_period.value_or(listening));
+  Ping ping;
+  ping.line = recorded.line;
+  ping.bins = recorded.bins;
+  ping.line_due = transmit_time + std::min(listening, config_.line_period.value_or(listening));
+  ping_ = std::move(ping);
 }
 
 std::optional<MicronJob> Scanner::take_job() {
