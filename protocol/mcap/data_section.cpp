@@ -59,6 +59,19 @@ class Scanner {
     return true;
   }
 
+  /// @return false: stop here
+  bool take_open_chunk(std::size_t offset, ByteView records) {
+    auto chunk = read_chunk_records(records);
+    if (!chunk) {
+      section_.error = shifted(chunk.error(), offset + chunk_start_size);
+      return false;
+    }
+    section_.end = offset + chunk_start_size + records.size();
+    add(std::move(*chunk), offset, section_.end, true);
+    return true;
+  }
+
+  std::size_t end() const { return section_.end; }
   DataSection done() && { return std::move(section_); }
 
  private:
@@ -96,24 +109,21 @@ class Scanner {
     if (!chunk) {
       return chunk.error();
     }
-    for (Schema& schema : chunk->schemas) {
-      add_once(section_.summary, std::move(schema));
-    }
-    for (Channel& channel : chunk->channels) {
-      add_once(section_.summary, std::move(channel));
-    }
-    for (const auto& [channel_id, entries] : chunk->indexes) {
-      section_.summary.message_counts[channel_id] += entries.size();
-    }
-    ChunkIndex& index = section_.summary.chunks.emplace_back();
-    index.start_time_ns = chunk->start_time_ns;
-    index.end_time_ns = chunk->end_time_ns;
-    index.offset = record.offset;
-    index.length = record.end() - record.offset;
-    index.records_size = chunk->records_size;
-    section_.last_chunk_end = record.end();
-    section_.last_indexes = std::move(chunk->indexes);
+    add(std::move(*chunk), record.offset, record.end(), false);
     return std::nullopt;
+  }
+
+  void add(Chunk chunk, std::size_t begin, std::size_t end, bool open) {
+    add_contents(chunk, section_.summary);
+    ChunkIndex& index = section_.summary.chunks.emplace_back();
+    index.start_time_ns = chunk.start_time_ns;
+    index.end_time_ns = chunk.end_time_ns;
+    index.offset = begin;
+    index.length = end - begin;
+    index.records_size = chunk.records_size;
+    section_.last_chunk_end = end;
+    section_.last_chunk_open = open;
+    section_.last_indexes = std::move(chunk.indexes);
   }
 
   std::optional<WireError> take_message_index(const Record& record) {
@@ -151,27 +161,68 @@ Result<Chunk, WireError> read_chunk(const Record& record) {
   if (records_size != stored_size) {
     reader.fail_at(size_offset, WireErrorReason::bad_length, "chunk.uncompressed_size");
   }
-  if (crc != 0 && crc != crc32(records)) {
+  if (crc != no_crc && crc != crc32(records)) {
     reader.fail_at(crc_offset, WireErrorReason::bad_value, "chunk.uncompressed_crc");
   }
   if (!reader.ok()) {
     return shifted(*reader.error(), record.content_offset());
   }
+  auto chunk = read_chunk_records(records);
+  if (!chunk) {
+    return shifted(chunk.error(), record.content_offset() + records_offset);
+  }
+  return chunk;
+}
+
+Result<Chunk, WireError> read_chunk_records(ByteView records) {
   Chunk chunk;
-  chunk.records_size = records_size;
+  chunk.records_size = records.size();
   for (std::size_t offset = 0; offset < records.size();) {
     const auto inner = record_at(records, offset);
     if (!inner) {
-      return WireError{WireErrorReason::bad_length, record.content_offset() + records_offset + offset,
-                       "chunk.records"};
+      return WireError{WireErrorReason::bad_length, offset, "chunk.records"};
     }
     if (const auto error = take(*inner, chunk)) {
-      return shifted(*error, record.content_offset() + records_offset);
+      return *error;
     }
     offset = inner->end();
   }
   set_times(chunk);
   return chunk;
+}
+
+std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset) {
+  if (offset > file.size() || file.size() - offset < chunk_start_size) {
+    return std::nullopt;
+  }
+  ByteReader reader{file.subspan(offset)};
+  const std::uint8_t opcode = reader.u8("chunk.opcode");
+  reader.skip(4 * 8, "chunk.length_and_times");
+  const std::uint32_t crc = reader.u32le("chunk.uncompressed_crc");
+  const std::uint32_t compression_size = reader.u32le("chunk.compression");
+  if (opcode != static_cast<std::uint8_t>(Opcode::chunk) || crc != no_crc || compression_size != 0) {
+    return std::nullopt;
+  }
+  const std::size_t begin = offset + chunk_start_size;
+  std::size_t end = begin;
+  for (auto record = record_at(file, end);
+       record && (record->is(Opcode::schema) || record->is(Opcode::channel) || record->is(Opcode::message));
+       record = record_at(file, end)) {
+    end = record->end();
+  }
+  return end > begin ? std::optional(file.subspan(begin, end - begin)) : std::nullopt;
+}
+
+void add_contents(const Chunk& chunk, Summary& summary) {
+  for (const Schema& schema : chunk.schemas) {
+    add_once(summary, schema);
+  }
+  for (const Channel& channel : chunk.channels) {
+    add_once(summary, channel);
+  }
+  for (const auto& [channel_id, entries] : chunk.indexes) {
+    summary.message_counts[channel_id] += entries.size();
+  }
 }
 
 Result<DataSection, WireError> scan_data_section(ByteView file) {
@@ -189,9 +240,14 @@ Result<DataSection, WireError> scan_data_section(ByteView file) {
     return WireError{WireErrorReason::bad_value, magic.size(), "header"};
   }
   Scanner scanner{record->end()};
-  do {
-    record = record_at(file, record->end());
-  } while (record && scanner.take(*record));
+  for (bool goes_on = true; goes_on;) {
+    if (const auto records = open_chunk_records(file, scanner.end())) {
+      goes_on = scanner.take_open_chunk(scanner.end(), *records);
+    } else {
+      record = record_at(file, scanner.end());
+      goes_on = record && scanner.take(*record);
+    }
+  }
   return std::move(scanner).done();
 }
 

@@ -24,8 +24,23 @@ struct Chunk {
   std::uint64_t records_size = 0;
 };
 
+/// Of an uncompressed chunk, what stands before its records.
+inline constexpr std::size_t chunk_start_size = record_prefix_size + 3 * 8 + 4 + 4 + 8;
+/// Of a chunk that is open: it may still grow, and what it says of its length may be of before.
+inline constexpr std::uint32_t no_crc = 0;
+
 /// Requires record.is(Opcode::chunk). A compressed chunk is an error: sonard writes none.
 Result<Chunk, WireError> read_chunk(const Record& record);
+
+/// The same of the records in a chunk. Offsets in errors are those of `records`.
+Result<Chunk, WireError> read_chunk_records(ByteView records);
+
+/// The whole records of the open chunk that begins at `offset`, however long it says that it is; nullopt when
+/// none begins there, or it has none.
+std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset);
+
+/// Schemas and channels that are new, and the number of messages.
+void add_contents(const Chunk& chunk, Summary& summary);
 
 /// What is whole at the front of a file.
 struct DataSection {
@@ -34,6 +49,7 @@ struct DataSection {
   bool ended = false;   ///< DataEnd stands at `end`
   std::size_t last_chunk_end = 0;  ///< without its message indexes; 0 when there is no chunk
   MessageIndexes last_indexes;     ///< what the last chunk's message indexes are
+  bool last_chunk_open = false;    ///< it has no CRC
   /// Why it went no further, when neither DataEnd nor the end of the bytes stopped it. What follows is not
   /// lost to a reader that knows better.
   std::optional<WireError> error;

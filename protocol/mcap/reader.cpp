@@ -41,11 +41,14 @@ bool MessageCursor::open_due_chunks() {
 bool MessageCursor::open(const ChunkIndex& index) {
   const auto offset = static_cast<std::size_t>(index.offset);
   const auto record = record_at(file_, offset);
-  if (!record || !record->is(Opcode::chunk) || record->end() - offset != index.length) {
+  const auto open_records = open_chunk_records(file_, offset);
+  const bool closed = record && record->is(Opcode::chunk) && record->end() - offset == index.length;
+  const bool open = open_records && chunk_start_size + open_records->size() == index.length;
+  if (!closed && !open) {
     error_ = WireError{WireErrorReason::bad_value, offset, "chunk_index.chunk_start_offset"};
     return false;
   }
-  const auto chunk = read_chunk(*record);
+  const auto chunk = open ? read_chunk_records(*open_records) : read_chunk(*record);
   if (!chunk) {
     error_ = chunk.error();
     return false;

@@ -19,6 +19,18 @@ void complete_last_indexes(const DataSection& section, Recovery& recovery) {
   append_message_indexes(recovery.end, recovery.keep_size, section.last_indexes, last);
 }
 
+/// Closes the chunk that was growing.
+void close_last_chunk(ByteView file, const DataSection& section, Recovery& recovery) {
+  ChunkIndex& last = recovery.summary.chunks.back();
+  const ByteView records = file.subspan(static_cast<std::size_t>(last.offset) + chunk_start_size,
+                                        static_cast<std::size_t>(last.records_size));
+  recovery.keep_size = last.offset;
+  last.message_index_offsets.clear();
+  append_chunk_start(recovery.end, last, crc32(records));
+  recovery.end.insert(recovery.end.end(), records.begin(), records.end());
+  append_message_indexes(recovery.end, recovery.keep_size, section.last_indexes, last);
+}
+
 }  // namespace
 
 Result<Recovery, WireError> recover(ByteView file) {
@@ -38,7 +50,11 @@ Result<Recovery, WireError> recover(ByteView file) {
   recovery.keep_size = section->end;
   recovery.lost_size = section->ended ? 0 : file.size() - section->end;
   recovery.summary = std::move(section->summary);
-  complete_last_indexes(*section, recovery);
+  if (section->last_chunk_open) {
+    close_last_chunk(file, *section, recovery);
+  } else {
+    complete_last_indexes(*section, recovery);
+  }
 
   std::uint32_t crc = crc32(file.first(static_cast<std::size_t>(recovery.keep_size)));
   crc = crc32(recovery.end, crc);

@@ -12,13 +12,14 @@ namespace sonard::mcap {
 struct Recovery {
   std::uint64_t keep_size = 0;
   Bytes end;                    ///< empty when the file is whole as it is
-  std::uint64_t lost_size = 0;  ///< bytes of the data section that go: a chunk that was being written
+  std::uint64_t lost_size = 0;  ///< bytes of the data section that go: a record that was being written
   Summary summary;              ///< of the file when it is whole
 };
 
-/// Looks at all of `file`. Keeps everything up to the last whole chunk whose CRC is right; message indexes
-/// that are missing behind it are written anew. An error when not even magic and header are whole, for then
-/// there is nothing in it to keep, and for a file with compressed chunks, which sonard did not write.
+/// Looks at all of `file`. Keeps everything up to the last whole chunk whose CRC is right, or to the last
+/// whole record of a chunk that was growing, which is closed; message indexes that are missing behind the
+/// last chunk are written anew. An error when not even magic and header are whole, for then there is nothing
+/// in it to keep, and for a file with compressed chunks, which sonard did not write.
 Result<Recovery, WireError> recover(ByteView file);
 
 }  // namespace sonard::mcap

@@ -21,7 +21,7 @@ std::uint16_t next_id(const std::vector<Value>& values) {
 Writer::Writer(std::string_view library, std::size_t chunk_bytes) : chunk_bytes_(chunk_bytes) {
   pending_.assign(magic.begin(), magic.end());
   append_header(pending_, "", library);
-  add_to_crc(0);
+  data_crc_ = crc32(pending_);
 }
 
 std::uint16_t Writer::add_schema(std::string_view name, std::string_view encoding, ByteView data) {
@@ -54,34 +54,64 @@ void Writer::add_message(std::uint16_t channel_id, std::uint64_t log_time_ns, st
   }
 }
 
+void Writer::flush() {
+  if (flushed_size_ == records_.size()) {
+    return;
+  }
+  if (!open_at_) {
+    open_at_ = file_size();
+    pending_.resize(pending_.size() + chunk_start_size);
+  }
+  pending_.insert(pending_.end(), records_.begin() + static_cast<std::ptrdiff_t>(flushed_size_),
+                  records_.end());
+  flushed_size_ = records_.size();
+  put_chunk_start(no_crc);
+}
+
+/// Into what waits to be taken where it begins there; else it is to be written over.
+void Writer::put_chunk_start(std::uint32_t crc) {
+  ChunkIndex chunk;
+  chunk.start_time_ns = start_time_ns_;
+  chunk.end_time_ns = end_time_ns_;
+  chunk.records_size = records_.size();
+  Bytes start;
+  append_chunk_start(start, chunk, crc);
+  if (*open_at_ >= taken_size_) {
+    std::ranges::copy(start, pending_.begin() + static_cast<std::ptrdiff_t>(*open_at_ - taken_size_));
+  } else {
+    rewrite_ = start;
+    rewrite_offset_ = *open_at_;
+  }
+}
+
 void Writer::end_chunk() {
   if (records_.empty()) {
     return;
   }
-  const std::size_t start = pending_.size();
+  flush();
+  const std::uint32_t crc = crc32(records_);
+  put_chunk_start(crc);
   ChunkIndex& chunk = summary_.chunks.emplace_back();
   chunk.start_time_ns = start_time_ns_;
   chunk.end_time_ns = end_time_ns_;
-  chunk.offset = file_size();
+  chunk.offset = *open_at_;
   chunk.records_size = records_.size();
-  {
-    const RecordScope record{pending_, Opcode::chunk};
-    ByteWriter writer{pending_};
-    writer.u64le(start_time_ns_);
-    writer.u64le(end_time_ns_);
-    writer.u64le(records_.size());
-    writer.u32le(crc32(records_));
-    writer.u32le(0);  // compression: an empty string
-    writer.u64le(records_.size());
-    writer.bytes(records_);
+  chunk.length = chunk_start_size + records_.size();
+
+  Bytes indexes;
+  append_message_indexes(indexes, file_size(), indexes_, chunk);
+  pending_.insert(pending_.end(), indexes.begin(), indexes.end());
+  Bytes start;
+  append_chunk_start(start, chunk, crc);
+  for (const Bytes* part : {&start, &records_, &indexes}) {
+    data_crc_ = crc32(*part, data_crc_);
   }
-  chunk.length = file_size() - chunk.offset;
-  append_message_indexes(pending_, taken_size_, indexes_, chunk);
-  add_to_crc(start);
   records_.clear();
   indexes_.clear();
   start_time_ns_ = 0;
   end_time_ns_ = 0;
+  open_at_.reset();
+  flushed_size_ = 0;
 }
 
 void Writer::finish() {
@@ -90,13 +120,21 @@ void Writer::finish() {
   pending_.insert(pending_.end(), end.begin(), end.end());
 }
 
-Bytes Writer::take() {
+Piece Writer::take() {
   taken_size_ += pending_.size();
-  return std::exchange(pending_, {});
+  return {std::exchange(pending_, {}), std::exchange(rewrite_, {}), rewrite_offset_};
 }
 
-void Writer::add_to_crc(std::size_t pending_start) {
-  data_crc_ = crc32(ByteView{pending_}.subspan(pending_start), data_crc_);
+void append_chunk_start(Bytes& out, const ChunkIndex& chunk, std::uint32_t crc) {
+  ByteWriter writer{out};
+  writer.u8(static_cast<std::uint8_t>(Opcode::chunk));
+  writer.u64le(chunk_start_size - record_prefix_size + chunk.records_size);
+  writer.u64le(chunk.start_time_ns);
+  writer.u64le(chunk.end_time_ns);
+  writer.u64le(chunk.records_size);
+  writer.u32le(crc);
+  writer.u32le(0);  // compression: an empty string
+  writer.u64le(chunk.records_size);
 }
 
 void append_message_indexes(Bytes& out, std::uint64_t file_offset, const MessageIndexes& indexes,

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,11 +13,23 @@
 
 namespace sonard::mcap {
 
+/// What is to be done to the file, in this order.
+struct Piece {
+  Bytes append;  ///< whole records; perhaps none
+  /// Takes the place of bytes that are in the file since an earlier piece; empty: of none.
+  Bytes rewrite;
+  std::uint64_t rewrite_offset = 0;
+};
+
 /// Messages gather in a chunk; a chunk that is full, its message indexes, and at the end the summary are what
-/// take() hands out. Whoever appends each of these pieces to a file loses, when killed, the open chunk and
-/// the piece that was being appended; recover() finishes what is there. Schemas and channels stand in the
-/// chunk that was open when they were added, so a file needs no summary to be read. Not thread-safe; holds
-/// one chunk and what has not been taken.
+/// take() hands out. With flush() the chunk that is still open is handed out as far as it is: its beginning
+/// says how long it is so far, and is written over as it grows. An open chunk has no CRC (0), by which it is
+/// told from one that is closed.
+///
+/// Whoever does to a file what each piece says loses, when killed, what was not flushed and the piece that
+/// was being appended; recover() finishes what is there. Schemas and channels stand in the chunk that was
+/// open when they were added, so a file needs no summary to be read. Not thread-safe; holds one chunk and
+/// what has not been taken.
 class Writer {
  public:
   /// @param library who writes, for those who look into a file: "sonard 0.1.0"
@@ -34,21 +47,23 @@ class Writer {
   void add_message(std::uint16_t channel_id, std::uint64_t log_time_ns, std::uint64_t publish_time_ns,
                    ByteView data);
 
+  /// Hands out the open chunk as far as it is, so that take() has all messages.
+  void flush();
   /// Closes the open chunk before it is full, so that take() has all messages. Nothing happens when it is
   /// empty.
   void end_chunk();
   /// Closes the open chunk and writes the end of the file. Nothing may be added afterwards.
   void finish();
 
-  /// What is to be appended to the file since the last call: whole records, perhaps none.
-  Bytes take();
+  /// What is to be done since the last call.
+  Piece take();
 
-  /// Of what was handed out and of what waits to be taken.
+  /// With what waits to be taken.
   std::uint64_t file_size() const { return taken_size_ + pending_.size(); }
   const Summary& summary() const { return summary_; }
 
  private:
-  void add_to_crc(std::size_t pending_start);
+  void put_chunk_start(std::uint32_t crc);
 
   std::size_t chunk_bytes_;
   Summary summary_;  ///< without the open chunk, but for schemas, channels and counts
@@ -58,11 +73,18 @@ class Writer {
   MessageIndexes indexes_;
   std::uint64_t start_time_ns_ = 0;
   std::uint64_t end_time_ns_ = 0;
+  std::optional<std::uint64_t> open_at_;  ///< where the open chunk begins in the file; nullopt: not in it
+  std::size_t flushed_size_ = 0;          ///< of records_, what was handed out
 
   Bytes pending_;
+  Bytes rewrite_;  ///< of the chunk that begins in what was taken
+  std::uint64_t rewrite_offset_ = 0;
   std::uint64_t taken_size_ = 0;
   std::uint32_t data_crc_ = 0;
 };
+
+/// Appends opcode, length and all of a chunk that stands before its records.
+void append_chunk_start(Bytes& out, const ChunkIndex& chunk, std::uint32_t crc);
 
 /// Appends the message index records of one chunk and notes in `chunk` where they stand; `file_offset` is
 /// that of the front of `out`.

@@ -350,6 +350,9 @@ std::optional<PingWish> Device::ping_wish() const {
 void Device::permit_ping() {
   impl_->scanner().permit();
 }
+void Device::offer(const std::optional<RecordedLine>& line) {
+  impl_->scanner().offer(line);
+}
 void Device::advance(TimePoint now) {
   impl_->advance(now);
 }
@@ -373,6 +376,9 @@ const DeviceCounters& Device::counters() const {
 }
 HeadState Device::state(TimePoint now) const {
   return impl_->state(now);
+}
+const std::optional<HeadCommand>& Device::parameters() const {
+  return impl_->scanner().parameters();
 }
 
 }  // namespace sonard::micron

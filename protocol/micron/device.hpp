@@ -58,6 +58,9 @@ class Device {
   void power_cycle(TimePoint now);
   /// The motor loses its step: lines say so until new parameters come.
   void lose_step();
+  /// For DeviceConfig::plays_back: the line to send when the host next wants one, in place of the one offered
+  /// before. Gone when its job is out; without one no ping begins.
+  void offer(const std::optional<RecordedLine>& line);
 
   /// For DeviceConfig::waits_for_permission: the ping that it would begin next; nullopt: none.
   std::optional<PingWish> ping_wish() const;
@@ -83,6 +86,8 @@ class Device {
 
   const DeviceCounters& counters() const;
   HeadState state(TimePoint now) const;
+  /// What the host has told it last; nullopt: nothing since power came on.
+  const std::optional<HeadCommand>& parameters() const;
 
  private:
   class Impl;

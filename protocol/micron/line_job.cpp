@@ -1,5 +1,7 @@
 #include "protocol/micron/line_job.hpp"
 
+#include <algorithm>
+
 #include "protocol/micron/line_timing.hpp"
 #include "protocol/micron/units.hpp"
 
@@ -19,6 +21,24 @@ MicronJob make_line_job(const HeadCommand& parameters, const DeviceConfig& confi
   job.ad_span_db = level_db(parameters.ad_span);
   job.eight_bit = parameters.has(control_bits::eight_bit);
   job.transmit = !parameters.has(control_bits::transmit_off);
+  return job;
+}
+
+MicronJob make_line_job(const RecordedLine& recorded) {
+  const HeadData& line = recorded.line;
+  MicronJob job;
+  job.bearing = line.bearing;
+  job.bearing_rad = recorded.bearing_rad;
+  job.bins = recorded.bins;
+  job.bin_time_s = bin_time_s(std::max<int>(line.ad_interval, 1));
+  job.sound_speed_mps = recorded.sound_speed_mps;
+  job.bin_length_m = job.bin_time_s * job.sound_speed_mps / 2.0;
+  job.gain_db = gain_db(line.gain);
+  job.ad_low_db = level_db(line.ad_low);
+  job.ad_span_db = level_db(line.ad_span);
+  job.eight_bit = line.eight_bit();
+  job.transmit = (line.control & control_bits::transmit_off) == 0;
+  job.record = recorded.record;
   return job;
 }
 

@@ -3,9 +3,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "protocol/micron/frame.hpp"
+#include "protocol/micron/messages.hpp"
 
 namespace sonard::micron {
 
@@ -27,6 +29,8 @@ struct MicronJob {
   double ad_span_db = 0.0;
   bool eight_bit = true;  ///< how the line will travel; the samples are 8-bit ones always
   bool transmit = true;   ///< false: the head only listens, there are no echoes but there is noise
+  /// The RecordedLine that answers this job, and is what all the above says; nullopt: it is to be rendered.
+  std::optional<std::uint64_t> record;
 
   double range_m() const { return bins * bin_length_m; }
   /// Until the echo of the last bin is in.
@@ -36,7 +40,7 @@ struct MicronJob {
 };
 
 /// The rendered samples of a job: MicronJob::bins of them, from near to far, 0..255 = 0..80 dB of receiver
-/// output (docs/protocols/micron.md 6.3).
+/// output (docs/protocols/micron.md 6.3). Those of a RecordedLine are its bins as they travelled.
 struct MicronLine {
   std::uint64_t ping_number = 0;
   std::vector<std::uint8_t> samples;
@@ -45,8 +49,20 @@ struct MicronLine {
 /// A line that has left, for those who keep what a head said.
 struct SentLine {
   std::uint64_t ping_number = 0;
-  bool eight_bit = true;
+  HeadData line;                   ///< without data
   std::vector<std::uint8_t> bins;  ///< as they travelled: 0..255, or 0..15 where a line has 4 bits a bin
+};
+
+/// A line that was recorded and is to be sent once more, as it was: of all that the host asks for, a head
+/// that plays back heeds only that it wants a line.
+struct RecordedLine {
+  std::uint64_t record = 0;      ///< MicronJob::record
+  HeadData line;                 ///< as it travelled; without data
+  int bins = 0;                  ///< 1..1500
+  double bearing_rad = 0.0;      ///< MicronJob::bearing_rad
+  double sound_speed_mps = 0.0;  ///< MicronJob::sound_speed_mps
+  /// Earliest transmit time; nullopt: when the host wants it.
+  std::optional<TimePoint> due;
 };
 
 }  // namespace sonard::micron

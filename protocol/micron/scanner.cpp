@@ -37,7 +37,9 @@ void Scanner::restart(TimePoint now, TimePoint begin) {
 
 void Scanner::configure(TimePoint now, const HeadCommand& parameters) {
   settle(now);
-  cancel_ping();  // no line with old parameters may follow
+  if (!config_.plays_back) {
+    cancel_ping();  // no line with old parameters may follow
+  }
   parameters_ = parameters;
   configured_at_ = now;
   motor_error_ = false;
@@ -98,12 +100,15 @@ void Scanner::take_up_position(TimePoint begin) {
 // ---- Pings
 
 std::optional<TimePoint> Scanner::ping_possible() const {
-  if (!placed_ || !parameters_ || owed_ == 0 || ping_ || unanswered_) {
+  if (!placed_ || !parameters_ || owed_ == 0 || ping_ || unanswered_ || (config_.plays_back && !offered_)) {
     return std::nullopt;
   }
   const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
-  // Where another time rules, whoever permits a ping has kept the pace in that one.
-  return config_.waits_for_permission ? possible : std::max(possible, next_ping_at_);
+  if (config_.waits_for_permission) {
+    return possible;  // whoever permits a ping has kept the pace in the time that rules
+  }
+  const TimePoint due = std::max(possible, next_ping_at_);
+  return offered_ ? std::max(due, offered_->due.value_or(due)) : due;
 }
 
 std::optional<PingWish> Scanner::wish() const {
@@ -124,6 +129,7 @@ std::optional<TimePoint> Scanner::line_due() const {
   return ping_ && !ping_->samples.empty() ? std::optional{ping_->line_due} : std::nullopt;
 }
 
+/// Of a line that is no recorded one.
 TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) const {
   if (config_.waits_for_permission) {
     return transmit_time;
@@ -134,16 +140,38 @@ TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) 
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
   permitted_ = false;
-  const LineTiming timing = line_timing(*parameters_, config_, 0);
-  Ping ping;
-  ping.number = next_ping_number_++;
-  ping.transmit_time = std::max(due, now - lateness_allowed);
-  ping.line_due = line_due_of(ping.transmit_time, timing.listen + config_.line_overhead);
-  job_ = make_line_job(*parameters_, config_, sweep_.bearing());
-  job_->ping_number = ping.number;
-  job_->transmit_time = ping.transmit_time;
-  ping_ = std::move(ping);
+  const TimePoint transmit_time = std::max(due, now - lateness_allowed);
+  if (const auto recorded = std::exchange(offered_, std::nullopt)) {
+    repeat(transmit_time, *recorded);
+  } else {
+    aim(transmit_time);
+  }
+  ping_->number = job_->ping_number = next_ping_number_++;
+  ping_->transmit_time = job_->transmit_time = transmit_time;
   ++counters_.pings_started;
+}
+
+/// At the bearing of the sweep, with the parameters of the host.
+void Scanner::aim(TimePoint transmit_time) {
+  job_ = make_line_job(*parameters_, config_, sweep_.bearing());
+  const nanoseconds line_after = line_timing(*parameters_, config_, 0).listen + config_.line_overhead;
+  Ping ping;
+  ping.line = make_line();
+  ping.bins = job_->bins;
+  ping.line_due = line_due_of(transmit_time, line_after);
+  ping_ = std::move(ping);
+}
+
+/// No faster than its echoes came; the recording says how much slower.
+void Scanner::repeat(TimePoint transmit_time, const RecordedLine& recorded) {
+  job_ = make_line_job(recorded);
+  motor_.place(recorded.line.bearing);
+  const nanoseconds listening = job_->listening_time();
+  Ping ping;
+  ping.line = recorded.line;
+  ping.bins = recorded.bins;
+  ping.line_due = transmit_time + std::min(listening, config_.line_period.value_or(listening));
+  ping_ = std::move(ping);
 }
 
 std::optional<MicronJob> Scanner::take_job() {
@@ -169,7 +197,7 @@ void Scanner::on_line(TimePoint now, const MicronLine& line) {
   if (!answered(now, line.ping_number)) {
     return;
   }
-  if (line.samples.size() != static_cast<std::size_t>(effective_bins(*parameters_))) {
+  if (line.samples.size() != static_cast<std::size_t>(ping_->bins)) {
     ++counters_.pings_failed;
     end_ping();
     return;
@@ -185,19 +213,7 @@ void Scanner::on_line_failed(TimePoint now, std::uint64_t ping_number) {
   }
 }
 
-std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
-  const HeadCommand& parameters = *parameters_;
-  if (parameters.has(control_bits::eight_bit)) {
-    return ping.samples;
-  }
-  std::vector<std::uint8_t> values(ping.samples.size());
-  std::ranges::transform(ping.samples, values.begin(), [&](std::uint8_t amplitude) {
-    return to_four_bit(amplitude, parameters.ad_low, parameters.ad_span);
-  });
-  return values;
-}
-
-std::vector<std::uint8_t> Scanner::make_line(const Ping& ping) const {
+HeadData Scanner::make_line() const {
   const HeadCommand& parameters = *parameters_;
   HeadData line;
   line.sweep = sweep_.code();
@@ -205,7 +221,7 @@ std::vector<std::uint8_t> Scanner::make_line(const Ping& ping) const {
   if (config_.always_reports_scan_right) {
     line.control |= control_bits::scan_right;
   }
-  line.status = motor_error_ ? head_status_bits::motor_error : std::uint8_t{0};
+  line.status = parameters.has(control_bits::eight_bit) ? head_status_bits::eight_bit : std::uint8_t{0};
   line.range_scale = parameters.range_scale;
   line.tx_word = parameters.tx_word[0];
   line.gain = parameters.gain[0];
@@ -217,19 +233,30 @@ std::vector<std::uint8_t> Scanner::make_line(const Ping& ping) const {
   line.right_limit = parameters.right_limit;
   line.step = parameters.step;
   line.bearing = static_cast<std::uint16_t>(sweep_.bearing());
-  if (parameters.has(control_bits::eight_bit)) {
-    line.status |= head_status_bits::eight_bit;
-    line.data = ping.samples;
-    return encode(line, config_.node);
+  return line;
+}
+
+/// As they travel.
+std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
+  if (ping.line.eight_bit() || config_.plays_back) {
+    return ping.samples;
   }
-  const auto packed = pack_nibbles(bins_of(ping), config_.nibble_order);
-  line.data = packed;
-  return encode(line, config_.node);
+  std::vector<std::uint8_t> values(ping.samples.size());
+  std::ranges::transform(ping.samples, values.begin(), [&](std::uint8_t amplitude) {
+    return to_four_bit(amplitude, ping.line.ad_low, ping.line.ad_span);
+  });
+  return values;
 }
 
 void Scanner::send_line(std::vector<std::vector<std::uint8_t>>& out) {
-  out.push_back(make_line(*ping_));
-  sent_ = SentLine{ping_->number, parameters_->has(control_bits::eight_bit), bins_of(*ping_)};
+  HeadData line = ping_->line;
+  if (motor_error_) {
+    line.status |= head_status_bits::motor_error;
+  }
+  sent_ = SentLine{ping_->number, line, bins_of(*ping_)};
+  const auto packed = line.eight_bit() ? sent_->bins : pack_nibbles(sent_->bins, config_.nibble_order);
+  line.data = packed;
+  out.push_back(encode(line, config_.node));
   ++counters_.lines_sent;
   link_free_at_ = ping_->line_due + line_timing(*parameters_, config_, 0).send;
   end_ping();
@@ -237,15 +264,19 @@ void Scanner::send_line(std::vector<std::vector<std::uint8_t>>& out) {
 
 /// The line is sent, or will never be: on to the next bearing.
 void Scanner::end_ping() {
+  next_ping_at_ = config_.plays_back ? ping_->line_due : time_of_next_ping();
+  --owed_;
+  ping_.reset();
+}
+
+/// Turns, and when it may ping there.
+TimePoint Scanner::time_of_next_ping() {
   const int way = sweep_.step();
   motor_.place(sweep_.bearing());
   const LineTiming timing = line_timing(*parameters_, config_, way);
-  next_ping_at_ = ping_->transmit_time + config_.line_period.value_or(timing.period(config_));
-  if (config_.half_duplex && !config_.line_period) {
-    next_ping_at_ = std::max(next_ping_at_, link_free_at_ + timing.turn);  // after a line that came late
-  }
-  --owed_;
-  ping_.reset();
+  const TimePoint next = ping_->transmit_time + config_.line_period.value_or(timing.period(config_));
+  // After a line that came late.
+  return config_.half_duplex && !config_.line_period ? std::max(next, link_free_at_ + timing.turn) : next;
 }
 
 void Scanner::cancel_ping() {

@@ -42,6 +42,7 @@ class Scanner {
   /// See Device::ping_wish().
   std::optional<PingWish> wish() const;
   void permit() { permitted_ = true; }
+  void offer(const std::optional<RecordedLine>& line) { offered_ = line; }
 
   /// Appends the frames due at `now` to `out`.
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
@@ -62,7 +63,9 @@ class Scanner {
   struct Ping {
     std::uint64_t number = 0;
     TimePoint transmit_time{};
-    TimePoint line_due{};               ///< not earlier than this the line leaves
+    TimePoint line_due{};  ///< not earlier than this the line leaves
+    HeadData line;         ///< what it will say, but for its data
+    int bins = 0;
     std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
   };
 
@@ -73,10 +76,13 @@ class Scanner {
   std::optional<TimePoint> line_due() const;
   TimePoint line_due_of(TimePoint transmit_time, std::chrono::nanoseconds line_after) const;
   void start_ping(TimePoint now, TimePoint due);
+  void aim(TimePoint transmit_time);
+  void repeat(TimePoint transmit_time, const RecordedLine& recorded);
+  HeadData make_line() const;
   std::vector<std::uint8_t> bins_of(const Ping& ping) const;
-  std::vector<std::uint8_t> make_line(const Ping& ping) const;
   void send_line(std::vector<std::vector<std::uint8_t>>& out);
   void end_ping();
+  TimePoint time_of_next_ping();
   void cancel_ping();
   bool answered(TimePoint now, std::uint64_t ping_number);
 
@@ -96,6 +102,7 @@ class Scanner {
   bool motor_error_ = false;
   int owed_ = 0;  ///< lines
   TimePoint owed_since_{};
+  std::optional<RecordedLine> offered_;
 
   // What it does.
   bool permitted_ = false;

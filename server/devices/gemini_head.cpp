@@ -317,7 +317,7 @@ bool GeminiHead::Impl::permit_ping(TimePoint now) {
 void GeminiHead::Impl::offer_recorded(TimePoint now) {
   if (config.device.plays_back && services.playback != nullptr) {
     services.playback->progress(stream, now, device.counters());
-    device.offer(services.playback->next(stream, now));
+    device.offer(services.playback->next_ping(stream, now));
   }
 }
 

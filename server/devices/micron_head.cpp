@@ -14,6 +14,7 @@
 #include "server/devices/deadline_timer.hpp"
 #include "server/devices/micron_head_log.hpp"
 #include "server/devices/micron_settings.hpp"
+#include "server/devices/playback.hpp"
 #include "server/devices/serial/serial_link.hpp"
 #include "server/recording/head_recording.hpp"
 
@@ -27,9 +28,10 @@ constexpr std::chrono::seconds report_period{10};
 }  // namespace
 
 struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
-  Impl(const MicronHeadConfig& head_config, int stream, const HeadServices& head_services)
+  Impl(const MicronHeadConfig& head_config, int stream_number, const HeadServices& head_services)
       : config(head_config),
         services(head_services),
+        stream(stream_number),
         power_up(services.clock.now()),
         device(config.device, power_up),
         link(services.io, config.serial, services.clock),
@@ -41,6 +43,7 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
 
   const MicronHeadConfig config;
   const HeadServices services;
+  const int stream;
   const TimePoint power_up;
 
   micron::Device device;
@@ -63,6 +66,8 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
   void pump();
   void advance_device(TimePoint now);
   void advance_and_render(TimePoint now);
+  void offer_recorded(TimePoint now);
+  void step_device(TimePoint now);
   void record_sent();
   bool permit_ping(TimePoint now);
   void drop_unheard_job(TimePoint now);
@@ -185,8 +190,7 @@ void MicronHead::Impl::advance_device(TimePoint now) {
 }
 
 void MicronHead::Impl::advance_and_render(TimePoint now) {
-  device.advance(now);
-  record_sent();
+  step_device(now);
   while (const std::optional<micron::MicronJob> job = device.take_job()) {
     if (render(*job)) {
       return;
@@ -194,8 +198,20 @@ void MicronHead::Impl::advance_and_render(TimePoint now) {
     // The device must hear of it, and has a next deadline only after it has advanced over it. Each turn takes
     // one of the lines that are owed, so this ends.
     device.on_line_failed(now, job->ping_number);
-    device.advance(now);
-    record_sent();
+    step_device(now);
+  }
+}
+
+void MicronHead::Impl::step_device(TimePoint now) {
+  offer_recorded(now);
+  device.advance(now);
+  record_sent();
+}
+
+void MicronHead::Impl::offer_recorded(TimePoint now) {
+  if (config.device.plays_back && services.playback != nullptr) {
+    services.playback->progress(stream, now, device.counters());
+    device.offer(services.playback->next_line(stream, now));
   }
 }
 
@@ -228,6 +244,9 @@ void MicronHead::Impl::drop_unheard_job(TimePoint now) {
 // False when this ping cannot be made.
 bool MicronHead::Impl::render(const micron::MicronJob& job) {
   log.settings(job);
+  if (job.record) {
+    services.playback->started(stream, job, *device.parameters());
+  }
   const TimePoint pose_time = rendering.pose_time(job.transmit_time);
   const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);
   if (!T_world_mount) {
@@ -245,7 +264,8 @@ bool MicronHead::Impl::render(const micron::MicronJob& job) {
   if (T_world_at_end) {  // the motor rests meanwhile
     T_world_at_end = T_world_transducer(*T_world_at_end, job);
   }
-  HeadPing ping{job.ping_number,
+  // A recorded line goes to the recording under the number that it has there.
+  HeadPing ping{job.record.value_or(job.ping_number),
                 pose_time,
                 static_cast<std::uint64_t>(since_power_up.count()),
                 T_world_transducer(*T_world_mount, job),

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "renderer/picture/fan_image.hpp"
+#include "server/info/recorded_turns.hpp"
 
 namespace sonard::server {
 namespace {
@@ -34,11 +35,68 @@ bool drawable(const picture::FanShape& shape, const RecordedSettings& settings) 
 }
 
 // Names come from the log: they are no way out of the folder.
-std::string file_name(const RecordedHead& head, std::uint64_t ping) {
+template <class Head>
+std::string file_name(const Head& head, std::uint64_t number) {
   std::string name = head.name.empty() ? fmt::format("{}", head.device_id) : head.name;
   std::ranges::replace_if(
       name, [](char c) { return c == '/' || c == '\0'; }, '_');
-  return fmt::format("{}_{:06}.png", name, ping);
+  return fmt::format("{}_{:06}.png", name, number);
+}
+
+void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
+  if (!cv::imwrite(path.string(), picture)) {
+    throw LogError(fmt::format("{}: cannot be written", path.string()));
+  }
+}
+
+std::uint64_t write_fans(const Recording& recording, const RecordedHead& head, const LogFile& file,
+                         const std::filesystem::path& folder, std::uint64_t every) {
+  std::optional<picture::FanImage> fan;
+  std::uint64_t written = 0;
+  for (std::uint64_t ping = 0; ping < head.images.size(); ping += every, ++written) {
+    const RecordedImage& image = head.images[ping];
+    const picture::FanShape shape = shape_of(head, image.settings);
+    if (!drawable(shape, image.settings)) {
+      throw file.error(fmt::format("ping {} of sonar {} has beams that make no fan", ping, head.device_id));
+    }
+    if (!fan || fan->geometry().shape() != shape) {
+      fan.emplace(shape, thumbnail_look);
+    }
+    std::vector<std::uint8_t> pixels = recording.pixels(image);
+    const cv::Mat polar(image.settings.lines, image.settings.beams, CV_8UC1, pixels.data());
+    write_picture(folder / file_name(head, ping),
+                  fan->draw(polar, fmt::format("{} ping {}", head.device_id, ping)));
+  }
+  return written;
+}
+
+picture::TurnLine drawn_line(const Recording& recording, const RecordedScanLine& line) {
+  picture::TurnLine drawn{picture_bearing(line), recording.bins(line)};
+  if (line.bits_per_bin == 4) {
+    constexpr int to_full_scale = 17;
+    std::ranges::transform(drawn.samples, drawn.samples.begin(), [](std::uint8_t bin) {
+      return static_cast<std::uint8_t>(std::min(bin * to_full_scale, 255));
+    });
+  }
+  return drawn;
+}
+
+std::uint64_t write_turns(const Recording& recording, const RecordedScan& scan,
+                          const std::filesystem::path& folder, std::uint64_t every) {
+  const std::vector<RecordedTurn> turns = turns_of(scan);
+  std::uint64_t written = 0;
+  for (std::uint64_t number = 0; number < turns.size(); number += every, ++written) {
+    const RecordedTurn& turn = turns[number];
+    std::vector<picture::TurnLine> lines;
+    for (std::size_t place = turn.begin; place < turn.end; ++place) {
+      lines.push_back(drawn_line(recording, scan.lines[place]));
+    }
+    const picture::TurnImage image(turn.shape, thumbnail_look);
+    write_picture(
+        folder / file_name(scan, number),
+        image.draw(lines, fmt::format("{} turn {}, {} lines", scan.device_id, number, lines.size())));
+  }
+  return written;
 }
 
 }  // namespace
@@ -52,25 +110,10 @@ std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
   }
   std::uint64_t written = 0;
   for (const RecordedHead& head : recording.heads()) {
-    std::optional<picture::FanImage> fan;
-    for (std::uint64_t ping = 0; ping < head.images.size(); ping += every) {
-      const RecordedImage& image = head.images[ping];
-      const picture::FanShape shape = shape_of(head, image.settings);
-      if (!drawable(shape, image.settings)) {
-        throw file.error(fmt::format("ping {} of sonar {} has beams that make no fan", ping, head.device_id));
-      }
-      if (!fan || fan->geometry().shape() != shape) {
-        fan.emplace(shape, thumbnail_look);
-      }
-      std::vector<std::uint8_t> pixels = recording.pixels(image);
-      const cv::Mat polar(image.settings.lines, image.settings.beams, CV_8UC1, pixels.data());
-      const std::filesystem::path path = folder / file_name(head, ping);
-      const std::string caption = fmt::format("{} ping {}", head.device_id, ping);
-      if (!cv::imwrite(path.string(), fan->draw(polar, caption))) {
-        throw LogError(fmt::format("{}: cannot be written", path.string()));
-      }
-      ++written;
-    }
+    written += write_fans(recording, head, file, folder, every);
+  }
+  for (const RecordedScan& scan : recording.scans()) {
+    written += write_turns(recording, scan, folder, every);
   }
   return written;
 }

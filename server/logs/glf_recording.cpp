@@ -66,7 +66,7 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
     }
     head.images.push_back({*time_ns, settings_of(*image), place});
   }
-  sort_images();
+  sort_by_time();
 }
 
 std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const {
@@ -75,6 +75,10 @@ std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const
     throw file_.error(to_string(record.error()));
   }
   return std::move(record->pixels);
+}
+
+std::vector<std::uint8_t> GlfRecording::bins(const RecordedScanLine&) const {
+  throw file_.error("has no scan lines");
 }
 
 std::vector<std::string> GlfRecording::problems() const {

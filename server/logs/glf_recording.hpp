@@ -12,6 +12,7 @@ class GlfRecording final : public Recording {
   explicit GlfRecording(const LogFile& file);
 
   std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
+  std::vector<std::uint8_t> bins(const RecordedScanLine& line) const override;
   std::vector<std::string> problems() const override;
   bool closed() const override { return view_.index().closed && !cut_; }
   const glf::LogView& view() const { return view_; }

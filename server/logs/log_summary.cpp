@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "protocol/glf/log_time.hpp"
-#include "protocol/log/log_messages.hpp"
 #include "server/logs/capture_summary.hpp"
 #include "server/logs/glf_recording.hpp"
 #include "server/logs/mcap_recording.hpp"
@@ -11,12 +10,19 @@
 namespace sonard::server {
 namespace {
 
-void add_images(LogSummary& log, const Recording& recording) {
+void add_pings(LogSummary& log, const Recording& recording) {
   for (const RecordedHead& recorded : recording.heads()) {
     HeadSummary& head = head_of(log, recorded.name, recorded.device_id, false);
     for (const RecordedImage& image : recorded.images) {
       add_ping(head, image.time_ns, image.settings);
       include(log, image.time_ns);
+    }
+  }
+  for (const RecordedScan& recorded : recording.scans()) {
+    HeadSummary& head = head_of(log, recorded.name, recorded.device_id, true);
+    for (const RecordedScanLine& line : recorded.lines) {
+      add_ping(head, line.time_ns, line.settings);
+      include(log, line.time_ns);
     }
   }
   log.problems = recording.problems();
@@ -26,7 +32,7 @@ void add_images(LogSummary& log, const Recording& recording) {
 void summarise_glf(LogSummary& log, const LogFile& file) {
   const GlfRecording recording(file);
   log.local_time = true;
-  add_images(log, recording);
+  add_pings(log, recording);
   const glf::DatIndex& index = recording.view().index();
   for (const glf::RecordEntry& entry : index.records) {
     if (entry.type == glf::RecordType::status) {
@@ -41,35 +47,9 @@ void summarise_glf(LogSummary& log, const LogFile& file) {
   }
 }
 
-void add_lines(LogSummary& log, const McapRecording& recording) {
-  const auto channels = recording.channels_of("sonard.log.ScanLine");
-  if (channels.empty()) {
-    return;
-  }
-  mcap::MessageCursor cursor = recording.reader().messages(channels);
-  while (const auto message = cursor.next()) {
-    const auto line = log::decode<log::ScanLine>(message->data);
-    if (!line || !plausible_time(line->transmit_time_ns())) {
-      count(log, "scan lines that cannot be read");
-      continue;
-    }
-    RecordedSettings settings;
-    settings.lines = static_cast<int>(line->bins().size());
-    settings.beams = 1;
-    settings.line_step_m = line->metres_per_bin();
-    settings.sound_speed_mps = line->sound_speed_mps();
-    settings.gain_percent = line->gain_percent();
-    settings.frequency_hz = line->frequency_hz();
-    HeadSummary& head = head_of(log, line->head(), static_cast<std::uint16_t>(line->device_id()), true);
-    add_ping(head, line->transmit_time_ns(), settings);
-    include(log, line->transmit_time_ns());
-  }
-}
-
 void summarise_mcap(LogSummary& log, const LogFile& file) {
   const McapRecording recording(file);
-  add_images(log, recording);
-  add_lines(log, recording);
+  add_pings(log, recording);
   const mcap::Summary& summary = recording.reader().summary();
   if (summary.message_count() > 0) {
     include(log, static_cast<std::int64_t>(summary.start_time_ns()));

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "protocol/log/log_messages.hpp"
+#include "protocol/micron/codec.hpp"
 
 namespace sonard::server {
 namespace {
@@ -38,10 +39,48 @@ RecordedSettings settings_of(const log::SonarImage& image) {
   return settings;
 }
 
+bool makes_sense(const log::ScanLine& line) {
+  return plausible_time(line.transmit_time_ns()) && !line.bins().empty() &&
+         line.bins().size() <= micron::max_bins &&
+         line.device_id() <= std::numeric_limits<std::uint16_t>::max() && std::isfinite(line.bearing_rad()) &&
+         std::isfinite(line.metres_per_bin()) && line.metres_per_bin() > 0.0 &&
+         std::isfinite(line.sound_speed_mps()) && line.sound_speed_mps() > 0.0;
+}
+
+RecordedSettings settings_of(const log::ScanLine& line) {
+  RecordedSettings settings;
+  settings.lines = static_cast<int>(line.bins().size());
+  settings.beams = 1;
+  settings.line_step_m = line.metres_per_bin();
+  settings.sound_speed_mps = line.sound_speed_mps();
+  settings.gain_percent = line.gain_percent();
+  settings.frequency_hz = line.frequency_hz();
+  return settings;
+}
+
+std::optional<micron::HeadData> wire_line_of(const log::ScanLine& line) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(line.wire_line().data());
+  const auto report = micron::decode_report({bytes, line.wire_line().size()});
+  const auto* const said = report ? std::get_if<micron::HeadData>(&*report) : nullptr;
+  if (said == nullptr) {
+    return std::nullopt;
+  }
+  micron::HeadData kept = *said;
+  kept.data = {};
+  return kept;
+}
+
 }  // namespace
 
 McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(file)) {
-  const std::set<std::uint16_t> channels = channels_of("sonard.log.SonarImage");
+  for_each("sonard.log.SonarImage", [this](std::span<const std::uint8_t> message) { add_image(message); });
+  for_each("sonard.log.ScanLine", [this](std::span<const std::uint8_t> message) { add_line(message); });
+  sort_by_time();
+}
+
+template <class Add>
+void McapRecording::for_each(std::string_view schema, Add add) {
+  const std::set<std::uint16_t> channels = channels_of(schema);
   if (channels.empty()) {
     return;  // no channel would mean all of them
   }
@@ -49,14 +88,13 @@ McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(
   while (const std::optional<mcap::Message> message = cursor.next()) {
     add(message->data);
   }
-  unreadable_ = cursor.error();
-  sort_images();
+  unreadable_ = cursor.error();  // the same place for all schemas
 }
 
-void McapRecording::add(std::span<const std::uint8_t> message) {
+void McapRecording::add_image(std::span<const std::uint8_t> message) {
   const auto image = log::decode<log::SonarImage>(message);
   if (!image || !makes_sense(*image)) {
-    ++bad_messages_;
+    ++bad_images_;
     return;
   }
   RecordedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()));
@@ -67,12 +105,32 @@ void McapRecording::add(std::span<const std::uint8_t> message) {
   messages_.push_back(message);
 }
 
+void McapRecording::add_line(std::span<const std::uint8_t> message) {
+  const auto line = log::decode<log::ScanLine>(message);
+  if (!line || !makes_sense(*line)) {
+    ++bad_lines_;
+    return;
+  }
+  scan(line->head(), static_cast<std::uint16_t>(line->device_id()))
+      .lines.push_back({line->transmit_time_ns(), settings_of(*line), line->bearing_rad(),
+                        line->bits_per_bin() == 4 ? 4 : 8, wire_line_of(*line), messages_.size()});
+  messages_.push_back(message);
+}
+
 std::vector<std::uint8_t> McapRecording::pixels(const RecordedImage& image) const {
   const auto message = log::decode<log::SonarImage>(messages_.at(image.place));
   if (!message) {
     throw file_.error("an image cannot be read");  // it could when the log was opened
   }
   return {message->pixels().begin(), message->pixels().end()};
+}
+
+std::vector<std::uint8_t> McapRecording::bins(const RecordedScanLine& line) const {
+  const auto message = log::decode<log::ScanLine>(messages_.at(line.place));
+  if (!message) {
+    throw file_.error("a scan line cannot be read");  // it could when the log was opened
+  }
+  return {message->bins().begin(), message->bins().end()};
 }
 
 std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) const {
@@ -96,8 +154,11 @@ std::vector<std::string> McapRecording::problems() const {
       problems.push_back(fmt::format("damaged: what follows cannot be read ({})", to_string(*error)));
     }
   }
-  if (bad_messages_ > 0) {
-    problems.push_back(fmt::format("{} images make no sense and are left out", bad_messages_));
+  if (bad_images_ > 0) {
+    problems.push_back(fmt::format("{} images make no sense and are left out", bad_images_));
+  }
+  if (bad_lines_ > 0) {
+    problems.push_back(fmt::format("{} scan lines make no sense and are left out", bad_lines_));
   }
   return problems;
 }

@@ -1,4 +1,4 @@
-// The images of sonard's own .mcap.
+// The images and scan lines of sonard's own .mcap.
 #pragma once
 
 #include <optional>
@@ -16,19 +16,24 @@ class McapRecording final : public Recording {
   explicit McapRecording(const LogFile& file);
 
   std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
+  std::vector<std::uint8_t> bins(const RecordedScanLine& line) const override;
   std::vector<std::string> problems() const override;
   bool closed() const override { return reader_.finished(); }
   const mcap::Reader& reader() const { return reader_; }
-  /// Channels whose messages are of this schema, for example "sonard.log.SonarImage".
-  std::set<std::uint16_t> channels_of(std::string_view schema) const;
 
  private:
-  void add(std::span<const std::uint8_t> message);
+  /// Hands every message of one schema, for example "sonard.log.SonarImage", to a function.
+  template <class Add>
+  void for_each(std::string_view schema, Add add);
+  std::set<std::uint16_t> channels_of(std::string_view schema) const;
+  void add_image(std::span<const std::uint8_t> message);
+  void add_line(std::span<const std::uint8_t> message);
 
   const LogFile& file_;
   mcap::Reader reader_;
-  std::vector<std::span<const std::uint8_t>> messages_;  ///< of images; views of the file
-  std::uint64_t bad_messages_ = 0;
+  std::vector<std::span<const std::uint8_t>> messages_;  ///< of images and lines; views of the file
+  std::uint64_t bad_images_ = 0;
+  std::uint64_t bad_lines_ = 0;
   std::optional<WireError> unreadable_;  ///< why the images end before the file does
 };
 

@@ -9,15 +9,37 @@
 
 namespace sonard::server {
 
-RecordedHead& Recording::head(const std::string& name, std::uint16_t device_id) {
+namespace {
+
+template <class Head>
+Head& known_or_new(std::vector<Head>& heads, const std::string& name, std::uint16_t device_id) {
   const auto known = std::ranges::find_if(
-      heads_, [&](const RecordedHead& head) { return head.name == name && head.device_id == device_id; });
-  return known != heads_.end() ? *known : heads_.emplace_back(RecordedHead{name, device_id, {}, {}});
+      heads, [&](const Head& head) { return head.name == name && head.device_id == device_id; });
+  if (known != heads.end()) {
+    return *known;
+  }
+  Head& head = heads.emplace_back();
+  head.name = name;
+  head.device_id = device_id;
+  return head;
 }
 
-void Recording::sort_images() {
+}  // namespace
+
+RecordedHead& Recording::head(const std::string& name, std::uint16_t device_id) {
+  return known_or_new(heads_, name, device_id);
+}
+
+RecordedScan& Recording::scan(const std::string& name, std::uint16_t device_id) {
+  return known_or_new(scans_, name, device_id);
+}
+
+void Recording::sort_by_time() {
   for (RecordedHead& head : heads_) {
     std::ranges::stable_sort(head.images, {}, &RecordedImage::time_ns);
+  }
+  for (RecordedScan& scan : scans_) {
+    std::ranges::stable_sort(scan.lines, {}, &RecordedScanLine::time_ns);
   }
 }
 

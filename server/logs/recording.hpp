@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "protocol/micron/messages.hpp"
 #include "server/logs/log_file.hpp"
 
 namespace sonard::server {
@@ -48,6 +50,25 @@ struct RecordedHead {
   std::vector<double> bearings_rad;
 };
 
+/// A line of a scanning head. Its settings are those of an image of one beam; gain, sound speed and bins
+/// those that the line was made with.
+struct RecordedScanLine {
+  std::int64_t time_ns = 0;  ///< as RecordedImage has it
+  RecordedSettings settings;
+  double bearing_rad = 0.0;  ///< of the beam: 0 ahead, positive to port
+  int bits_per_bin = 8;      ///< 8: bins are 0..255; 4: 0..15
+  /// As it travelled, without data; nullopt: the log does not say.
+  std::optional<micron::HeadData> wire_line;
+  std::size_t place = 0;  ///< of the Recording's own
+};
+
+/// A scanning head. Lines are in the order of their times.
+struct RecordedScan {
+  std::string name;
+  std::uint16_t device_id = 0;          ///< its node
+  std::vector<RecordedScanLine> lines;  ///< at least one
+};
+
 /// Reads on demand from the mapped file; any thread.
 class Recording {
  public:
@@ -58,9 +79,14 @@ class Recording {
 
   /// In order of their first images.
   const std::vector<RecordedHead>& heads() const { return heads_; }
+  /// In order of their first lines.
+  const std::vector<RecordedScan>& scans() const { return scans_; }
   /// lines * beams samples, line after line from the nearest on, beams from port to starboard.
   /// @throws LogError when they cannot be unpacked
   virtual std::vector<std::uint8_t> pixels(const RecordedImage& image) const = 0;
+  /// From near to far, RecordedSettings::lines of them.
+  /// @throws LogError when they cannot be unpacked
+  virtual std::vector<std::uint8_t> bins(const RecordedScanLine& line) const = 0;
   /// What is wrong with the log, one phrase each: cut, not closed, damaged inside.
   virtual std::vector<std::string> problems() const = 0;
   /// It ends as a log does that was closed.
@@ -68,15 +94,17 @@ class Recording {
 
  protected:
   RecordedHead& head(const std::string& name, std::uint16_t device_id);
-  /// To be called once all images are there.
-  void sort_images();
+  RecordedScan& scan(const std::string& name, std::uint16_t device_id);
+  /// To be called once all images and lines are there.
+  void sort_by_time();
 
  private:
   std::vector<RecordedHead> heads_;
+  std::vector<RecordedScan> scans_;
 };
 
 /// @throws LogError when `file` is broken from its start or holds no images by its kind (.pcapng). Images
-/// that make no sense are left out. The recording views `file`, which must outlive it.
+/// and lines that make no sense are left out. The recording views `file`, which must outlive it.
 std::unique_ptr<Recording> open_recording(const LogFile& file);
 
 }  // namespace sonard::server

@@ -24,6 +24,15 @@ void GrowingLog::append(std::span<const std::uint8_t> piece) {
   }
 }
 
+void GrowingLog::overwrite(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
+  if (!file_.is_open() || bytes.empty()) {
+    return;
+  }
+  if (const std::error_code error = file_.overwrite(offset, bytes)) {
+    fail(error);
+  }
+}
+
 void GrowingLog::sync() {
   if (!file_.is_open()) {
     return;

@@ -26,6 +26,8 @@ class GrowingLog {
   void begin(const std::filesystem::path& path);
   /// A piece after which the file is whole, or can be made so. Goes nowhere before begin().
   void append(std::span<const std::uint8_t> piece);
+  /// In place of bytes that were appended.
+  void overwrite(std::uint64_t offset, std::span<const std::uint8_t> bytes);
   void sync();
   /// Nothing is written after that.
   void end();

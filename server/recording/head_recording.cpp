@@ -13,14 +13,21 @@ void HeadRecording::push(What what) const {
   }
 }
 
-void HeadRecording::datagrams(std::span<const Datagram> passed, bool to_client, const Endpoint& local) const {
+WirePassed passed(std::span<const Datagram> datagrams, bool to_client, const Endpoint& local) {
   WirePassed wire{.to_client = to_client, .transport = WireTransport::udp, .pty = {}, .pieces = {}};
-  wire.pieces.reserve(passed.size());
-  for (const Datagram& datagram : passed) {
+  wire.pieces.reserve(datagrams.size());
+  for (const Datagram& datagram : datagrams) {
     const Ipv4 own = datagram.local != 0 ? datagram.local : local.address;
     wire.pieces.push_back({datagram.remote, {own, local.port}, datagram.bytes});
   }
-  push(std::move(wire));
+  return wire;
+}
+
+void HeadRecording::datagrams(std::span<const Datagram> datagrams, bool to_client,
+                              const Endpoint& local) const {
+  if (on()) {
+    push(passed(datagrams, to_client, local));
+  }
 }
 
 void HeadRecording::piece(const WireEnds& ends, bool to_client, std::span<const std::uint8_t> bytes) const {

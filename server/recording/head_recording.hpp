@@ -13,6 +13,9 @@ namespace sonard::server {
 
 class Recorder;
 
+/// @param local what our end is where a datagram does not say it
+WirePassed passed(std::span<const Datagram> datagrams, bool to_client, const Endpoint& local);
+
 /// Belongs to the I/O thread, as its head does. Nothing here waits.
 class HeadRecording {
  public:
@@ -23,8 +26,8 @@ class HeadRecording {
 
   bool on() const { return recorder_ != nullptr; }
 
-  /// @param local what our end is where a datagram does not say it
-  void datagrams(std::span<const Datagram> passed, bool to_client, const Endpoint& local) const;
+  /// @param local as passed() has it
+  void datagrams(std::span<const Datagram> datagrams, bool to_client, const Endpoint& local) const;
   void piece(const WireEnds& ends, bool to_client, std::span<const std::uint8_t> bytes) const;
   void client_left(const WireEnds& ends) const;
   void gemini_status(const gemini::SharedBytes& datagram) const;

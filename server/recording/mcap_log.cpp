@@ -6,6 +6,7 @@
 
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/log/log_messages.hpp"
+#include "protocol/micron/codec.hpp"
 #include "protocol/pose/pose_message.hpp"
 #include "server/config/addresses.hpp"
 #include "server/recording/log_names.hpp"
@@ -14,7 +15,6 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
 constexpr double gemini_frequency_hz = 723'380.0;  // docs/protocols/gemini.md 9
 constexpr double micron_frequency_hz = 700'000.0;  // docs/configuration.md, water
 constexpr double micron_full_gain_db = 80.0;       // docs/protocols/micron.md 3
@@ -25,7 +25,7 @@ void set(pose::Pose& message, const render::Pose& value) {
   pose::write(pose::Transform{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}}, message);
 }
 
-std::string text(const std::vector<std::uint8_t>& bytes) {
+std::string text(std::span<const std::uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
@@ -60,7 +60,9 @@ log::ScanLine to_message(const MicronLineSent& sent, const HeadToRecord& head, s
   line.set_transmit_time_ns(transmit_ns);
   line.set_bearing_rad(-sent.job.bearing_rad);  // the device counts to starboard
   line.set_bins(text(sent.line.bins));
-  line.set_bits_per_bin(sent.line.eight_bit ? 8 : 4);
+  line.set_bits_per_bin(sent.line.line.eight_bit() ? 8 : 4);
+  line.set_wire_line(
+      text(micron::encode(micron::Report{sent.line.line}, static_cast<std::uint8_t>(head.device_id))));
   line.set_metres_per_bin(sent.job.bin_length_m);
   line.set_sound_speed_mps(sent.job.sound_speed_mps);
   line.set_gain_percent(100.0 * sent.job.gain_db / micron_full_gain_db);
@@ -136,7 +138,7 @@ template <class Message>
 void McapLog::add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns,
                           const Message& message) {
   if (!file().begun()) {
-    flushed_at_ = time;
+    flushed_at_ = chunk_begun_at_ = time;
     file().begin(mcap_path(setting().config.directory, setting().stem));
   }
   writer_.add_message(channel<Message>(topic), static_cast<std::uint64_t>(setting().unix_ns(time)),
@@ -164,18 +166,28 @@ void McapLog::flush(TimePoint now) {
   if (!file().begun()) {
     return;  // what the writer has, the beginning of the file, waits for it
   }
-  if (image_waits_ || now - flushed_at_ >= longest_chunk) {
+  if (now - chunk_begun_at_ >= longest_chunk) {
     writer_.end_chunk();
+    chunk_begun_at_ = now;
+  }
+  if (image_waits_ || now - flushed_at_ >= longest_wait) {
+    writer_.flush();
     image_waits_ = false;
     flushed_at_ = now;
   }
-  file().append(writer_.take());
+  write_taken();
+}
+
+void McapLog::write_taken() {
+  const mcap::Piece piece = writer_.take();
+  file().append(piece.append);
+  file().overwrite(piece.rewrite_offset, piece.rewrite);
 }
 
 void McapLog::close() {
   if (file().begun() && !file().failed()) {
     writer_.finish();
-    file().append(writer_.take());
+    write_taken();
   }
   file().end();
 }

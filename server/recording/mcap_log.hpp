@@ -10,12 +10,14 @@
 
 namespace sonard::server {
 
-/// Everything: images, lines, poses, and the bytes of both directions. A chunk is written with the image or
-/// line that it ends with, and after `longest_chunk` at the latest: a process that is killed loses no image
-/// that was taken from the queue, and bytes of so much time.
+/// Everything: images, lines, poses, and the bytes of both directions. A chunk has so many bytes or so much
+/// time, but what is in it is handed to the file with every image and line, and after `longest_wait` at the
+/// latest: a process that is killed loses no image that was taken from the queue, and bytes of so much time.
 class McapLog final : public Log {
  public:
-  static constexpr std::chrono::milliseconds longest_chunk{200};
+  static constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+  static constexpr std::chrono::seconds longest_chunk{1};
+  static constexpr std::chrono::milliseconds longest_wait{200};
 
   explicit McapLog(const LogSetting& setting);
 
@@ -35,6 +37,7 @@ class McapLog final : public Log {
   void add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns, const Message& message);
   template <class Message>
   std::uint16_t channel(const std::string& topic);
+  void write_taken();
   const std::string& name(int head) const { return setting().heads[static_cast<std::size_t>(head)].name; }
 
   mcap::Writer writer_;
@@ -42,6 +45,7 @@ class McapLog final : public Log {
   std::map<std::string, std::uint16_t> channels_;  ///< by topic
   bool image_waits_ = false;
   TimePoint flushed_at_{};
+  TimePoint chunk_begun_at_{};
 };
 
 }  // namespace sonard::server

@@ -5,6 +5,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "protocol/micron/line_timing.hpp"
+#include "protocol/micron/scan_settings.hpp"
+#include "protocol/micron/units.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -13,67 +17,99 @@ constexpr double sound_speed_step_mps = 0.11;  // the wire keeps tenths
 // A line for the remainder that compression leaves, and a hair for the rate of lines that a .glf rounds.
 constexpr double range_slack = 0.002;
 
-std::optional<std::string> if_apart(bool apart, const std::string& text) {
-  return apart ? std::optional(text) : std::nullopt;
+std::string bits_text(bool eight_bit) {
+  return eight_bit ? "8 bits" : "4 bits";
+}
+
+std::string sector_text(std::uint16_t control, int left, int right) {
+  return (control & micron::control_bits::continuous) != 0
+             ? "all round"
+             : fmt::format("{:.1f} to {:.1f} degrees", micron::bearing_deg(left), micron::bearing_deg(right));
 }
 
 }  // namespace
 
-std::string_view name_of(Difference kind) {
-  constexpr std::array<std::string_view, difference_count> names{
-      "range", "compression", "gain", "sound_speed", "16_bit", "run_lengths", "listening_only"};
-  return names.at(static_cast<std::size_t>(kind));
-}
-
-std::optional<std::string> difference(Difference kind, const gemini::PingJob& asked,
-                                      const gemini::RecordedPing& sent, const RecordedSettings& recorded) {
-  switch (kind) {
-    case Difference::range: {
-      const double range_m = asked.native_lines * asked.line_step_m;
-      const double slack_m = recorded.line_step_m + range_slack * recorded.range_m();
-      return if_apart(std::abs(range_m - recorded.range_m()) > slack_m,
-                      fmt::format("range {:.2f} m asked for, {:.2f} m sent", range_m, recorded.range_m()));
-    }
-    case Difference::compression:
-      return if_apart(asked.compression_log2 != sent.compression_log2,
-                      fmt::format("compression x{} asked for, x{} sent", 1 << asked.compression_log2,
-                                  1 << sent.compression_log2));
-    case Difference::gain:
-      return if_apart(
-          recorded.gain_percent >= 0.0 &&
-              std::abs(asked.gain_percent - recorded.gain_percent) > gain_step_percent,
-          fmt::format("gain {:.0f} % asked for, {:.0f} % sent", asked.gain_percent, recorded.gain_percent));
-    case Difference::sound_speed:
-      return if_apart(
-          std::abs(asked.assumed_sound_speed_mps - recorded.sound_speed_mps) > sound_speed_step_mps,
-          fmt::format("sound speed {:.1f} m/s asked for, {:.1f} m/s sent", asked.assumed_sound_speed_mps,
-                      recorded.sound_speed_mps));
-    case Difference::sixteen_bit:
-      return if_apart(asked.sixteen_bit, "16 bits asked for, 8 bits sent");
-    case Difference::run_lengths:
-      return if_apart(asked.rle_threshold > 0, "run lengths asked for, all samples sent");
-    case Difference::listening_only:
-      break;
+std::vector<Difference> differences(const gemini::PingJob& asked, const gemini::RecordedPing& sent,
+                                    const RecordedSettings& recorded) {
+  std::vector<Difference> found;
+  const double range_m = asked.native_lines * asked.line_step_m;
+  if (std::abs(range_m - recorded.range_m()) > recorded.line_step_m + range_slack * recorded.range_m()) {
+    found.push_back(
+        {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", range_m, recorded.range_m())});
   }
-  return if_apart(!asked.transmit, "listening only asked for, a ping with its echoes sent");
+  if (asked.compression_log2 != sent.compression_log2) {
+    found.push_back({"compression", fmt::format("compression x{} asked for, x{} sent",
+                                                1 << asked.compression_log2, 1 << sent.compression_log2)});
+  }
+  if (recorded.gain_percent >= 0.0 &&
+      std::abs(asked.gain_percent - recorded.gain_percent) > gain_step_percent) {
+    found.push_back({"gain", fmt::format("gain {:.0f} % asked for, {:.0f} % sent", asked.gain_percent,
+                                         recorded.gain_percent)});
+  }
+  if (std::abs(asked.assumed_sound_speed_mps - recorded.sound_speed_mps) > sound_speed_step_mps) {
+    found.push_back({"sound_speed", fmt::format("sound speed {:.1f} m/s asked for, {:.1f} m/s sent",
+                                                asked.assumed_sound_speed_mps, recorded.sound_speed_mps)});
+  }
+  if (asked.sixteen_bit) {
+    found.push_back({"16_bit", "16 bits asked for, 8 bits sent"});
+  }
+  if (asked.rle_threshold > 0) {
+    found.push_back({"run_lengths", "run lengths asked for, all samples sent"});
+  }
+  if (!asked.transmit) {
+    found.push_back({"listening_only", "listening only asked for, a ping with its echoes sent"});
+  }
+  return found;
 }
 
-void DifferenceLog::add(const gemini::PingJob& asked, const gemini::RecordedPing& sent,
-                        const RecordedSettings& recorded) {
-  for (std::size_t i = 0; i < difference_count; ++i) {
-    const auto text = difference(static_cast<Difference>(i), asked, sent, recorded);
-    if (text && pings_.at(i)++ == 0) {
-      spdlog::warn("head={} differs from the recording: {}", head_, *text);
+std::vector<Difference> differences(const micron::HeadCommand& asked, const micron::MicronJob& sent,
+                                    const micron::HeadData& recorded) {
+  using namespace micron::control_bits;
+  std::vector<Difference> found;
+  const int bins = micron::effective_bins(asked);
+  const double bin_m = micron::bin_time_s(micron::effective_ad_interval(asked)) * sent.sound_speed_mps / 2.0;
+  if (std::abs(bins * bin_m - sent.range_m()) > std::max(bin_m, sent.bin_length_m)) {
+    found.push_back(
+        {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", bins * bin_m, sent.range_m())});
+  }
+  if (bins != sent.bins) {
+    found.push_back({"bins", fmt::format("{} bins asked for, {} sent", bins, sent.bins)});
+  }
+  if (asked.gain[0] != recorded.gain) {
+    found.push_back({"gain", fmt::format("gain {:.1f} dB asked for, {:.1f} dB sent",
+                                         micron::gain_db(asked.gain[0]), sent.gain_db)});
+  }
+  if (asked.has(eight_bit) != recorded.eight_bit()) {
+    found.push_back({"bits", fmt::format("{} asked for, {} sent", bits_text(asked.has(eight_bit)),
+                                         bits_text(recorded.eight_bit()))});
+  }
+  const std::string asked_sector = sector_text(asked.control, asked.left_limit, asked.right_limit);
+  const std::string sector = sector_text(recorded.control, recorded.left_limit, recorded.right_limit);
+  if (asked_sector != sector) {
+    found.push_back({"sector", fmt::format("sector {} asked for, {} sent", asked_sector, sector)});
+  }
+  if (asked.step != recorded.step) {
+    found.push_back(
+        {"step", fmt::format("step {} asked for, {} sent (1/16 gradian)", asked.step, recorded.step)});
+  }
+  if (asked.has(transmit_off) && sent.transmit) {
+    found.push_back({"listening_only", "listening only asked for, a line with its echoes sent"});
+  }
+  return found;
+}
+
+void DifferenceLog::add(const std::vector<Difference>& found) {
+  for (const Difference& difference : found) {
+    if (pings_[difference.kind]++ == 0) {
+      spdlog::warn("head={} differs from the recording: {}", head_, difference.text);
     }
   }
 }
 
 void DifferenceLog::log_totals() const {
   std::string text;
-  for (std::size_t i = 0; i < difference_count; ++i) {
-    if (pings_.at(i) > 0) {
-      text += fmt::format(" {}={}", name_of(static_cast<Difference>(i)), pings_.at(i));
-    }
+  for (const auto& [kind, pings] : pings_) {
+    text += fmt::format(" {}={}", kind, pings);
   }
   if (!text.empty()) {
     spdlog::info("head={} pings that differed from what was asked for:{}", head_, text);

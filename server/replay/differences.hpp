@@ -1,40 +1,43 @@
 // What a client asks for and a recording does not have.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "protocol/gemini/ping_job.hpp"
+#include "protocol/micron/messages.hpp"
+#include "protocol/micron/micron_job.hpp"
 #include "server/logs/recording.hpp"
 
 namespace sonard::server {
 
-enum class Difference { range, compression, gain, sound_speed, sixteen_bit, run_lengths, listening_only };
-inline constexpr std::size_t difference_count = 7;
+struct Difference {
+  std::string_view kind;  ///< "range", "gain", ...
+  std::string text;       ///< one phrase: "range 20.00 m asked for, 4.00 m sent"
+};
 
-std::string_view name_of(Difference kind);
-
-/// How `asked` differs from what is sent in its place, in one phrase ("range 20.00 m asked for, 4.00 m
-/// sent"); nullopt: in this it does not. Rounding of the wire and of logs is no difference.
-std::optional<std::string> difference(Difference kind, const gemini::PingJob& asked,
-                                      const gemini::RecordedPing& sent, const RecordedSettings& recorded);
+/// How `asked` differs from what is sent in its place. Rounding of the wire and of logs is no difference.
+std::vector<Difference> differences(const gemini::PingJob& asked, const gemini::RecordedPing& sent,
+                                    const RecordedSettings& recorded);
+std::vector<Difference> differences(const micron::HeadCommand& asked, const micron::MicronJob& sent,
+                                    const micron::HeadData& recorded);
 
 /// Pings with a difference, by kind. I/O thread.
 class DifferenceLog {
  public:
   explicit DifferenceLog(std::string head) : head_(std::move(head)) {}
 
-  /// Logs a kind when it first comes.
-  void add(const gemini::PingJob& asked, const gemini::RecordedPing& sent, const RecordedSettings& recorded);
+  /// Of one ping. Logs a kind when it first comes.
+  void add(const std::vector<Difference>& found);
   /// Logs how many pings had which; nothing where none had any.
   void log_totals() const;
 
  private:
   std::string head_;
-  std::array<std::uint64_t, difference_count> pings_{};
+  std::map<std::string_view, std::uint64_t> pings_;
 };
 
 }  // namespace sonard::server

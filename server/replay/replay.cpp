@@ -15,12 +15,13 @@ int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config,
   for (const std::string& problem : recording->problems()) {
     spdlog::warn("{}: {}", log.string(), problem);
   }
-  const ReplayConfig replayed = replay_config(
-      config ? std::move(*config) : loopback_config(recording->heads()), recording->heads(), file);
+  const ReplayConfig replayed =
+      replay_config(config ? std::move(*config) : loopback_config(recording->heads(), recording->scans()),
+                    recording->heads(), recording->scans(), file);
   for (const PlayedHead& head : replayed.played) {
-    const std::vector<RecordedImage>& images = head.recorded->images;
-    spdlog::info("head={} plays sonar {}: {} images of {:.1f} s", head.name, head.recorded->device_id,
-                 images.size(), 1e-9 * static_cast<double>(images.back().time_ns - images.front().time_ns));
+    const std::vector<std::int64_t> times_ns = head.times_ns();
+    spdlog::info("head={} plays number {}: {} pings of {:.1f} s", head.name, head.device_id(),
+                 times_ns.size(), 1e-9 * static_cast<double>(times_ns.back() - times_ns.front()));
   }
   render::World world;
   world.name = log.filename().string();

@@ -10,6 +10,7 @@
 #include "tests/bench/campaign.hpp"
 #include "tests/bench/machine.hpp"
 #include "tests/bench/plans.hpp"
+#include "tests/bench/recording_cost.hpp"
 #include "tests/bench/targets.hpp"
 
 namespace sonard::bench {
@@ -47,6 +48,10 @@ void run(const Options& options) {
   } else {
     run_sweep(campaign, options.scenes);
   }
+  Measurements results = campaign.results();
+  if (options.scenes.empty()) {
+    measure_recording(results);
+  }
   for (const render::Backend backend : backends) {
     const std::string name(render::name_of(backend));
     const auto description = campaign.descriptions().find(name);
@@ -55,11 +60,14 @@ void run(const Options& options) {
     }
     fmt::print("\n{}\n", description->second);
     if (options.quick) {
-      fmt::print("{}", format_targets(target_rows(campaign.results(), name)));
+      fmt::print("{}", format_targets(target_rows(results, name)));
     }
   }
+  if (options.scenes.empty()) {
+    fmt::print("\n{}", describe_recording(results));
+  }
   if (!options.json.empty()) {
-    write_json(campaign.results(), options.json);
+    write_json(results, options.json);
   }
 }
 

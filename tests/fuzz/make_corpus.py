@@ -224,6 +224,9 @@ def mcap_files():
     summary = schema + channel
     yield "no_end", data
     yield "cut", data[:-40]
+    growing = mcap_record(6, struct.pack("<QQQI", 70, 70, 35, 0) + mcap_string(b"") + struct.pack("<Q", 35) +
+                          mcap_record(5, struct.pack("<HIQQ", 1, 2, 70, 70) + b"data"))
+    yield "growing", data + growing + mcap_record(5, struct.pack("<HIQQ", 1, 3, 80, 80) + b"data")
     yield "no_chunk_index", data + end + summary + footer + struct.pack("<I", zlib.crc32(summary + footer)) + magic
     yield "no_summary_crc", data + end + summary + footer + struct.pack("<I", 0) + magic
 

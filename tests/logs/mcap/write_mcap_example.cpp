@@ -1,6 +1,7 @@
 // Writes an MCAP file to standard output: twenty pings of two heads with their wire bytes and poses, in
 // chunks. "recovered" cuts it in the middle of a chunk first and finishes what is left. check_mcap.js knows
 // what is in it.
+#include <algorithm>
 #include <cstdio>
 #include <string_view>
 
@@ -73,8 +74,16 @@ log::PoseUsed pose_of(std::uint32_t ping) {
   return used;
 }
 
-mcap::Bytes example() {
+/// Does to a file what a piece says.
+void write(const mcap::Piece& piece, mcap::Bytes& file) {
+  file.insert(file.end(), piece.append.begin(), piece.append.end());
+  std::ranges::copy(piece.rewrite, file.begin() + static_cast<std::ptrdiff_t>(piece.rewrite_offset));
+}
+
+/// @param finished false: still being written, with the last chunk as far as it is
+mcap::Bytes example(bool finished) {
   mcap::Writer writer{"sonard tests", 1000};
+  mcap::Bytes file;
   const auto add_channel = [&](const google::protobuf::Descriptor& message, std::string_view topic) {
     const auto schema = writer.add_schema(message.full_name(), log::encoding_name, log::schema_data(message));
     return writer.add_channel(schema, topic, log::encoding_name);
@@ -89,9 +98,14 @@ mcap::Bytes example() {
     writer.add_message(wire, time + 2, time, encode(wire_of(ping)));
     writer.add_message(images, time + 1, time, encode(image_of(ping)));
     writer.add_message(lines, time + 3, time, encode(line_of(ping)));
+    writer.flush();
+    write(writer.take(), file);
   }
-  writer.finish();
-  return writer.take();
+  if (finished) {
+    writer.finish();
+    write(writer.take(), file);
+  }
+  return file;
 }
 
 /// As a writer that was killed in the middle of its third chunk from the end leaves it, and then made whole.
@@ -109,11 +123,11 @@ mcap::Bytes recovered(const mcap::Bytes& whole) {
 
 int main(int argc, char** argv) {
   const std::string_view kind = argc == 2 ? argv[1] : "";
-  if (kind != "finished" && kind != "recovered") {
-    std::fputs("Usage: write_mcap_example finished|recovered\n", stderr);
+  if (kind != "finished" && kind != "recovered" && kind != "growing") {
+    std::fputs("Usage: write_mcap_example finished|recovered|growing\n", stderr);
     return 64;
   }
-  const mcap::Bytes whole = example();
-  const mcap::Bytes file = kind == "finished" ? whole : recovered(whole);
+  const mcap::Bytes whole = example(kind != "growing");
+  const mcap::Bytes file = kind == "recovered" ? recovered(whole) : whole;
   return std::fwrite(file.data(), 1, file.size(), stdout) == file.size() ? 0 : 1;
 }

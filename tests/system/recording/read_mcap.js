@@ -39,7 +39,8 @@ function summary(topic, schema, message, said) {
                gain_percent: said.gainpercent, vehicle: position(said.tworldvehicle), sonar: position(said.tworldsonar) };
     case "sonard.log.ScanLine":
       return { ...common, kind: "line", bearing_rad: said.bearingrad, bins: Buffer.from(said.bins).toString("hex"),
-               bits: said.bitsperbin, metres_per_bin: said.metresperbin, vehicle: position(said.tworldvehicle) };
+               bits: said.bitsperbin, device_id: said.deviceid, transmit_ns: said.transmittimens,
+               wire_line: Buffer.from(said.wireline).toString("hex"), gain_percent: said.gainpercent, metres_per_bin: said.metresperbin, vehicle: position(said.tworldvehicle) };
     case "sonard.log.WireBytes":
       return { ...common, kind: "wire", to_client: said.direction === "DIRECTION_TO_CLIENT", transport: said.transport,
                peer: said.peer, crc32: checksum(said.data),

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """What the daemon records, against what its clients received, by readers that share no code with it.
 
-    recording_test.py --programs DIR --npm DIR [--kills N] [TestCase.test_name ...]
+    recording_test.py --programs DIR --npm DIR [--kills N] [--seconds N] [TestCase.test_name ...]
 """
 
 import argparse
 import collections
+import csv
 import glob
 import json
 import math
@@ -33,6 +34,7 @@ DISSECTORS = os.path.join(SOURCE, "clients", "wireshark")
 PROGRAMS = None
 NPM = None
 KILLS = 50
+SECONDS = 10
 START_S = 60
 PATIENCE_S = 60
 
@@ -65,10 +67,16 @@ heads:
 MICRON = """
   - name: stern
     type: micron
+    timing: {{boot_ms: 0, centring_ms: 2000}}
+    acoustics: {{seed: {seed}}}
     serial:
       tcp: [{{bind: {head}:4001, allow: [10.61.19.0/24]}}]
       pty: [{{link: {folder}/micron}}]
 """
+
+
+COMPLAINTS = ("_ws.malformed || gemini_sonar.malformed || gemini_sonar.bad_value || gemini_sonar.bad_line || "
+              "micron_sonar.malformed || micron_sonar.bad_value || micron_sonar.no_frame")
 
 
 def key_values(line):
@@ -132,6 +140,23 @@ def pings_of(packets):
     return [ping for ping in pings if ping.complete()]
 
 
+def collect(packets):
+    """The head and the lines of every ping of a capture of less than 256 pings, whatever was lost, doubled or came out of
+    order; by ping ID."""
+    heads, lines = {}, collections.defaultdict(dict)
+    for packet in packets:
+        kind = wire.message_type(packet.payload)
+        if packet.protocol != "udp" or packet.target[1] != REPORT_PORT:
+            continue
+        if kind == wire.PING_HEAD:
+            heads[struct.unpack_from("<H", packet.payload, 8)[0] & 0xFF] = wire.Ping(packet.payload)
+        elif kind == wire.PING_LINE:
+            number = struct.unpack_from("<H", packet.payload, 10)[0] & 0x7FFF
+            data = packet.payload[16:16 + 256]
+            assert lines[packet.payload[9]].setdefault(number, data) == data, "one line with two contents"
+    return heads, lines
+
+
 class RecordingTest(unittest.TestCase):
     def setUp(self):
         need("ip")
@@ -144,13 +169,16 @@ class RecordingTest(unittest.TestCase):
 
     # ---- Set-up ----
 
-    def start_daemon(self, recording="", seed=513, noisy=True, more=""):
+    def start_daemon(self, recording="", seed=513, noisy=True, more="", play=None):
+        """Runs the configuration, or plays a log with it."""
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
             file.write(CONFIG.format(world=WORLD, directory=self.logs, recording=recording, head=HEAD_ADDRESS, seed=seed,
                                      speckle="per_ping" if noisy else "off", noise="true" if noisy else "false",
-                                     more=more.format(head=HEAD_ADDRESS, folder=self.folder.name)))
-        daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), "run", path)
+                                     more=more.format(head=HEAD_ADDRESS, folder=self.folder.name,
+                                                      seed=seed)))
+        task = ["run", path] if play is None else ["replay", play, "--config", path]
+        daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), *task)
         daemon.wait_for_line("sonard ready", START_S)
         return daemon
 
@@ -158,6 +186,18 @@ class RecordingTest(unittest.TestCase):
         return self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "--surface-address", SURFACE_ADDRESS,
                               "--head", HEAD_ADDRESS, "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait",
                               str(PATIENCE_S), "--range", str(range_m), *options)
+
+    def start_scan(self, raw, *options, way=None):
+        """A client of the Micron; its lines as they came go to a file."""
+        way = way or ["--tcp", f"{HEAD_ADDRESS}:4001"]
+        where = self.lab.surface if way[0] == "--tcp" else self.lab.head
+        return self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--raw", raw, "--quiet", "--wait",
+                              "30", *options)
+
+    def scanned(self, raw):
+        """What the client got."""
+        with open(raw, encoding="utf-8") as file:
+            return [json.loads(text) for text in file]
 
     def end_daemon(self, daemon):
         code, _ = daemon.terminate(30)
@@ -185,16 +225,26 @@ class RecordingTest(unittest.TestCase):
             images += glf_reader.read(path).images
         return images
 
+    def mcap_files(self):
+        """The messages of each."""
+        output = subprocess.run(["node", "--max-old-space-size=1500", "read_mcap.js", *self.files(".mcap")], cwd=NPM,
+                                check=True, capture_output=True).stdout
+        return [file["messages"] for file in json.loads(output)]
+
     def mcap_messages(self):
-        """By kind."""
-        files = self.files(".mcap")
-        output = subprocess.run(["node", "--max-old-space-size=1500", "read_mcap.js", *files], cwd=NPM, check=True,
-                                capture_output=True).stdout
+        """Of all files, by kind."""
         by_kind = collections.defaultdict(list)
-        for file in json.loads(output):
-            for message in file["messages"]:
-                by_kind[message["kind"]].append(message)
+        for message in sum(self.mcap_files(), []):
+            by_kind[message["kind"]].append(message)
         return by_kind
+
+    def frames_with(self, condition):
+        """Numbers of the frames that tshark shows."""
+        scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
+        done = subprocess.run(["tshark", *scripts, "-r", self.files(".pcapng")[0], "-Y", condition, "-T", "fields", "-e",
+                               "frame.number"], capture_output=True, text=True, timeout=100 + 3 * SECONDS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.split()
 
     def packets(self):
         return [packet for path in self.files(".pcapng") for packet in pcapng_reader.read(path)]
@@ -255,7 +305,7 @@ class Logs(RecordingTest):
         self.assertEqual(message["publish_time"], message["transmit_ns"])
         self.assertAlmostEqual(image.header.unix_s, unix_ns / 1e9, delta=2e-6)
         self.assertAlmostEqual(image.header.time_s - first[1], (transmit_us - first[0]) / 1e6, delta=3e-6)
-        self.assertLess(abs(time.time() - unix_ns / 1e9), 120)
+        self.assertLess(abs(time.time() - unix_ns / 1e9), 120 + 2 * SECONDS)
         # The head of a ping leaves after the pulse, and is noted when it has left.
         self.assertGreaterEqual(on_wire.time_ns, unix_ns)
         self.assertLess(on_wire.time_ns - unix_ns, 2e9)
@@ -326,17 +376,14 @@ class Logs(RecordingTest):
         daemon = self.start_daemon(more=MICRON)
         link = os.path.join(self.folder.name, "micron")
         raw = [os.path.join(self.folder.name, f"raw{i}") for i in range(2)]
-        ways = [(self.lab.surface, ["--tcp", f"{HEAD_ADDRESS}:4001"]), (self.lab.head, ["--tty", link, "--four-bit"])]
-        for path, (where, way) in zip(raw, ways):
-            viewer = self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--bins", "300", "--lines",
-                                    "25", "--raw", path, "--quiet", "--wait", "30")
+        for path, way, options in zip(raw, (None, ["--tty", link]), ([], ["--four-bit"])):
+            viewer = self.start_scan(path, "--bins", "300", "--lines", "25", *options, way=way)
             self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
         self.end_daemon(daemon)
         messages = self.mcap_messages()
         recorded = {(line["bits"], line["bins"], round(line["bearing_rad"], 6)) for line in messages["line"]}
         for path, bits in zip(raw, (8, 4)):
-            with open(path, encoding="utf-8") as file:
-                lines = [json.loads(text) for text in file]
+            lines = self.scanned(path)
             self.assertGreaterEqual(len(lines), 25)
             for line in lines:
                 turn = (line["bearing"] - 3200) * math.pi / 3200  # to starboard of ahead, 1/16 gradian
@@ -364,22 +411,36 @@ class Logs(RecordingTest):
         daemon = self.start_daemon(more=MICRON)
         viewer = self.start_viewer("--pings", "5")
         self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
-        scan = self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "micron", "--tcp",
-                              f"{HEAD_ADDRESS}:4001", "--lines", "10", "--quiet", "--wait", "30")
+        scan = self.start_scan(os.path.join(self.folder.name, "raw"), "--lines", "10")
         self.assertEqual(scan.wait(PATIENCE_S), 0, scan.tail())
         self.end_daemon(daemon)
-        scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
+        self.assertEqual(self.frames_with(COMPLAINTS), [])
+        self.assertEqual(len(self.frames_with("gemini_sonar.ping_head.end_range")), 5)
+        self.assertGreaterEqual(len(self.frames_with("micron_sonar.head_data.bearing")), 10)
 
-        def shown(condition):
-            done = subprocess.run(["tshark", *scripts, "-r", self.files(".pcapng")[0], "-Y", condition, "-T", "fields", "-e",
-                                   "frame.number"], capture_output=True, text=True, timeout=100)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            return done.stdout.split()
-
-        self.assertEqual(shown("_ws.malformed || gemini_sonar.malformed || gemini_sonar.bad_value || gemini_sonar.bad_line || "
-                               "micron_sonar.malformed || micron_sonar.bad_value || micron_sonar.no_frame"), [])
-        self.assertEqual(len(shown("gemini_sonar.ping_head.end_range")), 5)
-        self.assertGreaterEqual(len(shown("micron_sonar.head_data.bearing")), 10)
+    def test_a_run_of_both_heads(self):
+        """As long as one likes: all that was received is in logs that every reader takes."""
+        need("tshark")
+        daemon = self.start_daemon(more=MICRON)
+        raw = os.path.join(self.folder.name, "raw")
+        seconds = ["--seconds", str(SECONDS)]
+        viewer = self.start_viewer("--continuous", "40", "--compression", "4", *seconds)
+        scan = self.start_scan(raw, "--gain", "100", *seconds)
+        for client in (viewer, scan):
+            self.assertEqual(client.wait(SECONDS + PATIENCE_S), 0, client.tail())
+        self.end_daemon(daemon)
+        self.check_folder()
+        self.assertIn("dropped_images=0 dropped_wire_pieces=0", daemon.output())
+        pings, lines = self.received(viewer), self.scanned(raw)
+        self.assertGreater(len(pings), 10 * SECONDS)
+        self.assertGreater(len(lines), 5 * SECONDS)
+        images, messages = self.check_pings(viewer, daemon, len(pings))
+        self.assertEqual(len(images), len(messages["image"]))
+        self.assertEqual([line["bins"] for line in messages["line"]][:len(lines)], [line["bins"] for line in lines])
+        self.assertEqual(self.frames_with(COMPLAINTS), [])
+        print(f"{SECONDS} s: {len(pings)} pings and {len(lines)} lines received; .glf {len(images)} pings, .mcap "
+              f"{ {kind: len(said) for kind, said in messages.items()} }, .pcapng {len(self.packets())} packets; bytes "
+              f"{ {name.rsplit('.')[-1]: os.path.getsize(os.path.join(self.logs, name)) for name in os.listdir(self.logs)} }")
 
     def test_two_daemons_do_not_share_a_folder(self):
         self.start_daemon()
@@ -389,40 +450,192 @@ class Logs(RecordingTest):
         self.assertRegex(second.output(), r"sonard.yaml:\d+:\d+: recording.directory: another daemon records into ")
 
 
+class Replays(RecordingTest):
+    """A log of both heads is played back as both heads, and recorded again."""
+
+    SAME = ("bins", "bits", "bearing_rad", "metres_per_bin", "gain_percent", "device_id", "wire_line")
+    ON_THE_WIRE = ("bearing", "bins", "range_scale", "control", "sweep", "gain", "ad_span", "ad_low", "ad_interval",
+                   "left_limit", "right_limit", "step", "status")
+
+    def record(self, number, scan_options, pings=0, play=None):
+        """Serves and records until the clients have what they want; what the Micron's client got, and the log's messages."""
+        self.logs = os.path.join(self.folder.name, f"logs{number}")
+        raw = os.path.join(self.folder.name, f"raw{number}")
+        daemon = self.start_daemon(more=MICRON, play=play)
+        viewer = self.start_viewer("--pings", str(pings)) if pings else None
+        scan = self.start_scan(raw, *scan_options)
+        self.assertEqual(scan.wait(PATIENCE_S), 0, scan.tail())
+        if viewer:
+            self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        if play:
+            self.assertEqual(daemon.wait(PATIENCE_S), 0, daemon.tail())
+            self.assertIn("the recording is over", daemon.output())
+        else:
+            self.end_daemon(daemon)
+        return daemon, self.scanned(raw), self.mcap_messages()
+
+    def check_same(self, first, again):
+        lines, played = first["line"], again["line"]
+        self.assertEqual([[line[key] for key in self.SAME] for line in played],
+                         [[line[key] for key in self.SAME] for line in lines])
+        self.assertEqual([image["crc32"] for image in again["image"]], [image["crc32"] for image in first["image"]])
+        # On time, but for what a busy machine adds to some.
+        shifts_ms = sorted((int(now["transmit_ns"]) - int(then["transmit_ns"])) / 1e6 for now, then in zip(played, lines))
+        self.assertLess(shifts_ms[len(shifts_ms) // 4] - shifts_ms[0], 10)
+
+    def on_the_wire(self, lines):
+        return [[line[key] for key in self.ON_THE_WIRE] for line in lines]
+
+    def test_both_heads_are_played_and_recorded_again(self):
+        options = ["--bins", "300", "--sector", "-20", "60", "--gain", "40"]
+        _, heard, first = self.record(1, [*options, "--lines", "60"], pings=10)
+        count = len(first["line"])
+        self.assertGreaterEqual(count, 60)
+        daemon, heard_again, again = self.record(2, [*options, "--lines", str(count)], pings=10, play=self.files(".mcap")[0])
+        self.check_same(first, again)
+        self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
+        self.assertIn(2, {line["sweep"] for line in heard}, "it has not turned back at the right limit")
+        self.assertNotIn("head=stern differs", daemon.output())
+
+    def test_four_bits_for_a_client_with_another_gain(self):
+        options = ["--bins", "301", "--four-bit", "--ad-low", "10", "--ad-span", "30"]
+        _, heard, first = self.record(1, [*options, "--gain", "40", "--lines", "20"])
+        count = len(first["line"])
+        daemon, heard_again, again = self.record(2, [*options, "--gain", "60", "--lines", str(count)],
+                                                 play=self.files(".mcap")[0])
+        self.check_same(first, again)
+        self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
+        self.assertEqual(daemon.output().count("head=stern differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
+                         1, daemon.tail())
+        self.assertIn(f"pings that differed from what was asked for: gain={count}", daemon.output())
+
+
+class Faults(RecordingTest):
+    LINK = """    link:
+      seed: 7
+      to_surface: {{loss: 0.02, duplicate: 0.02, reorder: 0.02, delay_ms: 2, jitter_ms: 1}}
+      from_surface: {{loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 2, jitter_ms: 1}}
+    dump: {{directory: {folder}}}
+"""
+
+    def rendered(self):
+        """CRC-32 of every ping as the renderer handed it over, by its number."""
+        with open(os.path.join(self.folder.name, "bow.csv"), encoding="utf-8") as file:
+            return {int(row["number"]): int(row["crc32"], 16) for row in csv.DictReader(file)}
+
+    def test_a_poor_link_and_a_client_that_vanishes_and_comes_back(self):
+        daemon = self.start_daemon(more=self.LINK)
+        received = []
+        vanished = (0.1, 4.0, 0.0)  # the second time for longer than a head waits for its surface
+        for pause_s in vanished:
+            viewer = self.start_viewer("--continuous", "40")
+            viewer.wait_for_line("^ping ", PATIENCE_S, count=15)
+            time.sleep(0.015)  # in the middle of a ping
+            viewer.signal(signal.SIGKILL)
+            viewer.wait(10)
+            time.sleep(pause_s)
+            received += [int(ping["crc32"], 16) for ping in self.received(viewer)]
+        self.end_daemon(daemon)
+        self.check_folder()
+        rendered, images, messages = self.rendered(), self.glf_images(), self.mcap_messages()
+        head = key_values(next(line for line in daemon.lines if "head=bow ends:" in line))
+        recorder = key_values(next(line for line in daemon.lines if "recording ends:" in line))
+
+        # Every ping that was begun, by the count of the daemon: of those that it did not finish each client left one at most.
+        count = len(messages["image"])
+        self.assertEqual(int(recorder["images"]), count)
+        self.assertEqual(recorder["dropped_images"], "0")
+        self.assertGreaterEqual(count, int(head["pings_sent"]))
+        self.assertLessEqual(count, int(head["pings_sent"]) + len(vanished))
+        self.assertGreater(int(head["lines_resent"]), 100)
+        self.assertEqual(head["surface_timeouts"], "1")
+
+        numbers = [int(message["number"]) for message in messages["image"]]
+        self.assertLess(numbers[-1], 256)
+        self.assertEqual([message["crc32"] for message in messages["image"]], [rendered[number] for number in numbers])
+        self.assertEqual([zlib.crc32(image.pixels) for image in images], [rendered[number] for number in numbers])
+        self.assertLessEqual(set(received), {rendered[number] for number in numbers})
+
+        heads, lines = collect(self.packets())
+        whole = set()
+        for number, image in zip(numbers, images):
+            for line, data in lines[number].items():
+                self.assertEqual(data, image.row(line))
+            if len(lines[number]) == image.lines:
+                whole.add(rendered[number])
+        self.assertLessEqual(set(heads), set(numbers))
+        self.assertGreaterEqual(len(heads), count - len(vanished))  # where one was lost a client that is gone asks no more
+        self.assertLessEqual(set(received), whole)
+        self.assertGreaterEqual(len(received), 45)
+
+
 class Kills(RecordingTest):
-    def test_every_log_opens_and_holds_every_ping_but_the_last(self):
-        """kill -9 at moments drawn from a seed, from before the first ping to some tens of pings later. What a life
-        leaves is recovered by the daemon of the next, which is killed in its turn, also while it recovers and packs."""
+    def end_lives(self, live, lives, daemon_options):
+        """kill -9 at moments drawn from a seed. What a life leaves is recovered by the daemon of the next, which is killed in
+        its turn, also while it recovers and packs. `live` waits until there is something to kill, says what its client got
+        when that is over, and gives all that up."""
         moments = random.Random(20261120)
         seen = []
-        for life in range(KILLS):
-            viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
-            daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
-            if life % 10 != 9:
-                viewer.wait_for_line("^ping ", PATIENCE_S)
+        for life in range(lives):
+            daemon, client, received = live(life)
             time.sleep(moments.uniform(0.0, 0.5))
             daemon.signal(signal.SIGKILL)
             daemon.wait(10)
             time.sleep(0.01)  # what it sent last arrives
-            viewer.signal(signal.SIGKILL)
-            viewer.wait(10)
-            seen.append([ping["crc32"] for ping in self.received(viewer)])
-        self.end_daemon(self.start_daemon(seed=KILLS + 1))
+            client.signal(signal.SIGKILL)
+            client.wait(10)
+            seen.append(received())
+        self.end_daemon(self.start_daemon(seed=lives + 1, **daemon_options))
         self.check_folder()
-        self.assertGreater(sum(map(len, seen)), 3 * KILLS)
-        logs = {
-            "glf": [crc_text(image.pixels) for image in self.glf_images()],
-            "mcap": [f"{image['crc32']:08x}" for image in self.mcap_messages()["image"]],
-            "pcapng": [crc_text(ping.pixels()) for ping in pings_of(self.packets())],
-        }
-        for kind, recorded in logs.items():
+        self.assertGreater(sum(map(len, seen)), 3 * lives)
+        return seen
+
+    def check_kept(self, kind, recorded, seen):
+        """In a log of this kind is everything of every life but perhaps the last."""
+        recorded = set(recorded)
+        for life, pings in enumerate(seen):
+            missing = [i for i, ping in enumerate(pings[:-1]) if ping not in recorded]
+            self.assertEqual(missing, [], f"{kind} of life {life}, which saw {len(pings)}")
+        kept = sum(len(pings) > 0 and pings[-1] in recorded for pings in seen)
+        print(f"{kind}: {len(recorded)}, the last of a life in {kept} of {len(seen)}")
+
+    def test_every_log_opens_and_holds_every_ping_but_the_last(self):
+        """From before the first ping to some tens of pings later."""
+        def live(life):
+            viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
+            daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
+            if life % 10 != 9:
+                viewer.wait_for_line("^ping ", PATIENCE_S)
+            return daemon, viewer, lambda: [ping["crc32"] for ping in self.received(viewer)]
+
+        seen = self.end_lives(live, KILLS, {})
+        for kind, recorded in (("glf", [crc_text(image.pixels) for image in self.glf_images()]),
+                               ("mcap", [f"{image['crc32']:08x}" for image in self.mcap_messages()["image"]]),
+                               ("pcapng", [crc_text(ping.pixels()) for ping in pings_of(self.packets())])):
             self.assertEqual(len(set(recorded)), len(recorded), f"a ping is in {kind} twice")
-            recorded = set(recorded)
-            for life, pings in enumerate(seen):
-                missing = [i for i, crc in enumerate(pings[:-1]) if crc not in recorded]
-                self.assertEqual(missing, [], f"{kind} of life {life}, which saw {len(pings)} pings")
-            kept = sum(len(pings) > 0 and pings[-1] in recorded for pings in seen)
-            print(f"{kind}: {len(recorded)} pings, the last of a life in {kept} of {len(seen)}")
+            self.check_kept(kind, recorded, seen)
+
+    def test_every_log_opens_and_holds_every_line_but_the_last(self):
+        """From before the first line of a Micron to some tens of lines later."""
+        def live(life):
+            raw = os.path.join(self.folder.name, f"raw{life}")
+            daemon = self.start_daemon(seed=life + 1, more=MICRON)
+            scan = self.start_scan(raw, "--bins", "200", "--range", "5", "--gain", "100", "--log-lines")
+            if life % 10 != 9:
+                scan.wait_for_line("^line ", PATIENCE_S)
+            return daemon, scan, lambda: [line["bins"] for line in self.scanned(raw)] if os.path.exists(raw) else []
+
+        seen = self.end_lives(live, (KILLS + 1) // 2, {"more": MICRON})  # a head takes two seconds to find its centre
+        files = [[message["bins"] for message in messages if message["kind"] == "line"] for messages in self.mcap_files()]
+        for life, lines in enumerate(seen):
+            self.assertTrue(any(kept[:len(lines[:-1])] == lines[:-1] for kept in files), f"MCAP file of life {life}")
+        self.check_kept("mcap", sum(files, []), seen)
+        streams = collections.defaultdict(bytes)
+        for packet in self.packets():
+            if packet.protocol == "tcp" and packet.source == (HEAD_ADDRESS, 4001):
+                streams[packet.target] += packet.payload
+        captured = b"".join(streams.values())
+        self.check_kept("pcapng", [bins for bins in sum(seen, []) if bytes.fromhex(bins) in captured], seen)
 
 
 class FullDisk(RecordingTest):
@@ -476,6 +689,7 @@ if __name__ == "__main__":
     parser.add_argument("--programs", required=True)
     parser.add_argument("--npm", required=True, help="folder with read_mcap.js and its node_modules")
     parser.add_argument("--kills", type=int, default=KILLS)
+    parser.add_argument("--seconds", type=int, default=SECONDS, help="of test_a_run_of_both_heads")
     options, rest = parser.parse_known_args()
-    PROGRAMS, NPM, KILLS = os.path.abspath(options.programs), options.npm, options.kills
+    PROGRAMS, NPM, KILLS, SECONDS = os.path.abspath(options.programs), options.npm, options.kills, options.seconds
     unittest.main(argv=[sys.argv[0], *rest])

@@ -3,6 +3,7 @@
 
 #include "protocol/log/log_messages.hpp"
 #include "protocol/mcap/writer.hpp"
+#include "protocol/micron/codec.hpp"
 #include "server/logs/log_summary.hpp"
 #include "server/logs/mcap_recording.hpp"
 #include "tests/unit/logs/temporary_log.hpp"
@@ -77,7 +78,7 @@ McapLog small_log() {
 TEST(McapRecording, has_every_image_in_the_order_of_time) {
   McapLog log = small_log();
   log.writer.finish();
-  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
   const LogFile file(temporary.path());
   const McapRecording recording(file);
   ASSERT_EQ(recording.heads().size(), 1U);
@@ -103,7 +104,7 @@ TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
   wrong.set_range_lines(4);  // 6 pixels are no 8
   log.add(log.images, start_ns, wrong);
   log.writer.finish();
-  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
   const LogFile file(temporary.path());
   const McapRecording recording(file);
   EXPECT_EQ(recording.heads().at(0).images.size(), 5U);
@@ -113,7 +114,7 @@ TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
 TEST(McapRecording, summary_counts_all_kinds) {
   McapLog log = small_log();
   log.writer.finish();
-  const test::TemporaryLog temporary(".mcap", log.writer.take());
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
   const LogSummary summary = summarise(LogFile(temporary.path()));
   EXPECT_EQ(summary.kind, LogKind::mcap);
   EXPECT_EQ(summary.closed, true);
@@ -130,10 +131,53 @@ TEST(McapRecording, summary_counts_all_kinds) {
   EXPECT_EQ(summary.span_ns, (std::pair{start_ns, start_ns + 900'000'000}));
 }
 
+TEST(McapRecording, has_every_scan_line_and_how_it_travelled) {
+  McapLog log;
+  micron::HeadData travelled;
+  travelled.control = 0x2304;
+  travelled.range_scale = 123;
+  travelled.bearing = 4800;
+  for (const std::uint64_t number : {1, 0}) {
+    log::ScanLine said = line(number);
+    said.set_bearing_rad(-1.5);
+    said.set_bins(std::string{1, static_cast<char>(number), 15});
+    said.set_bits_per_bin(4);
+    const auto frame = micron::encode(micron::Report{travelled});
+    said.set_wire_line(std::string(frame.begin(), frame.end()));
+    log.add(log.lines, start_ns, said);
+  }
+  log.add(log.lines, start_ns, line(2));  // does not say it
+  log::ScanLine wrong = line(3);
+  wrong.set_metres_per_bin(0.0);
+  log.add(log.lines, start_ns, wrong);
+  log.writer.finish();
+  const test::TemporaryLog temporary(".mcap", log.writer.take().append);
+  const LogFile file(temporary.path());
+  const McapRecording recording(file);
+  EXPECT_TRUE(recording.heads().empty());
+  ASSERT_EQ(recording.scans().size(), 1U);
+  const RecordedScan& scan = recording.scans()[0];
+  EXPECT_EQ(scan.name, "mast");
+  EXPECT_EQ(scan.device_id, 2);
+  ASSERT_EQ(scan.lines.size(), 3U);
+  for (std::uint8_t i = 0; i < 2; ++i) {
+    const RecordedScanLine& read = scan.lines[i];
+    EXPECT_EQ(read.time_ns, start_ns + i * 50'000'000);
+    EXPECT_EQ(recording.bins(read), (std::vector<std::uint8_t>{1, i, 15}));
+    EXPECT_EQ(read.settings.lines, 3);
+    EXPECT_EQ(read.bearing_rad, -1.5);
+    EXPECT_EQ(read.bits_per_bin, 4);
+    EXPECT_EQ(read.wire_line, travelled);
+  }
+  EXPECT_EQ(scan.lines[2].bits_per_bin, 8);
+  EXPECT_EQ(scan.lines[2].wire_line, std::nullopt);
+  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 scan lines make no sense and are left out"}));
+}
+
 TEST(McapRecording, an_unfinished_one_has_its_whole_chunks) {
   McapLog log = small_log();
   log.writer.end_chunk();
-  std::vector<std::uint8_t> bytes = log.writer.take();
+  std::vector<std::uint8_t> bytes = log.writer.take().append;
   bytes.resize(bytes.size() - 20);
   const test::TemporaryLog temporary(".mcap", bytes);
   const LogSummary summary = summarise(LogFile(temporary.path()));

@@ -70,7 +70,7 @@ TEST(McapBytes, writer_makes_what_the_specification_says) {
   writer.add_message(channel_id, log_time, log_time - 1, Bytes{0xAB, 0xCD});
   writer.finish();
   EXPECT_EQ(writer.file_size(), by_hand().size());
-  EXPECT_EQ(writer.take(), by_hand());
+  EXPECT_EQ(writer.take().append, by_hand());
 }
 
 TEST(McapBytes, reader_reads_what_the_specification_says) {

@@ -43,7 +43,7 @@ inline Bytes finished_file() {
   writer.add_message(b, 40, 40, bytes_of("b2"));
   writer.add_message(b, 70, 70, bytes_of(""));
   writer.finish();
-  return writer.take();
+  return writer.take().append;
 }
 
 inline const std::vector<Said> messages_in_order{{1, 1, 10, "a1"}, {2, 0, 30, "b0"}, {2, 2, 40, "b2"},

@@ -23,7 +23,7 @@ TEST(McapReader, messages_of_equal_times_come_in_the_order_of_the_file) {
   writer.add_message(channel, 10, 10, bytes_of("before"));
   writer.add_message(channel, 50, 50, bytes_of("second"));
   writer.finish();
-  const Bytes file = writer.take();
+  const Bytes file = writer.take().append;
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
   EXPECT_EQ(all_of(reader->messages()),
@@ -66,15 +66,15 @@ TEST(McapReader, the_data_section_says_the_same_as_the_summary) {
 
 TEST(McapReader, pieces_make_the_same_file) {
   Writer writer{"test", 1};
-  Bytes pieces = writer.take();
+  Bytes pieces = writer.take().append;
   const auto channel = writer.add_channel(0, "/x", "json");
   for (std::uint64_t i = 0; i < 5; ++i) {
     writer.add_message(channel, 10 - i, 10 - i, bytes_of("{}"));  // a clock that goes back
-    append(pieces, writer.take());
+    append(pieces, writer.take().append);
     EXPECT_EQ(pieces.size(), writer.file_size());
   }
   writer.finish();
-  append(pieces, writer.take());
+  append(pieces, writer.take().append);
   const auto reader = Reader::open(pieces);
   ASSERT_TRUE(reader);
   EXPECT_TRUE(reader->finished());
@@ -86,7 +86,7 @@ TEST(McapReader, pieces_make_the_same_file) {
 TEST(McapReader, a_file_without_messages_is_whole) {
   Writer writer{"test", 1000};
   writer.finish();
-  const Bytes file = writer.take();
+  const Bytes file = writer.take().append;
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
   EXPECT_TRUE(reader->finished());

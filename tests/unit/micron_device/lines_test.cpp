@@ -21,7 +21,7 @@ TEST(Line, is_the_published_frame) {
   EXPECT_EQ(bench.sent[1].bytes, fixture("head_data"));
   ASSERT_EQ(bench.sent_lines.size(), 2U);
   EXPECT_EQ(bench.sent_lines[1].ping_number, 1U);
-  EXPECT_TRUE(bench.sent_lines[1].eight_bit);
+  EXPECT_TRUE(bench.sent_lines[1].line.eight_bit());
   EXPECT_EQ(bench.sent_lines[1].bins, (Bytes{176, 64, 10, 18, 20, 230, 64, 10}));
 }
 
@@ -39,7 +39,7 @@ TEST(Line, of_4_bits_is_the_published_frame) {
   bench.make_ready(command);
   const auto lines = bench.scan(51);
   EXPECT_EQ(encode(lines.back()), fixture("head_data_4_bit"));
-  EXPECT_FALSE(bench.sent_lines.back().eight_bit);
+  EXPECT_FALSE(bench.sent_lines.back().line.eight_bit());
   EXPECT_EQ(bench.sent_lines.back().bins, (Bytes{15, 8, 1, 0, 0, 10, 4, 0}));
 }
 

@@ -19,7 +19,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr int pings = 3;
 
-// Three pings with a datagram each, as a daemon leaves them that is killed.
+// Three pings with a datagram each, as a daemon leaves them that is killed. An MCAP file has two chunks that
+// are closed and one that is open.
 struct RecoveryTest : testing::Test {
   test::TemporaryFolder folder;
   RecordingConfig config;
@@ -32,11 +33,11 @@ struct RecoveryTest : testing::Test {
   Bytes killed(Arguments... arguments) {
     Kind log(setting, arguments...);
     for (int number = 0; number < pings; ++number) {
-      const TimePoint time{1'795'184'553'000'000'000 + number};
+      const TimePoint time = TimePoint{1'795'184'553'000'000'000} + number * McapLog::longest_chunk;
       log.write(test::ping_event(static_cast<std::uint64_t>(number), 32, time));
       log.flush(time);
       log.write(test::wire_event(100, time));
-      log.flush(time + std::chrono::seconds{1});
+      log.flush(time + McapLog::longest_wait);
     }
     path = log.file().path();
     return test::contents(path);
@@ -137,7 +138,7 @@ TEST_F(RecoveryTest, KeepsWhatIsDamagedAndWhatWasWholeBeforeIt) {
 
 TEST_F(RecoveryTest, KeepsAnMcapFileWithADamagedChunk) {
   Bytes file = killed<McapLog>();
-  file[file.size() / 2] ^= 1;
+  file[file.size() * 4 / 5] ^= 1;  // in the second chunk
   test::write_file(path, file);
   recover_logs(folder.path());
   EXPECT_EQ(test::contents(path.string() + ".damaged"), file);

@@ -96,7 +96,7 @@ std::vector<Received> played(const GlfRecording& recording) {
                          gemini::encode(gemini::Command{gemini::StatusRequest{{.sonar_id = sonar_id}}}));
     }
     playback.progress(0, now, device.counters());
-    device.offer(playback.next(0, now));
+    device.offer(playback.next_ping(0, now));
     device.advance(now);
     if (const auto job = device.take_job()) {
       playback.started(0, *job);

@@ -1,0 +1,185 @@
+#include "tests/bench/recording_cost.hpp"
+
+#include <time.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "protocol/gemini/encoded_ping.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "server/recording/head_recording.hpp"
+#include "server/recording/log_set.hpp"
+#include "server/recording/recorder.hpp"
+#include "tests/bench/timing.hpp"
+#include "tests/scenes/scenes.hpp"
+
+namespace sonard::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using server::TimePoint;
+
+constexpr int lines = 1000;
+constexpr std::chrono::milliseconds ping_interval{60};
+constexpr Repetition repetition{20, 201, 0.5};
+constexpr const char* scene_name = "recording";
+
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "sonard-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error(name + ": cannot be made");
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// A ping as a head sends it: how well it can be compressed decides what a .glf costs.
+gemini::EncodedPing make_ping() {
+  const test::Scene scene = test::make_scene("plane");
+  render::SonarRenderer renderer(scene.world, {render::Backend::ray});
+  render::PingSamples samples = renderer.render_ping(scene.request());
+  gemini::PingHead head;
+  head.header.sonar_id = 513;
+  head.ext_mode = gemini::ext_bits::eight_bit;
+  head.end_range = lines;
+  head.sound_speed_used = 0x8000 | 15'000;
+  return {head, 0, {0, std::move(samples.u8), {}}};
+}
+
+/// All that a head tells the recorder of one ping.
+struct PingEvents {
+  server::GeminiPingServed served;
+  std::vector<std::vector<server::Datagram>> batches;  ///< as a head sends them
+
+  PingEvents(const gemini::EncodedPing& ping, std::uint64_t number, TimePoint time)
+      : served{{number, ping},
+               time,
+               50.0,
+               std::make_shared<const server::PosesUsed>(server::PosesUsed{time, {}, {}, {}})} {
+    for (int i = 0; i < ping.datagram_count(); ++i) {
+      if (i % gemini::DeviceConfig{}.burst_lines == 0) {
+        batches.emplace_back();
+      }
+      batches.back().push_back({{0x7F000001, 52'900}, 0, ping.datagram(i)});
+    }
+  }
+};
+
+const std::vector<server::HeadToRecord> one_head{{"bow", 513, true, 0}};
+constexpr server::Endpoint head_end{0x7F000002, 52'901};
+
+server::RecordingConfig config_of(const fs::path& folder, const std::string& formats) {
+  server::RecordingConfig config;
+  config.directory = folder;
+  config.glf = formats == "glf" || formats == "all_formats";
+  config.mcap = formats == "mcap" || formats == "all_formats";
+  config.pcapng = formats == "pcapng" || formats == "all_formats";
+  config.sync = server::RecordingSync::never;
+  return config;
+}
+
+/// What the serving thread does for a ping, while the recorder works.
+Timing time_serving(const gemini::EncodedPing& ping) {
+  const ScratchFolder folder;
+  const server::SteadyClock clock;
+  server::Recorder recorder(config_of(folder.path(), "all_formats"), one_head);
+  const server::HeadRecording recording(&recorder, 0, clock);
+  Timing timing;
+  const double start_s = now_s();
+  for (int done = 0; repetition.wants_more(done, start_s); ++done) {
+    PingEvents events(ping, static_cast<std::uint64_t>(done), clock.now());
+    const double begin_s = now_s();
+    recording.posed(events.served.poses);
+    recording.gemini_ping(std::move(events.served));
+    for (const std::vector<server::Datagram>& batch : events.batches) {
+      recording.datagrams(batch, /*to_client=*/true, head_end);
+    }
+    timing.add(1e3 * (now_s() - begin_s));
+  }
+  return timing;
+}
+
+/// Seconds of processor time of this thread: the recorder's runs at a low priority, so that its wall time
+/// says more about its neighbours.
+double cpu_s() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// What the recorder's thread does for a ping: encodes, compresses and hands to the kernel.
+Timing time_writing(const gemini::EncodedPing& ping, const std::string& formats) {
+  const ScratchFolder folder;
+  const server::RecordingConfig config = config_of(folder.path(), formats);
+  TimePoint time = server::SteadyClock().now();
+  server::LogSet logs(config, one_head, time, /*has_room=*/true);
+  Timing timing;
+  const double start_s = now_s();
+  for (int done = 0; repetition.wants_more(done, start_s); ++done) {
+    time += ping_interval;
+    PingEvents events(ping, static_cast<std::uint64_t>(done), time);
+    std::vector<server::RecordingEvent> queued{{0, time, server::PingPosed{events.served.poses}},
+                                               {0, time, std::move(events.served)}};
+    for (const std::vector<server::Datagram>& batch : events.batches) {
+      queued.push_back({0, time, server::passed(batch, /*to_client=*/true, head_end)});
+    }
+    const double begin_s = cpu_s();
+    for (const server::RecordingEvent& event : queued) {
+      logs.write(event);
+      logs.flush(event.time);
+    }
+    timing.add(1e3 * (cpu_s() - begin_s));
+  }
+  return timing;
+}
+
+}  // namespace
+
+void measure_recording(Measurements& results) {
+  const gemini::EncodedPing ping = make_ping();
+  const auto add = [&](const std::string& formats, const std::string& metric, const Timing& timing) {
+    const Subject subject{scene_name, "ray", formats};
+    results.add(subject, metric, timing.median(), "ms");
+    results.add(subject, metric + "_p95", timing.p95(), "ms");
+  };
+  add("all_formats", "recording_serving_ms", time_serving(ping));
+  for (const char* formats : {"glf", "mcap", "pcapng", "all_formats"}) {
+    add(formats, "recording_writing_ms", time_writing(ping, formats));
+  }
+}
+
+std::string describe_recording(const Measurements& results) {
+  const auto ms = [&](const std::string& formats, const std::string& metric) {
+    return results.find({scene_name, "ray", formats}, metric).value_or(0.0);
+  };
+  const std::string serving = "recording_serving_ms";
+  const std::string writing = "recording_writing_ms";
+  return fmt::format(
+      "recording a ping of 256 x {}: serving thread {:.3f} ms (p95 {:.3f}), recorder's thread {:.2f} ms of "
+      "CPU "
+      "(glf {:.2f}, mcap {:.2f}, pcapng {:.2f})\n",
+      lines, ms("all_formats", serving), ms("all_formats", serving + "_p95"), ms("all_formats", writing),
+      ms("glf", writing), ms("mcap", writing), ms("pcapng", writing));
+}
+
+}  // namespace sonard::bench
