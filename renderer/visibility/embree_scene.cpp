@@ -116,6 +116,7 @@ struct EmbreeScene::Impl {
   };
   struct Part {
     Handle<RTCGeometry> instance;
+    std::shared_ptr<const Mesh> mesh;
     std::size_t body = 0;
     Pose T_body_part;
     SurfaceShader shader;
@@ -124,10 +125,8 @@ struct EmbreeScene::Impl {
   Handle<RTCDevice> device;
   IntersectPacket intersect = nullptr;
   std::string description;
-  std::vector<Mesh> meshes;
   std::vector<Part> parts;
   std::vector<Pose> T_world_body;
-  std::map<std::string, std::size_t> body_index;
   Handle<RTCScene> scene;
   glm::dvec3 sonar_position_m{0.0};
   bool placed = false;
@@ -138,9 +137,7 @@ struct EmbreeScene::Impl {
     device.reset(rtcNewDevice(("threads=1,ignore_config_files=1," + settings).c_str()));
     check("set up");
     choose_packets();
-    add_world(world);
-    workers.run(static_cast<int>(meshes.size()), [&](int i) { build(meshes[static_cast<std::size_t>(i)]); });
-    check("build the meshes");
+    build(add_world(world), workers);
     add_instances();
   }
 
@@ -172,31 +169,46 @@ struct EmbreeScene::Impl {
                               version(RTC_DEVICE_PROPERTY_VERSION_PATCH), width);
   }
 
-  void add_world(const World& world) {
+  std::shared_ptr<const Mesh> new_mesh(const std::shared_ptr<const TriangleMesh>& triangles) const {
+    return std::make_shared<const Mesh>(Mesh{triangles, Handle<RTCScene>(rtcNewScene(device.get()))});
+  }
+
+  /// @return the meshes, each of which is yet to be built.
+  std::vector<std::shared_ptr<const Mesh>> add_world(const World& world) {
+    std::vector<std::shared_ptr<const Mesh>> meshes;
     std::map<const TriangleMesh*, std::size_t> mesh_index;
     std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
     for (const Body& body : world.bodies) {
-      body_index.emplace(body.name, T_world_body.size());
       for (const BodyPart& part : body.parts) {
         const auto [entry, is_new] = mesh_index.try_emplace(part.mesh.get(), meshes.size());
         if (is_new) {
-          meshes.push_back({part.mesh, Handle<RTCScene>(rtcNewScene(device.get()))});
+          meshes.push_back(new_mesh(part.mesh));
         }
         std::shared_ptr<const NormalPyramid>& pyramid = pyramids[part.normal_map.get()];
         if (part.normal_map && !pyramid) {
           pyramid = std::make_shared<const NormalPyramid>(*part.normal_map);
         }
         Handle<RTCGeometry> instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-        rtcSetGeometryInstancedScene(instance.get(), meshes[entry->second].scene.get());
-        parts.push_back(
-            {std::move(instance), T_world_body.size(), part.T_body_part, SurfaceShader(part, pyramid)});
+        rtcSetGeometryInstancedScene(instance.get(), meshes[entry->second]->scene.get());
+        parts.push_back({std::move(instance), meshes[entry->second], T_world_body.size(), part.T_body_part,
+                         SurfaceShader(part, pyramid)});
       }
       T_world_body.push_back(body.T_world_body);
     }
+    return meshes;
+  }
+
+  void build(const std::vector<std::shared_ptr<const Mesh>>& meshes, WorkerPool& workers) const {
+    workers.run(static_cast<int>(meshes.size()), [&](int i) { build(*meshes[static_cast<std::size_t>(i)]); });
+    check("build the meshes");
   }
 
   void build(const Mesh& mesh) const {
     const TriangleMesh& triangles = *mesh.triangles;
+    if (triangles.indices.empty()) {
+      rtcCommitScene(mesh.scene.get());
+      return;
+    }
     const Handle<RTCGeometry> geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     // A copy, because Embree reads beyond the last vertex.
     void* vertices =
@@ -229,15 +241,23 @@ EmbreeScene::EmbreeScene(const World& world, WorkerPool& workers, const std::str
     : impl_(std::make_unique<Impl>(world, workers, embree_settings)) {}
 EmbreeScene::~EmbreeScene() = default;
 
-bool EmbreeScene::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  const auto entry = impl_->body_index.find(body_name);
-  if (entry == impl_->body_index.end()) {
-    return false;
-  }
-  Pose& pose = impl_->T_world_body[entry->second];
+void EmbreeScene::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  Pose& pose = impl_->T_world_body[body];
   impl_->placed = impl_->placed && pose == T_world_body;
   pose = T_world_body;
-  return true;
+}
+
+void EmbreeScene::set_part_meshes(std::span<const PartMesh> changes, WorkerPool& workers) {
+  std::vector<std::shared_ptr<const Impl::Mesh>> meshes;
+  for (const PartMesh& change : changes) {
+    meshes.push_back(impl_->new_mesh(change.mesh));
+    Impl::Part& part = impl_->parts[change.part];
+    rtcSetGeometryInstancedScene(part.instance.get(), meshes.back()->scene.get());
+    part.mesh = meshes.back();
+    part.shader.set_mesh(change.mesh);
+  }
+  impl_->build(meshes, workers);
+  impl_->placed = impl_->placed && changes.empty();
 }
 
 void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
@@ -246,10 +266,16 @@ void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
   }
   impl_->placed = false;
   for (Impl::Part& part : impl_->parts) {
-    const Pose T_world_part = impl_->T_world_body[part.body] * part.T_body_part;
-    part.shader.turn(T_world_part.orientation);
+    if (part.mesh->triangles->indices.empty()) {
+      rtcDisableGeometry(part.instance.get());
+      continue;
+    }
+    rtcEnableGeometry(part.instance.get());
+    const Pose T_sonar_part =
+        relative({sonar_position_m, {1, 0, 0, 0}}, impl_->T_world_body[part.body]) * part.T_body_part;
+    part.shader.turn(T_sonar_part.orientation);
     const auto& [x, y, z] = part.shader.axes();
-    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_world_part.position_m - sonar_position_m)};
+    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_sonar_part.position_m)};
     static_assert(sizeof(columns) == 12 * sizeof(float));
     rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
     rtcCommitGeometry(part.instance.get());

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <glm/vec3.hpp>
@@ -37,8 +39,12 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// @return false when the world has no body of that name.
-  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+  /// @param body in the order of the world, and in it.
+  void set_body_pose(std::size_t body, const Pose& T_world_body);
+
+  /// The sonar has to be placed again before anything is traced.
+  /// @throws RendererError when Embree fails.
+  void set_part_meshes(std::span<const PartMesh> changes, WorkerPool& workers);
 
   /// Puts the sonar here, and the bodies where they were last moved to. Costs nothing when neither changed.
   /// @throws RendererError when Embree fails.

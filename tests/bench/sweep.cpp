@@ -121,6 +121,31 @@ class Sweep {
     }
   }
 
+  /// 200 bodies that rest, and the same that all move from ping to ping, to be compared.
+  void bodies() {
+    for (const bool drift : {false, true}) {
+      const std::string name = drift ? "bodies200_moving" : "bodies200_still";
+      Plan plan;
+      for (const Point& point : {preset_points().front(), default_point()}) {
+        plan.points.push_back({point, usual, render::Backend::ray});
+      }
+      plan.points.push_back({grid_point(2, 256), usual});
+      plan.bodies_drift = drift;
+      run(name, plan, [&] { return test::make_bodies_scene(name); });
+    }
+  }
+
+  /// The same ground as heightmaps of different resolution.
+  void terrain() {
+    for (const int side_px : {256, 1024, 4096}) {
+      const std::string name = fmt::format("terrain{}", side_px);
+      Plan plan;
+      plan.points.push_back({default_point(), usual, render::Backend::ray});
+      plan.points.push_back({grid_point(2, 256), usual});
+      run(name, plan, [&] { return test::make_terrain_scene(name, side_px); });
+    }
+  }
+
  private:
   bool wanted(const std::string& name) const {
     return only_.empty() || std::any_of(only_.begin(), only_.end(),
@@ -141,6 +166,8 @@ void run_sweep(Campaign& campaign, const std::vector<std::string>& only) {
   sweep.bins();
   sweep.cores();
   sweep.binning();
+  sweep.bodies();
+  sweep.terrain();
 }
 
 }  // namespace sonard::bench

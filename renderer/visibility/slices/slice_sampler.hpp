@@ -3,10 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "renderer/binning/echo_patch.hpp"
@@ -84,8 +82,11 @@ class SliceSampler {
                                        const RangeLines& range, double sampled_range_m,
                                        const SurfaceModel& surface, const SliceAccuracy& accuracy);
 
-  /// @return false when the world has no body of that name.
-  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+  /// As Sampler::set_body_pose().
+  void set_body_pose(std::size_t body, const Pose& T_world_body) { T_world_body_[body] = T_world_body; }
+
+  /// As Sampler::set_part_meshes().
+  void set_part_meshes(std::span<const PartMesh> changes);
 
   /// As Sampler::set_ray_bend().
   void set_ray_bend(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
@@ -123,7 +124,6 @@ class SliceSampler {
   SkipSwitches skip_;
   SkipCounts skipped_parts_;  ///< of every ping: what is left out of shading
   std::vector<Pose> T_world_body_;
-  std::map<std::string, std::size_t> body_number_;
   std::vector<Part> parts_;
   std::vector<PlacedPart> placed_;
   std::vector<PartSurface> surfaces_;
