@@ -47,7 +47,7 @@ void Multipath::set_body_pose(std::size_t body, const Pose& T_world_body) {
 void Multipath::set_part_meshes(std::span<const PartMesh> changes) {
   replace_meshes(world_, changes);
   if (scene_) {
-    scene_->set_part_meshes(changes, workers_);
+    scene_->set_part_meshes(changes);
   }
 }
 

@@ -45,8 +45,8 @@ bool PathScene::is_flat(const PathHit& hit) const {
   return along(0) && along(1) && along(2);
 }
 
-void PathScene::set_part_meshes(std::span<const PartMesh> changes, WorkerPool& workers) {
-  meshes_.set_part_meshes(changes, workers);
+void PathScene::set_part_meshes(std::span<const PartMesh> changes) {
+  meshes_.set_part_meshes(changes);
   for (const PartMesh& change : changes) {
     surfaces_[change.part].mesh = change.mesh;
   }

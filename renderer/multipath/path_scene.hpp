@@ -37,7 +37,7 @@ class PathScene {
   void set_body_pose(std::size_t body, const Pose& T_world_body) {
     meshes_.set_body_pose(body, T_world_body);
   }
-  void set_part_meshes(std::span<const PartMesh> changes, WorkerPool& workers);
+  void set_part_meshes(std::span<const PartMesh> changes);
   /// @param water_surface its mirror.
   /// @throws RendererError when Embree fails.
   void place(const glm::dvec3& sonar_position_m, const Mirror& water_surface);

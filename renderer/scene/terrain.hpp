@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,7 +21,7 @@ struct TileDetail {
   int level = 0;
   std::array<int, 4> sides{};  ///< levels by Side, none below `level`
 
-  bool operator==(const TileDetail&) const = default;
+  auto operator<=>(const TileDetail&) const = default;
 };
 
 /// Coordinates are those of make_heightfield() with the centre at the origin, in single precision. Reading it

@@ -11,6 +11,7 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/simd.hpp"
+#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/ray_shading.hpp"
 
 namespace sonard::render {
@@ -126,18 +127,21 @@ struct EmbreeScene::Impl {
   IntersectPacket intersect = nullptr;
   std::string description;
   std::vector<Part> parts;
+  MeshCache<std::shared_ptr<const Mesh>> replacements;
+  std::map<std::size_t, std::shared_ptr<const TriangleMesh>> awaited;  // by part
+  WorkerPool& workers;
   std::vector<Pose> T_world_body;
   Handle<RTCScene> scene;
   glm::dvec3 sonar_position_m{0.0};
   bool placed = false;
 
-  Impl(const World& world, WorkerPool& workers, const std::string& settings) {
+  Impl(const World& world, WorkerPool& pool, const std::string& settings) : workers(pool) {
     // Meshes are built side by side, each by one thread: the tree, and with it which of two triangles that
     // share an edge a ray on it meets, is then the same every time.
     device.reset(rtcNewDevice(("threads=1,ignore_config_files=1," + settings).c_str()));
     check("set up");
     choose_packets();
-    build(add_world(world), workers);
+    build(add_world(world));
     add_instances();
   }
 
@@ -198,7 +202,27 @@ struct EmbreeScene::Impl {
     return meshes;
   }
 
-  void build(const std::vector<std::shared_ptr<const Mesh>>& meshes, WorkerPool& workers) const {
+  /// Those that set_part_meshes() was told of.
+  void replace_meshes() {
+    std::vector<std::shared_ptr<const Mesh>> unknown;
+    for (const auto& [number, triangles] : awaited) {
+      const auto* known = replacements.find(triangles.get());
+      if (known == nullptr) {
+        unknown.push_back(new_mesh(triangles));
+      }
+      Part& part = parts[number];
+      part.mesh = known != nullptr ? *known : unknown.back();
+      rtcSetGeometryInstancedScene(part.instance.get(), part.mesh->scene.get());
+      part.shader.set_mesh(triangles);
+    }
+    awaited.clear();
+    build(unknown);
+    for (const auto& mesh : unknown) {
+      replacements.keep(mesh->triangles, mesh);
+    }
+  }
+
+  void build(const std::vector<std::shared_ptr<const Mesh>>& meshes) const {
     workers.run(static_cast<int>(meshes.size()), [&](int i) { build(*meshes[static_cast<std::size_t>(i)]); });
     check("build the meshes");
   }
@@ -247,16 +271,10 @@ void EmbreeScene::set_body_pose(std::size_t body, const Pose& T_world_body) {
   pose = T_world_body;
 }
 
-void EmbreeScene::set_part_meshes(std::span<const PartMesh> changes, WorkerPool& workers) {
-  std::vector<std::shared_ptr<const Impl::Mesh>> meshes;
+void EmbreeScene::set_part_meshes(std::span<const PartMesh> changes) {
   for (const PartMesh& change : changes) {
-    meshes.push_back(impl_->new_mesh(change.mesh));
-    Impl::Part& part = impl_->parts[change.part];
-    rtcSetGeometryInstancedScene(part.instance.get(), meshes.back()->scene.get());
-    part.mesh = meshes.back();
-    part.shader.set_mesh(change.mesh);
+    impl_->awaited[change.part] = change.mesh;
   }
-  impl_->build(meshes, workers);
   impl_->placed = impl_->placed && changes.empty();
 }
 
@@ -265,6 +283,7 @@ void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
     return;
   }
   impl_->placed = false;
+  impl_->replace_meshes();
   for (Impl::Part& part : impl_->parts) {
     if (part.mesh->triangles->indices.empty()) {
       rtcDisableGeometry(part.instance.get());

@@ -32,6 +32,7 @@ struct SurfaceHit {
 /// threads.
 class EmbreeScene {
  public:
+  /// @param workers outlives the scene.
   /// @param embree_settings for rtcNewDevice(), for tests: "isa=sse4.2".
   /// @throws RendererError when Embree cannot be set up or runs out of memory.
   EmbreeScene(const World& world, WorkerPool& workers, const std::string& embree_settings = {});
@@ -42,9 +43,8 @@ class EmbreeScene {
   /// @param body in the order of the world, and in it.
   void set_body_pose(std::size_t body, const Pose& T_world_body);
 
-  /// The sonar has to be placed again before anything is traced.
-  /// @throws RendererError when Embree fails.
-  void set_part_meshes(std::span<const PartMesh> changes, WorkerPool& workers);
+  /// From the next place() on, which builds them.
+  void set_part_meshes(std::span<const PartMesh> changes);
 
   /// Puts the sonar here, and the bodies where they were last moved to. Costs nothing when neither changed.
   /// @throws RendererError when Embree fails.

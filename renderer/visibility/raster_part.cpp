@@ -178,7 +178,7 @@ osg::Matrixd to_osg(const Pose& T_a_b) {
          osg::Matrixd::translate(T_a_b.position_m.x, T_a_b.position_m.y, T_a_b.position_m.z);
 }
 
-void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::MatrixTransform& part) {
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part) {
   if (mesh.indices.empty()) {
     return;
   }

@@ -18,7 +18,7 @@ osg::Matrixd to_osg(const Pose& T_a_b);
 
 /// Adds the triangles of a mesh to the node of their part.
 /// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
-void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::MatrixTransform& part);
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
 
 /// What the shader wants to know of the surface of a part. Parts with the same surface share one.
 osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part);

@@ -16,6 +16,7 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/visibility/egl_context.hpp"
+#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/raster_part.hpp"
 #include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/surface_shader.hpp"
@@ -133,6 +134,7 @@ struct RasterSampler::Impl {
   osg::ref_ptr<osg::Group> scene;
   std::vector<BodyNode> bodies;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
+  MeshCache<osg::ref_ptr<osg::Group>> replacements;       // chunks of meshes
   std::list<ViewTarget> targets;                          // the last used first
   double target_pixels = 0;                               // of all of them
   std::uint64_t calls = 0;                                // of sample()
@@ -172,6 +174,8 @@ struct RasterSampler::Impl {
         target.scene_view->releaseAllGLObjects();
       }
       scene->releaseGLObjects(context->getState());
+      replacements = {};  // what they hold on the GPU goes with them
+      osg::flushAllDeletedGLObjects(context->getState()->getContextID());
     }
     targets.clear();
     context->close();
@@ -334,12 +338,17 @@ void RasterSampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
 void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
   impl_->make_current();
   for (const PartMesh& change : changes) {
-    osg::MatrixTransform& part = *impl_->parts[change.part];
-    for (unsigned i = 0; i < part.getNumChildren(); ++i) {
-      part.getChild(i)->releaseGLObjects(impl_->context->getState());
+    osg::ref_ptr<osg::Group> chunks;
+    if (const auto* known = impl_->replacements.find(change.mesh.get())) {
+      chunks = *known;
+    } else {
+      chunks = new osg::Group;
+      add_chunks(*change.mesh, &impl_->max_range_m, *chunks);
+      impl_->replacements.keep(change.mesh, chunks);
     }
+    osg::MatrixTransform& part = *impl_->parts[change.part];
     part.removeChildren(0, part.getNumChildren());
-    add_chunks(*change.mesh, &impl_->max_range_m, part);
+    part.addChild(chunks);
   }
   osg::flushAllDeletedGLObjects(impl_->context->getState()->getContextID());
 }

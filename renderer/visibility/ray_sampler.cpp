@@ -82,7 +82,7 @@ void RaySampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
 
 void RaySampler::set_part_meshes(std::span<const PartMesh> changes) {
   replace_meshes(world_, changes);
-  scene_.set_part_meshes(changes, workers_);
+  scene_.set_part_meshes(changes);
 }
 
 /// Lists the tiles that hold pixels of the grid. They stay the same for as long as the grid does.

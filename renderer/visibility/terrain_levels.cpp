@@ -15,6 +15,7 @@ namespace {
 // degrees.
 constexpr double error_lines = 0.03;
 constexpr double error_rad = 3e-4;
+constexpr std::size_t most_known_meshes = 20'000;
 constexpr std::size_t most_triangles = 2'000'000;  // in range; else errors are doubled until they are fewer
 
 }  // namespace
@@ -95,28 +96,49 @@ std::vector<PartMesh> TerrainLevels::look(const TerrainView& view, const std::ve
     }
     skipped.add(SkipRule::terrain_detail, finest - triangles);
   }
-  std::vector<Change> changes;
-  for (Ground& ground : grounds_) {
-    for (std::size_t tile = 0; tile < ground.drawn.size(); ++tile) {
-      const Drawn detail = detail_of(ground, tile, view.range_m);
-      if (detail != ground.drawn[tile]) {
-        ground.drawn[tile] = detail;
-        changes.push_back({&ground, tile});
-      }
-    }
-  }
-  std::vector<PartMesh> meshes(changes.size());
+  std::vector<Change> changes = find_changes(view.range_m);
   workers.run(static_cast<int>(changes.size()), [&](int i) {
-    const auto& [ground, tile] = changes[static_cast<std::size_t>(i)];
-    PartMesh& made = meshes[static_cast<std::size_t>(i)];
-    made = {ground->first_part + tile, nothing_};
-    if (const Drawn& detail = ground->drawn[tile]) {
-      TriangleMesh mesh = ground->terrain->mesh(tile, *detail);
-      made.mesh = std::make_shared<const TriangleMesh>(
+    Change& change = changes[static_cast<std::size_t>(i)];
+    if (!change.mesh) {
+      const Ground& ground = grounds_[change.ground];
+      TriangleMesh mesh = ground.terrain->mesh(change.tile, *ground.drawn[change.tile]);
+      change.mesh = std::make_shared<const TriangleMesh>(
           longest_edge_m_ > 0 ? tessellated(mesh, longest_edge_m_) : std::move(mesh));
     }
   });
+  std::vector<PartMesh> meshes;
+  for (const Change& change : changes) {
+    const Ground& ground = grounds_[change.ground];
+    if (ground.drawn[change.tile]) {
+      made_[{change.ground, change.tile, *ground.drawn[change.tile]}] = change.mesh;
+    }
+    meshes.push_back({ground.first_part + change.tile, change.mesh});
+  }
   return meshes;
+}
+
+/// Notes what is drawn from now on. Meshes that are not known are yet to be made.
+std::vector<TerrainLevels::Change> TerrainLevels::find_changes(double range_m) {
+  if (made_.size() > most_known_meshes) {
+    std::erase_if(made_, [](const auto& entry) { return entry.second.expired(); });
+  }
+  std::vector<Change> changes;
+  for (std::size_t g = 0; g < grounds_.size(); ++g) {
+    Ground& ground = grounds_[g];
+    for (std::size_t tile = 0; tile < ground.drawn.size(); ++tile) {
+      const Drawn detail = detail_of(ground, tile, range_m);
+      if (detail == ground.drawn[tile]) {
+        continue;
+      }
+      ground.drawn[tile] = detail;
+      changes.push_back({g, tile, nothing_});
+      if (detail) {
+        const auto known = made_.find({g, tile, *detail});
+        changes.back().mesh = known != made_.end() ? known->second.lock() : nullptr;
+      }
+    }
+  }
+  return changes;
 }
 
 }  // namespace sonard::render

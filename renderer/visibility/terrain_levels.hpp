@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "renderer/pose.hpp"
@@ -44,11 +46,15 @@ class TerrainLevels {
     std::vector<float> distance_m;  ///< of every tile, and its level; of this ping
     std::vector<int> level;
   };
+  /// Meshes by terrain, tile and detail, for as long as a sampler keeps them.
+  using Made = std::map<std::tuple<std::size_t, std::size_t, TileDetail>, std::weak_ptr<const TriangleMesh>>;
   struct Change {
-    Ground* ground;
+    std::size_t ground;
     std::size_t tile;
+    std::shared_ptr<const TriangleMesh> mesh;
   };
 
+  std::vector<Change> find_changes(double range_m);
   static void measure(Ground& ground, const TerrainView& view, const Pose& T_world_body);
   std::size_t choose(const TerrainView& view, double coarseness);
   static Drawn detail_of(const Ground& ground, std::size_t tile, double range_m);
@@ -56,6 +62,7 @@ class TerrainLevels {
   SkipSwitches skip_;
   float longest_edge_m_;
   std::vector<Ground> grounds_;
+  Made made_;
   std::shared_ptr<const TriangleMesh> nothing_ = std::make_shared<const TriangleMesh>();
 };
 

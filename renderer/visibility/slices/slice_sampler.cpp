@@ -103,13 +103,26 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
 
 /// Facets of such parts are not merged: neighbouring parts share corners.
 void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
+  std::vector<Replacement> replacements(changes.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (const Replacement* known = replacements_.find(changes[i].mesh.get())) {
+      replacements[i] = *known;
+    }
+  }
   workers_.run(static_cast<int>(changes.size()), [&](int i) {
-    const PartMesh& change = changes[static_cast<std::size_t>(i)];
-    placed_[change.part].clusters = std::make_shared<const MeshClusters>(*change.mesh);
-    surfaces_[change.part].mesh = change.mesh;
-    surfaces_[change.part].vertex_normals =
-        !(skip_.on(SkipRule::geometric_normals) && has_plain_facets(*change.mesh));
+    const TriangleMesh& mesh = *changes[static_cast<std::size_t>(i)].mesh;
+    Replacement& replacement = replacements[static_cast<std::size_t>(i)];
+    if (!replacement.clusters) {
+      const bool plain = skip_.on(SkipRule::geometric_normals) && has_plain_facets(mesh);
+      replacement = {std::make_shared<const MeshClusters>(mesh), !plain};
+    }
   });
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    placed_[changes[i].part].clusters = replacements[i].clusters;
+    surfaces_[changes[i].part].mesh = changes[i].mesh;
+    surfaces_[changes[i].part].vertex_normals = replacements[i].vertex_normals;
+    replacements_.keep(changes[i].mesh, replacements[i]);
+  }
 }
 
 /// In doubles up to here: no world coordinate reaches a float.

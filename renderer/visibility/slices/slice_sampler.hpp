@@ -11,6 +11,7 @@
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/skip_ledger.hpp"
+#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/slices/fan_triangles.hpp"
 #include "renderer/visibility/slices/slice_patches.hpp"
@@ -99,6 +100,10 @@ class SliceSampler {
     std::size_t body;
     Pose T_body_part;
   };
+  struct Replacement {
+    std::shared_ptr<const MeshClusters> clusters;
+    bool vertex_normals = false;
+  };
   struct Prepared;
   struct Setting;
   struct Scratch;
@@ -127,6 +132,7 @@ class SliceSampler {
   std::vector<Part> parts_;
   std::vector<PlacedPart> placed_;
   std::vector<PartSurface> surfaces_;
+  MeshCache<Replacement> replacements_;
   bool any_mapped_ = false;
   bool any_facets_ = false;  ///< whether any material has them
   RayBend bend_;             ///< in the sonar frame of this ping
