@@ -134,7 +134,7 @@ inline constexpr std::array skip_rules{
                   "pings", 0.25, "vertical beamwidths of elevation"},
     SkipRuleEntry{SkipRule::terrain_detail, "terrain_detail",
                   "the tile is within 0.03 lines and 0.3 mm for each metre of distance of what is left out",
-                  "triangles", 0.1},
+                  "triangles", 0.1, "of the image's maximum, over ground rough at all lengths"},
 };
 
 inline constexpr std::size_t skip_rule_count = skip_rules.size();

@@ -10,9 +10,9 @@ namespace sonard::test {
 inline constexpr double ground_side_m = 100.0;
 inline constexpr double ground_relief_m = 12.0;
 
-/// Height of the ground over the lowest point that it may have. Waves of 100 m to 0.2 m, each length in two
-/// directions; a wave of length L is 2 (L / 100 m)^1.3 m high: centimetres at some metres, half a millimetre
-/// at 20 cm.
+/// Height of the ground over the lowest point that it may have. Waves of lengths from 100 m down to 0.1 m,
+/// each in a direction of its own; from trough to crest a wave of length L is 2 m (L / 100 m)^1.3: 10 cm at
+/// 10 m, half a centimetre at 1 m.
 double ground_height_m(double x_m, double y_m);
 
 /// The ground as a heightmap of `side_px` by `side_px` pixels: white is ground_relief_m, and one pixel at the

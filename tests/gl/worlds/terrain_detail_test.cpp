@@ -1,7 +1,11 @@
 // SkipRule::terrain_detail: tiles as coarse as the sonar can bear against every pixel of the map.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "renderer/scene/heightfield.hpp"
+#include "renderer/scene/mesh.hpp"
 #include "renderer/scene/terrain.hpp"
 #include "tests/scenes/scenes.hpp"
 #include "tests/support/backend_test.hpp"
@@ -120,6 +124,58 @@ TEST_P(TerrainDetail, OfAPlaneIsThePlane) {
   const Comparison found = compare(of_tiles.render_echo(request), of_plane.render_echo(request));
   EXPECT_LE(found.worst_of_maximum, 1e-3);
   EXPECT_LE(found.bin_rms, 1e-3);
+}
+
+GreyImage waves_picture() {
+  GreyImage picture{300, 280, {}};
+  for (int y = 0; y < picture.height_px; ++y) {
+    for (int x = 0; x < picture.width_px; ++x) {
+      picture.value.push_back(
+          static_cast<std::uint16_t>(30000 + 20000 * std::sin(0.15 * x) * std::cos(0.11 * y)));
+    }
+  }
+  return picture;
+}
+
+/// 64 x 64 texels of crossing ripples, repeated once over the map.
+std::shared_ptr<const NormalMap> ripples() {
+  NormalMap map{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    map.rgb.push_back(static_cast<std::uint8_t>(128 + 60 * std::sin(0.6 * (i % 64))));
+    map.rgb.push_back(static_cast<std::uint8_t>(128 + 40 * std::sin(0.3 * (i / 64))));
+    map.rgb.push_back(230);
+  }
+  return std::make_shared<const NormalMap>(std::move(map));
+}
+
+// At their finest, tiles are heard as the whole map in one mesh is, with a normal map or without.
+TEST_P(TerrainDetail, TilesAreHeardAsOneMesh) {
+  const glm::dvec3 size_m(30, 28, 1);
+  for (const bool mapped : {false, true}) {
+    BodyPart part;
+    part.T_body_part.position_m = {12, 0, -4};
+    part.normal_map = mapped ? ripples() : nullptr;
+    World whole;
+    whole.bodies.push_back({"bed", {}, {part}});
+    TriangleMesh mesh = make_heightfield(waves_picture(), size_m, {});
+    add_tangents(mesh);
+    whole.bodies[0].parts[0].mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+    World tiles;
+    tiles.bodies.push_back({"bed", {}, {}});
+    add_heightmap(waves_picture(), size_m, part, tiles, 0, tiles.bodies[0].parts);
+    RendererOptions finest = options();
+    finest.skip.turn_off(SkipRule::terrain_detail);
+    SonarRenderer of_tiles(tiles, finest);
+    SonarRenderer of_whole(whole, finest);
+    PingRequest request;
+    request.T_world_sonar = looking({0, 0, 0}, 5, 20);
+    request.settings.aperture.beam_edges_rad = equal_angle_edges(32, 1.0);
+    request.settings.range = {500, 0.04, 0, false};
+    request.settings.sampling = Sampling::of_grid(2, 256, 512);
+    const Comparison found = compare(of_tiles.render_echo(request), of_whole.render_echo(request));
+    std::printf("%s: worst bin %.2g of the maximum\n", mapped ? "mapped" : "plain", found.worst_of_maximum);
+    EXPECT_LE(found.worst_of_maximum, mapped ? 0.01 : 0.001);
+  }
 }
 
 }  // namespace
