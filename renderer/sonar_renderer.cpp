@@ -286,7 +286,7 @@ struct SonarRenderer::Impl {
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
     bend_rays(settings);
-    follow_terrain(settings, motion.T_world_sonar.position_m);
+    follow_terrain(settings, motion);
     const Summing summing{line_weight, binning_options(settings, skip, largest_response)};
     BinningResult bins = motion.at_end
                              ? look_in_spans(settings, motion, summing, std::move(image.intensity))
@@ -305,11 +305,13 @@ struct SonarRenderer::Impl {
     statistics.binning_s += watch.lap();
   }
 
-  /// SkipRule::terrain_detail. Motion within a ping changes no detail.
-  void follow_terrain(const SonarSettings& settings, const glm::dvec3& sonar_position_m) {
+  /// SkipRule::terrain_detail. Motion within a ping changes no detail, but it reaches further.
+  void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
     Stopwatch watch;
+    const glm::dvec3& start_m = motion.T_world_sonar.position_m;
+    const double way_m = motion.at_end ? glm::length(motion.at_end->position_m - start_m) : 0.0;
     const std::vector<PartMesh> changes =
-        terrain.look({sonar_position_m, sampled_range_m(settings), settings.range.step_m}, T_world_body,
+        terrain.look({start_m, sampled_range_m(settings) + way_m, settings.range.step_m}, T_world_body,
                      workers, statistics.skipped);
     if (!changes.empty()) {
       chosen.sampler->set_part_meshes(changes);

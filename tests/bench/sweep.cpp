@@ -127,9 +127,8 @@ class Sweep {
     for (const bool drift : {false, true}) {
       const std::string name = drift ? "bodies200_moving" : "bodies200_still";
       Plan plan;
-      for (const Point& point : {preset_points().front(), default_point()}) {
-        plan.points.push_back({point, several, render::Backend::ray});
-      }
+      plan.points.push_back({preset_points().front(), several});
+      plan.points.push_back({default_point(), several, render::Backend::ray});
       plan.points.push_back({grid_point(2, 256), several});
       plan.bodies_drift = drift;
       run(name, plan, [&] { return test::make_bodies_scene(name); });

@@ -104,6 +104,29 @@ TEST_P(TerrainDetail, DependsOnThePingAlone) {
   }
 }
 
+// Noise that no coarser level comes near: what is drawn is still limited.
+TEST_P(TerrainDetail, DrawsNoMoreThanTwoMillionTriangles) {
+  GreyImage noise{1100, 1100, {}};
+  std::uint32_t random = 1;
+  for (int i = 0; i < noise.width_px * noise.height_px; ++i) {
+    random = random * 1664525U + 1013904223U;
+    noise.value.push_back(static_cast<std::uint16_t>(random >> 16));
+  }
+  World world;
+  world.bodies.push_back({"bed", {{0, 0, -5}, {1, 0, 0, 0}}, {}});
+  add_heightmap(std::move(noise), {50, 50, 1}, {}, world, 0, world.bodies[0].parts);
+  PingRequest request;
+  request.T_world_sonar = looking({0, 0, 0}, 20, 20);
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(8, 0.3);
+  request.settings.range = {500, 0.08, 0, false};
+  request.settings.sampling = Sampling::of_grid(1, 64, 64);
+  SonarRenderer renderer(world, options());
+  renderer.render_echo(request);
+  const std::uint64_t all = 2 * 1099 * 1099;
+  EXPECT_GE(renderer.last_statistics().skipped.of(SkipRule::terrain_detail), all - 2'000'000);
+  EXPECT_LT(renderer.last_statistics().skipped.of(SkipRule::terrain_detail), all);
+}
+
 // A plane is one at any level: its echo is that of two triangles, across all the seams of tiles.
 TEST_P(TerrainDetail, OfAPlaneIsThePlane) {
   World tiles;
