@@ -33,9 +33,10 @@ Terrain::Terrain(GreyImage picture, const glm::dvec3& size_m, bool mapped)
   const std::uint16_t brightest = *std::max_element(picture_.value.begin(), picture_.value.end());
   z_per_value_m_ = brightest > 0 ? size_m.z / brightest : 0.0;
   tiles_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  auto tile = tiles_.begin();
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      measure(tiles_[static_cast<std::size_t>(row * columns_ + column)], column, row);
+      measure(*tile++, column, row);
     }
   }
 }
@@ -47,7 +48,8 @@ double Terrain::height_m(int x, int y) const {
 }
 
 glm::vec3 Terrain::position(int x, int y) const {
-  return glm::vec3(corner_m_ + glm::dvec3(x * step_x_m_, y * step_y_m_, height_m(x, y)));
+  const glm::vec3 p(corner_m_ + glm::dvec3(x * step_x_m_, y * step_y_m_, height_m(x, y)));
+  return p;
 }
 
 /// Of the mean slope over a step to either side, or to one at the rim of the map: what a coarse level leaves
@@ -57,7 +59,8 @@ glm::vec3 Terrain::normal(int x, int y, int step_px) const {
   const int south = std::max(y - step_px, 0), north = std::min(y + step_px, picture_.height_px - 1);
   const double rise_x = (height_m(west, y) - height_m(east, y)) / ((east - west) * step_x_m_);
   const double rise_y = (height_m(x, south) - height_m(x, north)) / ((north - south) * step_y_m_);
-  return glm::vec3(glm::normalize(glm::dvec3(rise_x, rise_y, 1.0)));
+  const glm::vec3 n(glm::normalize(glm::dvec3(rise_x, rise_y, 1.0)));
+  return n;
 }
 
 std::vector<int> Terrain::stops(int tile, int pixels, int level) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,7 +20,7 @@ struct TileDetail {
   int level = 0;
   std::array<int, 4> sides{};  ///< levels by Side, none below `level`
 
-  auto operator<=>(const TileDetail&) const = default;
+  bool operator==(const TileDetail&) const = default;
 };
 
 /// Coordinates are those of make_heightfield() with the centre at the origin, in single precision. Reading it

@@ -109,8 +109,8 @@ std::vector<PartMesh> TerrainLevels::look(const TerrainView& view, const std::ve
   std::vector<PartMesh> meshes;
   for (const Change& change : changes) {
     const Ground& ground = grounds_[change.ground];
-    if (ground.drawn[change.tile]) {
-      made_[{change.ground, change.tile, *ground.drawn[change.tile]}] = change.mesh;
+    if (const Drawn& detail = ground.drawn[change.tile]) {
+      made_[{change.ground, change.tile, detail->level, detail->sides}] = change.mesh;
     }
     meshes.push_back({ground.first_part + change.tile, change.mesh});
   }
@@ -133,7 +133,7 @@ std::vector<TerrainLevels::Change> TerrainLevels::find_changes(double range_m) {
       ground.drawn[tile] = detail;
       changes.push_back({g, tile, nothing_});
       if (detail) {
-        const auto known = made_.find({g, tile, *detail});
+        const auto known = made_.find({g, tile, detail->level, detail->sides});
         changes.back().mesh = known != made_.end() ? known->second.lock() : nullptr;
       }
     }

@@ -1,6 +1,7 @@
 // Which detail each tile of a terrain is drawn with in a ping: as much as the sonar can tell.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -46,8 +47,9 @@ class TerrainLevels {
     std::vector<float> distance_m;  ///< of every tile, and its level; of this ping
     std::vector<int> level;
   };
-  /// Meshes by terrain, tile and detail, for as long as a sampler keeps them.
-  using Made = std::map<std::tuple<std::size_t, std::size_t, TileDetail>, std::weak_ptr<const TriangleMesh>>;
+  using MeshKey = std::tuple<std::size_t, std::size_t, int, std::array<int, 4>>;  ///< terrain, tile, detail
+  /// For as long as a sampler keeps them.
+  using Made = std::map<MeshKey, std::weak_ptr<const TriangleMesh>>;
   struct Change {
     std::size_t ground;
     std::size_t tile;
