@@ -28,6 +28,13 @@ inline Pose inverse(const Pose& T_a_b) {
   return {back * -T_a_b.position_m, back};
 }
 
+/// T_a_b of two frames in the same world. Positions are subtracted first: far from the world's origin nothing
+/// is lost but what each of the two has lost itself.
+inline Pose relative(const Pose& T_world_a, const Pose& T_world_b) {
+  const glm::dquat back = glm::conjugate(T_world_a.orientation);
+  return {back * (T_world_b.position_m - T_world_a.position_m), glm::normalize(back * T_world_b.orientation)};
+}
+
 /// Point p_b expressed in frame a.
 inline glm::dvec3 operator*(const Pose& T_a_b, const glm::dvec3& p_b) {
   return T_a_b.position_m + T_a_b.orientation * p_b;

@@ -39,6 +39,7 @@ enum class SkipRule : std::uint8_t {
   short_pulse,
   motion_within_ping,
   straight_rays,
+  terrain_detail,
 };
 
 /// One line of the ledger. What a rule may change at most, in one ping with the rule on against the same ping
@@ -131,6 +132,9 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::straight_rays, "straight_rays",
                   "at the end of the range refraction bends rays by less than a quarter of the vertical beam",
                   "pings", 0.25, "vertical beamwidths of elevation"},
+    SkipRuleEntry{SkipRule::terrain_detail, "terrain_detail",
+                  "the tile is within 0.03 lines and 0.3 mm for each metre of distance of what is left out",
+                  "triangles", 0.1, "of the image's maximum, over ground rough at all lengths"},
 };
 
 inline constexpr std::size_t skip_rule_count = skip_rules.size();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <unordered_map>
 
 #include "renderer/acoustics/echo_reception.hpp"
 #include "renderer/acoustics/propagation_loss.hpp"
@@ -21,6 +22,7 @@
 #include "renderer/visibility/sample_grid.hpp"
 #include "renderer/visibility/sampler_choice.hpp"
 #include "renderer/visibility/slices/slice_sampler.hpp"
+#include "renderer/visibility/terrain_levels.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -175,10 +177,12 @@ struct SonarRenderer::Impl {
   std::unique_ptr<SliceSampler> slices;   // of the backend `ray`
   BeamRefinement refinement;              // of the backend `raster`
   Multipath multipath;
+  TerrainLevels terrain;
   Receiver receiver;
   PingStatistics statistics;
   const double ray_curvature_per_m;
-  std::map<std::string, Pose> T_world_body;
+  std::vector<Pose> T_world_body;
+  std::unordered_map<std::string, std::size_t> body_number;
   std::uint64_t world_revision = 1;         // counts the moves of bodies
   std::map<int, KnownEcho> known_echoes;    // by stream
   std::map<int, EchoReception> receptions;  // by stream
@@ -193,10 +197,14 @@ struct SonarRenderer::Impl {
         gpu_binner(make_gpu_binner(options.gpu_binning, chosen)),
         refinement(*chosen.sampler, workers),
         multipath(world, workers, options.skip),
+        terrain(
+            world, options.skip,
+            options.ray_curvature_per_m == 0.0 ? 0.0F : bendable_edge_m(world, options.ray_curvature_per_m)),
         receiver(options.skip),
         ray_curvature_per_m(options.ray_curvature_per_m) {
     for (const Body& body : world.bodies) {
-      T_world_body[body.name] = body.T_world_body;
+      body_number[body.name] = T_world_body.size();
+      T_world_body.push_back(body.T_world_body);
     }
     if (chosen.backend == Backend::ray) {
       slices = std::make_unique<SliceSampler>(surfaces, workers, slice_switches(options));
@@ -278,6 +286,7 @@ struct SonarRenderer::Impl {
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
     bend_rays(settings);
+    follow_terrain(settings, motion);
     const Summing summing{line_weight, binning_options(settings, skip, largest_response)};
     BinningResult bins = motion.at_end
                              ? look_in_spans(settings, motion, summing, std::move(image.intensity))
@@ -294,6 +303,24 @@ struct SonarRenderer::Impl {
       apply_loss(line_weight, image);
     }
     statistics.binning_s += watch.lap();
+  }
+
+  /// SkipRule::terrain_detail. Motion within a ping changes no detail, but it reaches further.
+  void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
+    Stopwatch watch;
+    const glm::dvec3& start_m = motion.T_world_sonar.position_m;
+    const double way_m = motion.at_end ? glm::length(motion.at_end->position_m - start_m) : 0.0;
+    const std::vector<PartMesh> changes =
+        terrain.look({start_m, sampled_range_m(settings) + way_m, settings.range.step_m}, T_world_body,
+                     workers, statistics.skipped);
+    if (!changes.empty()) {
+      chosen.sampler->set_part_meshes(changes);
+      if (slices) {
+        slices->set_part_meshes(changes);
+      }
+      multipath.set_part_meshes(changes);
+    }
+    statistics.visibility_s += watch.lap();
   }
 
   /// How what is seen becomes an image; the same in all looks of a ping.
@@ -470,20 +497,22 @@ const std::string& SonarRenderer::backend_description() const {
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
   const Pose pose = checked(T_world_body);
-  const auto known = impl_->T_world_body.find(body_name);
-  if (known == impl_->T_world_body.end()) {
+  const auto known = impl_->body_number.find(body_name);
+  if (known == impl_->body_number.end()) {
     return false;
   }
-  if (known->second == pose) {
+  const std::size_t body = known->second;
+  if (impl_->T_world_body[body] == pose) {
     return true;  // publishers repeat the poses of bodies that rest
   }
-  known->second = pose;
+  impl_->T_world_body[body] = pose;
   ++impl_->world_revision;
   if (impl_->slices) {
-    impl_->slices->set_body_pose(body_name, pose);
+    impl_->slices->set_body_pose(body, pose);
   }
-  impl_->multipath.set_body_pose(body_name, pose);
-  return impl_->chosen.sampler->set_body_pose(body_name, pose);
+  impl_->multipath.set_body_pose(body, pose);
+  impl_->chosen.sampler->set_body_pose(body, pose);
+  return true;
 }
 
 const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stream) {

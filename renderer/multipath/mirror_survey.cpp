@@ -80,6 +80,9 @@ std::vector<MirrorSurvey::Ball> MirrorSurvey::small_parts(const World& world,
                                                           double angle_rad) const {
   std::vector<Ball> small;
   for (const Part& part : parts_) {
+    if (world.is_terrain(part.body, part.part)) {
+      continue;  // no tile stands alone
+    }
     const Body& body = world.bodies[part.body];
     const Pose T_world_part = body.T_world_body * body.parts[part.part].T_body_part;
     const glm::dvec3 centre_m = T_world_part * part.ball.centre_m - sonar_position_m;

@@ -37,14 +37,17 @@ void add(const EchoPatch& patch, double step_m, RangeProfile& profile) {
 Multipath::Multipath(const World& world, WorkerPool& workers, const SkipSwitches& skip)
     : world_(world), workers_(workers), skip_(skip), survey_(world), ghosts_(workers) {}
 
-void Multipath::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  for (Body& body : world_.bodies) {
-    if (body.name == body_name) {
-      body.T_world_body = T_world_body;
-    }
-  }
+void Multipath::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  world_.bodies[body].T_world_body = T_world_body;
   if (scene_) {
-    scene_->set_body_pose(body_name, T_world_body);
+    scene_->set_body_pose(body, T_world_body);
+  }
+}
+
+void Multipath::set_part_meshes(std::span<const PartMesh> changes) {
+  replace_meshes(world_, changes);
+  if (scene_) {
+    scene_->set_part_meshes(changes);
   }
 }
 

@@ -23,7 +23,9 @@ class Multipath {
  public:
   Multipath(const World& world, WorkerPool& workers, const SkipSwitches& skip);
 
-  void set_body_pose(const std::string& body_name, const Pose& T_world_body);
+  /// As those of Sampler.
+  void set_body_pose(std::size_t body, const Pose& T_world_body);
+  void set_part_meshes(std::span<const PartMesh> changes);
 
   /// Adds what arrives by mirrors to an echo that is yet to be multiplied with spreading and absorption of
   /// every line (BinningResult::echo). Does nothing where the settings or SkipRule::multipath say so.

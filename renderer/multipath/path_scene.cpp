@@ -45,8 +45,11 @@ bool PathScene::is_flat(const PathHit& hit) const {
   return along(0) && along(1) && along(2);
 }
 
-void PathScene::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  meshes_.set_body_pose(body_name, T_world_body);
+void PathScene::set_part_meshes(std::span<const PartMesh> changes) {
+  meshes_.set_part_meshes(changes);
+  for (const PartMesh& change : changes) {
+    surfaces_[change.part].mesh = change.mesh;
+  }
 }
 
 void PathScene::place(const glm::dvec3& sonar_position_m, const Mirror& water_surface) {

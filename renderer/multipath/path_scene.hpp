@@ -27,13 +27,17 @@ struct PathHit {
 };
 
 /// Meshes in Embree, one copy for all paths, and above them the water surface, if the world has one and the
-/// sonar is below it. place() and set_body_pose() come from one thread while nobody traces.
+/// sonar is below it. place() and all that sets come from one thread while nobody traces.
 class PathScene {
  public:
   /// @throws RendererError when Embree cannot be set up.
   PathScene(const World& world, WorkerPool& workers);
 
-  void set_body_pose(const std::string& body_name, const Pose& T_world_body);
+  /// As those of Sampler.
+  void set_body_pose(std::size_t body, const Pose& T_world_body) {
+    meshes_.set_body_pose(body, T_world_body);
+  }
+  void set_part_meshes(std::span<const PartMesh> changes);
   /// @param water_surface its mirror.
   /// @throws RendererError when Embree fails.
   void place(const glm::dvec3& sonar_position_m, const Mirror& water_surface);

@@ -48,7 +48,9 @@ class Grid {
   double z_per_value_m_ = 0.0;
 };
 
-void check(const GreyImage& image, const glm::dvec3& size_m, const glm::dvec3& centre_m) {
+}  // namespace
+
+void check_heightfield(const GreyImage& image, const glm::dvec3& size_m, const glm::dvec3& centre_m) {
   if (image.width_px < 2 || image.height_px < 2) {
     throw WorldError(
         fmt::format("heightmap of {} x {} pixels: expected at least 2 x 2", image.width_px, image.height_px));
@@ -60,10 +62,8 @@ void check(const GreyImage& image, const glm::dvec3& size_m, const glm::dvec3& c
   }
 }
 
-}  // namespace
-
 TriangleMesh make_heightfield(const GreyImage& image, const glm::dvec3& size_m, const glm::dvec3& centre_m) {
-  check(image, size_m, centre_m);
+  check_heightfield(image, size_m, centre_m);
   const Grid grid(image, size_m, centre_m);
   TriangleMesh mesh;
   for (int y = 0; y < image.height_px; ++y) {

@@ -15,4 +15,7 @@ namespace sonard::render {
 /// @throws WorldError for an image below 2 x 2 pixels or sizes that are not finite, x and y > 0, z >= 0.
 TriangleMesh make_heightfield(const GreyImage& image, const glm::dvec3& size_m, const glm::dvec3& centre_m);
 
+/// @throws WorldError as make_heightfield()
+void check_heightfield(const GreyImage& image, const glm::dvec3& size_m, const glm::dvec3& centre_m);
+
 }  // namespace sonard::render

@@ -1,6 +1,8 @@
 #include "renderer/scene/image_file.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -8,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <osg/Image>
+#include <osg/Shape>
 #include <osgDB/Options>
 #include <osgDB/Registry>
 
@@ -39,6 +42,15 @@ std::uint16_t sample(const osg::Image& image, const unsigned char* row, int inde
   return value;
 }
 
+std::string packed(int width_px, int height_px, int channels, const std::vector<std::uint16_t>& value) {
+  BlobWriter writer;
+  writer.put(static_cast<std::uint64_t>(width_px));
+  writer.put(static_cast<std::uint64_t>(height_px));
+  writer.put(static_cast<std::uint64_t>(channels));
+  writer.put(value);
+  return writer.take();
+}
+
 /// Runs inside run_isolated().
 std::string decode(const std::filesystem::path& file) {
   const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
@@ -68,18 +80,45 @@ std::string decode(const std::filesystem::path& file) {
       }
     }
   }
-  BlobWriter writer;
-  writer.put(static_cast<std::uint64_t>(image->s()));
-  writer.put(static_cast<std::uint64_t>(image->t()));
-  writer.put(static_cast<std::uint64_t>(channels));
-  writer.put(value);
-  return writer.take();
+  return packed(image->s(), image->t(), channels, value);
 }
 
-Pixels load_pixels(const std::filesystem::path& file) {
+/// Elevations as 16 bit from the lowest to the highest. GDAL knows what sample formats of TIFF mean; the
+/// reader of pictures takes signed numbers for unsigned ones. Runs inside run_isolated().
+std::string decode_elevations(const std::filesystem::path& file) {
+  const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+  osgDB::ReaderWriter::ReadResult result =
+      osgDB::Registry::instance()->readHeightField(file.string() + ".gdal", options);
+  const osg::ref_ptr<osg::HeightField> field = result.getHeightField();
+  if (!field) {
+    throw std::runtime_error("the map is damaged, or OpenSceneGraph has no plugin for GDAL here");
+  }
+  const auto width = static_cast<int>(field->getNumColumns()), height = static_cast<int>(field->getNumRows());
+  if (width > max_side_px || height > max_side_px) {
+    throw std::runtime_error(
+        fmt::format("{} x {} pixels is more than {} a side", width, height, max_side_px));
+  }
+  const osg::FloatArray& elevation_m = *field->getFloatArray();
+  const auto all_finite =
+      std::all_of(elevation_m.begin(), elevation_m.end(), [](float h) { return std::isfinite(h); });
+  if (!all_finite) {
+    throw std::runtime_error("there are elevations that are not finite");
+  }
+  const auto [low, high] = std::minmax_element(elevation_m.begin(), elevation_m.end());
+  const double span_m = std::max(1e-9, static_cast<double>(*high) - static_cast<double>(*low));
+  std::vector<std::uint16_t> value;
+  value.reserve(elevation_m.size());
+  for (const float h : elevation_m) {
+    value.push_back(static_cast<std::uint16_t>(
+        std::lround(65535 * (static_cast<double>(h) - static_cast<double>(*low)) / span_m)));
+  }
+  return packed(width, height, 1, value);
+}
+
+Pixels load_pixels(const std::filesystem::path& file, std::string (*decoder)(const std::filesystem::path&)) {
   require_local_file(file, extensions, "image");
   try {
-    const IsolatedResult result = run_isolated([&] { return decode(file); }, reading_limit_s(file));
+    const IsolatedResult result = run_isolated([&] { return decoder(file); }, reading_limit_s(file));
     BlobReader reader(result.bytes);
     Pixels pixels;
     pixels.width_px = static_cast<int>(reader.get_number());
@@ -101,7 +140,9 @@ Pixels load_pixels(const std::filesystem::path& file) {
 }  // namespace
 
 GreyImage load_grey_image(const std::filesystem::path& file) {
-  const Pixels pixels = load_pixels(file);
+  const std::string extension = lower_extension(file);
+  const bool elevations = extension == "tif" || extension == "tiff";
+  const Pixels pixels = load_pixels(file, elevations ? decode_elevations : decode);
   GreyImage image{pixels.width_px, pixels.height_px, {}};
   const auto step = static_cast<std::size_t>(pixels.channels);
   image.value.reserve(pixels.value.size() / step);
@@ -112,7 +153,7 @@ GreyImage load_grey_image(const std::filesystem::path& file) {
 }
 
 NormalMap load_normal_map(const std::filesystem::path& file) {
-  const Pixels pixels = load_pixels(file);
+  const Pixels pixels = load_pixels(file, decode);
   if (pixels.channels < 3) {
     throw WorldError(
         fmt::format("{}: a normal map needs 3 channels, this image has {}", file.string(), pixels.channels));

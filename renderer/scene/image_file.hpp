@@ -16,7 +16,8 @@ struct GreyImage {
   std::vector<std::uint16_t> value;  ///< 0 to 65535; 8-bit files are spread over the whole range
 };
 
-/// The first channel of an 8 or 16-bit image.
+/// The first channel of an 8 or 16-bit image; of a TIFF, also a GeoTIFF of any sample format, the elevations
+/// from the lowest, 0, to the highest, 65535.
 /// @throws WorldError naming the file when it is missing, damaged or of another kind.
 GreyImage load_grey_image(const std::filesystem::path& file);
 

@@ -30,7 +30,6 @@
 #include <sdf/Visual.hh>
 #include <sdf/World.hh>
 
-#include "renderer/scene/heightfield.hpp"
 #include "renderer/scene/image_file.hpp"
 #include "renderer/scene/left_out.hpp"
 #include "renderer/scene/materials.hpp"
@@ -39,6 +38,7 @@
 #include "renderer/scene/primitives.hpp"
 #include "renderer/scene/sdf_material.hpp"
 #include "renderer/scene/sdf_parser.hpp"
+#include "renderer/scene/terrain.hpp"
 #include "renderer/scene/uri_resolver.hpp"
 #include "renderer/scene/world.hpp"
 
@@ -221,6 +221,10 @@ class WorldBuilder {
     }
     try {
       const auto normal_map = normal_map_of(shape);
+      if (shape.geometry->Type() == sdf::GeometryType::HEIGHTMAP) {
+        add_heightmap_shape(body, shape, normal_map);
+        return;
+      }
       for (const MeshFilePart& part : meshes_of(shape, normal_map != nullptr)) {
         body.parts.push_back(
             {part.mesh, shape.T_body_shape, material_of(shape, part.material_name), normal_map});
@@ -257,10 +261,9 @@ class WorldBuilder {
         const auto size = geometry.PlaneShape()->Size();
         return single(make_plane({size.X(), size.Y()}, vec(geometry.PlaneShape()->Normal())), tangents);
       }
-      case sdf::GeometryType::HEIGHTMAP:
-        return single(heightmap(*geometry.HeightmapShape()), tangents);
       case sdf::GeometryType::MESH:
         return mesh_file(*geometry.MeshShape(), tangents);
+      case sdf::GeometryType::HEIGHTMAP:  // add_heightmap_shape()
       case sdf::GeometryType::EMPTY:
         break;
     }
@@ -281,9 +284,14 @@ class WorldBuilder {
     return {{"", std::make_shared<const TriangleMesh>(std::move(mesh))}};
   }
 
-  TriangleMesh heightmap(const sdf::Heightmap& heightmap) const {
-    const fs::path file = resolver_.resolve(heightmap.Uri(), fs::path(heightmap.FilePath()).parent_path());
-    return make_heightfield(load_grey_image(file), vec(heightmap.Size()), vec(heightmap.Position()));
+  /// Its `pos` becomes part of the pose, which is in double precision: it may hold UTM coordinates.
+  void add_heightmap_shape(Body& body, const Shape& shape, std::shared_ptr<const NormalMap> normal_map) {
+    const sdf::Heightmap& map = *shape.geometry->HeightmapShape();
+    const fs::path file = resolver_.resolve(map.Uri(), fs::path(map.FilePath()).parent_path());
+    const Pose T_shape_map{vec(map.Position()), {1, 0, 0, 0}};
+    add_heightmap(load_grey_image(file), vec(map.Size()),
+                  {nullptr, shape.T_body_shape * T_shape_map, material_of(shape, ""), std::move(normal_map)},
+                  world_, world_.bodies.size(), body.parts);
   }
 
   /// Each file is read once for all its uses with the same scale.

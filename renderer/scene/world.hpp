@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ struct AcousticMaterial {
   double rms_slope = 0.2;
   /// Rms height sigma of the surface, >= 0: how much of a mirror image survives (docs/physics.md 2.11).
   double rms_height_m = 0.002;
+
+  bool operator==(const AcousticMaterial&) const = default;
 };
 
 /// Triangles in the coordinates of the body part, metres. Validated: every index is in range, every
@@ -67,6 +70,12 @@ struct BodyPart {
   std::shared_ptr<const NormalMap> normal_map;  ///< null when the surface is smooth
 };
 
+/// What a part looks like from now on. Parts are counted through all bodies in the order of the world.
+struct PartMesh {
+  std::size_t part;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< may be without triangles; never null
+};
+
 /// One top-level model of the world. Its parts keep their relative poses; the whole can be moved at run time.
 struct Body {
   std::string name;
@@ -82,6 +91,16 @@ struct WorldSonar {
   Pose T_body_sonar;  ///< x is the acoustic axis, z up
 };
 
+class Terrain;
+
+/// A large heightmap among the parts of a body: one part for each tile, one after the other. Their meshes in
+/// the world are the coarsest; a renderer replaces those in range.
+struct TerrainParts {
+  std::shared_ptr<const Terrain> terrain;
+  std::size_t body;
+  std::size_t first_part;  ///< of that body
+};
+
 /// What a loader had to repair or drop; shown by `sonard check`.
 struct MeshDiagnostics {
   std::size_t degenerate_triangles = 0;  ///< zero area or repeated corner: dropped
@@ -94,6 +113,7 @@ struct MeshDiagnostics {
 struct World {
   std::string name;
   std::vector<Body> bodies;  ///< names are unique
+  std::vector<TerrainParts> terrains;
   /// Height of the water surface in the world frame; a sonar above it is out of the water.
   std::optional<double> water_surface_z_m;
   MeshDiagnostics diagnostics;
@@ -102,10 +122,16 @@ struct World {
   /// What the file has that no sonar hears ("lights (2): sun, lamp"), a line for each kind.
   std::vector<std::string> left_out;
 
+  /// Tiles of terrains as they are here.
   std::size_t triangle_count() const;
+  bool is_terrain(std::size_t body, std::size_t part_of_body) const;
+  /// Of all bodies.
+  std::size_t part_count() const;
   /// Null when no body has this name.
   const Body* find_body(const std::string& body_name) const;
 };
+
+void replace_meshes(World& world, std::span<const PartMesh> changes);
 
 /// Thrown by everything that loads a world. what() is one line: "file:line: message" as far as known.
 struct WorldError : std::runtime_error {

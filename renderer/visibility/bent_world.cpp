@@ -29,7 +29,9 @@ double area_m2(const TriangleMesh& mesh) {
   return twice / 2;
 }
 
-double longest_edge_m(const World& world, double ray_curvature_per_m) {
+}  // namespace
+
+float bendable_edge_m(const World& world, double ray_curvature_per_m) {
   double area = 0;
   for (const Body& body : world.bodies) {
     for (const BodyPart& part : body.parts) {
@@ -37,8 +39,10 @@ double longest_edge_m(const World& world, double ray_curvature_per_m) {
     }
   }
   const double for_sag = std::sqrt(8 * most_sag_m / std::abs(ray_curvature_per_m));
-  return std::max(for_sag, std::sqrt(facets_per_square * area / most_facets));
+  return static_cast<float>(std::max(for_sag, std::sqrt(facets_per_square * area / most_facets)));
 }
+
+namespace {
 
 /// @param T_sonar_part with the axes of the world
 TriangleMesh bent_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, const RayBend& bend) {
@@ -61,7 +65,7 @@ TriangleMesh bent_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, const
 }  // namespace
 
 World bendable(const World& world, double ray_curvature_per_m) {
-  const auto edge_m = static_cast<float>(longest_edge_m(world, ray_curvature_per_m));
+  const float edge_m = bendable_edge_m(world, ray_curvature_per_m);
   World divided = world;
   std::map<const TriangleMesh*, std::shared_ptr<const TriangleMesh>> meshes;
   for (Body& body : divided.bodies) {

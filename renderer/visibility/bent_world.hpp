@@ -14,6 +14,9 @@ namespace sonard::render {
 /// @param ray_curvature_per_m RendererOptions::ray_curvature_per_m, not 0
 World bendable(const World& world, double ray_curvature_per_m);
 
+/// The longest edge in it.
+float bendable_edge_m(const World& world, double ray_curvature_per_m);
+
 /// The bodies as they are seen from `sonar_position_m`, see RayBend, at poses without a turn in axes of the
 /// world around the sonar. For methods that cannot move corners themselves.
 World bent_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m);

@@ -11,6 +11,7 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/simd.hpp"
+#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/ray_shading.hpp"
 
 namespace sonard::render {
@@ -116,6 +117,7 @@ struct EmbreeScene::Impl {
   };
   struct Part {
     Handle<RTCGeometry> instance;
+    std::shared_ptr<const Mesh> mesh;
     std::size_t body = 0;
     Pose T_body_part;
     SurfaceShader shader;
@@ -124,23 +126,22 @@ struct EmbreeScene::Impl {
   Handle<RTCDevice> device;
   IntersectPacket intersect = nullptr;
   std::string description;
-  std::vector<Mesh> meshes;
   std::vector<Part> parts;
+  MeshCache<std::shared_ptr<const Mesh>> replacements;
+  std::map<std::size_t, std::shared_ptr<const TriangleMesh>> awaited;  // by part
+  WorkerPool& workers;
   std::vector<Pose> T_world_body;
-  std::map<std::string, std::size_t> body_index;
   Handle<RTCScene> scene;
   glm::dvec3 sonar_position_m{0.0};
   bool placed = false;
 
-  Impl(const World& world, WorkerPool& workers, const std::string& settings) {
+  Impl(const World& world, WorkerPool& pool, const std::string& settings) : workers(pool) {
     // Meshes are built side by side, each by one thread: the tree, and with it which of two triangles that
     // share an edge a ray on it meets, is then the same every time.
     device.reset(rtcNewDevice(("threads=1,ignore_config_files=1," + settings).c_str()));
     check("set up");
     choose_packets();
-    add_world(world);
-    workers.run(static_cast<int>(meshes.size()), [&](int i) { build(meshes[static_cast<std::size_t>(i)]); });
-    check("build the meshes");
+    build(add_world(world));
     add_instances();
   }
 
@@ -172,31 +173,66 @@ struct EmbreeScene::Impl {
                               version(RTC_DEVICE_PROPERTY_VERSION_PATCH), width);
   }
 
-  void add_world(const World& world) {
+  std::shared_ptr<const Mesh> new_mesh(const std::shared_ptr<const TriangleMesh>& triangles) const {
+    return std::make_shared<const Mesh>(Mesh{triangles, Handle<RTCScene>(rtcNewScene(device.get()))});
+  }
+
+  /// @return the meshes, each of which is yet to be built.
+  std::vector<std::shared_ptr<const Mesh>> add_world(const World& world) {
+    std::vector<std::shared_ptr<const Mesh>> meshes;
     std::map<const TriangleMesh*, std::size_t> mesh_index;
     std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
     for (const Body& body : world.bodies) {
-      body_index.emplace(body.name, T_world_body.size());
       for (const BodyPart& part : body.parts) {
         const auto [entry, is_new] = mesh_index.try_emplace(part.mesh.get(), meshes.size());
         if (is_new) {
-          meshes.push_back({part.mesh, Handle<RTCScene>(rtcNewScene(device.get()))});
+          meshes.push_back(new_mesh(part.mesh));
         }
         std::shared_ptr<const NormalPyramid>& pyramid = pyramids[part.normal_map.get()];
         if (part.normal_map && !pyramid) {
           pyramid = std::make_shared<const NormalPyramid>(*part.normal_map);
         }
         Handle<RTCGeometry> instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-        rtcSetGeometryInstancedScene(instance.get(), meshes[entry->second].scene.get());
-        parts.push_back(
-            {std::move(instance), T_world_body.size(), part.T_body_part, SurfaceShader(part, pyramid)});
+        rtcSetGeometryInstancedScene(instance.get(), meshes[entry->second]->scene.get());
+        parts.push_back({std::move(instance), meshes[entry->second], T_world_body.size(), part.T_body_part,
+                         SurfaceShader(part, pyramid)});
       }
       T_world_body.push_back(body.T_world_body);
     }
+    return meshes;
+  }
+
+  /// Those that set_part_meshes() was told of.
+  void replace_meshes() {
+    std::vector<std::shared_ptr<const Mesh>> unknown;
+    for (const auto& [number, triangles] : awaited) {
+      const auto* known = replacements.find(triangles.get());
+      if (known == nullptr) {
+        unknown.push_back(new_mesh(triangles));
+      }
+      Part& part = parts[number];
+      part.mesh = known != nullptr ? *known : unknown.back();
+      rtcSetGeometryInstancedScene(part.instance.get(), part.mesh->scene.get());
+      part.shader.set_mesh(triangles);
+    }
+    awaited.clear();
+    build(unknown);
+    for (const auto& mesh : unknown) {
+      replacements.keep(mesh->triangles, mesh);
+    }
+  }
+
+  void build(const std::vector<std::shared_ptr<const Mesh>>& meshes) const {
+    workers.run(static_cast<int>(meshes.size()), [&](int i) { build(*meshes[static_cast<std::size_t>(i)]); });
+    check("build the meshes");
   }
 
   void build(const Mesh& mesh) const {
     const TriangleMesh& triangles = *mesh.triangles;
+    if (triangles.indices.empty()) {
+      rtcCommitScene(mesh.scene.get());
+      return;
+    }
     const Handle<RTCGeometry> geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     // A copy, because Embree reads beyond the last vertex.
     void* vertices =
@@ -229,15 +265,17 @@ EmbreeScene::EmbreeScene(const World& world, WorkerPool& workers, const std::str
     : impl_(std::make_unique<Impl>(world, workers, embree_settings)) {}
 EmbreeScene::~EmbreeScene() = default;
 
-bool EmbreeScene::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  const auto entry = impl_->body_index.find(body_name);
-  if (entry == impl_->body_index.end()) {
-    return false;
-  }
-  Pose& pose = impl_->T_world_body[entry->second];
+void EmbreeScene::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  Pose& pose = impl_->T_world_body[body];
   impl_->placed = impl_->placed && pose == T_world_body;
   pose = T_world_body;
-  return true;
+}
+
+void EmbreeScene::set_part_meshes(std::span<const PartMesh> changes) {
+  for (const PartMesh& change : changes) {
+    impl_->awaited[change.part] = change.mesh;
+  }
+  impl_->placed = impl_->placed && changes.empty();
 }
 
 void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
@@ -245,11 +283,18 @@ void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
     return;
   }
   impl_->placed = false;
+  impl_->replace_meshes();
   for (Impl::Part& part : impl_->parts) {
-    const Pose T_world_part = impl_->T_world_body[part.body] * part.T_body_part;
-    part.shader.turn(T_world_part.orientation);
+    if (part.mesh->triangles->indices.empty()) {
+      rtcDisableGeometry(part.instance.get());
+      continue;
+    }
+    rtcEnableGeometry(part.instance.get());
+    const Pose T_sonar_part =
+        relative({sonar_position_m, {1, 0, 0, 0}}, impl_->T_world_body[part.body]) * part.T_body_part;
+    part.shader.turn(T_sonar_part.orientation);
     const auto& [x, y, z] = part.shader.axes();
-    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_world_part.position_m - sonar_position_m)};
+    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_sonar_part.position_m)};
     static_assert(sizeof(columns) == 12 * sizeof(float));
     rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
     rtcCommitGeometry(part.instance.get());

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <glm/vec3.hpp>
@@ -30,6 +32,7 @@ struct SurfaceHit {
 /// threads.
 class EmbreeScene {
  public:
+  /// @param workers outlives the scene.
   /// @param embree_settings for rtcNewDevice(), for tests: "isa=sse4.2".
   /// @throws RendererError when Embree cannot be set up or runs out of memory.
   EmbreeScene(const World& world, WorkerPool& workers, const std::string& embree_settings = {});
@@ -37,8 +40,11 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// @return false when the world has no body of that name.
-  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+  /// @param body in the order of the world, and in it.
+  void set_body_pose(std::size_t body, const Pose& T_world_body);
+
+  /// From the next place() on, which builds them.
+  void set_part_meshes(std::span<const PartMesh> changes);
 
   /// Puts the sonar here, and the bodies where they were last moved to. Costs nothing when neither changed.
   /// @throws RendererError when Embree fails.

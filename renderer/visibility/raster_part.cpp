@@ -163,6 +163,13 @@ void add_normal_map(const NormalMap& map, osg::StateSet& state) {
 
 enum Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
+Shading shading_of(const BodyPart& part) {
+  if (part.normal_map && part.mesh->can_be_mapped()) {
+    return normal_mapped;
+  }
+  return part.mesh->normals.empty() ? geometric_normal : vertex_normals;
+}
+
 }  // namespace
 
 osg::Matrixd to_osg(const Pose& T_a_b) {
@@ -171,19 +178,25 @@ osg::Matrixd to_osg(const Pose& T_a_b) {
          osg::Matrixd::translate(T_a_b.position_m.x, T_a_b.position_m.y, T_a_b.position_m.z);
 }
 
-osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* max_range_m) {
-  osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(to_osg(part.T_body_part));
-  ChunkBuilder(*part.mesh).split([&](std::span<const std::uint32_t> triangles) {
-    osg::ref_ptr<osg::Geometry> chunk = make_geometry(*part.mesh, triangles);
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part) {
+  if (mesh.indices.empty()) {
+    return;
+  }
+  ChunkBuilder(mesh).split([&](std::span<const std::uint32_t> triangles) {
+    osg::ref_ptr<osg::Geometry> chunk = make_geometry(mesh, triangles);
     chunk->setCullCallback(new RangeCull(max_range_m));
-    node->addChild(chunk);
+    part.addChild(chunk);
   });
-  osg::StateSet* state = node->getOrCreateStateSet();
-  const bool mapped = part.normal_map && part.mesh->can_be_mapped();
-  const Shading shading = mapped                       ? normal_mapped
-                          : part.mesh->normals.empty() ? geometric_normal
-                                                       : vertex_normals;
-  if (mapped) {
+}
+
+bool same_surface(const BodyPart& a, const BodyPart& b) {
+  return a.material == b.material && a.normal_map == b.normal_map && shading_of(a) == shading_of(b);
+}
+
+osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part) {
+  osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+  const Shading shading = shading_of(part);
+  if (shading == normal_mapped) {
     add_normal_map(*part.normal_map, *state);
   }
   state->addUniform(new osg::Uniform("shading", static_cast<int>(shading)));
@@ -193,6 +206,14 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* 
   state->addUniform(new osg::Uniform("facet_strength", backscatter.facet_strength));
   state->addUniform(new osg::Uniform("slope_variance", backscatter.slope_variance));
   state->addUniform(new osg::Uniform("facets_least_cosine", backscatter.least_cosine));
+  return state;
+}
+
+osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, osg::StateSet* surface,
+                                             const float* max_range_m) {
+  osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(to_osg(part.T_body_part));
+  node->setStateSet(surface);
+  add_chunks(*part.mesh, max_range_m, *node);
   return node;
 }
 

@@ -4,6 +4,7 @@
 
 #include <osg/MatrixTransform>
 #include <osg/Matrixd>
+#include <osg/StateSet>
 
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
@@ -15,7 +16,16 @@ inline constexpr int normal_map_unit = 0;
 
 osg::Matrixd to_osg(const Pose& T_a_b);
 
+/// Adds the triangles of a mesh to the node of their part.
 /// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
-osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const float* max_range_m);
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
+
+/// What the shader wants to know of the surface of a part. Parts with the same surface share one.
+osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part);
+bool same_surface(const BodyPart& a, const BodyPart& b);
+
+/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
+osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, osg::StateSet* surface,
+                                             const float* max_range_m);
 
 }  // namespace sonard::render

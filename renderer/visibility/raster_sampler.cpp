@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <list>
-#include <map>
 
 #include <osg/Camera>
 #include <osg/ClipControl>
@@ -17,6 +16,7 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/visibility/egl_context.hpp"
+#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/raster_part.hpp"
 #include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/surface_shader.hpp"
@@ -132,10 +132,12 @@ struct RasterSampler::Impl {
   osg::ref_ptr<EglContext> context;
   std::string description;
   osg::ref_ptr<osg::Group> scene;
-  std::map<std::string, BodyNode> bodies;
-  std::list<ViewTarget> targets;  // the last used first
-  double target_pixels = 0;       // of all of them
-  std::uint64_t calls = 0;        // of sample()
+  std::vector<BodyNode> bodies;
+  std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
+  MeshCache<osg::ref_ptr<osg::Group>> replacements;       // chunks of meshes
+  std::list<ViewTarget> targets;                          // the last used first
+  double target_pixels = 0;                               // of all of them
+  std::uint64_t calls = 0;                                // of sample()
   float max_range_m = 0.0F;
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
@@ -149,13 +151,20 @@ struct RasterSampler::Impl {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());
+    const BodyPart* last = nullptr;  // tiles of a terrain follow each other and share the surface
+    osg::ref_ptr<osg::StateSet> surface;
     for (const Body& body : world.bodies) {
       BodyNode node{body.T_world_body, new osg::MatrixTransform};
       for (const BodyPart& part : body.parts) {
-        node.transform->addChild(make_part(part, &max_range_m));
+        if (last == nullptr || !same_surface(*last, part)) {
+          surface = make_surface(part);
+        }
+        last = &part;
+        parts.push_back(make_part(part, surface, &max_range_m));
+        node.transform->addChild(parts.back());
       }
       scene->addChild(node.transform);
-      bodies.emplace(body.name, node);
+      bodies.push_back(node);
     }
   }
 
@@ -165,6 +174,8 @@ struct RasterSampler::Impl {
         target.scene_view->releaseAllGLObjects();
       }
       scene->releaseGLObjects(context->getState());
+      replacements = {};  // what they hold on the GPU goes with them
+      osg::flushAllDeletedGLObjects(context->getState()->getContextID());
     }
     targets.clear();
     context->close();
@@ -259,9 +270,8 @@ struct RasterSampler::Impl {
     std::vector<ViewTarget*> views = targets_for(grid.views, bend);
     set_surface(surface);
     max_range_m = static_cast<float>(range_m);
-    const Pose T_sonar_world = inverse(T_world_sonar);
-    for (auto& [name, body] : bodies) {
-      body.transform->setMatrix(to_osg(T_sonar_world * body.T_world_body));
+    for (const BodyNode& body : bodies) {
+      body.transform->setMatrix(to_osg(relative(T_world_sonar, body.T_world_body)));
     }
     for (const ViewTarget* target : views) {
       target->scene_view->cull();
@@ -321,13 +331,26 @@ EglContext& RasterSampler::current_context() {
   return *impl_->context;
 }
 
-bool RasterSampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  const auto body = impl_->bodies.find(body_name);
-  if (body == impl_->bodies.end()) {
-    return false;
+void RasterSampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  impl_->bodies[body].T_world_body = T_world_body;
+}
+
+void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
+  impl_->make_current();
+  for (const PartMesh& change : changes) {
+    osg::ref_ptr<osg::Group> chunks;
+    if (const auto* known = impl_->replacements.find(change.mesh.get())) {
+      chunks = *known;
+    } else {
+      chunks = new osg::Group;
+      add_chunks(*change.mesh, &impl_->max_range_m, *chunks);
+      impl_->replacements.keep(change.mesh, chunks);
+    }
+    osg::MatrixTransform& part = *impl_->parts[change.part];
+    part.removeChildren(0, part.getNumChildren());
+    part.addChild(chunks);
   }
-  body->second.T_world_body = T_world_body;
-  return true;
+  osg::flushAllDeletedGLObjects(impl_->context->getState()->getContextID());
 }
 
 void RasterSampler::set_ray_bend(double bend_per_m) {

@@ -23,7 +23,8 @@ class RasterSampler final : public Sampler {
 
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m) override;
-  bool set_body_pose(const std::string& body_name, const Pose& T_world_body) override;
+  void set_body_pose(std::size_t body, const Pose& T_world_body) override;
+  void set_part_meshes(std::span<const PartMesh> changes) override;
   void set_ray_bend(double bend_per_m) override;
   const std::string& description() const override;
 

@@ -75,14 +75,14 @@ RaySampler::RaySampler(const World& world, WorkerPool& workers, const std::strin
       scene_(world, workers, embree_settings),
       description_("ray, " + scene_.description()) {}
 
-bool RaySampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  const auto body = std::find_if(world_.bodies.begin(), world_.bodies.end(),
-                                 [&](const Body& candidate) { return candidate.name == body_name; });
-  if (body == world_.bodies.end()) {
-    return false;
-  }
-  body->T_world_body = T_world_body;
-  return scene_.set_body_pose(body_name, T_world_body);
+void RaySampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  world_.bodies[body].T_world_body = T_world_body;
+  scene_.set_body_pose(body, T_world_body);
+}
+
+void RaySampler::set_part_meshes(std::span<const PartMesh> changes) {
+  replace_meshes(world_, changes);
+  scene_.set_part_meshes(changes);
 }
 
 /// Lists the tiles that hold pixels of the grid. They stay the same for as long as the grid does.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
@@ -20,6 +21,9 @@ class SurfaceShader {
  public:
   /// @param map of the part; null when it has none.
   SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalPyramid> map);
+
+  /// @param mesh with the attributes of the one before.
+  void set_mesh(std::shared_ptr<const TriangleMesh> mesh) { mesh_ = std::move(mesh); }
 
   /// Sets the part's axes in the world.
   void turn(const glm::dquat& R_world_part);

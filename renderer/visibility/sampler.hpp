@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "renderer/pose.hpp"
+#include "renderer/scene/world.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "renderer/visibility/backscatter.hpp"
 #include "renderer/visibility/sample_grid.hpp"
@@ -67,8 +70,12 @@ class Sampler {
   virtual std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                    const SurfaceModel& surface, double max_range_m) = 0;
 
-  /// @return false when the world has no body of that name.
-  virtual bool set_body_pose(const std::string& body_name, const Pose& T_world_body) = 0;
+  /// @param body in the order of the world, and in it.
+  virtual void set_body_pose(std::size_t body, const Pose& T_world_body) = 0;
+
+  /// Gives parts other meshes, with the attributes of those they had. Not for every ping: trees are built.
+  /// @throws RendererError when the method itself fails.
+  virtual void set_part_meshes(std::span<const PartMesh> changes) = 0;
 
   /// From the next call on level rays sink by `bend_per_m` * x^2 over the horizontal distance x (RayBend); 0,
   /// as at the beginning: they are straight.

@@ -36,8 +36,9 @@ bool is_scanning(const test::Scene& scene) {
 
 }  // namespace
 
-SceneRun::SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results)
-    : scene_(scene), results_(results), renderer_(scene.world, options) {}
+SceneRun::SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results,
+                   bool bodies_drift)
+    : scene_(scene), results_(results), renderer_(scene.world, options), bodies_drift_(bodies_drift) {}
 
 Subject SceneRun::subject(const Point& point) const {
   return {scene_.name, std::string(render::name_of(renderer_.backend())), point.name};
@@ -55,6 +56,7 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
   const render::EchoImage image = renderer_.render_echo(still);
   const render::PingStatistics statistics = renderer_.last_statistics();
   const Stages stages = time_pings(still, repetition);
+  drift(0);
   const bool repeatable = same_bits(image, renderer_.render_echo(still));
   const Timing unchanged_ms = time_unchanged(still, {3, repetition.most, repetition.budget_s / 4});
   add_times(subject(point), stages, unchanged_ms);
@@ -78,6 +80,7 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
   for (int i = 0; repetition.wants_more(i, start_s); ++i) {
     move(request, start, warm_up + i);
     const double from_s = now_s();
+    drift(1 + i);
     renderer_.render_echo(request);
     stages.ping_ms.add(ms_per_s * (now_s() - from_s));
     stages.visibility_ms.add(ms_per_s * renderer_.last_statistics().visibility_s);
@@ -85,6 +88,14 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
     stages.multipath_ms.add(ms_per_s * renderer_.last_statistics().multipath_s);
   }
   return stages;
+}
+
+/// @param ping 0: where the bodies are to begin with.
+void SceneRun::drift(int ping) {
+  for (std::size_t i = 1; bodies_drift_ && i < scene_.world.bodies.size(); ++i) {
+    const render::Body& body = scene_.world.bodies[i];
+    renderer_.set_body_pose(body.name, test::drifting_pose(body.T_world_body, i, ping));
+  }
 }
 
 /// @pre the last ping was this very request.

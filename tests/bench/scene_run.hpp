@@ -19,8 +19,11 @@ namespace sonard::bench {
 /// that of the scene's own pose.
 class SceneRun {
  public:
+  /// @param bodies_drift all bodies of the world but the first move before every timed ping, which is part of
+  /// its time.
   /// @throws render::RendererError when the backend cannot be had.
-  SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results);
+  SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results,
+           bool bodies_drift = false);
 
   /// Times the mean echo (`ping_ms` and its stages, `unchanged_ms`), counts samples and memory, compares with
   /// the reference where there is one, and with itself (`repeatable`).
@@ -46,6 +49,7 @@ class SceneRun {
 
   Subject subject(const Point& point) const;
   render::PingRequest request(const Point& point) const;
+  void drift(int ping);
   Stages time_pings(render::PingRequest request, const Repetition& repetition);
   Timing time_unchanged(const render::PingRequest& request, const Repetition& repetition);
   void add_times(const Subject& subject, const Stages& stages, const Timing& unchanged_ms);
@@ -55,6 +59,7 @@ class SceneRun {
   const test::Scene& scene_;
   Measurements& results_;
   render::SonarRenderer renderer_;
+  bool bodies_drift_;
 };
 
 }  // namespace sonard::bench

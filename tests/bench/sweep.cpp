@@ -11,6 +11,7 @@ namespace sonard::bench {
 namespace {
 
 constexpr Repetition usual{5, 101, 0.5};
+constexpr Repetition several{5, 201, 2.0};  // for ratios of two scenes
 constexpr double degree = std::numbers::pi / 180;
 
 /// Presets, grids and points from coarse to fine, and the paper's own.
@@ -121,6 +122,30 @@ class Sweep {
     }
   }
 
+  /// 200 bodies that rest, and the same that all move from ping to ping, to be compared.
+  void bodies() {
+    for (const bool drift : {false, true}) {
+      const std::string name = drift ? "bodies200_moving" : "bodies200_still";
+      Plan plan;
+      plan.points.push_back({preset_points().front(), several});
+      plan.points.push_back({default_point(), several, render::Backend::ray});
+      plan.points.push_back({grid_point(2, 256), several});
+      plan.bodies_drift = drift;
+      run(name, plan, [&] { return test::make_bodies_scene(name); });
+    }
+  }
+
+  /// The same ground as heightmaps of different resolution.
+  void terrain() {
+    for (const int side_px : {256, 1024, 4096}) {
+      const std::string name = fmt::format("terrain{}", side_px);
+      Plan plan;
+      plan.points.push_back({default_point(), several});
+      plan.points.push_back({grid_point(2, 256), several});
+      run(name, plan, [&] { return test::make_terrain_scene(name, side_px); });
+    }
+  }
+
  private:
   bool wanted(const std::string& name) const {
     return only_.empty() || std::any_of(only_.begin(), only_.end(),
@@ -141,6 +166,8 @@ void run_sweep(Campaign& campaign, const std::vector<std::string>& only) {
   sweep.bins();
   sweep.cores();
   sweep.binning();
+  sweep.bodies();
+  sweep.terrain();
 }
 
 }  // namespace sonard::bench

@@ -7,8 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "renderer/scene/terrain.hpp"
 #include "tests/scenes/manifold.hpp"
 #include "tests/scenes/shapes.hpp"
+#include "tests/scenes/terrain.hpp"
 
 namespace sonard::test {
 
@@ -284,6 +286,44 @@ Scene make_manifold_scene(const std::string& name, std::size_t triangles) {
   manifold.T_world_body.orientation = glm::angleAxis(25 * degree, glm::dvec3(0, 0, 1));
   return make(name, {make_flat_bed(seabed_extent), std::move(manifold)},
               sonar_pose(sonar_height_m, 0, sonar_tilt_rad), forward_looking(1000, 20));
+}
+
+Scene make_bodies_scene(const std::string& name) {
+  constexpr int rings = 10, per_ring = 20;
+  std::vector<render::Body> bodies{make_flat_bed(seabed_extent)};
+  const auto box = make_body("", make_block({}, {0.4, 0.3, 0.5}, 0)).parts;
+  const auto ball = make_body("", make_ball({}, 0.25, 30, 17)).parts;
+  for (int ring = 0; ring < rings; ++ring) {
+    for (int k = 0; k < per_ring; ++k) {
+      const double range_m = 7.0 + 1.2 * ring;
+      const double bearing = (k + 0.5 * (ring % 2) - 9.75) * 5.8 * degree;
+      render::Body body{"body" + std::to_string(bodies.size()), {}, k % 2 == 0 ? box : ball};
+      body.T_world_body.position_m = {range_m * std::cos(bearing), range_m * std::sin(bearing), 0.5};
+      bodies.push_back(std::move(body));
+    }
+  }
+  return make(name, std::move(bodies), sonar_pose(sonar_height_m, 0, sonar_tilt_rad),
+              forward_looking(1000, 20));
+}
+
+render::Pose drifting_pose(const render::Pose& start, std::size_t body, int ping) {
+  const double step_m = 0.005 * static_cast<double>(1 + body % 4);
+  const double heading = static_cast<double>(body);
+  constexpr int turning_point = 20;  // pings: they go to and fro
+  const int steps =
+      std::abs((ping + turning_point) % (4 * turning_point) - 2 * turning_point) - turning_point;
+  return {start.position_m + step_m * steps * glm::dvec3(std::cos(heading), std::sin(heading), 0),
+          start.orientation * glm::angleAxis(steps * degree, glm::dvec3(0, 0, 1))};
+}
+
+Scene make_terrain_scene(const std::string& name, int side_px) {
+  render::BodyPart part;
+  part.material.lambert_mu = scene_lambert_mu;
+  Scene scene = make(name, {{"bed", {}, {}}}, sonar_pose(6 + ground_height_m(0, 0), 0, 15 * degree),
+                     forward_looking(1000, 50));
+  render::add_heightmap(ground_picture(side_px), {ground_side_m, ground_side_m, ground_relief_m}, part,
+                        scene.world, 0, scene.world.bodies[0].parts);
+  return scene;
 }
 
 }  // namespace sonard::test

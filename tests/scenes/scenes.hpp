@@ -46,6 +46,18 @@ Scene make_scene(const std::string& name);
 /// 7374).
 Scene make_seabed_scene(const std::string& name, BedHeight height, std::size_t triangles);
 
+/// 200 things on a flat bed, half of them boxes and half balls, each a body of its own, in all directions
+/// that the fan looks: 97,202 triangles.
+Scene make_bodies_scene(const std::string& name);
+
+/// Where the bodies of make_bodies_scene() are at ping number `ping`: they drift by 5 to 20 mm and turn by a
+/// degree a ping.
+render::Pose drifting_pose(const render::Pose& start, std::size_t body, int ping);
+
+/// A ground of 100 m by 100 m with relief of all lengths from 100 m to 0.1 m, as a heightmap of so many
+/// pixels a side; the sonar is 6 m above it, looks 15 degrees down and hears 50 m in 1000 lines.
+Scene make_terrain_scene(const std::string& name, int side_px);
+
 /// B4: a manifold of about `triangles` (at least 5000) on a flat bed, 9 m ahead of the sonar.
 Scene make_manifold_scene(const std::string& name, std::size_t triangles);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "renderer/visibility/slices/coplanar_facets.hpp"
@@ -67,7 +68,6 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSw
     : workers_(workers), skip_(skip) {
   Prepared prepared;
   for (const Body& body : world.bodies) {
-    body_number_[body.name] = T_world_body_.size();
     for (const BodyPart& part : body.parts) {
       add_part(part, prepared);
     }
@@ -101,21 +101,35 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   surfaces_.push_back(std::move(surface));
 }
 
-bool SliceSampler::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
-  const auto body = body_number_.find(body_name);
-  if (body == body_number_.end()) {
-    return false;
+/// Facets of such parts are not merged: neighbouring parts share corners.
+void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
+  std::vector<Replacement> replacements(changes.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (const Replacement* known = replacements_.find(changes[i].mesh.get())) {
+      replacements[i] = *known;
+    }
   }
-  T_world_body_[body->second] = T_world_body;
-  return true;
+  workers_.run(static_cast<int>(changes.size()), [&](int i) {
+    const TriangleMesh& mesh = *changes[static_cast<std::size_t>(i)].mesh;
+    Replacement& replacement = replacements[static_cast<std::size_t>(i)];
+    if (!replacement.clusters) {
+      const bool plain = skip_.on(SkipRule::geometric_normals) && has_plain_facets(mesh);
+      replacement = {std::make_shared<const MeshClusters>(mesh), !plain};
+    }
+  });
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    placed_[changes[i].part].clusters = replacements[i].clusters;
+    surfaces_[changes[i].part].mesh = changes[i].mesh;
+    surfaces_[changes[i].part].vertex_normals = replacements[i].vertex_normals;
+    replacements_.keep(changes[i].mesh, replacements[i]);
+  }
 }
 
 /// In doubles up to here: no world coordinate reaches a float.
 void SliceSampler::place_parts(const Pose& T_world_sonar) {
-  const Pose T_sonar_world = inverse(T_world_sonar);
-  bend_.up = glm::vec3(T_sonar_world.orientation * glm::dvec3(0, 0, 1));
+  bend_.up = glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1));
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Pose T_sonar_part = T_sonar_world * T_world_body_[parts_[i].body] * parts_[i].T_body_part;
+    const Pose T_sonar_part = relative(T_world_sonar, T_world_body_[parts_[i].body]) * parts_[i].T_body_part;
     placed_[i].R_sonar_part = glm::mat3(glm::mat3_cast(T_sonar_part.orientation));
     placed_[i].t_sonar_part_m = glm::vec3(T_sonar_part.position_m);
     surfaces_[i].R_part_sonar = glm::transpose(placed_[i].R_sonar_part);

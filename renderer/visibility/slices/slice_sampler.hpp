@@ -3,16 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/skip_ledger.hpp"
+#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/slices/fan_triangles.hpp"
 #include "renderer/visibility/slices/slice_patches.hpp"
@@ -84,8 +83,11 @@ class SliceSampler {
                                        const RangeLines& range, double sampled_range_m,
                                        const SurfaceModel& surface, const SliceAccuracy& accuracy);
 
-  /// @return false when the world has no body of that name.
-  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+  /// As Sampler::set_body_pose().
+  void set_body_pose(std::size_t body, const Pose& T_world_body) { T_world_body_[body] = T_world_body; }
+
+  /// As Sampler::set_part_meshes().
+  void set_part_meshes(std::span<const PartMesh> changes);
 
   /// As Sampler::set_ray_bend().
   void set_ray_bend(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
@@ -97,6 +99,10 @@ class SliceSampler {
   struct Part {
     std::size_t body;
     Pose T_body_part;
+  };
+  struct Replacement {
+    std::shared_ptr<const MeshClusters> clusters;
+    bool vertex_normals = false;
   };
   struct Prepared;
   struct Setting;
@@ -123,10 +129,10 @@ class SliceSampler {
   SkipSwitches skip_;
   SkipCounts skipped_parts_;  ///< of every ping: what is left out of shading
   std::vector<Pose> T_world_body_;
-  std::map<std::string, std::size_t> body_number_;
   std::vector<Part> parts_;
   std::vector<PlacedPart> placed_;
   std::vector<PartSurface> surfaces_;
+  MeshCache<Replacement> replacements_;
   bool any_mapped_ = false;
   bool any_facets_ = false;  ///< whether any material has them
   RayBend bend_;             ///< in the sonar frame of this ping

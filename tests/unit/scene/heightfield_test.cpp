@@ -27,6 +27,14 @@ TEST(GreyImage, ReadsSixteenBits) {
   EXPECT_THAT(load_grey_image(data / "grey16.png").value, ElementsAre(1, 2, 20000, 0, 256, 40000));
 }
 
+// Lowest -31.5 and -31 m, highest -26.5 and -26: 65535 / 5 = 13107 a metre.
+TEST(GreyImage, ReadsElevationsOfGeoTiffs) {
+  EXPECT_THAT(load_grey_image(data / "elevation_f32.tif").value,
+              ElementsAre(45875, 55705, 65535, 0, 19661, 32768));  // 3.5, 4.25, 5; 0, 1.5, 2.5 m
+  EXPECT_THAT(load_grey_image(data / "elevation_i16.tif").value,
+              ElementsAre(39321, 52428, 65535, 0, 13107, 26214));
+}
+
 TEST(NormalMapImage, HasRowZeroAtTheBottom) {
   const NormalMap map = load_normal_map(data / "normal_map.png");
   EXPECT_EQ(map.width_px, 2);

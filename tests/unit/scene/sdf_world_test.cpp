@@ -161,7 +161,8 @@ TEST(SdfWorld, KnowsEveryShape) {
     EXPECT_NEAR(test::volume_m3(*parts[i].mesh), expected_volume[i], 0.01 * expected_volume[i]) << i;
   }
   EXPECT_NEAR(test::area_m2(*parts[5].mesh), 6.0, 1e-5);
-  EXPECT_EQ(test::bounds(*parts[6].mesh).high, glm::dvec3(2.0, 1.0, 3.0));  // 40000, the brightest, is 8 m up
+  EXPECT_EQ(test::bounds(*parts[6].mesh).high, glm::dvec3(2.0, 1.0, 8.0));  // 40000, the brightest, is 8 m up
+  EXPECT_EQ(parts[6].T_body_part.position_m, glm::dvec3(0.0, 0.0, -5.0));
   EXPECT_NEAR(test::volume_m3(*parts[7].mesh), 1.0, 1e-6);
 }
 
