@@ -197,7 +197,7 @@ std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset) {
   }
   ByteReader reader{file.subspan(offset)};
   const std::uint8_t opcode = reader.u8("chunk.opcode");
-  reader.skip(4 * 8, "chunk.length_and_times");
+  reader.skip(8 + 8 + 8 + 8, "chunk.length_and_times");
   const std::uint32_t crc = reader.u32le("chunk.uncompressed_crc");
   const std::uint32_t compression_size = reader.u32le("chunk.compression");
   if (opcode != static_cast<std::uint8_t>(Opcode::chunk) || crc != no_crc || compression_size != 0) {

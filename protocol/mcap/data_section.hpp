@@ -25,7 +25,7 @@ struct Chunk {
 };
 
 /// Of an uncompressed chunk, what stands before its records.
-inline constexpr std::size_t chunk_start_size = record_prefix_size + 3 * 8 + 4 + 4 + 8;
+inline constexpr std::size_t chunk_start_size = record_prefix_size + 8 + 8 + 8 + 4 + 4 + 8;
 /// Of a chunk that is open: it may still grow, and what it says of its length may be of before.
 inline constexpr std::uint32_t no_crc = 0;
 

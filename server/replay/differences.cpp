@@ -1,5 +1,6 @@
 #include "server/replay/differences.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -100,7 +101,12 @@ std::vector<Difference> differences(const micron::HeadCommand& asked, const micr
 
 void DifferenceLog::add(const std::vector<Difference>& found) {
   for (const Difference& difference : found) {
-    if (pings_[difference.kind]++ == 0) {
+    const auto known =
+        std::ranges::find(pings_, difference.kind, &std::pair<std::string_view, std::uint64_t>::first);
+    if (known != pings_.end()) {
+      ++known->second;
+    } else {
+      pings_.emplace_back(difference.kind, 1);
       spdlog::warn("head={} differs from the recording: {}", head_, difference.text);
     }
   }

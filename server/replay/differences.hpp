@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "protocol/gemini/ping_job.hpp"
@@ -37,7 +37,7 @@ class DifferenceLog {
 
  private:
   std::string head_;
-  std::map<std::string_view, std::uint64_t> pings_;
+  std::vector<std::pair<std::string_view, std::uint64_t>> pings_;  ///< in the order in which kinds came
 };
 
 }  // namespace sonard::server
