@@ -1,9 +1,8 @@
 #include "tests/bench/recording_cost.hpp"
 
-#include <time.h>
-
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
