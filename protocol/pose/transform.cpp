@@ -64,6 +64,9 @@ Vec3 to_rotation_vector(const Quat& q) {
 }
 
 Transform interpolate(const Transform& from, const Transform& to, double fraction) {
+  if (from == to) {
+    return from;
+  }
   const Vec3 turn = to_rotation_vector(conjugate(from.orientation) * to.orientation);
   return {from.position_m + fraction * (to.position_m - from.position_m),
           normalized(from.orientation * from_rotation_vector(fraction * turn))};
@@ -72,6 +75,9 @@ Transform interpolate(const Transform& from, const Transform& to, double fractio
 Transform advance(const Transform& T_world_body, const Velocity& twist, double seconds) {
   const Vec3 turn = seconds * twist.angular_radps;
   const Vec3 step = seconds * twist.linear_mps;
+  if (turn == Vec3{} && step == Vec3{}) {
+    return T_world_body;
+  }
   const double angle_rad = norm(turn);
   const double angle2 = angle_rad * angle_rad;
   // Exponential map of SE(3): the body turns while it moves, so its path is the integral of exp(s turn) step

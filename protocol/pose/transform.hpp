@@ -7,6 +7,8 @@ struct Vec3 {
   double x = 0.0;
   double y = 0.0;
   double z = 0.0;
+
+  bool operator==(const Vec3&) const = default;
 };
 
 Vec3 operator+(const Vec3& a, const Vec3& b);
@@ -21,6 +23,8 @@ struct Quat {
   double x = 0.0;
   double y = 0.0;
   double z = 0.0;
+
+  bool operator==(const Quat&) const = default;
 };
 
 Quat operator*(const Quat& a, const Quat& b);
@@ -39,6 +43,8 @@ Vec3 to_rotation_vector(const Quat& q);
 struct Transform {
   Vec3 position_m;
   Quat orientation;
+
+  bool operator==(const Transform&) const = default;
 };
 
 /// Twist of frame b relative to frame a, in the axes of b.
@@ -47,10 +53,12 @@ struct Velocity {
   Vec3 angular_radps;
 };
 
-/// Position on the straight line, orientation on the shortest arc. `fraction` in [0, 1].
+/// Position on the straight line, orientation on the shortest arc. `fraction` in [0, 1]. What rests keeps
+/// every bit, so that whoever compares poses finds it at rest.
 Transform interpolate(const Transform& from, const Transform& to, double fraction);
 
-/// Where a body is after moving with a constant twist for `seconds` (which may be negative): a helix.
+/// Where a body is after moving with a constant twist for `seconds` (which may be negative): a helix. A twist
+/// of zero keeps every bit.
 Transform advance(const Transform& T_world_body, const Velocity& twist, double seconds);
 
 /// T_enu_flu of a pose given as T_ned_frd: world axes (north, east, down) become (east, north, up), body

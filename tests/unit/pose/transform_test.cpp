@@ -116,6 +116,16 @@ TEST(Transform, AdvanceHasNoSeamWhereItsSeriesEnd) {
   }
 }
 
+// Norms of quaternions are 1 up to rounding only, and to normalise them once more may turn a last bit.
+TEST(Transform, WhatRestsKeepsEveryBit) {
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 0.001 * i;
+    const Transform pose{{1.0 / 3.0 + i, 2.0 / 7.0, -0.1}, normalized({0.9, x, 0.3 - x, 0.7 * x})};
+    EXPECT_EQ(interpolate(pose, pose, 0.37), pose);
+    EXPECT_EQ(advance(pose, {}, 0.2), pose);
+  }
+}
+
 TEST(Transform, NedFrdBecomesEnuFlu) {
   // At rest in NED: nose north, starboard east, keel down.
   const Transform level = enu_flu_from_ned_frd({{10, 20, 30}, {}});
