@@ -3,22 +3,16 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <array>
 #include <bit>
 #include <bitset>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
 #include <utility>
 
 #include "protocol/mavlink/frames.hpp"
 #include "server/config/addresses.hpp"
 #include "server/pose/mavlink_poses.hpp"
+#include "server/pose/udp_listener.hpp"
 
 namespace sonard::server {
-
-namespace asio = boost::asio;
-using asio::ip::udp;
-using boost::system::error_code;
 
 namespace {
 
@@ -43,17 +37,13 @@ std::uint64_t& counter_of(const mavlink::Message& message, Heard& heard) {
 }  // namespace
 
 struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource::Impl> {
-  Impl(asio::io_context& io, MavlinkPoseInput configured, const Clock& used_clock, PoseSink poses_go_to)
+  Impl(boost::asio::io_context& io, MavlinkPoseInput configured, const Clock& clock, PoseSink poses_go_to)
       : input(std::move(configured)),
-        clock(used_clock),
+        listener(std::make_shared<UdpListener>(io, "mavlink udp", input.bind, input.allow, clock)),
         sink(std::move(poses_go_to)),
-        socket(io),
         poses(input) {}
 
-  void open();
-  void receive();
-  void on_received(const error_code& error, std::size_t length);
-  void take(std::span<const std::uint8_t> datagram);
+  void take(std::span<const std::uint8_t> datagram, TimePoint arrival);
   void take(const mavlink::Frame& frame, TimePoint arrival);
   /// True when the frame is of the vehicle that is listened to.
   bool is_ours(const mavlink::Frame& frame);
@@ -61,13 +51,9 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   void tell_of_broken_frames(std::uint64_t before);
 
   MavlinkPoseInput input;
-  const Clock& clock;
+  std::shared_ptr<UdpListener> listener;
   PoseSink sink;
-  udp::socket socket;
-  Endpoint local;
-  udp::endpoint peer;
   std::optional<Endpoint> publisher;  // of the newest pose
-  std::array<std::uint8_t, pose::max_message_bytes> buffer{};
   MavlinkPoses poses;
   mavlink::FrameCounters frames;
   Heard heard;
@@ -80,58 +66,12 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   PoseSourceCounters counters;
 };
 
-void MavlinkPoseSource::Impl::open() {
-  error_code error;
-  const auto check = [&](const char* operation) {
-    if (error) {
-      throw PoseSourceError(
-          fmt::format("mavlink udp {}: {}: {}", endpoint_text(input.bind), operation, error.message()));
-    }
-  };
-  socket.open(udp::v4(), error);
-  check("open");
-  socket.bind({asio::ip::address_v4{input.bind.address}, input.bind.port}, error);
-  check("bind");
-  const udp::endpoint bound = socket.local_endpoint(error);
-  check("local address");
-  local = {bound.address().to_v4().to_uint(), bound.port()};
-}
-
-void MavlinkPoseSource::Impl::receive() {
-  socket.async_receive_from(asio::buffer(buffer), peer,
-                            [self = shared_from_this()](const error_code& error, std::size_t length) {
-                              self->on_received(error, length);
-                            });
-}
-
-void MavlinkPoseSource::Impl::on_received(const error_code& error, std::size_t length) {
-  if (!socket.is_open()) {
-    return;
-  }
-  // An error here is a report about one datagram (for example an ICMP answer); the socket goes on.
-  if (!error) {
-    take(std::span{buffer}.first(length));
-  }
-  if (socket.is_open()) {  // the sink may have stopped us
-    receive();
-  }
-}
-
-void MavlinkPoseSource::Impl::take(std::span<const std::uint8_t> datagram) {
-  const TimePoint arrival = clock.now();
-  if (!allows(input.allow, peer.address().to_v4().to_uint())) {
-    if (std::has_single_bit(++counters.refused)) {
-      spdlog::warn("mavlink udp {}: datagram from {} dropped: not in the allow list ({} so far)",
-                   endpoint_text(local), endpoint_text({peer.address().to_v4().to_uint(), peer.port()}),
-                   counters.refused);
-    }
-    return;
-  }
+void MavlinkPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint arrival) {
   const std::uint64_t broken_before = frames.stray_bytes;
   mavlink::FrameReader reader(datagram, frames);
   while (const std::optional<mavlink::Frame> frame = reader.next()) {
     take(*frame, arrival);
-    if (!socket.is_open()) {
+    if (!listener->is_open()) {
       return;
     }
   }
@@ -152,6 +92,7 @@ void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arriva
   counters.bad_value = poses.counters().bad_value;
   if (sample) {
     ++counters.samples;
+    publisher = listener->peer();
     sink(*sample, arrival);
   } else {
     tell_what_is_missing(arrival);
@@ -163,8 +104,8 @@ bool MavlinkPoseSource::Impl::is_ours(const mavlink::Frame& frame) {
     ++wrong_system;
     if (!systems_said.test(frame.system_id)) {
       systems_said.set(frame.system_id);
-      spdlog::info("mavlink udp {}: system {} is ignored (poses.mavlink.system_id is {})",
-                   endpoint_text(local), frame.system_id, input.system_id);
+      spdlog::info("{}: system {} is ignored (poses.mavlink.system_id is {})", listener->description(),
+                   frame.system_id, input.system_id);
     }
     return false;
   }
@@ -172,8 +113,8 @@ bool MavlinkPoseSource::Impl::is_ours(const mavlink::Frame& frame) {
     ++wrong_component;
     if (!components_said.test(frame.component_id)) {
       components_said.set(frame.component_id);
-      spdlog::info("mavlink udp {}: component {} of system {} is ignored (poses.mavlink.component_id is {})",
-                   endpoint_text(local), frame.component_id, frame.system_id, input.component_id);
+      spdlog::info("{}: component {} of system {} is ignored (poses.mavlink.component_id is {})",
+                   listener->description(), frame.component_id, frame.system_id, input.component_id);
     }
     return false;
   }
@@ -187,10 +128,10 @@ void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
   }
   missing_said = true;
   spdlog::warn(
-      "mavlink udp {}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, ATTITUDE or "
+      "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, ATTITUDE or "
       "ATTITUDE_QUATERNION {}, others {} (expected the first, or the second and the third)",
-      endpoint_text(local), input.system_id, patience.count(), heard.odometry, heard.position, heard.attitude,
-      heard.other);
+      listener->description(), input.system_id, patience.count(), heard.odometry, heard.position,
+      heard.attitude, heard.other);
 }
 
 void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
@@ -199,39 +140,40 @@ void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
   }
   ++counters.malformed;
   if (std::has_single_bit(++broken_datagrams)) {
-    spdlog::warn(
-        "mavlink udp {}: datagram from {} holds {} bytes of no valid frame (bad checksums {} so far)",
-        endpoint_text(local), endpoint_text({peer.address().to_v4().to_uint(), peer.port()}),
-        frames.stray_bytes - before, frames.bad_checksums);
+    spdlog::warn("{}: datagram from {} holds {} bytes of no valid frame (bad checksums {} so far)",
+                 listener->description(), endpoint_text(listener->peer()), frames.stray_bytes - before,
+                 frames.bad_checksums);
   }
 }
 
-MavlinkPoseSource::MavlinkPoseSource(asio::io_context& io, MavlinkPoseInput input, const Clock& clock,
+MavlinkPoseSource::MavlinkPoseSource(boost::asio::io_context& io, MavlinkPoseInput input, const Clock& clock,
                                      PoseSink sink)
     : impl_(std::make_shared<Impl>(io, std::move(input), clock, std::move(sink))) {}
 
 MavlinkPoseSource::~MavlinkPoseSource() {
-  stop();
+  MavlinkPoseSource::stop();
 }
 
 void MavlinkPoseSource::start() {
-  impl_->open();
-  impl_->receive();
+  impl_->listener->start(
+      [weak = impl_->weak_from_this()](std::span<const std::uint8_t> datagram, TimePoint arrival) {
+        if (const auto impl = weak.lock()) {
+          impl->take(datagram, arrival);
+        }
+      });
 }
 
 void MavlinkPoseSource::stop() {
-  error_code ignored;
-  impl_->socket.close(ignored);
+  impl_->listener->close();
 }
 
 std::string MavlinkPoseSource::description() const {
-  const bool started = impl_->local.port != 0;
-  return fmt::format("mavlink udp {} system {} component {}",
-                     endpoint_text(started ? impl_->local : impl_->input.bind), impl_->input.system_id,
+  return fmt::format("{} system {} component {}", impl_->listener->description(), impl_->input.system_id,
                      impl_->input.component_id);
 }
 
 const PoseSourceCounters& MavlinkPoseSource::counters() const {
+  impl_->counters.refused = impl_->listener->refused();
   return impl_->counters;
 }
 
@@ -264,7 +206,7 @@ std::string MavlinkPoseSource::silence_hint() const {
 }
 
 Endpoint MavlinkPoseSource::local_endpoint() const {
-  return impl_->local;
+  return impl_->listener->local();
 }
 
 }  // namespace sonard::server

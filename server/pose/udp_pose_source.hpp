@@ -9,7 +9,7 @@ namespace sonard::server {
 /// 2nd, 4th, 8th ... of them is logged with its peer, so that a flood cannot fill the log.
 class UdpPoseSource final : public PoseSource {
  public:
-  UdpPoseSource(boost::asio::io_context& io, UdpPoseInput input, const Clock& clock, PoseSink sink);
+  UdpPoseSource(boost::asio::io_context& io, const UdpPoseInput& input, const Clock& clock, PoseSink sink);
   ~UdpPoseSource() override;
 
   void start() override;
