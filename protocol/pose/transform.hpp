@@ -1,4 +1,5 @@
-// Rigid motion in double precision, as plain values: what a pose stream and a trajectory are made of.
+// Rigid motion in double precision, as plain values: what a pose stream and a trajectory are made of. C++17
+// reads it too: the headers of ROS 1 know nothing later.
 #pragma once
 
 namespace sonard::pose {
@@ -8,7 +9,7 @@ struct Vec3 {
   double y = 0.0;
   double z = 0.0;
 
-  bool operator==(const Vec3&) const = default;
+  bool operator==(const Vec3& other) const { return x == other.x && y == other.y && z == other.z; }
 };
 
 Vec3 operator+(const Vec3& a, const Vec3& b);
@@ -24,7 +25,9 @@ struct Quat {
   double y = 0.0;
   double z = 0.0;
 
-  bool operator==(const Quat&) const = default;
+  bool operator==(const Quat& other) const {
+    return w == other.w && x == other.x && y == other.y && z == other.z;
+  }
 };
 
 Quat operator*(const Quat& a, const Quat& b);
@@ -44,7 +47,9 @@ struct Transform {
   Vec3 position_m;
   Quat orientation;
 
-  bool operator==(const Transform&) const = default;
+  bool operator==(const Transform& other) const {
+    return position_m == other.position_m && orientation == other.orientation;
+  }
 };
 
 /// Twist of frame b relative to frame a, in the axes of b.
