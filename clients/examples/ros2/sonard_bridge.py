@@ -27,10 +27,18 @@ class SonardBridge(Node):
         self.get_logger().info(f"poses of {topic} go to {self.receiver}")
 
     def on_odometry(self, odometry):
-        if odometry.header.frame_id != self.world_frame:
-            self.get_logger().error(f"frame_id is '{odometry.header.frame_id}', expected '{self.world_frame}' (world_frame)",
-                                    throttle_duration_sec=10)
-            return
+        header = odometry.header
+        if header.frame_id != self.world_frame:
+            self.complain(f"frame_id is '{header.frame_id}', expected '{self.world_frame}' (parameter world_frame)")
+        elif header.stamp.sec == 0 and header.stamp.nanosec == 0:
+            self.complain("the stamp is 0: its publisher has to fill in the time")
+        else:
+            self.send(odometry)
+
+    def complain(self, text):
+        self.get_logger().error(f"odometry is dropped: {text}", throttle_duration_sec=10)
+
+    def send(self, odometry):
         self.udp.sendto(pose_update(odometry, self.axes).SerializeToString(), self.receiver)
 
 
