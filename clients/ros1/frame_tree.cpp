@@ -67,24 +67,18 @@ FrameTree::FrameTree() : buffer_(std::make_unique<Buffer>()) {
 FrameTree::~FrameTree() = default;
 
 bool FrameTree::insert(const RosPose& transform, bool is_static) {
-  const std::string authority;
   bool reset = false;
-  if (is_static) {
-    static_[transform.child_frame] = transform;
-  } else {
+  if (!is_static) {
     const auto [newest, first] = newest_ns_.try_emplace(transform.child_frame, transform.stamp_ns);
     reset = !first && transform.stamp_ns < newest->second - set_back_ns;
     if (reset) {
-      buffer_->core.clear();
+      buffer_->core.clear();  // which leaves static ones alone
       newest_ns_.clear();
-      for (const auto& [child, kept] : static_) {
-        buffer_->core.setTransform(to_ros(kept), authority, true);
-      }
     }
     std::int64_t& newest_ns = newest_ns_[transform.child_frame];
     newest_ns = reset ? transform.stamp_ns : std::max(newest_ns, transform.stamp_ns);
   }
-  buffer_->core.setTransform(to_ros(transform), authority, is_static);
+  buffer_->core.setTransform(to_ros(transform), std::string{}, is_static);
   return reset;
 }
 

@@ -37,7 +37,6 @@ class FrameTree {
  private:
   struct Buffer;
   std::unique_ptr<Buffer> buffer_;
-  std::map<std::string, RosPose> static_;          ///< by child frame, to be kept over a reset
   std::map<std::string, std::int64_t> newest_ns_;  ///< by child frame
 };
 
