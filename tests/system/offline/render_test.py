@@ -5,7 +5,6 @@
 """
 
 import argparse
-import ast
 import hashlib
 import json
 import math
@@ -22,6 +21,7 @@ import zipfile
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path += [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "tests", "system", "gemini")]
 import glf_reader  # noqa: E402
+from npy_reader import read_npy  # noqa: E402
 from lab import Namespace, Program  # noqa: E402
 
 PROGRAMS = None  # folder of the programs under test
@@ -64,19 +64,6 @@ def render(*arguments, check=True):
     if check and done.returncode != 0:
         raise AssertionError(f"exit code {done.returncode}: {done.stderr}")
     return done
-
-
-def read_npy(path):
-    """(rows, columns, bytes) of a file of format 1.0, 8 bits."""
-    with open(path, "rb") as file:
-        raw = file.read()
-    assert raw[:8] == b"\x93NUMPY\x01\x00", path
-    size = int.from_bytes(raw[8:10], "little")
-    header = ast.literal_eval(raw[10:10 + size].decode("latin1"))
-    assert header["descr"] == "|u1" and header["fortran_order"] is False, header
-    rows, columns = header["shape"]
-    assert len(raw) == 10 + size + rows * columns, path
-    return rows, columns, raw[10 + size:]
 
 
 def sums(folder):

@@ -7,17 +7,17 @@
 import argparse
 import csv
 import os
-import struct
 import sys
 import time
 import unittest
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
-sys.path.insert(0, os.path.join(SOURCE, "tests", "system", "gemini"))
+sys.path[:0] = [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "tests", "system", "gemini")]
 
 import link_test  # noqa: E402
 import wire  # noqa: E402
 from link_test import PATIENCE_S, key_values  # noqa: E402
+from npy_reader import read_npy  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "two_walls.sdf")
@@ -54,12 +54,7 @@ MICRON = """
 
 def first_echo_m(path):
     """Range of the first bin above half of the maximum in the beam ahead, of an image of 8 bit."""
-    with open(path, "rb") as file:
-        data = file.read()
-    header_bytes = struct.unpack_from("<H", data, 8)[0]
-    header = eval(data[10:10 + header_bytes])  # a dict, by NumPy's own definition of the format
-    lines, beams = header["shape"]
-    image = data[10 + header_bytes:]
+    lines, beams, image = read_npy(path)
     column = [image[line * beams + beams // 2] for line in range(lines)]
     return next(line for line in range(lines) if column[line] > max(column) / 2) * wire.line_step_m(1500.0)
 
