@@ -27,25 +27,32 @@ constexpr int tile = 8;
 using Row __attribute__((vector_size(tile * sizeof(float)))) = float;
 
 /// Transposes one tile: three rounds of exchanging halves, quarters and single numbers between pairs of rows.
+/// Unrolled, for rows in a loop are kept on the stack and not in registers.
 [[gnu::always_inline]] inline void turn_tile(const float* in, std::size_t in_stride, float* out,
                                              std::size_t out_stride) {
   Row r[tile];
   Row s[tile];
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < tile; ++i) {
     std::memcpy(&r[i], in + i * in_stride, sizeof(Row));
   }
+#pragma GCC unroll 4
   for (std::size_t i = 0; i < tile; i += 2) {
     s[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
     s[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
   }
-  for (const std::size_t i : {0, 1, 4, 5}) {
+#pragma GCC unroll 4
+  for (std::size_t pair = 0; pair < tile / 2; ++pair) {
+    const std::size_t i = pair + (pair & 2);  // 0, 1, 4, 5
     r[i] = __builtin_shufflevector(s[i], s[i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
     r[i + 2] = __builtin_shufflevector(s[i], s[i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
   }
+#pragma GCC unroll 4
   for (std::size_t i = 0; i < tile / 2; ++i) {
     s[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
     s[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < tile; ++i) {
     std::memcpy(out + i * out_stride, &s[i], sizeof(Row));
   }

@@ -21,11 +21,12 @@ inline double rounded(double value) {
   return (value + round_to_integer) - round_to_integer;
 }
 
-/// Adds what a smeared step makes of eight differences. The step begins `from` lines after the first of them;
-/// before that one, it has none. Written as one vector: left to itself, the compiler makes several of it.
-SONARD_SIMD_CLONES
-void add_smeared_step(double from, double smear, double density, double* difference) {
-  using Lines = double __attribute__((vector_size(vector_lines * sizeof(double))));
+/// Adds what a smeared step makes of four differences, the first of which is `first` lines after the one that
+/// add_smeared_step() counts from. A vector of four is what AVX2 has: one that is wider than the registers
+/// goes through the stack, operation by operation.
+[[gnu::always_inline]] inline void add_to_four_lines(double first, double from, double smear, double density,
+                                                     double* difference) {
+  using Lines = double __attribute__((vector_size(4 * sizeof(double))));
   const Lines none{};
   const Lines whole = none + density;
   const Lines to = none + smear;
@@ -36,7 +37,7 @@ void add_smeared_step(double from, double smear, double density, double* differe
     const Lines rising = begun < to ? begun : to;
     integral = rising * rising * half_over_smear + (begun - rising);
   };
-  const Lines y = Lines{0, 1, 2, 3, 4, 5, 6, 7} - from;
+  const Lines y = Lines{0, 1, 2, 3} + first - from;
   Lines before, here, after;
   integrate(y - 1, before);
   integrate(y, here);
@@ -48,6 +49,14 @@ void add_smeared_step(double from, double smear, double density, double* differe
   // Lines beyond the step hold all of it, free of rounding.
   changed += (y >= to ? whole : sum) - (y - 1 >= to ? whole : last);
   std::memcpy(difference, &changed, sizeof changed);
+}
+
+/// Adds what a smeared step makes of eight differences. The step begins `from` lines after the first of them;
+/// before that one, it has none. Written as vectors: left to itself, the compiler makes several of each.
+SONARD_SIMD_CLONES
+void add_smeared_step(double from, double smear, double density, double* difference) {
+  add_to_four_lines(0.0, from, smear, density, difference);
+  add_to_four_lines(4.0, from, smear, density, difference + 4);
 }
 
 }  // namespace
