@@ -24,10 +24,9 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   constexpr nanoseconds zero{0};
   require(config.node >= 1 && config.node < host_node, "node must be 1..254");
   require(config.water_sound_speed_mps > 0.0, "water_sound_speed_mps must be positive");
-  require(config.power_up_bearing < units_per_turn, "power_up_bearing must be 0..6399");
   require(config.boot_time >= zero && config.boot_time < seconds{1}, "boot_time must be less than 1 s");
-  require(config.centring_time >= seconds{2} && config.centring_time <= seconds{15},
-          "centring_time must be 2..15 s");
+  require(config.least_centring_time >= zero && config.least_centring_time <= seconds{15},
+          "least_centring_time must be 0..15 s");
   require(config.seek_speed_rad_s > 0.0, "seek_speed_rad_s must be positive");
   require(config.alive_period > zero, "alive_period must be positive");
   require(config.request_cap >= 1 && config.request_cap <= 100, "request_cap must be 1..100");
@@ -59,10 +58,12 @@ std::string_view to_string(HeadState state) {
 
 class Device::Impl {
  public:
-  Impl(const DeviceConfig& config, TimePoint power_up)
-      : config_(validated(config)), scanner_(config_, counters_), input_(max_command_frame_size) {
-    boot(power_up);
-  }
+  Impl(const DeviceConfig& config, TimePoint start)
+      : config_(validated(config)),
+        scanner_(config_, counters_),
+        input_(max_command_frame_size),
+        clock_zero_(start),
+        next_alive_(start) {}
 
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
   void on_host_gone() { input_.clear(); }
@@ -77,7 +78,6 @@ class Device::Impl {
 
  private:
   bool booting(TimePoint now) const { return now < boot_end_; }
-  void boot(TimePoint now);
   void read_frames(TimePoint now);
   bool take_frame(TimePoint now, const FrameBuffer::Frame& frame);
   bool has_parameters();
@@ -110,23 +110,17 @@ class Device::Impl {
   TimePoint next_alive_{};
   bool alives_stopped_ = false;
   bool sent_config_ = false;
-  bool parameters_told_ = false;  ///< an alive has gone out since parameters came last (7.2)
   std::vector<std::vector<std::uint8_t>> outgoing_;
 };
 
-void Device::Impl::boot(TimePoint now) {
+void Device::Impl::power_cycle(TimePoint now) {
+  ++counters_.boots;
   boot_end_ = now + config_.boot_time;
   clock_zero_ = now;
   next_alive_ = boot_end_;
   alives_stopped_ = false;
   sent_config_ = false;
-  parameters_told_ = false;
   scanner_.restart(now, boot_end_);
-}
-
-void Device::Impl::power_cycle(TimePoint now) {
-  ++counters_.boots;
-  boot(now);
 }
 
 // ---- Commands
@@ -187,16 +181,17 @@ void Device::Impl::handle(TimePoint, const SendBBUser&) {
   sent_config_ = true;
   BBUserData blocks;
   blocks.older_half_duplex = config_.half_duplex ? 1 : 0;
-  if (config_.older_user_blocks) {
+  if (config_.user_blocks == UserBlocks::older) {
     blocks.kind = 0;
     blocks.dst_half_duplex.reset();
-    send(blocks);
-    return;
+  } else {
+    blocks.dst_half_duplex = blocks.older_half_duplex;
   }
-  blocks.dst_half_duplex = blocks.older_half_duplex;
   send(blocks);
-  send(FpgaCalData{});  // unasked, in this order
-  send(FpgaVersionData{});
+  if (config_.user_blocks == UserBlocks::dst) {
+    send(FpgaCalData{});  // unasked, in this order
+    send(FpgaVersionData{});
+  }
 }
 
 bool Device::Impl::has_parameters() {
@@ -219,7 +214,6 @@ void Device::Impl::handle(TimePoint now, const SendData& command) {
 void Device::Impl::handle(TimePoint now, const HeadCommand& command) {
   scanner_.configure(now, command);
   sent_config_ = true;
-  parameters_told_ = false;
   if (config_.alive_after_head_command && !alives_stopped_) {
     send_alive(now);
   }
@@ -256,7 +250,6 @@ std::uint8_t Device::Impl::head_info(TimePoint now) const {
   using namespace head_info_bits;
   const HeadState state_now = state(now);
   const bool seeking = state_now == HeadState::centring;
-  const bool untold = !scanner_.parameters() || !parameters_told_;
   unsigned info = motor_on | (seeking ? head_info_bits::centring | motoring : centred);
   if (scanner_.turning(now)) {
     info |= motoring;
@@ -264,7 +257,7 @@ std::uint8_t Device::Impl::head_info(TimePoint now) const {
   if (scanner_.position(now) != bearing_ahead && (seeking || config_.direction_bit_kept)) {
     info |= off_centre;
   }
-  if (untold) {
+  if (!scanner_.parameters()) {
     info |= no_parameters;
   } else if (state_now == HeadState::scanning) {
     info |= scanning;
@@ -283,7 +276,6 @@ void Device::Impl::send_alive(TimePoint now) {
   alive.position = static_cast<std::uint16_t>(scanner_.position(now));
   send(alive);
   ++counters_.alives_sent;
-  parameters_told_ = scanner_.parameters().has_value();
 }
 
 void Device::Impl::send_due_alive(TimePoint now) {
@@ -320,8 +312,7 @@ std::optional<TimePoint> Device::Impl::next_deadline() const {
 
 // ---- The door
 
-Device::Device(const DeviceConfig& config, TimePoint power_up)
-    : impl_(std::make_unique<Impl>(config, power_up)) {}
+Device::Device(const DeviceConfig& config, TimePoint start) : impl_(std::make_unique<Impl>(config, start)) {}
 Device::~Device() = default;
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;

@@ -38,9 +38,9 @@ std::string_view to_string(HeadState state);
 /// throw away. Not thread-safe. `now` never goes backwards over all calls.
 class Device {
  public:
-  /// Power comes on at `power_up`.
+  /// A head that was powered up in time: at `start` it is centred and has no parameters.
   /// @throws std::invalid_argument naming the field of `config` that is out of range
-  Device(const DeviceConfig& config, TimePoint power_up);
+  Device(const DeviceConfig& config, TimePoint start);
   ~Device();
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;

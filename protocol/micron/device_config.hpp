@@ -17,6 +17,13 @@ enum class LimitsOrder : std::uint8_t {
   swapped,    ///< the host has confused them
 };
 
+/// What a head says of itself when it is asked for its user blocks (6.4).
+enum class UserBlocks : std::uint8_t {
+  dst,        ///< 264 bytes, and its FPGA data behind them
+  dst_alone,  ///< 264 bytes, for clients that read those alone
+  older,      ///< 175 bytes, of a head that is no DST
+};
+
 /// Section numbers are those of docs/protocols/micron.md. Most of these are choices in which drivers or heads
 /// differ; the defaults suit all drivers that the document names. The Device constructor refuses what is out
 /// of range.
@@ -24,21 +31,21 @@ struct DeviceConfig {
   std::uint8_t node = default_head_node;  ///< 1..254 (2.1)
   bool half_duplex = false;               ///< one line for a request instead of two (8.1)
   VersionData version;                    ///< what it calls itself; its node is the one above (6.1)
-  bool older_user_blocks = false;         ///< those of a head that is no DST: 175 bytes, no FPGA data (6.4)
+  UserBlocks user_blocks = UserBlocks::dst;
 
   /// True speed of sound at the head, which makes ranges out of times. > 0 (4)
   double water_sound_speed_mps = 1500.0;
-  bool mounted_inverted = false;          ///< boot down; right only if the host sets the invert bit (7.6)
-  std::uint16_t power_up_bearing = 2400;  ///< where power finds the transducer, 0..6399 (7.4)
+  bool mounted_inverted = false;  ///< boot down; right only if the host sets the invert bit (7.6)
 
-  std::chrono::nanoseconds boot_time{700'000'000};        ///< deaf and dumb; >= 0, < 1 s (7.1)
-  std::chrono::nanoseconds centring_time{3'200'000'000};  ///< at least; 2..15 s (7.4)
-  double seek_speed_rad_s = 1.5707963267948966;           ///< while centring, > 0 (7.4)
-  std::chrono::nanoseconds alive_period{1'000'000'000};   ///< > 0 (7.1)
-  bool alive_while_scanning = true;                       ///< also while lines are owed (8.5)
-  bool alive_after_head_command = false;                  ///< one at once, beside the regular ones (7.1)
-  bool direction_bit_kept = false;  ///< the alive tells "off centre" after centring, too (6.2)
-  bool clock_follows_host = true;   ///< SendData with a time sets the clock (7.5)
+  std::chrono::nanoseconds boot_time{700'000'000};  ///< deaf and dumb; >= 0, < 1 s (7.1)
+  /// Of centring, also of a head that stands at its centre; 0..15 s (7.4).
+  std::chrono::nanoseconds least_centring_time{500'000'000};
+  double seek_speed_rad_s = 1.5707963267948966;          ///< while centring, > 0 (7.4)
+  std::chrono::nanoseconds alive_period{1'000'000'000};  ///< > 0 (7.1)
+  bool alive_while_scanning = true;                      ///< also while lines are owed (8.5)
+  bool alive_after_head_command = true;  ///< one answers it at once, beside the regular ones (7.1)
+  bool direction_bit_kept = false;       ///< the alive tells "off centre" after centring, too (6.2)
+  bool clock_follows_host = true;        ///< SendData with a time sets the clock (7.5)
 
   NibbleOrder nibble_order = NibbleOrder::high_first;  ///< of 4-bit data (6.3)
   LimitsOrder limits_order = LimitsOrder::clockwise;   ///< (8.3)

@@ -9,11 +9,15 @@
 namespace sonard::micron {
 namespace {
 
-constexpr std::size_t lengths_end = 7;   // start, hexadecimal length, binary length
+constexpr std::size_t digits_end = 5;    // start, hexadecimal length
+constexpr std::size_t lengths_end = 7;   // the same, and binary length
 constexpr std::size_t min_length = 8;    // of a frame without data
 constexpr std::size_t count_offset = 5;  // by how much the count is less than the length
 constexpr std::uint8_t only_packet = 0x80;
 constexpr std::chrono::milliseconds cut_silence{100};
+// One client sends head commands of 82 bytes that say 66 (2.4).
+constexpr std::size_t head_command_size = 66;
+constexpr std::size_t longer_head_command_size = 82;
 
 std::optional<unsigned> hex_digit(std::uint8_t c) {
   if (c >= '0' && c <= '9') {
@@ -40,6 +44,19 @@ std::optional<std::size_t> stated_length(std::span<const std::uint8_t> bytes) {
   }
   const std::size_t binary = bytes[5] | static_cast<std::size_t>(bytes[6]) << 8;
   return hex == binary ? std::optional{hex} : std::nullopt;
+}
+
+/// Whether the hexadecimal length may have been written with five digits, as one client does: the binary one
+/// then follows a byte later (2.4). It is certain from a byte more than that on.
+bool has_fifth_digit(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < lengths_end || bytes[0] != frame_start || !hex_digit(bytes[digits_end])) {
+    return false;
+  }
+  std::array<std::uint8_t, lengths_end> without{};
+  std::ranges::copy(bytes.first(digits_end), without.begin());
+  without[digits_end] = bytes[digits_end + 1];
+  without[digits_end + 1] = bytes.size() > lengths_end ? bytes[lengths_end] : std::uint8_t{0};
+  return stated_length(without).has_value();
 }
 
 std::vector<std::uint8_t> make_frame(const FrameHeader& header, std::span<const std::uint8_t> data) {
@@ -99,9 +116,16 @@ std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_s
   if (!length || *length < min_length || *length + length_overhead > max_size) {
     return -1;
   }
-  const std::size_t size = *length + length_overhead;
+  std::size_t size = *length + length_overhead;
   if (bytes.size() < size) {
     return 0;
+  }
+  if (size == head_command_size && bytes[size - 1] != frame_end &&
+      frame_header(bytes).type == static_cast<std::uint8_t>(MessageType::head_command)) {
+    size = longer_head_command_size;
+    if (bytes.size() < size) {
+      return 0;
+    }
   }
   return bytes[size - 1] == frame_end ? static_cast<std::ptrdiff_t>(size) : -1;
 }
@@ -121,7 +145,14 @@ void FrameBuffer::append(TimePoint now, std::span<const std::uint8_t> bytes) {
 std::optional<FrameBuffer::Frame> FrameBuffer::front(TimePoint now) {
   std::ptrdiff_t found = 0;
   while ((found = next_frame(rest(), max_frame_size_)) < 0) {
-    drop(static_cast<std::size_t>(-found));
+    if (!has_fifth_digit(rest())) {
+      drop(static_cast<std::size_t>(-found));
+    } else if (rest().size() == lengths_end) {
+      return std::nullopt;  // the next byte tells
+    } else {
+      bytes_.erase(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_ + digits_end));
+      ++dropped_;
+    }
   }
   front_size_ = static_cast<std::size_t>(found);
   if (found > 0) {

@@ -14,18 +14,24 @@
 
 namespace sonard::micron {
 
-/// Table of one message, or of the part of it that a table can say (protocol/common/layout.hpp).
+/// Table of one message, or of the part of it that a table can say (protocol/common/layout.hpp). A command
+/// may end before fields that a head can do without: its table insists on the last one that matters, and what
+/// is absent keeps the value of its struct (2.5).
 template <class Message>
 struct Layout;
 
 template <>
-struct Layout<SendData> : WholeLayout<17> {
+struct Layout<SendData> {
+  static constexpr std::size_t size = 17;
+  static constexpr std::size_t minimum = 13;
   static constexpr auto fields = std::tuple{Field{13, "time_ms", &SendData::time_ms}};
 };
 
-/// After the byte that says which form it is.
+/// After the byte that says which form it is. A head uses nothing behind `bins`.
 template <>
-struct Layout<HeadCommand> : WholeLayout<65> {
+struct Layout<HeadCommand> {
+  static constexpr std::size_t size = 65;
+  static constexpr std::size_t minimum = 55;
   static constexpr auto fields = std::tuple{
       Field{14, "control", &HeadCommand::control},
       Field{16, "head_type", &HeadCommand::head_type},
@@ -52,9 +58,12 @@ struct Layout<HeadCommand> : WholeLayout<65> {
   };
 };
 
-/// Offsets from its own start: byte 14 of a gain command, byte 65 of a long head command.
+/// Offsets from its own start: byte 14 of a gain command, byte 65 of a long head command. A head uses nothing
+/// behind `gain`.
 template <>
-struct Layout<GainBlock> : WholeLayout<16> {
+struct Layout<GainBlock> {
+  static constexpr std::size_t size = 16;
+  static constexpr std::size_t minimum = 6;
   static constexpr auto fields = std::tuple{
       Field{0, "ad_span", &GainBlock::ad_span}, Field{2, "ad_low", &GainBlock::ad_low},
       Field{4, "gain", &GainBlock::gain},       Field{6, "set_point", &GainBlock::set_point},

@@ -24,7 +24,7 @@ struct MicronJob {
   double bin_time_s = 0.0;       ///< of the echo, between two bins: 640 ns and more
   double bin_length_m = 0.0;     ///< bin_time_s * sound_speed_mps / 2; bin k holds [k, k + 1) of it
   double sound_speed_mps = 0.0;  ///< true speed in the water
-  double gain_db = 0.0;          ///< initial gain, 0..80 dB (more for gain bytes above 210)
+  double gain_db = 0.0;          ///< initial gain, 0..80 dB
   double ad_low_db = 0.0;        ///< window of 4-bit data; the head applies it, not the renderer
   double ad_span_db = 0.0;
   bool eight_bit = true;  ///< how the line will travel; the samples are 8-bit ones always

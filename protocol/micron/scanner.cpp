@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds lateness_allowed{50};
 }  // namespace
 
 Scanner::Scanner(const DeviceConfig& config, DeviceCounters& counters)
-    : config_(config), counters_(counters), motor_(config.power_up_bearing), sweep_(config.limits_order) {}
+    : config_(config), counters_(counters), motor_(bearing_ahead), sweep_(config.limits_order) {}
 
 void Scanner::restart(TimePoint now, TimePoint begin) {
   cancel_ping();
@@ -30,7 +30,7 @@ void Scanner::restart(TimePoint now, TimePoint begin) {
   const double way_rad = std::abs(bearing_rad(motor_.position(now)));
   const nanoseconds seek{static_cast<nanoseconds::rep>(way_rad / config_.seek_speed_rad_s * 1e9)};
   motor_.turn_to(bearing_ahead, begin, begin + seek);
-  centred_at_ = begin + std::max(config_.centring_time, seek);
+  centred_at_ = begin + std::max(config_.least_centring_time, seek);
 }
 
 // ---- Commands

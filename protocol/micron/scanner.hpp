@@ -23,7 +23,7 @@ namespace sonard::micron {
 /// is one acquired ping at most: even in full duplex a line is complete before the next ping transmits.
 class Scanner {
  public:
-  /// `config` and `counters` outlive the scanner.
+  /// Centred. `config` and `counters` outlive the scanner.
   Scanner(const DeviceConfig& config, DeviceCounters& counters);
 
   /// Power or a reboot: forgets everything but the job that is still to be answered, and turns to the centre
@@ -93,7 +93,7 @@ class Scanner {
   Motor motor_;
   Sweep sweep_;
   TimePoint centred_at_{};
-  bool placed_ = false;  ///< centred, and in the sector of its parameters if it has any
+  bool placed_ = true;  ///< centred, and in the sector of its parameters if it has any
   TimePoint ready_at_{};
 
   // What it was told.

@@ -37,9 +37,9 @@ constexpr double bin_time_s(int ad_interval) {
 constexpr double level_db(int level) {
   return level * full_scale_db / 255.0;
 }
-/// Initial gain of a gain byte; 210 is 80 dB, more is more.
+/// Initial gain of a gain byte; 210 is 80 dB, and so is all beyond.
 constexpr double gain_db(int gain) {
-  return gain * full_scale_db / gain_full_scale;
+  return (gain < gain_full_scale ? gain : gain_full_scale) * full_scale_db / gain_full_scale;
 }
 
 }  // namespace sonard::micron

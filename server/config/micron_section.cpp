@@ -15,9 +15,11 @@ void read_device(YamlSection& section, micron::DeviceConfig& device) {
   section.integer("node", device.node, 1, 254);
   section.integer("serial_number", device.version.serial_number, 0, 65535);
   section.choice("duplex", device.half_duplex, {{"full", false}, {"half", true}});
-  section.boolean("older_user_blocks", device.older_user_blocks);
+  section.choice("user_blocks", device.user_blocks,
+                 {{"dst", micron::UserBlocks::dst},
+                  {"dst_alone", micron::UserBlocks::dst_alone},
+                  {"older", micron::UserBlocks::older}});
   section.boolean("mounted_inverted", device.mounted_inverted);
-  section.integer("power_up_bearing", device.power_up_bearing, 0, 6399);
   section.choice(
       "nibble_order", device.nibble_order,
       {{"high_first", micron::NibbleOrder::high_first}, {"low_first", micron::NibbleOrder::low_first}});
@@ -34,7 +36,7 @@ void read_device(YamlSection& section, micron::DeviceConfig& device) {
 
 void read_timing(YamlSection& section, micron::DeviceConfig& device) {
   section.duration("boot_ms", device.boot_time, Range::from(0.0, 999.0));
-  section.duration("centring_ms", device.centring_time, Range::from(2000.0, 15'000.0));
+  section.duration("centring_ms", device.least_centring_time, Range::from(0.0, 15'000.0));
   section.angle("seek_speed_deg", device.seek_speed_rad_s, Range::above(0.0, 36'000.0));
   section.duration("alive_period_ms", device.alive_period, Range::from(10.0, minute_ms));
   section.duration("reconfiguration_ms", device.reconfiguration_time, Range::from(0.0, minute_ms));

@@ -67,7 +67,6 @@ heads:
 MICRON = """
   - name: stern
     type: micron
-    timing: {{boot_ms: 0, centring_ms: 2000}}
     acoustics: {{seed: {seed}}}
     serial:
       tcp: [{{bind: {head}:4001, allow: [10.61.19.0/24]}}]

@@ -58,7 +58,7 @@ TEST(Answers, user_blocks_tell_half_duplex) {
 TEST(Answers, older_user_blocks_are_short_and_come_alone) {
   DeviceConfig config;
   config.half_duplex = true;
-  config.older_user_blocks = true;
+  config.user_blocks = UserBlocks::older;
   Bench bench(config);
   bench.run_until(5s);
   const Frames frames = answers(bench, fixture("send_bb_user"));
@@ -70,23 +70,35 @@ TEST(Answers, older_user_blocks_are_short_and_come_alone) {
 
 TEST(Answers, come_in_every_state_but_booting) {
   Bench bench;
-  bench.run_until(600ms);
+  bench.reboot_at(0);
+  bench.run_for(600ms);
   EXPECT_TRUE(answers(bench, fixture("send_version")).empty());
-  bench.run_until(1500ms);
+  bench.run_for(900ms);
   EXPECT_EQ(answers(bench, fixture("send_version")).size(), 1U) << "centring";
   bench.make_ready(all_round());
   bench.command(SendData{});
   EXPECT_EQ(answers(bench, fixture("send_version")).size(), 1U) << "scanning";
 }
 
+TEST(Answers, parameters_are_answered_by_an_alive) {
+  Bench bench;
+  bench.run_until(10s);
+  for (const char* name :
+       {"head_command_ros", "head_command_rock", "head_command_uxv", "head_command_gain_block"}) {
+    const Frames frames = answers(bench, fixture(name));
+    ASSERT_EQ(frames.size(), 1U) << name;
+    EXPECT_EQ(frames[0][10], static_cast<int>(MessageType::alive)) << name;
+  }
+}
+
 TEST(Answers, commands_without_answer_are_taken_in_silence) {
   Bench bench;
   bench.run_until(10s);
-  for (const char* name : {"head_command_ros", "head_command_rock", "head_command_uxv", "gain", "reverse",
-                           "stop_alives", "head_command_gain_block"}) {
+  bench.command(all_round());
+  for (const char* name : {"gain", "reverse", "stop_alives", "head_command_ros"}) {
     EXPECT_TRUE(answers(bench, fixture(name)).empty()) << name;
   }
-  EXPECT_EQ(bench.device.counters().commands, 7U);
+  EXPECT_EQ(bench.device.counters().commands, 5U);
 }
 
 TEST(Answers, unknown_types_are_ignored) {

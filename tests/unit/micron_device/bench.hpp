@@ -15,6 +15,7 @@
 
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/device.hpp"
+#include "protocol/micron/units.hpp"
 #include "tests/support/hex_fixture.hpp"
 
 namespace sonard::micron {
@@ -94,6 +95,14 @@ class Bench {
   void fail(std::uint64_t ping_number) {
     device.on_line_failed(now, ping_number);
     step();
+  }
+  /// The head is turned to a bearing and then rebooted; nothing said so far counts. Returns when that was.
+  TimePoint reboot_at(std::uint16_t bearing) {
+    command(sector(bearing, bearing));
+    run_for(3s);
+    command(Reboot{});
+    sent.clear();
+    return now;
   }
   void power_cycle() {
     device.power_cycle(now);

@@ -24,16 +24,15 @@ TEST(DeviceConfig, names_the_field_that_is_out_of_range) {
   EXPECT_EQ(complaint([](DeviceConfig&) {}), "");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.node = 0; }), "micron device: node must be 1..254");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.node = 255; }), "micron device: node must be 1..254");
-  EXPECT_EQ(complaint([](DeviceConfig& c) { c.centring_time = 1999ms; }),
-            "micron device: centring_time must be 2..15 s");
-  EXPECT_EQ(complaint([](DeviceConfig& c) { c.centring_time = 15001ms; }),
-            "micron device: centring_time must be 2..15 s");
+  EXPECT_EQ(complaint([](DeviceConfig& c) { c.least_centring_time = -1ns; }),
+            "micron device: least_centring_time must be 0..15 s");
+  EXPECT_EQ(complaint([](DeviceConfig& c) { c.least_centring_time = 15001ms; }),
+            "micron device: least_centring_time must be 0..15 s");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.boot_time = 1s; }),
             "micron device: boot_time must be less than 1 s");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.boot_time = -1ns; }),
             "micron device: boot_time must be less than 1 s");
   EXPECT_NE(complaint([](DeviceConfig& c) { c.water_sound_speed_mps = 0.0; }), "");
-  EXPECT_NE(complaint([](DeviceConfig& c) { c.power_up_bearing = 6400; }), "");
   EXPECT_NE(complaint([](DeviceConfig& c) { c.seek_speed_rad_s = 0.0; }), "");
   EXPECT_NE(complaint([](DeviceConfig& c) { c.alive_period = 0ns; }), "");
   EXPECT_NE(complaint([](DeviceConfig& c) { c.request_cap = 0; }), "");

@@ -6,20 +6,38 @@ namespace {
 
 using Infos = std::vector<int>;
 
-TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
+TEST(PowerUp, head_is_there_when_the_daemon_is) {
   Bench bench;
-  bench.run_until(699ms);
+  EXPECT_EQ(bench.head_infos(), Infos{0x4A}) << "at once";
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
+  bench.run_until(2s);
+  const auto alives = bench.all<Alive>();
+  ASSERT_EQ(alives.size(), 3U);
+  for (std::size_t i = 0; i < alives.size(); ++i) {
+    EXPECT_EQ(alives[i].first, i * 1s);
+    EXPECT_EQ(alives[i].second.time_ms, i * 1000);
+    EXPECT_EQ(alives[i].second.needs_parameters, 0x80);
+    EXPECT_EQ(alives[i].second.position, 3200);
+  }
+}
+
+TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
+  DeviceConfig config;
+  config.alive_after_head_command = false;
+  Bench bench(config);
+  const TimePoint reboot = bench.reboot_at(800);  // 135 degrees from the centre: 1.5 s
+  bench.run_until(reboot + 699ms);
   EXPECT_TRUE(bench.sent.empty());
   EXPECT_EQ(bench.device.state(bench.now), HeadState::booting);
-  bench.run_until(5s);
-  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x4D, 0x4D, 0x4D, 0x4A}));
+  bench.run_until(reboot + 3s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x4A}));
   EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
 
   bench.sent.clear();
   bench.command(all_round());
   EXPECT_EQ(bench.device.state(bench.now), HeadState::ready);
   bench.run_for(2s);
-  EXPECT_EQ(bench.head_infos(), (Infos{0xCA, 0x8A}));
+  EXPECT_EQ(bench.head_infos(), (Infos{0x8A, 0x8A}));
   bench.sent.clear();
   bench.on_sent = [&](const Bench::Sent& frame) {
     if (frame.bytes[10] == 2) {
@@ -32,56 +50,58 @@ TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
   EXPECT_EQ(bench.head_infos(), (Infos{0xAA, 0xAA}));
 }
 
-TEST(PowerUp, alives_come_once_a_second_with_clock_and_position) {
-  Bench bench;
-  bench.run_until(8s);
-  const auto alives = bench.all<Alive>();
-  ASSERT_EQ(alives.size(), 8U);
-  for (std::size_t i = 0; i < alives.size(); ++i) {
-    EXPECT_EQ(alives[i].first, 700ms + i * 1s);
-    EXPECT_EQ(alives[i].second.time_ms, 700 + i * 1000);
-    EXPECT_EQ(alives[i].second.needs_parameters, 0x80);
-    EXPECT_EQ(alives[i].second.position, i == 0 ? 2400 : 3200);
-  }
-}
-
-TEST(PowerUp, alive_is_the_published_frame) {
-  // Booted at 0.266 s, so that the seventh alive tells 6266 ms: 4A with position 3200 (section 10).
+TEST(PowerUp, alives_are_the_published_frames) {
+  // 4A at 6266 ms with position 3200, then CA, when user blocks were asked for, and 8A (section 10).
   DeviceConfig config;
   config.boot_time = 266ms;
+  config.alive_after_head_command = false;
   Bench bench(config);
-  bench.run_until(6266ms);
+  const TimePoint reboot = bench.reboot_at(bearing_ahead);
+  bench.run_until(reboot + 6266ms);
   EXPECT_EQ(bench.sent.back().bytes, fixture("alive_4a"));
+  bench.raw(fixture("send_bb_user"));
+  bench.run_until(reboot + 7266ms);
+  EXPECT_EQ(bench.sent.back().bytes, fixture("alive_ca"));
   bench.command(HeadCommand{});
-  bench.run_until(8266ms);
-  EXPECT_EQ(bench.sent[bench.sent.size() - 2].bytes, fixture("alive_ca"));
+  bench.run_until(reboot + 8266ms);
   EXPECT_EQ(bench.sent.back().bytes, fixture("alive_8a"));
 }
 
-TEST(PowerUp, motor_seeks_the_centre_the_short_way_at_90_degrees_a_second) {
+TEST(Reboot, motor_seeks_the_centre_the_short_way_at_90_degrees_a_second) {
   DeviceConfig config;
-  config.power_up_bearing = 6399;  // 179.94 degrees of starboard, through 4800
   config.alive_period = 500ms;
   Bench bench(config);
-  bench.run_until(4s);
+  bench.run_until(bench.reboot_at(6399) + 4s);  // 179.94 degrees of starboard, through 4800
   std::vector<int> positions;
   for (const auto& [at, alive] : bench.all<Alive>()) {
     positions.push_back(alive.position);
   }
   EXPECT_EQ(positions, (std::vector<int>{6399, 5599, 4799, 3999, 3200, 3200, 3200}));
-  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x4D, 0x4D, 0x4D}));
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x4A, 0x4A, 0x4A}));
 }
 
-TEST(PowerUp, slow_motor_centres_for_longer_than_the_least_time) {
+TEST(Reboot, slow_motor_centres_for_longer) {
   DeviceConfig config;
-  config.power_up_bearing = 0;
   config.seek_speed_rad_s = std::numbers::pi / 5;
   Bench bench(config);
-  bench.run_until(7s);
+  bench.run_until(bench.reboot_at(0) + 7s);
   EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x5D, 0x4A, 0x4A}));
 }
 
-TEST(PowerUp, direction_bit_may_stay_after_centring) {
+TEST(Reboot, at_the_centre_it_centres_for_the_least_time) {
+  for (const auto& [least, infos] :
+       {std::pair<std::chrono::nanoseconds, Infos>{0ms, {0x4A, 0x4A, 0x4A, 0x4A}},
+        {500ms, {0x4D, 0x4A, 0x4A, 0x4A}},
+        {3200ms, {0x4D, 0x4D, 0x4D, 0x4D}}}) {
+    DeviceConfig config;
+    config.least_centring_time = least;
+    Bench bench(config);
+    bench.run_until(bench.reboot_at(bearing_ahead) + 3700ms);
+    EXPECT_EQ(bench.head_infos(), infos);
+  }
+}
+
+TEST(Alives, direction_bit_may_stay_after_centring) {
   DeviceConfig config;
   config.direction_bit_kept = true;
   Bench bench(config);
@@ -94,7 +114,7 @@ TEST(PowerUp, direction_bit_may_stay_after_centring) {
   EXPECT_EQ(bench.head_infos().back(), 0xBA);
 }
 
-TEST(Reboot, forgets_all_and_centres_again_with_at_least_three_alives) {
+TEST(Reboot, forgets_all_and_centres_again) {
   Bench bench;
   bench.make_ready(sector(1600, 1600 + 320));
   bench.scan(5);
@@ -109,25 +129,13 @@ TEST(Reboot, forgets_all_and_centres_again_with_at_least_three_alives) {
   bench.run_until(reboot + 699ms);
   EXPECT_TRUE(bench.sent.empty()) << "no answer, and silence";
   bench.run_until(reboot + 5700ms);
-  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x4D, 0x4D, 0x4D, 0x4A, 0x4A})) << "parameters are gone";
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x4A, 0x4A, 0x4A, 0x4A, 0x4A})) << "parameters are gone";
   const auto alives = bench.all<Alive>();
   EXPECT_EQ(alives[0].first, reboot + 700ms);
   EXPECT_EQ(alives[0].second.time_ms, 700U);
   EXPECT_EQ(alives[0].second.position, position);
   EXPECT_TRUE(bench.all<HeadData>().empty()) << "lines that were owed are not";
   EXPECT_EQ(bench.device.counters().boots, 1U);
-}
-
-TEST(Reboot, every_centring_time_that_may_be_set_shows_two_alives_of_it) {
-  for (const auto time : {2s, 3s, 15s}) {
-    DeviceConfig config;
-    config.centring_time = time;
-    Bench bench(config);
-    bench.run_until(20s);
-    const Infos infos = bench.head_infos();
-    const auto centring = std::ranges::count_if(infos, [](int info) { return (info & 3) == 1; });
-    EXPECT_EQ(centring, time / 1s);
-  }
 }
 
 TEST(Reboot, in_the_middle_of_a_ping_leaves_its_job_to_be_answered) {
@@ -203,35 +211,29 @@ TEST(Alives, go_on_between_lines_of_a_scan_or_not) {
   }
 }
 
-TEST(Alives, one_comes_at_once_after_parameters_if_so_set) {
-  DeviceConfig config;
-  config.alive_after_head_command = true;
-  Bench bench(config);
-  bench.run_until(10s);
-  bench.sent.clear();
-  bench.command(all_round());
-  EXPECT_EQ(bench.head_infos(), (Infos{0xCA}));
-  bench.run_for(1s);
-  EXPECT_EQ(bench.head_infos(), (Infos{0xCA, 0x8A}));
-}
-
-TEST(Alives, parameters_during_centring_show_as_on_a_real_session) {
-  Bench bench;
-  bench.run_until(1s);
-  bench.command(all_round());
-  bench.run_until(5s);
-  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0xCD, 0x8D, 0x8D, 0x8A}));
-}
-
-TEST(Alives, one_acknowledges_each_set_of_parameters) {
-  Bench bench;
-  bench.make_ready(all_round());
-  for (int i = 0; i < 2; ++i) {
-    bench.sent.clear();
-    bench.command(sector(3000, 3400));
-    bench.run_for(3s);
-    EXPECT_EQ(bench.head_infos(), (Infos{0xCA, 0x8A, 0x8A}));
+TEST(Alives, one_answers_parameters_at_once_unless_told_not_to) {
+  for (const bool answers : {true, false}) {
+    DeviceConfig config;
+    config.alive_after_head_command = answers;
+    Bench bench(config);
+    bench.run_until(10s);
+    for (int i = 0; i < 3; ++i) {
+      bench.sent.clear();
+      bench.command(all_round());
+      EXPECT_EQ(bench.head_infos(), answers ? Infos{0x8A} : Infos{});
+      bench.run_for(1s);
+      EXPECT_EQ(bench.head_infos(), answers ? (Infos{0x8A, 0x8A}) : Infos{0x8A});
+    }
   }
+}
+
+TEST(Alives, parameters_while_it_centres_show_at_once) {
+  Bench bench;
+  const TimePoint reboot = bench.reboot_at(0);
+  bench.run_until(reboot + 1s);
+  bench.command(all_round());
+  bench.run_until(reboot + 3s);
+  EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x9D, 0x9D, 0x8A}));
 }
 
 TEST(Clock, follows_the_host_unless_told_not_to) {
@@ -242,8 +244,8 @@ TEST(Clock, follows_the_host_unless_told_not_to) {
     bench.run_until(1500ms);
     bench.raw(fixture("send_data_with_time"));
     bench.raw(fixture("send_data"));  // time 0 says nothing
-    bench.run_until(1700ms);
-    EXPECT_EQ(bench.all<Alive>().back().second.time_ms, follows ? 61'891'786U + 200U : 1700U);
+    bench.run_until(2s);
+    EXPECT_EQ(bench.all<Alive>().back().second.time_ms, follows ? 61'891'786U + 500U : 2000U);
   }
 }
 
@@ -251,8 +253,8 @@ TEST(Clock, wraps) {
   Bench bench;
   bench.run_until(1500ms);
   bench.command(SendData{0xFFFFFFFF});
-  bench.run_until(1700ms);
-  EXPECT_EQ(bench.all<Alive>().back().second.time_ms, 199U);
+  bench.run_until(2s);
+  EXPECT_EQ(bench.all<Alive>().back().second.time_ms, 499U);
 }
 
 }  // namespace

@@ -178,6 +178,7 @@ TEST(Timing, new_parameters_cost_a_quarter_of_a_second_and_the_way) {
 TEST(Timing, motor_is_seen_on_its_way_to_a_sector) {
   DeviceConfig config;
   config.alive_period = 100ms;
+  config.alive_after_head_command = false;
   Bench bench(config);
   bench.make_ready(all_round());
   bench.command(sector(5200, 5600));

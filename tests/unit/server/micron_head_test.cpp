@@ -57,7 +57,6 @@ struct MicronHeadTest : testing::Test {
     config.serial.tcp = {{{0x7F000001, 0}, {{0x7F000000, 8}}}};
     // As quick as a head may be.
     config.device.boot_time = 10ms;
-    config.device.centring_time = 2s;
     config.device.alive_period = 100ms;
     config.device.reconfiguration_time = 10ms;
   }

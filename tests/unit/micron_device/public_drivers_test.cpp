@@ -1,0 +1,400 @@
+// Loops of public drivers as they run: when each gives up, what it looks at first, what it repeats. Which
+// drivers they are, and where to find them: docs/your-micron-driver.md. The names of the tests are those of
+// the defects that they have shown.
+#include "driver.hpp"
+
+namespace sonard::micron {
+namespace {
+
+constexpr Link steady{"steady"};
+constexpr Link fresh{.name = "fresh", .freshly_powered = true};
+
+bool is_alive(const Bytes& frame) {
+  return frame[10] == static_cast<std::uint8_t>(MessageType::alive);
+}
+bool is_line(const Bytes& frame) {
+  return frame[10] == static_cast<std::uint8_t>(MessageType::head_data);
+}
+bool says_no_parameters(const Bytes& alive) {
+  return (alive[20] & head_info_bits::no_parameters) != 0;
+}
+
+HeadCommand with_limits(std::uint16_t left, std::uint16_t right) {
+  HeadCommand command = sector(left, right, 64);
+  command.bins = 200;
+  return command;
+}
+
+// libminiking and miniking_ros. It reads the user blocks and takes whatever comes next for an alive; one of
+// another type ends it. Its parameters go out, once at least, until byte 13 of the alive that follows is 0;
+// the node then changes them the same way. Then it asks once for two lines, for ever, and waits for both.
+TEST(PublicDrivers, S1_parameters_repeated_until_an_alive_is_content) {
+  DeviceConfig config;
+  config.user_blocks = UserBlocks::dst_alone;
+  Driver driver(steady, config);
+  ASSERT_TRUE(is_alive(*driver.read(2s)));
+  driver.write("send_version");
+  ASSERT_TRUE(driver.await(MessageType::version_data, 1s));
+  driver.write("send_bb_user");
+  ASSERT_EQ(driver.read(1s)->size(), 264U);
+  const auto next = driver.read(2s);
+  ASSERT_TRUE(next && is_alive(*next)) << "anything else is a null pointer to it";
+  for (int change = 0; change < 3; ++change) {
+    Bytes command = fixture("head_command_ros");
+    command[50] = static_cast<std::uint8_t>(16 + change);
+    for (int tries = 1;; ++tries) {
+      ASSERT_LE(tries, 2) << "it would go on for ever";
+      driver.write(command);
+      const auto alive = driver.await(MessageType::alive, 2s);
+      ASSERT_TRUE(alive);
+      if ((*alive)[13] == 0) {
+        break;
+      }
+    }
+  }
+  for (int i = 0; i < 50; ++i) {
+    driver.write("send_data");
+    ASSERT_TRUE(driver.await_line(2s));
+    ASSERT_TRUE(driver.await_line(2s));
+  }
+}
+
+// iSonar of moos-ivp-enstabretagne. A tenth of a second after any message it sends one: the request for its
+// version, for the user blocks, or its parameters, whichever it still wants; parameters until an alive has
+// bit 7 and not 6.
+TEST(PublicDrivers, S1_parameters_sent_after_every_alive_until_one_is_content) {
+  Driver driver(steady);
+  bool has_version = false, has_blocks = false;
+  int commands = 0;
+  std::size_t lines = 0;
+  for (int messages = 0; lines < 50; ++messages) {
+    ASSERT_LT(messages, 200);
+    const auto frame = driver.read(2s);
+    ASSERT_TRUE(frame);
+    driver.sleep(100ms);
+    has_version = has_version || (*frame)[10] == 1;
+    has_blocks = has_blocks || (*frame)[10] == 6;
+    lines += is_line(*frame) ? 1 : 0;
+    const bool content =
+        lines > 0 || (is_alive(*frame) && !says_no_parameters(*frame) && ((*frame)[20] & 0x80) != 0);
+    if (content || is_line(*frame)) {
+      driver.write("send_data");
+    } else if (!has_version) {
+      driver.write("send_version");
+    } else if (!has_blocks) {
+      driver.write("send_bb_user");
+    } else {
+      ASSERT_LT(commands++, 10) << "it would send its parameters for ever";
+      driver.write("head_command_uxv");
+    }
+  }
+}
+
+TEST(PublicDrivers, S1_a_repeated_head_command_changes_nothing_in_what_alives_say) {
+  Driver driver(steady);
+  driver.write("head_command_ros");
+  ASSERT_TRUE(driver.await_alive(0, 0, 2s));
+  driver.sleep(3s);
+  driver.flush();
+  const auto before = driver.await(MessageType::alive, 2s);
+  ASSERT_TRUE(before);
+  EXPECT_EQ((*before)[13], 0);
+  EXPECT_EQ((*before)[20], 0x8A);
+  for (int i = 0; i < 20; ++i) {
+    driver.write("head_command_ros");
+    const auto alive = driver.await(MessageType::alive, 2s);
+    ASSERT_TRUE(alive);
+    EXPECT_EQ((*alive)[13], (*before)[13]) << i;
+    EXPECT_EQ((*alive)[20], (*before)[20]) << i;
+  }
+}
+
+// A Python script that sends no time. Both forms: as it was recorded, with a digit too many in its length,
+// and as it is meant.
+TEST(PublicDrivers, S2_send_data_without_its_time) {
+  const Bytes recorded{0x40, 0x30, 0x30, 0x30, 0x38, 0x38, 0x08, 0x00,
+                       0xFF, 0x02, 0x03, 0x19, 0x80, 0x02, 0x0A};
+  Bytes meant = recorded;
+  meant.erase(meant.begin() + 5);
+  for (const Bytes& request : {recorded, meant}) {
+    for (const Link& link :
+         {steady, Link{.name = "split", .split = true}, Link{.name = "noisy", .noise = true}}) {
+      Driver driver(link);
+      driver.write("head_command_ros");
+      driver.sleep(2s);
+      const std::uint32_t clock_ms = driver.bench().all<Alive>().back().second.time_ms;
+      for (int i = 0; i < 10; ++i) {
+        driver.write(request);
+        ASSERT_TRUE(driver.await_line(1s)) << link.name << " " << i;
+      }
+      driver.sleep(1s);
+      EXPECT_LT(driver.bench().all<Alive>().back().second.time_ms, clock_ms + 5000)
+          << "0: it keeps its clock";
+    }
+  }
+}
+
+/// A driver that reboots the head and goes on a second later. Nothing is repeated; but whatever message comes
+/// more than two seconds after its last line, or its programming, lets it begin anew.
+struct Watchdog {
+  Driver& driver;
+  int programmed = 0;
+  TimePoint last_line{};
+
+  void program() {
+    ++programmed;
+    last_line = driver.bench().now;
+    driver.write("reboot");
+    driver.sleep(1s);
+    driver.write("head_command_ros");
+    driver.write("send_data");
+  }
+  /// Lines until `end`.
+  std::size_t run_until(TimePoint end) {
+    std::size_t lines = 0;
+    while (driver.bench().now < end) {
+      const auto frame = driver.read(end - driver.bench().now);
+      if (frame && is_line(*frame)) {
+        last_line = driver.bench().now;
+        lines += 1;
+        driver.write("send_data");
+      } else if (frame && driver.bench().now - last_line > 2s) {
+        program();
+      }
+    }
+    return lines;
+  }
+};
+
+TEST(PublicDrivers, S3_a_watchdog_of_two_seconds_sees_lines_before_it_fires) {
+  Driver driver(steady);
+  Watchdog watchdog{driver};
+  watchdog.program();
+  EXPECT_GT(watchdog.run_until(driver.bench().now + 20s), 300U);
+  EXPECT_EQ(watchdog.programmed, 1) << "it would begin again and again";
+}
+
+// From wherever a scan has left the head; half a turn takes two seconds, so it may have to begin twice, and
+// no more.
+TEST(PublicDrivers, S3_the_way_to_the_centre_takes_as_long_as_it_is) {
+  for (int bearing = 0; bearing < 6400; bearing += 400) {
+    Driver driver(steady);
+    driver.write(
+        encode(with_limits(static_cast<std::uint16_t>(bearing), static_cast<std::uint16_t>(bearing))));
+    driver.sleep(3s);
+    driver.flush();
+    Watchdog watchdog{driver};
+    watchdog.program();
+    EXPECT_GT(watchdog.run_until(driver.bench().now + 20s), 200U) << bearing;
+    EXPECT_LE(watchdog.programmed, 2) << bearing;
+  }
+}
+
+/// What drivers-sonar_tritech does to configure: parameters, then any alive with bit 1, or bit 7, or without
+/// bit 6; lines that come before it are thrown away.
+bool rock_configure(Driver& driver, const Bytes& command) {
+  driver.write(command);
+  return driver
+      .await(MessageType::alive, 10s,
+             [](const Bytes& alive) { return (alive[20] & 0x82) != 0 || !says_no_parameters(alive); })
+      .has_value();
+}
+
+Bytes rock_command(int left, int right, double step_deg, bool continuous) {
+  Bytes command = fixture("head_command_rock");
+  command[14] = continuous ? 0x83 : 0x81;
+  command[37] = static_cast<std::uint8_t>(left & 0xFF);
+  command[38] = static_cast<std::uint8_t>(left >> 8);
+  command[39] = static_cast<std::uint8_t>(right & 0xFF);
+  command[40] = static_cast<std::uint8_t>(right >> 8);
+  command[50] = static_cast<std::uint8_t>(step_deg / 360.0 * 6399.0);
+  return command;
+}
+
+void rock_ten_beams(Driver& driver) {
+  for (int i = 0; i < 10; ++i) {
+    driver.write("send_data");
+    ASSERT_TRUE(driver.await_line(1s)) << i;
+  }
+}
+
+// test/test_micron.cpp of the same: three scans all round, then three sectors, before each of which it waits
+// for a line that it has not asked for. Versions of the driver swap the limits or do not; both ways.
+TEST(PublicDrivers, S4_hardware_test_that_takes_an_alive_for_the_answer) {
+  for (const bool swapped : {true, false}) {
+    for (const int phase_ms : {0, 150, 300, 450, 600, 750, 900}) {
+      Driver driver(steady);
+      driver.sleep(std::chrono::milliseconds{phase_ms});
+      driver.write("send_bb_user");
+      ASSERT_TRUE(driver.await(MessageType::bb_user_data, 2s));
+      for (const double step_deg : {1.0, 5.0, 10.0}) {
+        ASSERT_TRUE(rock_configure(driver, rock_command(3199, 3199, step_deg, true)));
+        ASSERT_NO_FATAL_FAILURE(rock_ten_beams(driver));
+      }
+      const std::pair<double, double> sectors_deg[] = {{-15, 15}, {15, 30}, {-15, -30}};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto wire = [](double deg) { return static_cast<int>((deg + 180.0) / 360.0 * 6399.0); };
+        auto [left, right] = sectors_deg[i];
+        if (swapped) {
+          std::swap(left, right);
+        }
+        ASSERT_TRUE(rock_configure(driver, rock_command(wire(left), wire(right), 5.0, false)));
+        ASSERT_TRUE(driver.await_line(i == 0 ? 10s : 1s)) << "sector " << i << ", phase " << phase_ms;
+        ASSERT_NO_FATAL_FAILURE(rock_ten_beams(driver));
+      }
+    }
+  }
+}
+
+// DelphinROSv3: parameters, a tenth of a second, one read; again until that read is an alive, whatever it
+// says. Everything that has come by then is thrown away. It writes 0xFF where its commands name the node
+// again.
+TEST(PublicDrivers, S4_an_alive_is_there_a_tenth_of_a_second_after_parameters) {
+  Driver driver(steady);
+  Bytes command = fixture("head_command_ros");
+  command[12] = 0xFF;
+  driver.flush();
+  driver.write(command);
+  driver.sleep(100ms);
+  const auto answer = driver.read(0ms);
+  ASSERT_TRUE(answer) << "it would send its parameters again";
+  EXPECT_TRUE(is_alive(*answer));
+  driver.flush();
+  for (int i = 0; i < 20; ++i) {
+    driver.write("send_data");
+    ASSERT_TRUE(driver.await_line(2s));
+  }
+}
+
+std::vector<int> bearings_asked_for(Driver& driver, std::size_t count) {
+  std::vector<int> bearings;
+  while (bearings.size() < count) {
+    driver.write("send_data");
+    const auto line = driver.await_line(2s);
+    if (!line) {
+      ADD_FAILURE() << "no line";
+      break;
+    }
+    bearings.push_back(bearing_of(*line));
+  }
+  return bearings;
+}
+
+// The defaults of one driver: its sector is 0 to 6400.
+TEST(PublicDrivers, S5_a_sector_of_6400_is_a_whole_turn) {
+  Driver driver(steady);
+  driver.write(encode(with_limits(0, 6400)));
+  ASSERT_TRUE(driver.await_alive(0, 0, 2s));
+  const auto bearings = bearings_asked_for(driver, 150);
+  // From ahead clockwise to astern, and back all the way round: 6400 and 0 are the two ends of it.
+  EXPECT_EQ(bearings[0], 3200);
+  EXPECT_EQ(bearings[1], 3264);
+  EXPECT_EQ(bearings[50], 0);
+  EXPECT_EQ(bearings[51], 6336);
+  EXPECT_EQ(bearings[149], 64);
+  const auto lines = driver.bench().all<HeadData>();
+  EXPECT_EQ(lines[50].second.sweep, SweepCode::right_limit);
+  EXPECT_EQ(lines[51].second.sweep, SweepCode::normal);
+  EXPECT_EQ(lines[0].second.left_limit, 0);
+  EXPECT_EQ(lines[0].second.right_limit, 6400);
+}
+
+// Those of early versions of drivers-sonar_tritech: 6399 twice. The protocol has the head hold still there.
+TEST(PublicDrivers, S5_equal_limits_stare) {
+  Driver driver(steady);
+  driver.write(encode(with_limits(6399, 6399)));
+  ASSERT_TRUE(driver.await_alive(0, 0, 2s));
+  for (const int bearing : bearings_asked_for(driver, 20)) {
+    EXPECT_EQ(bearing, 6399);
+  }
+  driver.write(encode(with_limits(6400, 6400)));
+  EXPECT_EQ(bearings_asked_for(driver, 3).back(), 0);
+}
+
+// ProjectRinzler, which gives every read a second: it waits for an alive, asks for the version, takes one
+// message that has to be an alive, and sends its parameters. Sonar drivers that sleep a second and read once:
+// alike.
+TEST(PublicDrivers, S6_a_client_of_one_second_at_the_start_of_the_daemon) {
+  for (const int phase_ms : {0, 1, 400, 990}) {
+    Driver driver(fresh);
+    driver.sleep(std::chrono::milliseconds{phase_ms});
+    ASSERT_TRUE(driver.read(1s));
+    driver.write("send_version");
+    ASSERT_EQ((*driver.read(1s))[10], 1);
+    ASSERT_TRUE(is_alive(*driver.read(1001ms)));
+    driver.write("head_command_uxv");
+    ASSERT_TRUE(is_alive(*driver.read(1s)));
+    driver.write("send_data");
+    ASSERT_TRUE(driver.await_line(1s)) << phase_ms;
+    ASSERT_TRUE(driver.await_line(1s));
+  }
+}
+
+TEST(PublicDrivers, S6_a_head_that_nobody_rebooted_is_centred_from_the_start) {
+  Bench bench;
+  EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
+  ASSERT_EQ(bench.all<Alive>().size(), 1U);
+  EXPECT_EQ(bench.all<Alive>()[0].second.head_info, 0x4A);
+  bench.command(all_round());
+  bench.command(SendData{});
+  bench.run_for(1s);
+  EXPECT_EQ(bench.all<HeadData>().size(), 2U);
+}
+
+// ProjectRinzler multiplies 210 by more than 1 and keeps a byte of it.
+TEST(PublicDrivers, S8_a_gain_byte_above_210_is_80_dB) {
+  for (const int gain : {210, 211, 232, 255}) {
+    Bench bench;
+    HeadCommand command = all_round();
+    command.gain[0] = static_cast<std::uint8_t>(gain);
+    bench.make_ready(command);
+    const auto lines = bench.scan(1);
+    EXPECT_DOUBLE_EQ(bench.jobs.at(0).gain_db, 80.0);
+    EXPECT_EQ(lines.at(0).gain, gain) << "as it came";
+  }
+}
+
+// libminiking reads 264 bytes of user blocks, and nothing else may come before the next alive. Heads that
+// send the FPGA data behind them end it; heads that send 175 bytes cost it the alives that fill the rest.
+TEST(PublicDrivers, user_blocks_of_264_bytes_come_alone_if_so_set) {
+  for (const bool half_duplex : {false, true}) {
+    DeviceConfig config;
+    config.half_duplex = half_duplex;
+    config.user_blocks = UserBlocks::dst_alone;
+    Driver driver(steady, config);
+    driver.write("send_bb_user");
+    const auto blocks = driver.read(1s);
+    ASSERT_TRUE(blocks);
+    EXPECT_EQ(blocks->size(), 264U);
+    EXPECT_EQ((*blocks)[19], 15);
+    EXPECT_EQ((*blocks)[146], half_duplex ? 1 : 0);
+    EXPECT_TRUE(is_alive(*driver.read(2s)));
+  }
+}
+
+// MicronCore of ENSTA: its head command has 82 bytes, says 66 and ends with the line feed of the longer one.
+TEST(PublicDrivers, a_head_command_longer_than_it_says_is_taken) {
+  Bytes command = fixture("head_command_uxv");
+  command.back() = 0x50;
+  command.insert(command.end(), 15, 0x00);
+  command.push_back(0x0A);
+  ASSERT_EQ(command.size(), 82U);
+  for (const Link& link : {steady, Link{.name = "split", .split = true}}) {
+    Driver driver(link);
+    driver.write("reboot");
+    driver.sleep(2500ms);
+    driver.flush();
+    ASSERT_TRUE(driver.await(MessageType::alive, 2s, [](const Bytes& alive) { return alive[20] == 0x4A; }));
+    driver.write(command);
+    ASSERT_TRUE(driver.await(MessageType::alive, 2s, [](const Bytes& alive) { return alive[20] == 0x8A; }));
+    for (int i = 0; i < 10; ++i) {
+      driver.write("send_data");
+      ASSERT_TRUE(driver.await_line(1s));
+      ASSERT_TRUE(driver.await_line(1s));
+    }
+    EXPECT_EQ(driver.bench().device.counters().dropped_bytes, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace sonard::micron
