@@ -26,10 +26,10 @@ void GeminiHeadLog::surface(Ipv4 address) {
     return;
   }
   if (address == 0) {
-    spdlog::info("head={} surface {} lost: no command for the time-out, or reboot", head_,
-                 address_text(surface_));
+    changes_.info("head={} surface {} lost: no command for the time-out, or reboot", head_,
+                  address_text(surface_));
   } else {
-    spdlog::info("head={} surface {} connected", head_, address_text(address));
+    changes_.info("head={} surface {} connected", head_, address_text(address));
   }
   surface_ = address;
 }
@@ -39,7 +39,7 @@ void GeminiHeadLog::settings(const gemini::PingJob& job) {
     return;
   }
   settings_ = job;
-  spdlog::info(
+  changes_.info(
       "head={} pings: range={:.2f}m lines={} compression=x{} gain={:+.1f}dB sound_speed={:.1f}m/s bits={}{}",
       head_, job.native_lines * job.line_step_m, job.lines(), 1 << job.compression_log2, job.gain_db,
       job.sound_speed_mps, job.sixteen_bit ? 16 : 8, job.transmit ? "" : " listening only");
@@ -96,11 +96,11 @@ void GeminiHeadLog::rates(const GeminiHeadCounters& total, std::chrono::duration
 void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
   const gemini::DeviceCounters& device = total.device;
   spdlog::info(
-      "head={} ends: pings_sent={} pings_failed={} pings_without_pose={} pings_suppressed={} lines_sent={} "
+      "head={} ends: pings_sent={} render_ms={:.1f} pings_failed={} pings_without_pose={} pings_suppressed={} lines_sent={} "
       "lines_resent={} tails_resent={} heads_resent={} retries_dropped={} commands={} wrong_id={} "
       "bad_datagrams={} "
       "unknown_type={} unsupported_data={} surface_changes={} surface_timeouts={} reboots={}",
-      head_, device.pings_sent, device.pings_failed, total.pings_without_pose, device.pings_suppressed,
+      head_, device.pings_sent, mean_render_ms({}, total), device.pings_failed, total.pings_without_pose, device.pings_suppressed,
       device.lines_sent, device.lines_resent, device.tails_resent, device.heads_resent,
       device.retries_dropped, device.commands, device.wrong_id, device.bad_datagrams, device.unknown_type,
       device.unsupported_data, device.surface_changes, device.surface_timeouts, device.reboots);

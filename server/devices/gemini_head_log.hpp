@@ -12,6 +12,7 @@
 #include "renderer/pose.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/gemini_head_counters.hpp"
+#include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 
@@ -38,6 +39,7 @@ class GeminiHeadLog {
   void log_faults(const char* direction, const FaultyLinkCounters& link) const;
 
   std::string head_;
+  PeerLog changes_;
   Ipv4 surface_ = 0;
   std::optional<gemini::PingJob> settings_;
   std::set<Ipv4> strangers_;

@@ -116,7 +116,7 @@ bool HeadRendering::take(const RenderResult& result) {
   }
   if (result.error != last_error_) {
     last_error_ = result.error;
-    spdlog::error("head={} cannot render: {}", config_.name, result.error);
+    errors_.error("head={} cannot render: {}", config_.name, result.error);
   }
   return false;
 }

@@ -16,6 +16,7 @@
 #include "server/devices/head.hpp"
 #include "server/pose/ping_times.hpp"
 #include "server/pose/posed_body.hpp"
+#include "server/program_log/peer_log.hpp"
 #include "server/recording/events.hpp"
 #include "server/render_service.hpp"
 
@@ -89,6 +90,7 @@ class HeadRendering {
   bool submitted_ = false;               ///< and not answered
   RenderCounters counters_;
   std::string last_error_;
+  PeerLog errors_;
 };
 
 /// "head=NAME skipped: rule=count ..." of every rule that has skipped something.

@@ -2,6 +2,9 @@
 
 #include <variant>
 
+#include "protocol/gemini/ping_plan.hpp"
+#include "protocol/micron/line_job.hpp"
+#include "protocol/micron/units.hpp"
 #include "renderer/visibility/sample_grid.hpp"
 #include "server/devices/gemini_head.hpp"
 #include "server/devices/gemini_settings.hpp"
@@ -11,12 +14,16 @@
 namespace sonard::server {
 namespace {
 
-render::SonarSettings any_ping_of(const GeminiHeadConfig& head) {
-  return to_sonar_settings(gemini::PingJob{}, head);
+render::SonarSettings usual(const GeminiHeadConfig& head) {
+  gemini::PingConfig config;
+  config.end_range = 2411;  // 20 m at 1500 m/s
+  config.range_compression = 1;
+  return to_sonar_settings(gemini::plan_ping(config, head.device)->job, head);
 }
 
-render::SonarSettings any_ping_of(const MicronHeadConfig& head) {
-  return to_sonar_settings(micron::MicronJob{}, head);
+render::SonarSettings usual(const MicronHeadConfig& head) {
+  return to_sonar_settings(micron::make_line_job(micron::HeadCommand{}, head.device, micron::bearing_ahead),
+                           head);
 }
 
 std::unique_ptr<Head> make(const GeminiHeadConfig& config, int stream, const HeadServices& services) {
@@ -37,9 +44,12 @@ bool is_scanning(const AnyHeadConfig& config) {
   return std::holds_alternative<MicronHeadConfig>(config);
 }
 
+render::SonarSettings usual_settings(const AnyHeadConfig& config) {
+  return std::visit([](const auto& head) { return usual(head); }, config);
+}
+
 void check_sampling_of(const AnyHeadConfig& config) {
-  const render::SonarSettings settings =
-      std::visit([](const auto& head) { return any_ping_of(head); }, config);
+  const render::SonarSettings settings = usual_settings(config);
   if (render::needs_grid(settings)) {
     render::make_sample_grid(settings.aperture, settings.sampling, render::grid_options(settings));
   }

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "renderer/sonar_settings.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
 
@@ -14,6 +15,9 @@ std::unique_ptr<Head> make_head(const AnyHeadConfig& config, int stream, const H
 
 /// One beam at a time, which takes a small part of the time of a fan to render.
 bool is_scanning(const AnyHeadConfig& config);
+
+/// Renderer settings of a ping as many clients ask for it: 20 m of a Gemini, 10 m of a Micron.
+render::SonarSettings usual_settings(const AnyHeadConfig& config);
 
 /// Cuts the head's fan into pixels as it will be for any ping; the range of a ping changes nothing of it.
 /// @throws render::RequestError when that cannot be done

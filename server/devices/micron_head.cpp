@@ -38,7 +38,7 @@ struct MicronHead::Impl : std::enable_shared_from_this<MicronHead::Impl> {
         rendering(config, stream, services),
         timer(services.io),
         report_timer(services.io),
-        log(config.name),
+        log(config.name, config.device),
         recording(services.recorder, stream, services.clock) {}
 
   const MicronHeadConfig config;
@@ -178,7 +178,7 @@ void MicronHead::Impl::pump() {
   for (std::vector<std::uint8_t>& frame : device.take_outgoing()) {
     link.send(std::move(frame));
   }
-  log.state(device.state(now));
+  log.state(now, device.state(now));
   schedule(now);
 }
 
@@ -243,7 +243,7 @@ void MicronHead::Impl::drop_unheard_job(TimePoint now) {
 
 // False when this ping cannot be made.
 bool MicronHead::Impl::render(const micron::MicronJob& job) {
-  log.settings(job);
+  log.settings(job, *device.parameters());
   if (job.record) {
     services.playback->started(stream, job, *device.parameters());
   }

@@ -3,46 +3,92 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
+
+#include "protocol/micron/scan_settings.hpp"
+#include "protocol/micron/sweep.hpp"
 
 namespace sonard::server {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-// The part of a job that the client chose.
-bool same_settings(const micron::MicronJob& a, const micron::MicronJob& b) {
-  return a.bins == b.bins && a.bin_length_m == b.bin_length_m && a.gain_db == b.gain_db &&
-         a.ad_low_db == b.ad_low_db && a.ad_span_db == b.ad_span_db && a.eight_bit == b.eight_bit &&
-         a.transmit == b.transmit;
-}
-
-// Ready and scanning take turns at every request of some drivers.
-bool same_state(micron::HeadState a, micron::HeadState b) {
-  const auto works = [](micron::HeadState state) {
-    return state == micron::HeadState::ready || state == micron::HeadState::scanning;
-  };
-  return a == b || (works(a) && works(b));
-}
-
 }  // namespace
 
-void MicronHeadLog::state(micron::HeadState state) {
-  if (!state_ || !same_state(*state_, state)) {
-    spdlog::info("head={} {}", head_, to_string(state));
+void MicronHeadLog::state(TimePoint now, micron::HeadState state) {
+  using micron::HeadState;
+  if (state != HeadState::ready || said_ != HeadState::scanning) {
+    idle_since_.reset();
+  } else if (!idle_since_) {
+    idle_since_ = now;
   }
-  state_ = state;
-}
-
-void MicronHeadLog::settings(const micron::MicronJob& job) {
-  if (settings_ && same_settings(*settings_, job)) {
+  if (said_ == state || (idle_since_ && now - *idle_since_ < idle_after)) {
     return;
   }
-  settings_ = job;
-  spdlog::info(
-      "head={} pings: range={:.2f}m bins={} of {:.1f}mm gain={:.1f}dB window={:.1f}+{:.1f}dB bits={}{}",
-      head_, job.range_m(), job.bins, 1e3 * job.bin_length_m, job.gain_db, job.ad_low_db, job.ad_span_db,
-      job.eight_bit ? 8 : 4, job.transmit ? "" : " listening only");
+  changes_.info("head={} {}", head_, to_string(state));
+  said_ = state;
+}
+
+void MicronHeadLog::settings(const micron::MicronJob& job, const micron::HeadCommand& asked) {
+  const std::string text = fmt::format(
+      "range={:.2f}m bins={} of {:.1f}mm gain={:.1f}dB window={:.1f}+{:.1f}dB bits={}{}{}", job.range_m(),
+      job.bins, 1e3 * job.bin_length_m, job.gain_db, job.ad_low_db, job.ad_span_db, job.eight_bit ? 8 : 4,
+      job.transmit ? "" : " listening only", job.record ? "" : scan_text(asked));
+  if (text == settings_) {
+    return;
+  }
+  settings_ = text;
+  changes_.info("head={} pings: {}", head_, text);
+  if (!job.record) {
+    warn_of_settings(asked);
+  }
+}
+
+std::string MicronHeadLog::scan_text(const micron::HeadCommand& asked) const {
+  namespace bits = micron::control_bits;
+  const auto degrees = [](int bearing) { return micron::bearing_rad(bearing) / degree; };
+  const char* inverted = asked.has(bits::invert) ? "yes" : "no";
+  if (asked.has(bits::motor_off)) {
+    return fmt::format(" scan=motor_off inverted={}", inverted);
+  }
+  if (micron::stares(asked)) {
+    return fmt::format(" scan=stares at={:.2f}deg inverted={}", degrees(asked.left_limit), inverted);
+  }
+  std::string scan = " scan=all_round";
+  if (!asked.has(bits::continuous)) {
+    const bool whole = micron::sector_width(asked, config_.limits_order) == micron::units_per_turn;
+    const bool swapped =
+        config_.limits_order == micron::LimitsOrder::swapped && asked.left_limit > asked.right_limit;
+    scan = whole ? " scan=sector_all_round"
+                 : fmt::format(" scan=sector from={:.2f}deg to={:.2f}deg",
+                               degrees(swapped ? asked.right_limit : asked.left_limit),
+                               degrees(swapped ? asked.left_limit : asked.right_limit));
+  }
+  return fmt::format("{} step={:.2f}deg direction={} inverted={}", scan,
+                     micron::step_unit_deg * (asked.step == 0 ? micron::step_of_zero : asked.step),
+                     asked.has(bits::scan_right) ? "right" : "left", inverted);
+}
+
+// Each once: a client that sends such parameters sends them again.
+void MicronHeadLog::warn_of_settings(const micron::HeadCommand& asked) {
+  namespace bits = micron::control_bits;
+  if (asked.gain[0] > micron::gain_full_scale && !std::exchange(said_gain_, true)) {
+    spdlog::warn("head={} the client's gain byte {} is beyond 210, the most there is: taken as 80 dB", head_,
+                 asked.gain[0]);
+  }
+  const bool sector = !asked.has(bits::continuous) && !asked.has(bits::stare);
+  if (sector && asked.left_limit == asked.right_limit && !std::exchange(said_limits_, true)) {
+    spdlog::warn(
+        "head={} the client's sector has equal limits ({}): the head stares there; 0 to 6400 is a whole turn",
+        head_, asked.left_limit);
+  }
+  if (asked.has(bits::invert) != config_.mounted_inverted && !std::exchange(said_mirrored_, true)) {
+    spdlog::warn(
+        "head={} left and right are swapped: the client says that the head is mounted boot {}, "
+        "`device.mounted_inverted` says boot {}",
+        head_, asked.has(bits::invert) ? "down" : "up", config_.mounted_inverted ? "down" : "up");
+  }
 }
 
 void MicronHeadLog::ping(const micron::MicronJob& job, const HeadPing& ping) const {
@@ -72,8 +118,16 @@ void MicronHeadLog::rates(const MicronHeadCounters& total, std::chrono::duration
   warn_of(total.device.wrong_node, before.device.wrong_node, "commands were for another node");
   warn_of(total.device.bad_frames, before.device.bad_frames, "commands made no sense");
   warn_of(total.device.not_ready, before.device.not_ready, "requests came before any parameters");
-  warn_of(total.link.ports.frames_dropped, before.link.ports.frames_dropped,
-          "frames were dropped: a client reads too slowly");
+  warn_of(total.device.dropped_bytes, before.device.dropped_bytes,
+          "bytes from clients were part of no command");
+  for (std::size_t i = 0; i < total.link.each.size(); ++i) {
+    const SerialPortReport& port = total.link.each[i];
+    const std::uint64_t then = i < before.link.each.size() ? before.link.each[i].counters.frames_dropped : 0;
+    if (port.counters.frames_dropped > then) {
+      spdlog::warn("head={} {}: {} frames were dropped: a client reads too slowly", head_, port.description,
+                   port.counters.frames_dropped - then);
+    }
+  }
   warn_of(total.link.ports.refused, before.link.ports.refused,
           "clients or datagrams were turned away: not in `allow`, too many, or too long");
 }

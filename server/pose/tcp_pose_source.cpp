@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "server/config/addresses.hpp"
+#include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 
@@ -58,6 +59,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   std::optional<Endpoint> publisher;  // of the newest pose
   std::set<std::shared_ptr<Session>> sessions;
   PoseSourceCounters counters;
+  PeerLog log;
 };
 
 /// One publisher. The set of its source owns it, and so does each pending handler.
@@ -93,7 +95,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       return;
     }
     if (error) {
-      spdlog::info("pose stream tcp {}: {} left", endpoint_text(source_->local), endpoint_text(peer_));
+      source_->log.info("pose stream tcp {}: {} left", endpoint_text(source_->local), endpoint_text(peer_));
       close();
       return;
     }
@@ -193,8 +195,8 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
 
   void close_faulty(const std::string& reason) {
     ++source_->counters.closed;
-    spdlog::warn("pose stream tcp {}: {} closed: {}", endpoint_text(source_->local), endpoint_text(peer_),
-                 reason);
+    source_->log.warn("pose stream tcp {}: {} closed: {}", endpoint_text(source_->local),
+                      endpoint_text(peer_), reason);
     close();
   }
 
@@ -252,7 +254,7 @@ void TcpPoseSource::Impl::on_accepted(const error_code& error, tcp::socket socke
     return;
   }
   // Out of file descriptors, most likely: asking again at once would only spin.
-  spdlog::error("pose stream tcp {}: accept: {}", endpoint_text(local), error.message());
+  log.error("pose stream tcp {}: accept: {}", endpoint_text(local), error.message());
   retry.expires_after(std::chrono::seconds{1});
   retry.async_wait([self = shared_from_this()](const error_code& cancelled) {
     if (!cancelled && self->acceptor.is_open()) {
@@ -274,7 +276,7 @@ void TcpPoseSource::Impl::admit(tcp::socket socket, const tcp::endpoint& peer) {
   error_code ignored;
   socket.set_option(tcp::socket::keep_alive{true}, ignored);
   ++counters.connections;
-  spdlog::info("pose stream tcp {}: {} connected", endpoint_text(local), endpoint_text(to_endpoint(peer)));
+  log.info("pose stream tcp {}: {} connected", endpoint_text(local), endpoint_text(to_endpoint(peer)));
   const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), to_endpoint(peer));
   sessions.insert(session);
   session->read();

@@ -12,6 +12,12 @@
 
 namespace sonard::server {
 
+enum class FrameFate : std::uint8_t {
+  sent,
+  no_room,    ///< dropped: the reader has not taken what it was sent before
+  no_reader,  ///< dropped: the other end is gone
+};
+
 /// Stream is a non-blocking tcp::socket or posix::stream_descriptor that outlives the writer. Errors of the
 /// stream are left to whoever reads from it: they end the session there.
 template <typename Stream>
@@ -21,27 +27,26 @@ class FrameWriter {
 
   /// One write. When the stream takes only a part, the rest is kept until it takes that too.
   /// @param owner of this writer and the stream, kept alive until then
-  /// @return false when the frame was dropped
-  bool send(std::span<const std::uint8_t> frame, const std::shared_ptr<void>& owner) {
+  FrameFate send(std::span<const std::uint8_t> frame, const std::shared_ptr<void>& owner) {
     if (!rest_.empty()) {
-      return false;
+      return FrameFate::no_room;
     }
-    const std::size_t written = write(frame);
+    boost::system::error_code error;
+    const std::size_t written = write(frame, error);
     if (written == 0) {
-      return false;
+      return error == boost::system::errc::operation_would_block ? FrameFate::no_room : FrameFate::no_reader;
     }
     rest_.assign(frame.begin() + static_cast<std::ptrdiff_t>(written), frame.end());
     wait_for_room(owner);
-    return true;
+    return FrameFate::sent;
   }
 
   /// Forgets the rest of a frame whose reader is gone.
   void clear() { rest_.clear(); }
 
  private:
-  std::size_t write(std::span<const std::uint8_t> bytes) {
-    boost::system::error_code ignored;
-    return stream_.write_some(boost::asio::buffer(bytes.data(), bytes.size()), ignored);
+  std::size_t write(std::span<const std::uint8_t> bytes, boost::system::error_code& error) {
+    return stream_.write_some(boost::asio::buffer(bytes.data(), bytes.size()), error);
   }
 
   void wait_for_room(const std::shared_ptr<void>& owner) {
@@ -52,7 +57,8 @@ class FrameWriter {
     stream_.async_wait(Stream::wait_write, [this, owner](const boost::system::error_code& error) {
       waiting_ = false;
       if (!error) {
-        const std::size_t written = write(rest_);
+        boost::system::error_code ignored;
+        const std::size_t written = write(rest_, ignored);
         rest_.erase(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(written));
         wait_for_room(owner);
       }

@@ -21,6 +21,7 @@
 
 #include "server/devices/serial/frame_writer.hpp"
 #include "server/devices/udp_endpoint.hpp"
+#include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 namespace {
@@ -120,6 +121,7 @@ struct PtyPort::Impl : std::enable_shared_from_this<PtyPort::Impl> {
   bool occupied = false;
   std::array<std::uint8_t, serial_read_bytes> buffer{};
   SerialPortCounters counters;
+  PeerLog log;
 };
 
 void PtyPort::Impl::open() {
@@ -140,7 +142,7 @@ void PtyPort::Impl::look() {
   if ((state.revents & POLLHUP) == 0 || (state.revents & POLLIN) != 0) {
     occupied = true;
     ++counters.connections;
-    spdlog::info("serial {}: opened", description());
+    log.info("serial {}: opened", description());
     wait_readable();
     return;
   }
@@ -182,11 +184,11 @@ void PtyPort::Impl::on_readable() {
 void PtyPort::Impl::leave() {
   occupied = false;
   writer.clear();
-  spdlog::info("serial {}: closed", description());
+  log.info("serial {}: closed", description());
   try {
     reset_slave(path);
   } catch (const SocketError& error) {  // the next client may find what this one did not read
-    spdlog::warn("serial {}: {}", description(), error.what());
+    log.warn("serial {}: {}", description(), error.what());
   }
   if (events.ended) {
     events.ended(ends());
@@ -239,13 +241,14 @@ void PtyPort::send(std::span<const std::uint8_t> frame) {
   if (!impl_->occupied) {
     return;
   }
-  if (impl_->writer.send(frame, impl_)) {
+  const FrameFate fate = impl_->writer.send(frame, impl_);
+  if (fate == FrameFate::no_room) {
+    ++impl_->counters.frames_dropped;
+  } else if (fate == FrameFate::sent) {
     impl_->counters.bytes_out += frame.size();
     if (impl_->events.passed) {
       impl_->events.passed(impl_->ends(), /*to_client=*/true, frame);
     }
-  } else {
-    ++impl_->counters.frames_dropped;
   }
 }
 

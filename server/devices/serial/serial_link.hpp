@@ -21,6 +21,7 @@ namespace sonard::server {
 /// They only grow.
 struct SerialLinkCounters {
   SerialPortCounters ports;             ///< of all ports together
+  std::vector<SerialPortReport> each;   ///< in the order of the configuration
   std::uint64_t frames_unheard = 0;     ///< discarded: nobody was connected
   std::uint64_t frames_overflowed = 0;  ///< dropped: SerialLink::most_waiting_bytes were waiting for the line
   std::uint64_t bytes_overrun = 0;      ///< from clients, dropped for the same reason

@@ -23,6 +23,12 @@ struct SerialPortCounters {
   std::uint64_t frames_dropped = 0;  ///< a client had not taken what it was sent before, or the OS refused
 };
 
+/// Of one port, for the log.
+struct SerialPortReport {
+  std::string description;  ///< SerialPort::description()
+  SerialPortCounters counters;
+};
+
 /// What a port says of its clients. `peer` names one as long as it is there, "tcp 127.0.0.1:50312".
 struct SerialPortEvents {
   std::function<void(std::span<const std::uint8_t> bytes, const std::string& peer)> received;

@@ -18,6 +18,7 @@
 #include "server/config/addresses.hpp"
 #include "server/devices/serial/frame_writer.hpp"
 #include "server/devices/udp_endpoint.hpp"
+#include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 namespace {
@@ -76,6 +77,7 @@ struct TcpPort::Impl : std::enable_shared_from_this<TcpPort::Impl> {
   SerialPortEvents events;
   std::set<std::shared_ptr<Session>> sessions;
   SerialPortCounters counters;
+  PeerLog log;
 };
 
 /// One client. The set of its port owns it, and so does each pending handler.
@@ -96,13 +98,14 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
   }
 
   void send(std::span<const std::uint8_t> frame) {
-    if (writer_.send(frame, shared_from_this())) {
+    const FrameFate fate = writer_.send(frame, shared_from_this());
+    if (fate == FrameFate::no_room) {
+      ++port_->counters.frames_dropped;
+    } else if (fate == FrameFate::sent) {
       port_->counters.bytes_out += frame.size();
       if (port_->events.passed) {
         port_->events.passed(ends_, /*to_client=*/true, frame);
       }
-    } else {
-      ++port_->counters.frames_dropped;
     }
   }
 
@@ -120,7 +123,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
     if (error) {
       close();
       port_->sessions.erase(shared_from_this());
-      spdlog::info("serial {}: {} left", port_->description(), peer_);
+      port_->log.info("serial {}: {} left", port_->description(), peer_);
       if (port_->events.ended) {
         port_->events.ended(ends_);
       }
@@ -188,7 +191,7 @@ void TcpPort::Impl::on_accepted(const error_code& error, tcp::socket socket) {
     return;
   }
   // Out of file descriptors, most likely: asking again at once would only spin.
-  spdlog::error("serial {}: accept: {}", description(), error.message());
+  log.error("serial {}: accept: {}", description(), error.message());
   retry.expires_after(accept_retry);
   retry.async_wait([self = shared_from_this()](const error_code& cancelled) {
     if (!cancelled && self->acceptor.is_open()) {
@@ -208,7 +211,7 @@ void TcpPort::Impl::admit(tcp::socket socket, const Endpoint& peer) {
   }
   set_options(socket);
   ++counters.connections;
-  spdlog::info("serial {}: tcp {} connected", description(), endpoint_text(peer));
+  log.info("serial {}: tcp {} connected", description(), endpoint_text(peer));
   const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), peer);
   sessions.insert(session);
   session->read();

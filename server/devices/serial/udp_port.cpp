@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "server/config/addresses.hpp"
+#include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 
@@ -32,6 +33,7 @@ struct UdpPort::Impl : std::enable_shared_from_this<UdpPort::Impl> {
   Ipv4 reply_from = 0;
   bool running = false;
   SerialPortCounters counters;
+  PeerLog log;
 };
 
 void UdpPort::Impl::on_datagram(const Datagram& datagram) {
@@ -59,7 +61,7 @@ void UdpPort::Impl::meet(const Datagram& datagram) {
   const std::string before = std::exchange(peer_name, "udp " + endpoint_text(datagram.remote));
   const bool had_peer = std::exchange(peer, datagram.remote).has_value();
   ++counters.connections;
-  spdlog::info("serial {}: replies go to {} from now on", description(), peer_name);
+  log.info("serial {}: replies go to {} from now on", description(), peer_name);
   if (had_peer) {
     events.left(before);
   }

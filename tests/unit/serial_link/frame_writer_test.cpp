@@ -18,12 +18,17 @@ struct NarrowStream {
   enum Wait { wait_write };
 
   std::size_t room = 0;
+  bool gone = false;  ///< the other end
   Bytes taken;
   int writes = 0;
   std::function<void(const error_code&)> when_writable;
 
   std::size_t write_some(const boost::asio::const_buffer& buffer, error_code& error) {
     ++writes;
+    if (gone) {
+      error = make_error_code(boost::system::errc::broken_pipe);
+      return 0;
+    }
     const std::size_t length = std::min(room, buffer.size());
     error = length == 0 ? make_error_code(boost::system::errc::operation_would_block) : error_code();
     const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
@@ -53,16 +58,16 @@ struct FrameWriterTest : testing::Test {
 
 TEST_F(FrameWriterTest, writes_a_frame_with_one_call) {
   stream.room = 100;
-  EXPECT_TRUE(writer.send(abcd, owner));
+  EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
   EXPECT_EQ(stream.taken, abcd);
   EXPECT_EQ(stream.writes, 1);
   EXPECT_FALSE(stream.when_writable);
 }
 
 TEST_F(FrameWriterTest, drops_a_frame_of_which_nothing_fits) {
-  EXPECT_FALSE(writer.send(abcd, owner));
+  EXPECT_EQ(writer.send(abcd, owner), FrameFate::no_room);
   stream.gain_room(100);
-  EXPECT_TRUE(writer.send(xyz, owner));
+  EXPECT_EQ(writer.send(xyz, owner), FrameFate::sent);
   EXPECT_EQ(stream.taken, xyz) << "what was dropped does not come later";
 }
 
@@ -70,42 +75,47 @@ TEST_F(FrameWriterTest, finishes_what_it_has_begun_and_drops_what_comes_meanwhil
   for (std::size_t first = 1; first < abcd.size(); ++first) {
     stream = {};
     stream.room = first;
-    EXPECT_TRUE(writer.send(abcd, owner));
-    EXPECT_FALSE(writer.send(xyz, owner));
+    EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
+    EXPECT_EQ(writer.send(xyz, owner), FrameFate::no_room);
     while (stream.when_writable) {
       stream.gain_room(1);
     }
     EXPECT_EQ(stream.taken, abcd) << first;
     stream.room = 100;
-    EXPECT_TRUE(writer.send(xyz, owner));
+    EXPECT_EQ(writer.send(xyz, owner), FrameFate::sent);
     EXPECT_EQ(stream.taken.size(), abcd.size() + xyz.size());
   }
 }
 
+TEST_F(FrameWriterTest, a_reader_that_is_gone_is_no_slow_reader) {
+  stream.gone = true;
+  EXPECT_EQ(writer.send(abcd, owner), FrameFate::no_reader);
+}
+
 TEST_F(FrameWriterTest, forgets_the_rest_when_told_to) {
   stream.room = 2;
-  EXPECT_TRUE(writer.send(abcd, owner));
+  EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
   writer.clear();
   stream.gain_room(100);
-  EXPECT_TRUE(writer.send(xyz, owner));
+  EXPECT_EQ(writer.send(xyz, owner), FrameFate::sent);
   EXPECT_EQ(stream.taken, (Bytes{'a', 'b', 'x', 'y', 'z'}));
 }
 
 TEST_F(FrameWriterTest, waits_once_however_often_it_begins_anew) {
   for (int i = 0; i < 3; ++i) {
     stream.room = 1;
-    EXPECT_TRUE(writer.send(abcd, owner));
+    EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
     writer.clear();
   }
   stream.room = 1;
-  EXPECT_TRUE(writer.send(xyz, owner));
+  EXPECT_EQ(writer.send(xyz, owner), FrameFate::sent);
   stream.gain_room(100);
   EXPECT_EQ(stream.taken, (Bytes{'a', 'a', 'a', 'x', 'y', 'z'}));
 }
 
 TEST_F(FrameWriterTest, keeps_its_owner_only_while_it_waits) {
   stream.room = 2;
-  EXPECT_TRUE(writer.send(abcd, owner));
+  EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
   EXPECT_EQ(owner.use_count(), 2);
   stream.gain_room(100);
   EXPECT_EQ(owner.use_count(), 1);

@@ -1,0 +1,50 @@
+// Lines of the log that somebody outside can cause as often as they like.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/common.h>
+
+#include "server/clock.hpp"
+
+namespace sonard::server {
+
+/// For one source of such lines: the clients of a port, the settings of a head. So many may come at once, and
+/// one more for every `refill`; what goes beyond is left out and counted, and the next line says how many
+/// were. Belongs to one thread.
+class PeerLog {
+ public:
+  static constexpr int burst = 10;
+  static constexpr std::chrono::seconds refill{2};
+
+  /// @param clock outlives this
+  explicit PeerLog(const Clock& clock = real_time()) : clock_(clock) {}
+
+  template <typename... Args>
+  void info(fmt::format_string<Args...> format, Args&&... args) {
+    say(spdlog::level::info, fmt::format(format, std::forward<Args>(args)...));
+  }
+  template <typename... Args>
+  void warn(fmt::format_string<Args...> format, Args&&... args) {
+    say(spdlog::level::warn, fmt::format(format, std::forward<Args>(args)...));
+  }
+  template <typename... Args>
+  void error(fmt::format_string<Args...> format, Args&&... args) {
+    say(spdlog::level::err, fmt::format(format, std::forward<Args>(args)...));
+  }
+
+ private:
+  static const Clock& real_time();
+  void say(spdlog::level::level_enum level, const std::string& text);
+
+  const Clock& clock_;
+  int tokens_ = burst;
+  TimePoint refilled_at_{};
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace sonard::server

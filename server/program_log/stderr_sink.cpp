@@ -1,0 +1,74 @@
+#include "server/program_log/stderr_sink.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+
+StderrSink::StderrSink(int descriptor) : descriptor_(descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0 || S_ISREG(status.st_mode)) {
+    return;
+  }
+  if (S_ISSOCK(status.st_mode)) {
+    kind_ = Kind::socket;
+    return;
+  }
+  kind_ = Kind::polled;
+  // O_NONBLOCK belongs to what was opened, which may be shared with a shell; opened again, it is ours alone.
+  const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
+  const int own = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (own >= 0) {
+    kind_ = Kind::own;
+    descriptor_ = own;
+  }
+}
+
+StderrSink::~StderrSink() {
+  if (kind_ == Kind::own) {
+    close(descriptor_);
+  }
+}
+
+void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
+  spdlog::memory_buf_t line;
+  formatter_->format(message, line);
+  std::string text = cut_ ? "\n" : "";
+  if (dropped_ > 0) {
+    text += fmt::format("{} lines of this log were dropped: nobody read them in time\n", dropped_);
+  }
+  text.append(line.data(), line.size());
+  if (write(text)) {
+    dropped_ = 0;
+  } else {
+    ++dropped_;
+  }
+}
+
+bool StderrSink::write(std::string_view text) {
+  if (kind_ == Kind::polled) {
+    pollfd room{descriptor_, POLLOUT, 0};
+    if (poll(&room, 1, /*timeout=*/0) != 1 || (room.revents & POLLOUT) == 0) {
+      return false;
+    }
+  }
+  ssize_t written = 0;
+  do {
+    written = kind_ == Kind::socket ? send(descriptor_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL)
+                                    : ::write(descriptor_, text.data(), text.size());
+  } while (written < 0 && errno == EINTR);
+  if (written > 0) {
+    cut_ = static_cast<std::size_t>(written) < text.size();
+  }
+  return written > 0;
+}
+
+}  // namespace sonard::server

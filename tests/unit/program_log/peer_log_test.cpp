@@ -1,0 +1,84 @@
+// Lines that clients cause: as many as a person can read, and none that goes missing without a word.
+#include "server/program_log/peer_log.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
+
+namespace sonard::server {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::Not;
+
+struct StandingClock : Clock {
+  TimePoint time = 100s;
+  TimePoint now() const override { return time; }
+};
+
+struct Lines final : spdlog::sinks::base_sink<std::mutex> {
+  std::vector<std::string> texts;
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    texts.emplace_back(message.payload.data(), message.payload.size());
+  }
+  void flush_() override {}
+};
+
+struct PeerLogTest : testing::Test {
+  std::shared_ptr<Lines> lines = std::make_shared<Lines>();
+  std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+  StandingClock clock;
+  PeerLog log{clock};
+
+  PeerLogTest() { spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", lines)); }
+  ~PeerLogTest() override { spdlog::set_default_logger(before); }
+};
+
+TEST_F(PeerLogTest, lets_a_burst_through_and_leaves_the_rest_out) {
+  for (int i = 0; i < 1000; ++i) {
+    log.info("client {} came", i);
+  }
+  ASSERT_EQ(lines->texts.size(), static_cast<std::size_t>(PeerLog::burst));
+  EXPECT_EQ(lines->texts.back(), "client 9 came");
+}
+
+TEST_F(PeerLogTest, says_with_the_next_line_how_many_are_missing) {
+  for (int i = 0; i < 30; ++i) {
+    log.info("{}", i);
+  }
+  clock.time += PeerLog::refill;
+  log.warn("again");
+  log.warn("and again");
+  ASSERT_EQ(lines->texts.size(), 11U);
+  EXPECT_THAT(lines->texts.back(), HasSubstr("again (20 lines"));
+}
+
+TEST_F(PeerLogTest, one_line_for_each_refill_goes_on_for_ever) {
+  for (int i = 0; i < 1000; ++i) {
+    clock.time += PeerLog::refill / 4;
+    log.info("{}", i);
+  }
+  EXPECT_NEAR(static_cast<double>(lines->texts.size()), 10 + 250, 2);
+}
+
+TEST_F(PeerLogTest, rest_fills_it_up_and_no_further) {
+  for (int i = 0; i < 10; ++i) {
+    log.info("{}", i);
+  }
+  clock.time += 24h;
+  lines->texts.clear();
+  for (int i = 0; i < 50; ++i) {
+    log.info("{}", i);
+  }
+  EXPECT_EQ(lines->texts.size(), 10U);
+  EXPECT_THAT(lines->texts.back(), Not(HasSubstr("left out")));
+}
+
+}  // namespace
+}  // namespace sonard::server
