@@ -14,8 +14,8 @@
 #include <spdlog/spdlog.h>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
@@ -29,6 +29,7 @@
 #include "server/pose/pose_history.hpp"
 #include "server/pose/pose_inputs.hpp"
 #include "server/pose/pose_intake.hpp"
+#include "server/process.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/take_from_world.hpp"
 
@@ -50,6 +51,9 @@ class WorldRenderer final : public PingRenderer {
     render::PingSamples samples = renderer_.render_ping(request, stream);
     tell_where_grids_are_binned();
     return samples;
+  }
+  void warm_up(const render::PingRequest& request, int stream) override {
+    renderer_.render_echo(request, stream);  // what follows it keeps the speckle of pings, and is quick
   }
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
@@ -141,16 +145,20 @@ class Daemon {
   RenderServiceHooks hooks();
   std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
                                                   const RendererFactory& make_renderer);
+  void warm_up(const AnyHeadConfig& head, int stream, RenderService& renderer) const;
   void start_inputs();
   void poses_changed();
   std::optional<std::chrono::nanoseconds> spare_poses() const;
+  void wait_for_signal();
   void end_when_played();
   void run_io();
   void stop_io();
   void end(int exit_code);
 
   SteadyClock clock_;
-  asio::io_context lifetime_;   // of main: signals, and the wish to end
+  asio::io_context lifetime_;  // of main: signals, and the wish to end
+  asio::posix::stream_descriptor signals_{lifetime_};
+  std::uint8_t signal_ = 0;     // read last
   int exit_code_ = exit_clean;  // of main
   asio::io_context io_;
   Playback* playback_;  // may be null
@@ -196,6 +204,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       const bool serial = std::holds_alternative<MicronHeadConfig>(config.heads[i]);
       throw StartError(head_key(i, serial ? "serial" : "network.bind"), exit_network, error.what());
     }
+    warm_up(config.heads[i], static_cast<int>(i), renderer);
   }
   start_inputs();
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
@@ -210,6 +219,14 @@ std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const Dae
                     [scanning](const AnyHeadConfig& head) { return is_scanning(head) == scanning; });
   return streams > 0 ? std::make_unique<RenderService>(make_renderer, static_cast<int>(streams), hooks())
                      : nullptr;
+}
+
+// From where the vehicle is, if that is known yet.
+void Daemon::warm_up(const AnyHeadConfig& head, int stream, RenderService& renderer) const {
+  const std::optional<PoseEstimate> vehicle = poses_.at(clock_.now());
+  const render::Pose T_world_vehicle = vehicle ? vehicle->T_world_vehicle : render::Pose{};
+  renderer.warm_up(
+      {T_world_vehicle * common(head).T_vehicle_sonar, usual_settings(head), 0, common(head).seed}, stream);
 }
 
 RenderServiceHooks Daemon::hooks() {
@@ -251,13 +268,8 @@ std::optional<std::chrono::nanoseconds> Daemon::spare_poses() const {
 }
 
 int Daemon::run() {
-  asio::signal_set signals(lifetime_, SIGINT, SIGTERM);
-  signals.async_wait([this](const boost::system::error_code& error, int signal) {
-    if (!error) {
-      spdlog::info("signal {}: ending", signal);
-      lifetime_.stop();
-    }
-  });
+  signals_.assign(hear_signals(std::chrono::seconds{1}));
+  wait_for_signal();
   auto io_work = asio::make_work_guard(io_);
   std::thread io_thread(&Daemon::run_io, this);
   asio::post(io_, [this] {
@@ -270,7 +282,6 @@ int Daemon::run() {
 
   lifetime_.run();
 
-  signals.clear();  // from here on a second signal kills, whatever hangs
   asio::post(io_, [this] { stop_io(); });
   for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
     if (renderer != nullptr) {
@@ -283,6 +294,22 @@ int Daemon::run() {
     recorder_->stop();
   }
   return exit_code_;
+}
+
+void Daemon::wait_for_signal() {
+  signals_.async_read_some(
+      asio::buffer(&signal_, 1), [this](const boost::system::error_code& error, std::size_t) {
+        if (error) {
+          return;
+        }
+        if (signal_ == SIGHUP) {
+          spdlog::info("SIGHUP changes nothing: the configuration is read at the start only");
+          wait_for_signal();
+        } else {
+          spdlog::info("signal {}: ending", signal_);
+          lifetime_.stop();
+        }
+      });
 }
 
 // Looks now and then: nobody minds when a replay ends a little late.

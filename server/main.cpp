@@ -8,7 +8,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -26,6 +25,8 @@
 #include "server/offline/output_folder.hpp"
 #include "server/offline/render_run.hpp"
 #include "server/offline/voyage.hpp"
+#include "server/process.hpp"
+#include "server/program_log/stderr_sink.hpp"
 #include "server/replay/replay.hpp"
 
 namespace sonard::server {
@@ -70,8 +71,7 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 
 /// One line per event on stderr, UTC.
 void start_log() {
-  auto logger = std::make_shared<spdlog::logger>("sonard", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  logger->flush_on(spdlog::level::trace);
+  auto logger = std::make_shared<spdlog::logger>("sonard", std::make_shared<StderrSink>());
   spdlog::set_default_logger(std::move(logger));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
 }
@@ -321,5 +321,6 @@ int main_program(int argc, char** argv) {
 }  // namespace sonard::server
 
 int main(int argc, char** argv) {
+  sonard::server::open_standard_descriptors();
   return sonard::server::main_program(argc, argv);
 }

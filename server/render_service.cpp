@@ -25,6 +25,7 @@ struct RenderService::Impl {
   struct Entry {
     RenderJob job;
     Done done;
+    std::promise<void>* warmed_up = nullptr;  ///< somebody waits: this is no ping, and has no `done`
   };
 
   // Constant once the constructor has returned.
@@ -46,6 +47,7 @@ struct RenderService::Impl {
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
   void serve(PingRenderer& renderer);
+  static void warm_up(PingRenderer& renderer, const Entry& entry);
   void move_bodies(PingRenderer& renderer, const RenderJob& job);
   RenderResult render(PingRenderer& renderer, const RenderJob& job);
   void close_queue();
@@ -82,6 +84,20 @@ void RenderService::submit(RenderJob job, Done done) {
     impl_->queue.push_back({std::move(job), std::move(done)});
   }
   impl_->wake.notify_one();
+}
+
+void RenderService::warm_up(const render::PingRequest& request, int stream) {
+  RenderJob job;
+  job.stream = stream;
+  job.request = request;
+  std::promise<void> warmed_up;
+  std::future<void> done = warmed_up.get_future();
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->queue.push_back({std::move(job), {}, &warmed_up});
+  }
+  impl_->wake.notify_one();
+  done.get();
 }
 
 bool RenderService::withdraw(int stream) {
@@ -152,6 +168,10 @@ std::optional<RenderService::Impl::Entry> RenderService::Impl::next() {
 
 void RenderService::Impl::serve(PingRenderer& renderer) {
   while (std::optional<Entry> entry = next()) {
+    if (entry->warmed_up != nullptr) {
+      warm_up(renderer, *entry);
+      continue;
+    }
     RenderResult result = render(renderer, entry->job);
     if (result.error.empty() && hooks.observe) {
       hooks.observe(entry->job, result.samples);
@@ -159,6 +179,15 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
     // std::function wants copyable captures, so the samples travel behind a pointer.
     auto shared = std::make_shared<RenderResult>(std::move(result));
     hooks.post([done = std::move(entry->done), shared] { done(std::move(*shared)); });
+  }
+}
+
+void RenderService::Impl::warm_up(PingRenderer& renderer, const Entry& entry) {
+  try {
+    renderer.warm_up(entry.job.request, entry.job.stream);
+    entry.warmed_up->set_value();
+  } catch (...) {
+    entry.warmed_up->set_exception(std::current_exception());
   }
 }
 

@@ -26,6 +26,10 @@ class PingRenderer {
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
   /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can)
   virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
+  /// Makes what a ping like this one needs and is not there yet: trees, shaders, memory. Changes no later
+  /// ping.
+  /// @throws as render_ping()
+  virtual void warm_up(const render::PingRequest& /*request*/, int /*stream*/) {}
   /// Of the last render_ping().
   virtual render::PingStatistics last_statistics() const = 0;
 };
@@ -78,6 +82,9 @@ class RenderService {
   RenderService(const RenderService&) = delete;
   RenderService& operator=(const RenderService&) = delete;
 
+  /// PingRenderer::warm_up(); returns when it is done.
+  /// @throws whatever that threw
+  void warm_up(const render::PingRequest& request, int stream);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
   /// @throws std::logic_error when the queue is full: somebody submits more than one job per stream
   void submit(RenderJob job, Done done);

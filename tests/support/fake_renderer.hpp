@@ -18,6 +18,8 @@ namespace sonard::test {
 struct FakeRendererControl {
   /// Called before each ping on the render thread; may throw or block.
   std::function<void(const render::PingRequest&, int stream)> before_ping;
+  /// Called for each ping that nobody gets, on the render thread; may throw.
+  std::function<void(const render::PingRequest&, int stream)> warming_up;
   std::atomic<int> attempts{0};  ///< pings asked for
   std::atomic<int> pings{0};     ///< pings rendered
   std::atomic<bool> destroyed{false};
@@ -90,6 +92,12 @@ class FakeRenderer final : public server::PingRenderer {
     }
     ++control_->pings;
     return samples;
+  }
+
+  void warm_up(const render::PingRequest& request, int stream) override {
+    if (control_->warming_up) {
+      control_->warming_up(request, stream);
+    }
   }
 
   render::PingStatistics last_statistics() const override { return {}; }

@@ -65,6 +65,21 @@ TEST_P(Image, SameRequestGivesTheSameBytes) {
   EXPECT_NE(other.render_ping(next).u8, first.u8);
 }
 
+// What a daemon relies on that makes an echo nobody gets before its first ping.
+TEST_P(Image, AnEchoOfAnotherPlaceBeforeChangesNoPing) {
+  PingRequest request = small_request();
+  request.settings.physical.speckle = PhysicalModel::Speckle::ou;
+  PingRequest elsewhere = request;
+  elsewhere.T_world_sonar.position_m = {1, 2, 4};
+  elsewhere.settings.range.count = 500;
+  SonarRenderer warm(bed_and_ball({8, 1, 0.5}), options());
+  warm.render_echo(elsewhere);
+  SonarRenderer cold(bed_and_ball({8, 1, 0.5}), options());
+  for (request.ping_number = 0; request.ping_number < 3; ++request.ping_number) {
+    EXPECT_EQ(warm.render_ping(request).u8, cold.render_ping(request).u8) << request.ping_number;
+  }
+}
+
 TEST_P(Image, TargetToPortIsInTheLowBeams) {
   PingRequest request = small_request();
   request.T_world_sonar.orientation = {1, 0, 0, 0};

@@ -115,6 +115,32 @@ TEST_F(DaemonTest, EndsCleanlyOnASignal) {
   EXPECT_TRUE(renderer->destroyed);
 }
 
+// With the settings of a usual ping, where the vehicle and the mount are, and before anything is served.
+TEST_F(DaemonTest, RendersAPingOfEachHeadThatNobodyGetsBeforeItIsReady) {
+  GeminiHeadConfig mounted = head("mounted", 602, test::own_loopback_address(3));
+  mounted.T_vehicle_sonar.position_m = {1, 2, 3};
+  config.heads.push_back(mounted);
+  config.poses.T_world_vehicle_initial = render::Pose{{10, 20, 30}, {1, 0, 0, 0}};
+  std::vector<std::pair<int, render::PingRequest>> warmed;
+  renderer->warming_up = [&](const render::PingRequest& request, int stream) {
+    EXPECT_EQ(renderer->attempts, 0);
+    warmed.emplace_back(stream, request);
+  };
+  serve_until([](UdpEndpoint&, const Datagram& datagram) { return is(datagram, 0x40); });
+  ASSERT_EQ(warmed.size(), 2U);
+  EXPECT_EQ(warmed[0].first, 0);
+  EXPECT_EQ(warmed[1].first, 1);
+  EXPECT_EQ(warmed[0].second.settings.aperture.beam_count(), 256);
+  EXPECT_NEAR(warmed[0].second.settings.range.max_range_m(), 20.0, 0.01);
+  EXPECT_EQ(warmed[1].second.T_world_sonar.position_m, glm::dvec3(11, 22, 33));
+  EXPECT_EQ(renderer->attempts, 0) << "no ping of a client";
+}
+
+TEST_F(DaemonTest, RendererThatFailsToWarmUpIsReportedBeforeAnythingIsServed) {
+  renderer->warming_up = [](const render::PingRequest&, int) { throw render::RendererError("no shaders"); };
+  EXPECT_THROW(serve(config, {}, test::fake_renderer_factory(renderer)), render::RendererError);
+}
+
 TEST_F(DaemonTest, ServesSeveralHeads) {
   const Ipv4 second_address = test::own_loopback_address(3);
   config.heads.push_back(head("second", 602, second_address));
@@ -133,8 +159,6 @@ TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
   MicronHeadConfig micron;
   micron.name = "micron";
   micron.serial.tcp = {{{head_address, 4001}, {{0x7F000000, 8}}}};
-  micron.device.boot_time = std::chrono::milliseconds{0};
-  micron.device.centring_time = std::chrono::seconds{2};
   config.heads.emplace_back(micron);
   std::atomic<bool> fan_is_busy{false}, lines_are_here{false};
   renderer->before_ping = [&](const render::PingRequest& request, int) {

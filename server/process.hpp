@@ -1,0 +1,20 @@
+// What a daemon settles with its operating system: standard descriptors and signals.
+#pragma once
+
+#include <chrono>
+
+namespace sonard::server {
+
+/// Opens /dev/null as whichever of the descriptors 0, 1 and 2 is closed: a socket or world file that took the
+/// number would be written to as a log. Call it before anything is opened.
+void open_standard_descriptors();
+
+/// From here on, for the rest of the process, SIGPIPE is ignored (a peer that goes is an error of the write),
+/// and each SIGINT, SIGTERM and SIGHUP is a byte, its number, to be read without waiting. An order to end
+/// that comes within `grace` of the first one is that one once more (`timeout` sends two, a terminal one to
+/// each process) and no byte; a later one kills at once, whatever hangs. When called again all begins anew.
+/// @return the descriptor to read from, which belongs to the caller
+/// @throws std::system_error
+int hear_signals(std::chrono::nanoseconds grace);
+
+}  // namespace sonard::server
