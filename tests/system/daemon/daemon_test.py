@@ -1,0 +1,331 @@
+#!/usr/bin/env python3
+"""The daemon as a process: its log, signals, descriptors, and what clients of a Micron meet right after the start.
+
+    daemon_test.py --programs DIR [TestCase.test_name ...]
+
+Frames of the Micron are those of tests/data/micron, which says where each is from.
+"""
+
+import argparse
+import os
+import re
+import select
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
+from lab import Deadline, Program
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+PROGRAMS = None  # folder of the programs under test
+START_S = 60
+PATIENCE_S = 30
+
+CONFIG = """
+log: {{level: {level}}}
+backend: ray
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+{more}
+heads:
+  - name: stern
+    type: micron
+    serial: {{tcp: [{{bind: 127.0.0.1:{port}}}]}}
+    timing: {{line_period_ms: 5}}
+{heads}"""
+
+GEMINI = """
+  - name: bow
+    type: gemini_720i
+    sonar_id: 513
+    network:
+      alternate_address: 127.0.0.2
+      netmask: 255.0.0.0
+      status: [127.0.0.1]
+"""
+
+ALIVE, HEAD_DATA = 4, 2
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def frame(name):
+    with open(os.path.join(SOURCE, "tests", "data", "micron", name + ".hex"), encoding="ascii") as file:
+        lines = [line.split("#")[0] for line in file]
+    return bytes.fromhex("".join(lines))
+
+
+class Client:
+    """A driver of a Micron that blocks: one frame at a time, with a time-out."""
+
+    def __init__(self, port):
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S)
+        self._bytes = b""
+
+    def write(self, data):
+        self.socket.sendall(data)
+
+    def read(self, seconds):
+        """The next whole frame, None when there was none in time."""
+        deadline = Deadline(seconds)
+        while True:
+            if len(self._bytes) >= 7:
+                size = int(self._bytes[1:5], 16) + 6
+                if len(self._bytes) >= size:
+                    whole, self._bytes = self._bytes[:size], self._bytes[size:]
+                    return whole
+            if not select.select([self.socket], [], [], deadline.left())[0]:
+                return None
+            self._bytes += self.socket.recv(4096)
+
+    def read_until(self, message, seconds):
+        deadline = Deadline(seconds)
+        while not deadline.over():
+            got = self.read(deadline.left())
+            if got is not None and got[10] == message:
+                return got
+        return None
+
+    def close(self):
+        self.socket.close()
+
+
+class DaemonCase(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.port = free_port()
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            process.kill()
+        self.folder.cleanup()
+
+    def client(self):
+        client = Client(self.port)
+        self.addCleanup(client.close)
+        return client
+
+    def configuration(self, level="info", more="", heads=""):
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(CONFIG.format(level=level, world=WORLD, more=more, heads=heads, port=self.port))
+        return [os.path.join(PROGRAMS, "sonard"), "run", path]
+
+    def start(self, **settings):
+        daemon = Program(self.configuration(**settings), "sonard")
+        self.processes.append(daemon)
+        daemon.wait_for_line("sonard ready", START_S)
+        return daemon
+
+    def start_bare(self, command, **popen):
+        """One whose standard error is the test's own business; returns when it takes connections."""
+        process = subprocess.Popen(command, **popen)
+        self.processes.append(process)
+        deadline = Deadline(START_S)
+        while not deadline.over():
+            self.assertIsNone(process.poll(), "the daemon has ended")
+            try:
+                return process, self.client()
+            except ConnectionRefusedError:
+                time.sleep(0.05)
+        self.fail("the daemon takes no connections")
+
+    def configured(self, client):
+        client.write(frame("head_command_ros"))
+        self.assertIsNotNone(client.read_until(ALIVE, PATIENCE_S))
+
+    def lines(self, client, count, seconds=PATIENCE_S):
+        for i in range(count):
+            client.write(frame("send_data"))
+            self.assertIsNotNone(client.read_until(HEAD_DATA, seconds), f"line {i}")
+
+
+class LogReader(DaemonCase):
+    def test_one_that_stops_reading_costs_no_line_and_sigterm_ends_it_within_a_second(self):
+        reader, writer = os.pipe()
+        try:
+            # Debug: a line of text for every line of the scan, so that it is full in no time.
+            daemon, client = self.start_bare(self.configuration(level="debug"), stderr=writer)
+            os.close(writer)
+            writer = -1
+            self.configured(client)
+            room = 65536 // 150  # a pipe of 64 KiB, lines of 150 bytes and more
+            self.lines(client, 2 * room)
+            os.set_blocking(reader, False)
+            begin = time.monotonic()
+            daemon.send_signal(signal.SIGTERM)
+            self.assertEqual(daemon.wait(PATIENCE_S), 0)
+            took = time.monotonic() - begin
+            self.assertLess(took, 1.0)
+            self.assertGreater(len(os.read(reader, 1 << 20)), 32768, "the pipe was not full: nothing was tried")
+        finally:
+            os.close(reader)
+            if writer >= 0:
+                os.close(writer)
+
+    def test_clients_that_come_and_go_do_not_fill_the_log(self):
+        daemon = self.start()
+        for _ in range(500):
+            Client(self.port).close()
+        client = self.client()
+        self.configured(client)
+        self.lines(client, 3)
+        said = [line for line in daemon.output().splitlines() if "connected" in line or " left" in line]
+        self.assertGreaterEqual(len(said), 10)
+        self.assertLess(len(said), 60)
+        time.sleep(3)  # two seconds bring the next line, which says what is missing
+        Client(self.port).close()
+        daemon.wait_for_line(r"lines before it were left out", PATIENCE_S)
+
+
+class Signals(DaemonCase):
+    def test_sigpipe_and_sighup_end_nothing(self):
+        daemon = self.start()
+        client = self.client()
+        self.configured(client)
+        for number in (signal.SIGPIPE, signal.SIGHUP, signal.SIGPIPE, signal.SIGHUP):
+            daemon.signal(number)
+            self.lines(client, 3)
+        daemon.wait_for_line("SIGHUP changes nothing", PATIENCE_S, count=2)
+        code, _ = daemon.terminate(PATIENCE_S)
+        self.assertEqual(code, 0)
+
+    def test_a_second_sigterm_is_the_first_one(self):
+        """As `timeout` sends them: to its child, and to the whole process group."""
+        directory = os.path.join(self.folder.name, "logs")
+        os.mkdir(directory)
+        daemon = self.start(more=f"recording: {{directory: {directory}}}", heads=GEMINI)
+        client = self.client()
+        self.configured(client)
+        self.lines(client, 20)
+        self.ping_gemini()
+        daemon.signal(signal.SIGTERM)
+        for _ in range(20):
+            time.sleep(0.001)
+            try:
+                daemon.signal(signal.SIGTERM)
+            except ProcessLookupError:
+                break
+        self.assertEqual(daemon.wait(PATIENCE_S), 0, daemon.tail())
+        daemon.wait_for_line("recording: packed", 1)
+        names = os.listdir(directory)
+        self.assertTrue(any(name.endswith(".glf") for name in names), names)
+        self.assertFalse(any(name.endswith(".dat") for name in names), f"left unpacked: {names}")
+
+    def ping_gemini(self):
+        """One ping, so that there is a log to pack."""
+        surface = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(surface.close)
+        surface.bind(("127.0.0.1", 52900))
+        with open(os.path.join(SOURCE, "tests", "data", "gemini", "ping_config.hex"), encoding="ascii") as file:
+            config = bytearray(bytes.fromhex("".join(line.split("#")[0] for line in file)))
+        config[2:4] = (513).to_bytes(2, "little")
+        deadline = Deadline(PATIENCE_S)
+        surface.settimeout(1.0)
+        while not deadline.over():
+            try:
+                got = surface.recv(2048)
+            except TimeoutError:
+                continue
+            if got[0] == 0x40:
+                surface.sendto(bytes(config), ("127.0.0.2", 52901))
+            if got[0] == 0x43:
+                return
+        self.fail("no ping of the Gemini")
+
+
+class Descriptors(DaemonCase):
+    def test_closed_ones_are_opened_on_dev_null(self):
+        def close_all():
+            for number in (0, 1, 2):
+                os.close(number)
+
+        daemon, client = self.start_bare(self.configuration(), preexec_fn=close_all)
+        for number in (0, 1, 2):
+            self.assertEqual(os.readlink(f"/proc/{daemon.pid}/fd/{number}"), "/dev/null")
+        self.configured(client)
+        self.lines(client, 5)
+        daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(daemon.wait(PATIENCE_S), 0)
+
+
+class Micron(DaemonCase):
+    def test_a_client_of_one_second_is_served_right_after_ready(self):
+        """It gives every answer one second, and its first line comes before it has one."""
+        self.start()
+        client = self.client()
+        client.write(frame("head_command_uxv"))
+        answer = client.read(1.0)
+        self.assertIsNotNone(answer)
+        self.assertEqual(answer[10], ALIVE)
+        self.assertEqual(answer[20] & 0x43, 0x02, "centred, with parameters")
+        client.write(frame("send_data"))
+        self.assertIsNotNone(client.read_until(HEAD_DATA, 1.0))
+
+    def test_the_log_says_what_a_person_needs(self):
+        daemon = self.start()
+        client = self.client()
+        self.configured(client)
+        self.lines(client, 5)
+        daemon.wait_for_line(r"head=stern scanning$", PATIENCE_S)
+        daemon.wait_for_line(r"pings: range=10\.18m bins=400 .* scan=all_round step=1\.80deg direction=right inverted=no$",
+                             PATIENCE_S)
+        daemon.wait_for_line(r"head=stern ready$", PATIENCE_S)
+
+        command = bytearray(frame("head_command_ros"))
+        command[14:16] = (0x2301).to_bytes(2, "little")
+        command[37:41] = (2400).to_bytes(2, "little") + (4000).to_bytes(2, "little")
+        client.write(command)
+        self.lines(client, 2)
+        daemon.wait_for_line(r"scan=sector from=-45\.00deg to=45\.00deg step=1\.80deg direction=left inverted=no$",
+                             PATIENCE_S)
+        command[37:41] = (6399).to_bytes(2, "little") * 2
+        command[43] = 232
+        command[14] |= 0x08
+        for _ in range(5):
+            client.write(command)
+            self.lines(client, 2)
+        daemon.wait_for_line(r"gain=80\.0dB .* scan=stares at=179\.94deg inverted=yes$", PATIENCE_S)
+        client.write(b"@noise@")
+        daemon.wait_for_line(r"head=stern \d bytes from clients were part of no command", PATIENCE_S)
+        for once in ("equal limits", "gain byte 232", "left and right are swapped"):
+            self.assertEqual(daemon.output().count(once), 1, daemon.output())
+
+    def test_a_client_that_leaves_is_no_slow_reader(self):
+        daemon = self.start()
+        for _ in range(5):
+            client = self.client()
+            self.configured(client)
+            for _ in range(2):
+                client.write(frame("send_data"))
+            self.assertIsNotNone(client.read_until(HEAD_DATA, PATIENCE_S))
+            client.close()  # with lines on their way
+        time.sleep(11)  # a report comes every ten seconds
+        self.assertNotIn("too slowly", daemon.output())
+        # One that stays and does not read is told, by the port that it came to.
+        slow = self.client()
+        slow.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        slow.write(frame("head_command_ros"))
+        asking = self.client()
+        self.lines(asking, 500)
+        daemon.wait_for_line(rf"tcp 127\.0\.0\.1:{self.port}: \d+ frames were dropped: a client reads too slowly",
+                             PATIENCE_S)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--programs", required=True)
+    arguments, rest = parser.parse_known_args()
+    PROGRAMS = arguments.programs
+    unittest.main(argv=[sys.argv[0], *rest])
