@@ -35,8 +35,11 @@ constexpr int fruitless_rounds_at_full_speed = 4;
 /// that asking earlier would gain nothing.
 constexpr nanoseconds reorder_patience = milliseconds{1};
 /// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
-/// waits for before it sends one. A false alarm costs a re-sent tail.
+/// waits for before it sends one. A false alarm costs a re-sent tail. Clients of real heads are as patient: within
+/// the last 35 lines they ask again after 5 ms, before that they give a ping 400 ms (7.1, 7.2).
 constexpr nanoseconds stream_patience = milliseconds{8};
+constexpr nanoseconds stream_patience_before_the_end = milliseconds{400};
+constexpr int last_lines = 35;
 constexpr int burst_lines = 32;
 /// The tail follows the last line, and the head comes before the first, at once.
 constexpr nanoseconds neighbour_patience = milliseconds{2};
@@ -78,9 +81,12 @@ void take_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePo
 }
 
 /// A compression of 4 is the most there is; without a head, expect it.
-nanoseconds stream_quiet(const std::optional<PingHead>& head) {
-  const int native_lines = burst_lines << (head ? head->compression_log2() : 4);
-  return stream_patience + nanoseconds{static_cast<std::int64_t>(native_lines * (1e9 / line_rate_hz))};
+/// @param highest line that has come, -1 for none
+nanoseconds stream_quiet(const PingAssembly& ping, int highest) {
+  const bool before_the_end = ping.head() && highest < ping.line_count() - last_lines;
+  const int native_lines = burst_lines << (ping.head() ? ping.head()->compression_log2() : 4);
+  return (before_the_end ? stream_patience_before_the_end : stream_patience) +
+         nanoseconds{static_cast<std::int64_t>(native_lines * (1e9 / line_rate_hz))};
 }
 
 nanoseconds doubled(nanoseconds patience, int times, nanoseconds most) {
@@ -552,8 +558,9 @@ TimePoint Surface::due(const Incoming& ping) const {
   if (ping.assembly.is_complete()) {
     return ping.heard + doubled(neighbour_patience, slower, answer_patience_most);
   }
+  const nanoseconds patience = stream_quiet(ping.assembly, ping.highest);
   const TimePoint quiet =
-      ping.heard + doubled(stream_quiet(ping.assembly.head()), slower, answer_patience_most);
+      ping.heard + doubled(patience, slower, std::max(patience, answer_patience_most));
   const bool headless = !ping.assembly.head() && !ping.head_asked;
   return headless ? std::min(quiet, ping.first_datagram + neighbour_patience) : quiet;
 }
