@@ -16,10 +16,6 @@ if(SONARD_SANITIZE)
   target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
   target_link_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE})
 endif()
-if(SONARD_FUZZ)
-  # Coverage feedback for libFuzzer, whose main() only the fuzz programs link (tests/fuzz).
-  target_compile_options(sonard_flags INTERFACE -fsanitize=fuzzer-no-link)
-endif()
 
 # sonard_library(NAME SOURCES...) and sonard_program(NAME SOURCES...)
 function(sonard_library name)
