@@ -21,10 +21,10 @@ return {
     [8] = "aux_data",
   },
   messages = {
-    send_data = { size = 17, minimum = 17, fields = {
+    send_data = { size = 17, minimum = 13, fields = {
       { 13, 4, "time_ms" },
     } },
-    head_command = { size = 65, minimum = 65, fields = {
+    head_command = { size = 65, minimum = 55, fields = {
       { 14, 2, "control" },
       { 16, 1, "head_type" },
       { 17, 4, "tx_word", 2 },
@@ -48,7 +48,7 @@ return {
       { 62, 1, "control_2" },
       { 63, 2, "scan_z" },
     } },
-    gain_block = { size = 16, minimum = 16, fields = {
+    gain_block = { size = 16, minimum = 6, fields = {
       { 0, 1, "ad_span", 2 },
       { 2, 1, "ad_low", 2 },
       { 4, 1, "gain", 2 },

@@ -35,8 +35,8 @@ constexpr int fruitless_rounds_at_full_speed = 4;
 /// that asking earlier would gain nothing.
 constexpr nanoseconds reorder_patience = milliseconds{1};
 /// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
-/// waits for before it sends one. A false alarm costs a re-sent tail. Clients of real heads are as patient: within
-/// the last 35 lines they ask again after 5 ms, before that they give a ping 400 ms (7.1, 7.2).
+/// waits for before it sends one. A false alarm costs a re-sent tail. Clients of real heads are as patient:
+/// within the last 35 lines they ask again after 5 ms, before that they give a ping 400 ms (7.1, 7.2).
 constexpr nanoseconds stream_patience = milliseconds{8};
 constexpr nanoseconds stream_patience_before_the_end = milliseconds{400};
 constexpr int last_lines = 35;
@@ -559,8 +559,7 @@ TimePoint Surface::due(const Incoming& ping) const {
     return ping.heard + doubled(neighbour_patience, slower, answer_patience_most);
   }
   const nanoseconds patience = stream_quiet(ping.assembly, ping.highest);
-  const TimePoint quiet =
-      ping.heard + doubled(patience, slower, std::max(patience, answer_patience_most));
+  const TimePoint quiet = ping.heard + doubled(patience, slower, std::max(patience, answer_patience_most));
   const bool headless = !ping.assembly.head() && !ping.head_asked;
   return headless ? std::min(quiet, ping.first_datagram + neighbour_patience) : quiet;
 }

@@ -96,14 +96,16 @@ void GeminiHeadLog::rates(const GeminiHeadCounters& total, std::chrono::duration
 void GeminiHeadLog::totals(const GeminiHeadCounters& total) const {
   const gemini::DeviceCounters& device = total.device;
   spdlog::info(
-      "head={} ends: pings_sent={} render_ms={:.1f} pings_failed={} pings_without_pose={} pings_suppressed={} lines_sent={} "
+      "head={} ends: pings_sent={} render_ms={:.1f} pings_failed={} pings_without_pose={} "
+      "pings_suppressed={} lines_sent={} "
       "lines_resent={} tails_resent={} heads_resent={} retries_dropped={} commands={} wrong_id={} "
       "bad_datagrams={} "
       "unknown_type={} unsupported_data={} surface_changes={} surface_timeouts={} reboots={}",
-      head_, device.pings_sent, mean_render_ms({}, total), device.pings_failed, total.pings_without_pose, device.pings_suppressed,
-      device.lines_sent, device.lines_resent, device.tails_resent, device.heads_resent,
-      device.retries_dropped, device.commands, device.wrong_id, device.bad_datagrams, device.unknown_type,
-      device.unsupported_data, device.surface_changes, device.surface_timeouts, device.reboots);
+      head_, device.pings_sent, mean_render_ms({}, total), device.pings_failed, total.pings_without_pose,
+      device.pings_suppressed, device.lines_sent, device.lines_resent, device.tails_resent,
+      device.heads_resent, device.retries_dropped, device.commands, device.wrong_id, device.bad_datagrams,
+      device.unknown_type, device.unsupported_data, device.surface_changes, device.surface_timeouts,
+      device.reboots);
   const UdpEndpointCounters& socket = total.socket;
   spdlog::info(
       "head={} socket: sent={} received={} not_allowed={} truncated={} kernel_dropped={} blocked={} "

@@ -87,9 +87,29 @@ TEST(Layout, short_form_of_the_head_command_may_have_any_length_that_holds_it) {
     bytes[13] = 0x1D;
     EXPECT_EQ(std::get<HeadCommand>(*decode_command(bytes)).gain_block.has_value(), size >= 82) << size;
   }
-  Bytes bytes = counting_frame(false, MessageType::head_command, 65);
+}
+
+// What a head does without may be absent: of this command all that follows the number of bins.
+TEST(Layout, fields_at_the_end_of_a_command_may_be_absent) {
+  for (const std::size_t size : {56U, 58U, 65U}) {
+    Bytes bytes = counting_frame(false, MessageType::head_command, size);
+    bytes[13] = 0x01;
+    const auto command = std::get<HeadCommand>(*decode_command(bytes));
+    EXPECT_EQ(command.bins, at(53, 2));
+    EXPECT_EQ(command.scan_z, HeadCommand{}.scan_z);
+  }
+  Bytes bytes = counting_frame(false, MessageType::head_command, 55);
   bytes[13] = 0x01;
-  EXPECT_EQ(decode_command(bytes).error(), (WireError{WireErrorReason::truncated, 63, "scan_z"}));
+  EXPECT_EQ(decode_command(bytes).error(), (WireError{WireErrorReason::truncated, 53, "bins"}));
+
+  bytes = counting_frame(false, MessageType::head_command, 21);
+  bytes[13] = 0x1E;
+  const GainBlock gain = std::get<GainCommand>(*decode_command(bytes)).values;
+  EXPECT_EQ(gain.gain[0], at(18, 1));
+  EXPECT_EQ(gain.slope[0], 0);
+
+  EXPECT_EQ(std::get<SendData>(*decode_command(counting_frame(false, MessageType::send_data, 14))).time_ms,
+            0U);
 }
 
 TEST(Layout, gain_command) {

@@ -61,7 +61,7 @@ TEST_F(PeerLogTest, says_with_the_next_line_how_many_are_missing) {
 
 TEST_F(PeerLogTest, one_line_for_each_refill_goes_on_for_ever) {
   for (int i = 0; i < 1000; ++i) {
-    clock.time += PeerLog::refill / 4;
+    clock.time += std::chrono::nanoseconds{PeerLog::refill} / 4;
     log.info("{}", i);
   }
   EXPECT_NEAR(static_cast<double>(lines->texts.size()), 10 + 250, 2);
