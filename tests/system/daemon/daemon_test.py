@@ -45,8 +45,9 @@ GEMINI = """
     type: gemini_720i
     sonar_id: 513
     network:
-      alternate_address: 127.0.0.2
+      alternate_address: 127.0.77.2
       netmask: 255.0.0.0
+      surface_port: {surface_port}
       status: [127.0.0.1]
 """
 
@@ -205,11 +206,15 @@ class Signals(DaemonCase):
         """As `timeout` sends them: to its child, and to the whole process group."""
         directory = os.path.join(self.folder.name, "logs")
         os.mkdir(directory)
-        daemon = self.start(more=f"recording: {{directory: {directory}}}", heads=GEMINI)
+        surface = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(surface.close)
+        surface.bind(("127.0.0.1", 0))
+        daemon = self.start(more=f"recording: {{directory: {directory}}}",
+                            heads=GEMINI.format(surface_port=surface.getsockname()[1]))
         client = self.client()
         self.configured(client)
         self.lines(client, 20)
-        self.ping_gemini()
+        self.ping_gemini(surface)
         daemon.signal(signal.SIGTERM)
         for _ in range(20):
             time.sleep(0.001)
@@ -223,11 +228,8 @@ class Signals(DaemonCase):
         self.assertTrue(any(name.endswith(".glf") for name in names), names)
         self.assertFalse(any(name.endswith(".dat") for name in names), f"left unpacked: {names}")
 
-    def ping_gemini(self):
+    def ping_gemini(self, surface):
         """One ping, so that there is a log to pack."""
-        surface = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.addCleanup(surface.close)
-        surface.bind(("127.0.0.1", 52900))
         with open(os.path.join(SOURCE, "tests", "data", "gemini", "ping_config.hex"), encoding="ascii") as file:
             config = bytearray(bytes.fromhex("".join(line.split("#")[0] for line in file)))
         config[2:4] = (513).to_bytes(2, "little")
@@ -239,7 +241,7 @@ class Signals(DaemonCase):
             except TimeoutError:
                 continue
             if got[0] == 0x40:
-                surface.sendto(bytes(config), ("127.0.0.2", 52901))
+                surface.sendto(bytes(config), ("127.0.77.2", 52901))
             if got[0] == 0x43:
                 return
         self.fail("no ping of the Gemini")
