@@ -145,6 +145,9 @@ class Daemon {
   RenderServiceHooks hooks();
   std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
                                                   const RendererFactory& make_renderer);
+  RenderService& renderer_of(const AnyHeadConfig& head) const {
+    return *(is_scanning(head) ? beam_renderer_ : fan_renderer_);
+  }
   void warm_up(const AnyHeadConfig& head, int stream, RenderService& renderer) const;
   void start_inputs();
   void poses_changed();
@@ -188,7 +191,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       fan_renderer_(make_renderer_of(false, config, make_renderer)),
       beam_renderer_(make_renderer_of(true, config, make_renderer)) {
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
-    RenderService& renderer = *(is_scanning(config.heads[i]) ? beam_renderer_ : fan_renderer_);
+    RenderService& renderer = renderer_of(config.heads[i]);
     const HeadServices services{io_,
                                 clock_,
                                 renderer,
@@ -204,9 +207,11 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       const bool serial = std::holds_alternative<MicronHeadConfig>(config.heads[i]);
       throw StartError(head_key(i, serial ? "serial" : "network.bind"), exit_network, error.what());
     }
-    warm_up(config.heads[i], static_cast<int>(i), renderer);
   }
   start_inputs();
+  for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    warm_up(config.heads[i], static_cast<int>(i), renderer_of(config.heads[i]));
+  }
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(),
                             (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());

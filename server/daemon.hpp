@@ -38,7 +38,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config);
 /// a client takes no longer than others. A signal a second after the first kills at once; SIGHUP is one line
 /// in the log.
 /// @return exit_clean; exit_renderer when the renderer fails while serving; exit_internal
-/// @throws StartError, render::RendererError before it is ready
+/// @throws StartError, render::RendererError, render::RequestError, std::system_error before it is ready
 int run_daemon(DaemonConfig config);
 
 /// The same with a world already loaded and any renderer; run_daemon() without rendering, for tests.

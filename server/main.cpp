@@ -299,6 +299,9 @@ int main_program(int argc, char** argv) {
   }
   arguments.timing.start_now = start_now;
   start_log();
+  if (run_command->parsed() || replay_command->parsed()) {
+    ignore_broken_pipes_and_hang_ups();
+  }
   return guarded([&] {
     if (run_command->parsed()) {
       return run(arguments);

@@ -56,6 +56,11 @@ void open_standard_descriptors() {
   }
 }
 
+void ignore_broken_pipes_and_hang_ups() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGHUP, SIG_IGN);
+}
+
 int hear_signals(std::chrono::nanoseconds grace) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
@@ -67,7 +72,6 @@ int hear_signals(std::chrono::nanoseconds grace) {
   }
   grace_ns = grace.count();
   deadly_from_ns = 0;
-  std::signal(SIGPIPE, SIG_IGN);
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;

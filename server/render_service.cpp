@@ -25,7 +25,7 @@ struct RenderService::Impl {
   struct Entry {
     RenderJob job;
     Done done;
-    std::promise<void>* warmed_up = nullptr;  ///< somebody waits: this is no ping, and has no `done`
+    std::optional<std::promise<void>> warmed_up{};  ///< somebody waits: this is no ping, and has no `done`
   };
 
   // Constant once the constructor has returned.
@@ -47,7 +47,7 @@ struct RenderService::Impl {
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
   void serve(PingRenderer& renderer);
-  static void warm_up(PingRenderer& renderer, const Entry& entry);
+  static void warm_up(PingRenderer& renderer, Entry& entry);
   void move_bodies(PingRenderer& renderer, const RenderJob& job);
   RenderResult render(PingRenderer& renderer, const RenderJob& job);
   void close_queue();
@@ -81,7 +81,7 @@ void RenderService::submit(RenderJob job, Done done) {
     if (impl_->queue.size() >= impl_->capacity) {
       throw std::logic_error("render queue is full: a stream has more than one job outstanding");
     }
-    impl_->queue.push_back({std::move(job), std::move(done)});
+    impl_->queue.push_back({std::move(job), std::move(done), std::nullopt});
   }
   impl_->wake.notify_one();
 }
@@ -94,7 +94,7 @@ void RenderService::warm_up(const render::PingRequest& request, int stream) {
   std::future<void> done = warmed_up.get_future();
   {
     const std::lock_guard lock(impl_->mutex);
-    impl_->queue.push_back({std::move(job), {}, &warmed_up});
+    impl_->queue.push_back({std::move(job), {}, std::move(warmed_up)});
   }
   impl_->wake.notify_one();
   done.get();
@@ -168,7 +168,7 @@ std::optional<RenderService::Impl::Entry> RenderService::Impl::next() {
 
 void RenderService::Impl::serve(PingRenderer& renderer) {
   while (std::optional<Entry> entry = next()) {
-    if (entry->warmed_up != nullptr) {
+    if (entry->warmed_up) {
       warm_up(renderer, *entry);
       continue;
     }
@@ -182,7 +182,7 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
   }
 }
 
-void RenderService::Impl::warm_up(PingRenderer& renderer, const Entry& entry) {
+void RenderService::Impl::warm_up(PingRenderer& renderer, Entry& entry) {
   try {
     renderer.warm_up(entry.job.request, entry.job.stream);
     entry.warmed_up->set_value();

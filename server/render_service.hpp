@@ -83,7 +83,7 @@ class RenderService {
   RenderService& operator=(const RenderService&) = delete;
 
   /// PingRenderer::warm_up(); returns when it is done.
-  /// @throws whatever that threw
+  /// @throws whatever that threw; std::future_error when the service is stopped before
   void warm_up(const render::PingRequest& request, int stream);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
   /// @throws std::logic_error when the queue is full: somebody submits more than one job per stream

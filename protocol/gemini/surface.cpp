@@ -36,7 +36,8 @@ constexpr int fruitless_rounds_at_full_speed = 4;
 constexpr nanoseconds reorder_patience = milliseconds{1};
 /// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
 /// waits for before it sends one. A false alarm costs a re-sent tail. Clients of real heads are as patient:
-/// within the last 35 lines they ask again after 5 ms, before that they give a ping 400 ms (7.1, 7.2).
+/// near its end they ask again after 5 ms (early ones) or lines slower than one a millisecond (later ones,
+/// within the last 35); before that they give a ping 400 ms (7.1, 7.2).
 constexpr nanoseconds stream_patience = milliseconds{8};
 constexpr nanoseconds stream_patience_before_the_end = milliseconds{400};
 constexpr int last_lines = 35;

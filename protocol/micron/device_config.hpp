@@ -25,8 +25,8 @@ enum class UserBlocks : std::uint8_t {
 };
 
 /// Section numbers are those of docs/protocols/micron.md. Most of these are choices in which drivers or heads
-/// differ; the defaults suit all drivers that the document names. The Device constructor refuses what is out
-/// of range.
+/// differ; the defaults suit most drivers, docs/your-micron-driver.md lists the others. The Device
+/// constructor refuses what is out of range.
 struct DeviceConfig {
   std::uint8_t node = default_head_node;  ///< 1..254 (2.1)
   bool half_duplex = false;               ///< one line for a request instead of two (8.1)

@@ -120,7 +120,8 @@ std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_s
   if (bytes.size() < size) {
     return 0;
   }
-  if (size == head_command_size && bytes[size - 1] != frame_end &&
+  // Where a byte was lost the next frame begins there.
+  if (size == head_command_size && bytes[size - 1] != frame_end && bytes[size - 1] != frame_start &&
       frame_header(bytes).type == static_cast<std::uint8_t>(MessageType::head_command)) {
     size = longer_head_command_size;
     if (bytes.size() < size) {

@@ -4,22 +4,14 @@
 #include <cstdlib>
 
 namespace sonard::micron {
-namespace {
 
-int left_limit(const HeadCommand& command, LimitsOrder order) {
-  const bool swap = order == LimitsOrder::swapped && command.left_limit > command.right_limit;
-  return wrapped(swap ? command.right_limit : command.left_limit);
-}
-
-}  // namespace
-
-int sector_width(const HeadCommand& command, LimitsOrder order) {
-  if (command.left_limit == command.right_limit) {
-    return 0;
+Sector sector_of(const HeadCommand& command, LimitsOrder order) {
+  const int left = wrapped(command.left_limit), right = wrapped(command.right_limit);
+  if (left == right) {
+    return {left, command.left_limit == command.right_limit ? 0 : units_per_turn};
   }
-  const bool swap = order == LimitsOrder::swapped && command.left_limit > command.right_limit;
-  const int width = wrapped(command.right_limit - command.left_limit);
-  return width == 0 ? units_per_turn : swap ? units_per_turn - width : width;
+  const bool swap = order == LimitsOrder::swapped && left > right;
+  return swap ? Sector{right, left - right} : Sector{left, wrapped(right - left)};
 }
 
 bool stares(const HeadCommand& command) {
@@ -28,11 +20,10 @@ bool stares(const HeadCommand& command) {
 }
 
 void Sweep::configure(const HeadCommand& command, int bearing) {
-  left_ = left_limit(command, order_);
-  width_ = sector_width(command, order_);
+  sector_ = sector_of(command, order_);
   step_ = command.step == 0 ? step_of_zero : command.step;
   clockwise_ = command.has(control_bits::scan_right);
-  offset_ = wrapped(bearing - left_);
+  offset_ = wrapped(bearing - sector_.left);
   if (command.has(control_bits::motor_off)) {
     mode_ = Mode::still;
   } else if (stares(command)) {
@@ -47,13 +38,13 @@ void Sweep::configure(const HeadCommand& command, int bearing) {
 }
 
 int Sweep::offset_of(int bearing) const {
-  const int offset = wrapped(bearing - left_);
-  if (offset <= width_) {
+  const int offset = wrapped(bearing - sector_.left);
+  if (offset <= sector_.width) {
     return offset;
   }
-  const int beyond = offset - width_;            // clockwise from the right limit
+  const int beyond = offset - sector_.width;     // clockwise from the right limit
   const int short_of = units_per_turn - offset;  // counter-clockwise from the left one
-  return short_of <= beyond ? 0 : width_;
+  return short_of <= beyond ? 0 : sector_.width;
 }
 
 SweepCode Sweep::code() const {
@@ -63,7 +54,7 @@ SweepCode Sweep::code() const {
   if (offset_ == 0) {
     return SweepCode::left_limit;
   }
-  return offset_ == width_ ? SweepCode::right_limit : SweepCode::normal;
+  return offset_ == sector_.width ? SweepCode::right_limit : SweepCode::normal;
 }
 
 int Sweep::step() {
@@ -78,9 +69,9 @@ int Sweep::step() {
       break;
   }
   const int before = offset_;
-  const bool at_end = before == (clockwise_ ? width_ : 0);
+  const bool at_end = before == (clockwise_ ? sector_.width : 0);
   clockwise_ = clockwise_ != at_end;
-  offset_ = std::clamp(before + (at_end ? -turn : turn), 0, width_);
+  offset_ = std::clamp(before + (at_end ? -turn : turn), 0, sector_.width);
   return std::abs(offset_ - before);
 }
 

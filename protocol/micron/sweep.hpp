@@ -9,9 +9,14 @@ namespace sonard::micron {
 
 inline constexpr int step_of_zero = 16;  ///< what a step of 0 acts as
 
-/// The sector of a head command, clockwise from its left limit: 0 where the limits are equal, 6400 where they
-/// are a whole turn apart, 0..6399 otherwise.
-int sector_width(const HeadCommand& command, LimitsOrder order);
+/// Between the limits of a head command, clockwise, in units.
+struct Sector {
+  int left = 0;   ///< 0..6399
+  int width = 0;  ///< 0 where the limits are equal, 6400 where they are a whole turn apart, else 1..6399
+
+  int right() const { return wrapped(left + width); }
+};
+Sector sector_of(const HeadCommand& command, LimitsOrder order);
 /// Whether a head holds still at the left limit: it was told to stare, or to scan a sector of no width.
 bool stares(const HeadCommand& command);
 
@@ -24,7 +29,7 @@ class Sweep {
   /// first, one that stares to the left limit; bearing() is where it is then.
   void configure(const HeadCommand& command, int bearing);
 
-  int bearing() const { return wrapped(left_ + offset_); }
+  int bearing() const { return wrapped(sector_.left + offset_); }
   SweepCode code() const;
   /// Goes on to the next bearing and returns how far that is, in units. At a limit the scan turns round.
   int step();
@@ -40,9 +45,8 @@ class Sweep {
   LimitsOrder order_;
   Mode mode_ = Mode::still;
   bool clockwise_ = true;
-  int left_ = 0;
-  int width_ = 0;               ///< of the sector, clockwise from the left limit; 6400: all round
-  int offset_ = bearing_ahead;  ///< from the left limit clockwise, 0..width_ of a sector
+  Sector sector_;
+  int offset_ = bearing_ahead;  ///< from the left limit clockwise, within a sector 0..width
   int step_ = 1;
 };
 

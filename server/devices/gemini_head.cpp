@@ -19,6 +19,7 @@
 #include "server/devices/interfaces.hpp"
 #include "server/devices/playback.hpp"
 #include "server/devices/udp_endpoint.hpp"
+#include "server/program_log/peer_log.hpp"
 #include "server/recording/head_recording.hpp"
 
 namespace sonard::server {
@@ -63,6 +64,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   asio::steady_timer report_timer;
   std::uint64_t not_allowed = 0;
   GeminiHeadLog log;
+  PeerLog address_log;  // a client may program addresses and reboot as often as it likes
   HeadRecording recording;
   std::optional<PingToRecord> ping_to_record;
   bool running = false;
@@ -90,7 +92,7 @@ struct GeminiHead::Impl : std::enable_shared_from_this<GeminiHead::Impl> {
   void address_status(const gemini::SharedBytes& bytes, std::vector<Datagram>& datagrams) const;
   Ipv4 source_address() const;
   void follow_addresses();
-  void check_interface() const;
+  void check_interface();
 
   bool render(const gemini::PingJob& job);
   bool out_of_water(TimePoint pose_time) const;
@@ -413,8 +415,8 @@ void GeminiHead::Impl::follow_addresses() {
     return;
   }
   const gemini::DeviceAddresses before = std::exchange(addresses, current);
-  spdlog::info("head={} answers on {} mask {} from now on", config.name, address_text(current.alternate),
-               address_text(current.netmask));
+  address_log.info("head={} answers on {} mask {} from now on", config.name, address_text(current.alternate),
+                   address_text(current.netmask));
   check_interface();
   if (current.alternate == before.alternate || socket->local_endpoint().address != before.alternate) {
     return;
@@ -423,19 +425,20 @@ void GeminiHead::Impl::follow_addresses() {
     socket = std::make_unique<UdpEndpoint>(services.io, Endpoint{current.alternate, config.command_port});
     listen();
   } catch (const SocketError& error) {
-    spdlog::error("head={} stays on {}: {}", config.name, address_text(before.alternate), error.what());
+    address_log.error("head={} stays on {}: {}", config.name, address_text(before.alternate), error.what());
   }
 }
 
-void GeminiHead::Impl::check_interface() const {
+void GeminiHead::Impl::check_interface() {
   const std::optional<InterfaceAddress> owner = owner_of(addresses.alternate, interface_addresses());
   if (!owner) {
-    spdlog::warn("head={} reports the address {}, which this machine does not have: clients will send there",
-                 config.name, address_text(addresses.alternate));
+    address_log.warn(
+        "head={} reports the address {}, which this machine does not have: clients will send there",
+        config.name, address_text(addresses.alternate));
   } else if (owner->netmask != addresses.netmask) {
-    spdlog::warn("head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",
-                 config.name, address_text(addresses.netmask), owner->interface,
-                 address_text(owner->netmask));
+    address_log.warn(
+        "head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",
+        config.name, address_text(addresses.netmask), owner->interface, address_text(owner->netmask));
   }
 }
 

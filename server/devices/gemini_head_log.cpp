@@ -26,10 +26,10 @@ void GeminiHeadLog::surface(Ipv4 address) {
     return;
   }
   if (address == 0) {
-    changes_.info("head={} surface {} lost: no command for the time-out, or reboot", head_,
-                  address_text(surface_));
+    surface_changes_.info("head={} surface {} lost: no command for the time-out, or reboot", head_,
+                          address_text(surface_));
   } else {
-    changes_.info("head={} surface {} connected", head_, address_text(address));
+    surface_changes_.info("head={} surface {} connected", head_, address_text(address));
   }
   surface_ = address;
 }
@@ -39,7 +39,7 @@ void GeminiHeadLog::settings(const gemini::PingJob& job) {
     return;
   }
   settings_ = job;
-  changes_.info(
+  setting_changes_.info(
       "head={} pings: range={:.2f}m lines={} compression=x{} gain={:+.1f}dB sound_speed={:.1f}m/s bits={}{}",
       head_, job.native_lines * job.line_step_m, job.lines(), 1 << job.compression_log2, job.gain_db,
       job.sound_speed_mps, job.sixteen_bit ? 16 : 8, job.transmit ? "" : " listening only");

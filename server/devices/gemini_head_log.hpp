@@ -39,7 +39,7 @@ class GeminiHeadLog {
   void log_faults(const char* direction, const FaultyLinkCounters& link) const;
 
   std::string head_;
-  PeerLog changes_;
+  PeerLog surface_changes_, setting_changes_;
   Ipv4 surface_ = 0;
   std::optional<gemini::PingJob> settings_;
   std::set<Ipv4> strangers_;

@@ -26,7 +26,7 @@ void MicronHeadLog::state(TimePoint now, micron::HeadState state) {
   if (said_ == state || (idle_since_ && now - *idle_since_ < idle_after)) {
     return;
   }
-  changes_.info("head={} {}", head_, to_string(state));
+  state_changes_.info("head={} {}", head_, to_string(state));
   said_ = state;
 }
 
@@ -35,35 +35,31 @@ void MicronHeadLog::settings(const micron::MicronJob& job, const micron::HeadCom
       "range={:.2f}m bins={} of {:.1f}mm gain={:.1f}dB window={:.1f}+{:.1f}dB bits={}{}{}", job.range_m(),
       job.bins, 1e3 * job.bin_length_m, job.gain_db, job.ad_low_db, job.ad_span_db, job.eight_bit ? 8 : 4,
       job.transmit ? "" : " listening only", job.record ? "" : scan_text(asked));
-  if (text == settings_) {
-    return;
-  }
-  settings_ = text;
-  changes_.info("head={} pings: {}", head_, text);
   if (!job.record) {
     warn_of_settings(asked);
+  }
+  if (text != settings_) {
+    settings_ = text;
+    setting_changes_.info("head={} pings: {}", head_, text);
   }
 }
 
 std::string MicronHeadLog::scan_text(const micron::HeadCommand& asked) const {
   namespace bits = micron::control_bits;
-  const auto degrees = [](int bearing) { return micron::bearing_rad(bearing) / degree; };
   const char* inverted = asked.has(bits::invert) ? "yes" : "no";
   if (asked.has(bits::motor_off)) {
     return fmt::format(" scan=motor_off inverted={}", inverted);
   }
+  const micron::Sector sector = micron::sector_of(asked, config_.limits_order);
   if (micron::stares(asked)) {
-    return fmt::format(" scan=stares at={:.2f}deg inverted={}", degrees(asked.left_limit), inverted);
+    return fmt::format(" scan=stares at={:.2f}deg inverted={}", micron::bearing_deg(sector.left), inverted);
   }
   std::string scan = " scan=all_round";
   if (!asked.has(bits::continuous)) {
-    const bool whole = micron::sector_width(asked, config_.limits_order) == micron::units_per_turn;
-    const bool swapped =
-        config_.limits_order == micron::LimitsOrder::swapped && asked.left_limit > asked.right_limit;
-    scan = whole ? " scan=sector_all_round"
-                 : fmt::format(" scan=sector from={:.2f}deg to={:.2f}deg",
-                               degrees(swapped ? asked.right_limit : asked.left_limit),
-                               degrees(swapped ? asked.left_limit : asked.right_limit));
+    scan = sector.width == micron::units_per_turn
+               ? " scan=sector_all_round"
+               : fmt::format(" scan=sector from={:.2f}deg to={:.2f}deg", micron::bearing_deg(sector.left),
+                             micron::bearing_deg(sector.right()));
   }
   return fmt::format("{} step={:.2f}deg direction={} inverted={}", scan,
                      micron::step_unit_deg * (asked.step == 0 ? micron::step_of_zero : asked.step),
@@ -77,8 +73,8 @@ void MicronHeadLog::warn_of_settings(const micron::HeadCommand& asked) {
     spdlog::warn("head={} the client's gain byte {} is beyond 210, the most there is: taken as 80 dB", head_,
                  asked.gain[0]);
   }
-  const bool sector = !asked.has(bits::continuous) && !asked.has(bits::stare);
-  if (sector && asked.left_limit == asked.right_limit && !std::exchange(said_limits_, true)) {
+  const bool told_to = asked.has(bits::stare) || asked.has(bits::motor_off);
+  if (micron::stares(asked) && !told_to && !std::exchange(said_limits_, true)) {
     spdlog::warn(
         "head={} the client's sector has equal limits ({}): the head stares there; 0 to 6400 is a whole turn",
         head_, asked.left_limit);
@@ -143,9 +139,10 @@ void MicronHeadLog::totals(const MicronHeadCounters& total) const {
       device.unknown_type, device.requests_beyond_cap, device.boots);
   const SerialPortCounters& ports = total.link.ports;
   spdlog::info(
-      "head={} line: connections={} refused={} bytes_in={} bytes_out={} frames_dropped={} frames_unheard={}",
+      "head={} line: connections={} refused={} bytes_in={} bytes_out={} frames_dropped={} frames_lost={} "
+      "frames_unheard={}",
       head_, ports.connections, ports.refused, ports.bytes_in, ports.bytes_out, ports.frames_dropped,
-      total.link.frames_unheard);
+      ports.frames_lost, total.link.frames_unheard);
   log_skipped(head_, total.skipped);
 }
 

@@ -39,7 +39,7 @@ class MicronHeadLog {
 
   std::string head_;
   micron::DeviceConfig config_;
-  PeerLog changes_;
+  PeerLog state_changes_, setting_changes_;
   std::optional<micron::HeadState> said_;
   std::optional<TimePoint> idle_since_;
   std::string settings_;  ///< as they were said last

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,7 +43,7 @@ StderrSink::~StderrSink() {
 void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
   spdlog::memory_buf_t line;
   formatter_->format(message, line);
-  std::string text = cut_ ? "\n" : "";
+  std::string text = std::exchange(cut_, false) ? "\n" : "";
   if (dropped_ > 0) {
     text += fmt::format("{} lines of this log were dropped: nobody read them in time\n", dropped_);
   }
@@ -59,15 +61,15 @@ bool StderrSink::write(std::string_view text) {
     if (poll(&room, 1, /*timeout=*/0) != 1 || (room.revents & POLLOUT) == 0) {
       return false;
     }
+    cut_ = text.size() > PIPE_BUF;
+    text = text.substr(0, PIPE_BUF);  // that much there is room for
   }
   ssize_t written = 0;
   do {
     written = kind_ == Kind::socket ? send(descriptor_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL)
                                     : ::write(descriptor_, text.data(), text.size());
   } while (written < 0 && errno == EINTR);
-  if (written > 0) {
-    cut_ = static_cast<std::size_t>(written) < text.size();
-  }
+  cut_ = cut_ || (written > 0 && static_cast<std::size_t>(written) < text.size());
   return written > 0;
 }
 

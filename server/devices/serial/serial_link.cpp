@@ -250,6 +250,7 @@ SerialLinkCounters SerialLink::counters() const {
     total.ports.bytes_in += one.bytes_in;
     total.ports.bytes_out += one.bytes_out;
     total.ports.frames_dropped += one.frames_dropped;
+    total.ports.frames_lost += one.frames_lost;
     total.each.push_back({port->description(), one});
   }
   return total;

@@ -20,7 +20,8 @@ struct SerialPortCounters {
   std::uint64_t refused = 0;      ///< connections, or datagrams, turned away: not allowed, too many, too long
   std::uint64_t bytes_in = 0;     ///< of all clients
   std::uint64_t bytes_out = 0;    ///< to all clients: a frame that two of them get counts twice
-  std::uint64_t frames_dropped = 0;  ///< a client had not taken what it was sent before, or the OS refused
+  std::uint64_t frames_dropped = 0;  ///< a client had not taken what it was sent before
+  std::uint64_t frames_lost = 0;     ///< the other end was gone, or the OS refused
 };
 
 /// Of one port, for the log.

@@ -121,7 +121,7 @@ std::string UdpPort::description() const {
 SerialPortCounters UdpPort::counters() const {
   SerialPortCounters counters = impl_->counters;
   counters.refused += impl_->socket.counters().truncated;
-  counters.frames_dropped += impl_->socket.counters().send_failed;
+  counters.frames_lost += impl_->socket.counters().send_failed;
   return counters;
 }
 

@@ -191,6 +191,16 @@ class LogReader(DaemonCase):
 
 
 class Signals(DaemonCase):
+    def test_a_log_reader_that_leaves_while_it_starts_ends_nothing(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        daemon, client = self.start_bare(self.configuration(level="debug"), stderr=writer)
+        os.close(writer)
+        self.configured(client)
+        self.lines(client, 5)
+        daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(daemon.wait(PATIENCE_S), 0)
+
     def test_sigpipe_and_sighup_end_nothing(self):
         daemon = self.start()
         client = self.client()
@@ -267,8 +277,9 @@ class Micron(DaemonCase):
         """It gives every answer one second, and its first line comes before it has one."""
         self.start()
         client = self.client()
+        self.assertIsNotNone(client.read_until(ALIVE, 2.0), "the regular one, so that the next is an answer")
         client.write(frame("head_command_uxv"))
-        answer = client.read(1.0)
+        answer = client.read(0.9)
         self.assertIsNotNone(answer)
         self.assertEqual(answer[10], ALIVE)
         self.assertEqual(answer[20] & 0x43, 0x02, "centred, with parameters")

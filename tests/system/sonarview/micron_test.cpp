@@ -296,7 +296,7 @@ TEST_F(SonarviewMicron, reboots_a_head_first) {
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--reboot", "--lines", "10"} + forty_bins_);
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("centring"));  // 3.2 s of it
+  EXPECT_THAT(result.err, HasSubstr("centring"));
 }
 
 TEST_F(SonarviewMicron, a_file_that_cannot_be_written_is_said_at_once) {

@@ -384,6 +384,17 @@ TEST_F(SurfaceTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
   EXPECT_THAT(surface_.take_pings(), SizeIs(1));
 }
 
+// What a head that is late with its image would otherwise be asked for in every ping (7.2).
+TEST_F(SurfaceTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients) {
+  meet_and_start(config());
+  hear_head(5);
+  hear_lines(5, 0, lines - 36);
+  pass(390ms);
+  EXPECT_THAT(asked(), IsEmpty());
+  pass(30ms);
+  EXPECT_THAT(asked(), ElementsAre("tail"));
+}
+
 TEST_F(SurfaceTest, ALostHeadIsAskedForAndTheLinesAreKept) {
   meet_and_start(config());
   hear_lines(5, 0, 10);

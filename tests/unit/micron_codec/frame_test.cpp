@@ -139,6 +139,18 @@ TEST(FrameBuffer, survives_noise_in_any_chunks) {
 // The reboot of one public driver says it is 18 bytes long and is 14 (2.4).
 const Bytes cut_reboot{0x40, 0x30, 0x30, 0x30, 0x43, 0x0C, 0x00, 0xFF, 0x02, 0x07, 0x10, 0x80, 0x02, 0x0A};
 
+TEST(FrameBuffer, a_head_command_that_lost_a_byte_costs_no_other_command) {
+  Bytes stream = load_fixture("head_command_ros");
+  stream.erase(stream.begin() + 30);
+  const Bytes next = load_fixture("send_version");
+  stream.insert(stream.end(), next.begin(), next.end());
+  FrameBuffer buffer(max_command_frame_size);
+  buffer.append(0ns, stream);
+  const auto frame = buffer.front(0ns);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(Bytes(frame->bytes.begin(), frame->bytes.end()), next);
+}
+
 TEST(FrameBuffer, takes_a_frame_that_was_cut_after_100_ms_of_silence) {
   FrameBuffer buffer{max_command_frame_size};
   buffer.append(1s, cut_reboot);
