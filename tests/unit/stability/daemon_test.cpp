@@ -341,7 +341,7 @@ TEST(LongRun, S18_LostContextEndsTheServiceOnce) {
 
 /// Resident memory in bytes; 0 where it says nothing, as sanitizers keep what was freed.
 std::size_t resident_bytes() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SONARD_SANITIZED
   return 0;
 #else
   std::ifstream statm("/proc/self/statm");
