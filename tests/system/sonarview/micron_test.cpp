@@ -292,7 +292,9 @@ TEST_F(SonarviewMicron, a_line_that_is_not_there_has_no_head) {
 }
 
 TEST_F(SonarviewMicron, reboots_a_head_first) {
-  const FakeHead head(by_tcp(), {.echo = echo});
+  FakeHead::Settings settings{.echo = echo};
+  settings.device.least_centring_time = 2s;  // long enough to be said
+  const FakeHead head(by_tcp(), settings);
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--reboot", "--lines", "10"} + forty_bins_);
   EXPECT_EQ(result.exit_code, 0) << result.err;
