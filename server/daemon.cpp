@@ -53,7 +53,8 @@ class WorldRenderer final : public PingRenderer {
     return samples;
   }
   void warm_up(const render::PingRequest& request, int stream) override {
-    renderer_.render_echo(request, stream);  // what follows it keeps the speckle of pings, and is quick
+    renderer_.render_echo(request,
+                          stream);  // the receiver, which keeps speckle from ping to ping, needs no warming
   }
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
@@ -159,10 +160,10 @@ class Daemon {
   void end(int exit_code);
 
   SteadyClock clock_;
-  asio::io_context lifetime_;  // of main: signals, and the wish to end
-  asio::posix::stream_descriptor signals_{lifetime_};
-  std::uint8_t signal_ = 0;     // read last
-  int exit_code_ = exit_clean;  // of main
+  asio::io_context lifetime_;                          // of main: signals, and the wish to end
+  asio::posix::stream_descriptor signals_{lifetime_};  // see hear_signals()
+  std::uint8_t signal_ = 0;                            // read last
+  int exit_code_ = exit_clean;                         // of main
   asio::io_context io_;
   Playback* playback_;  // may be null
   asio::steady_timer playback_timer_;

@@ -10,6 +10,8 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/system/error_code.hpp>
 
+#include "server/devices/serial/serial_port.hpp"
+
 namespace sonard::server {
 
 enum class FrameFate : std::uint8_t {
@@ -17,6 +19,14 @@ enum class FrameFate : std::uint8_t {
   no_room,    ///< dropped: the reader has not taken what it was sent before
   no_reader,  ///< dropped: the other end is gone
 };
+
+/// @return whether it was sent
+inline bool count_frame(FrameFate fate, std::size_t bytes, SerialPortCounters& counters) {
+  counters.bytes_out += fate == FrameFate::sent ? bytes : 0;
+  counters.frames_dropped += fate == FrameFate::no_room ? 1 : 0;
+  counters.frames_lost += fate == FrameFate::no_reader ? 1 : 0;
+  return fate == FrameFate::sent;
+}
 
 /// Stream is a non-blocking tcp::socket or posix::stream_descriptor that outlives the writer. Errors of the
 /// stream are left to whoever reads from it: they end the session there.

@@ -242,15 +242,8 @@ void PtyPort::send(std::span<const std::uint8_t> frame) {
     return;
   }
   const FrameFate fate = impl_->writer.send(frame, impl_);
-  if (fate == FrameFate::no_room) {
-    ++impl_->counters.frames_dropped;
-  } else if (fate == FrameFate::no_reader) {
-    ++impl_->counters.frames_lost;
-  } else {
-    impl_->counters.bytes_out += frame.size();
-    if (impl_->events.passed) {
-      impl_->events.passed(impl_->ends(), /*to_client=*/true, frame);
-    }
+  if (count_frame(fate, frame.size(), impl_->counters) && impl_->events.passed) {
+    impl_->events.passed(impl_->ends(), /*to_client=*/true, frame);
   }
 }
 

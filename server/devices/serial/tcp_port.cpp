@@ -99,15 +99,8 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
 
   void send(std::span<const std::uint8_t> frame) {
     const FrameFate fate = writer_.send(frame, shared_from_this());
-    if (fate == FrameFate::no_room) {
-      ++port_->counters.frames_dropped;
-    } else if (fate == FrameFate::no_reader) {
-      ++port_->counters.frames_lost;
-    } else {
-      port_->counters.bytes_out += frame.size();
-      if (port_->events.passed) {
-        port_->events.passed(ends_, /*to_client=*/true, frame);
-      }
+    if (count_frame(fate, frame.size(), port_->counters) && port_->events.passed) {
+      port_->events.passed(ends_, /*to_client=*/true, frame);
     }
   }
 

@@ -60,10 +60,13 @@ def free_port():
         return probe.getsockname()[1]
 
 
+def example(device, name):
+    with open(os.path.join(SOURCE, "tests", "data", device, name + ".hex"), encoding="ascii") as file:
+        return bytes.fromhex("".join(line.split("#")[0] for line in file))
+
+
 def frame(name):
-    with open(os.path.join(SOURCE, "tests", "data", "micron", name + ".hex"), encoding="ascii") as file:
-        lines = [line.split("#")[0] for line in file]
-    return bytes.fromhex("".join(lines))
+    return example("micron", name)
 
 
 class Client:
@@ -240,8 +243,7 @@ class Signals(DaemonCase):
 
     def ping_gemini(self, surface):
         """One ping, so that there is a log to pack."""
-        with open(os.path.join(SOURCE, "tests", "data", "gemini", "ping_config.hex"), encoding="ascii") as file:
-            config = bytearray(bytes.fromhex("".join(line.split("#")[0] for line in file)))
+        config = bytearray(example("gemini", "ping_config"))
         config[2:4] = (513).to_bytes(2, "little")
         deadline = Deadline(PATIENCE_S)
         surface.settimeout(1.0)
