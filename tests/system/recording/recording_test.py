@@ -563,7 +563,9 @@ class Faults(RecordingTest):
             if len(lines[number]) == image.lines:
                 whole.add(rendered[number])
         self.assertLessEqual(set(heads), set(numbers))
-        self.assertGreaterEqual(len(heads), count - len(vanished))  # where one was lost a client that is gone asks no more
+        # The link loses a head in twenty, a client that is gone asks for none again, and one that is there may lose what it
+        # asks for until the next ping begins. What has been compared above is nearly every ping.
+        self.assertGreaterEqual(len(heads), 0.9 * count)
         self.assertLessEqual(set(received), whole)
         self.assertGreaterEqual(len(received), 45)
 
