@@ -4,7 +4,6 @@
 #include <optional>
 #include <set>
 #include <system_error>
-#include <variant>
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
@@ -14,11 +13,9 @@
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/scene/world.hpp"
-#include "server/config/addresses.hpp"
 #include "server/config/overlaps.hpp"
-#include "server/devices/heads.hpp"
-#include "server/devices/interfaces.hpp"
-#include "server/take_from_world.hpp"
+#include "server/daemon/resolve_mounts.hpp"
+#include "server/devices/device_kind.hpp"
 
 namespace sonard::server {
 namespace {
@@ -57,10 +54,7 @@ class Check {
   void check_poses();
   void check_recording();
   void check_head(std::size_t index);
-  void describe(const GeminiHeadConfig& head);
-  void describe(const MicronHeadConfig& head);
   void check_addresses();
-  void check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces);
   template <typename Protocol>
   void try_socket(const Endpoint& endpoint, const std::string& key);
 
@@ -105,7 +99,7 @@ void Check::check_world() {
     for (const render::WorldSonar& sonar : world.sonars) {
       report_.summary.push_back(fmt::format("sonar    {}: {} of the world", sonar.path, sonar.type));
     }
-    for (const WorldProblem& found : take_from_world(config_, world)) {
+    for (const WorldProblem& found : resolve_mounts(config_, world)) {
       problem(found.key, found.message);
     }
     if (!config_.vehicle_model.empty()) {
@@ -166,22 +160,6 @@ void Check::check_poses() {
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));
 }
 
-std::string status_text(const GeminiHeadConfig& head) {
-  switch (head.status.mode) {
-    case StatusDestination::Mode::limited_broadcast:
-      return "by limited broadcast";
-    case StatusDestination::Mode::directed_broadcast:
-      return "by broadcast to " + address_text(head.device.alternate_address | ~head.device.netmask);
-    case StatusDestination::Mode::unicast:
-      break;
-  }
-  std::vector<std::string> hosts;
-  for (const Ipv4 host : head.status.hosts) {
-    hosts.push_back(address_text(host));
-  }
-  return fmt::format("to {}", fmt::join(hosts, ", "));
-}
-
 /// The end of a head's line.
 std::string rest_text(const HeadConfig& head) {
   const render::SonarSettings& acoustics = head.acoustics;
@@ -192,34 +170,12 @@ std::string rest_text(const HeadConfig& head) {
                      head.hides_vehicle ? ", vehicle hidden" : "");
 }
 
-void Check::describe(const GeminiHeadConfig& head) {
-  report_.summary.push_back(fmt::format(
-      "head     {}: Gemini 720i, ID {}, commands to {}, status {}, {}", head.name, head.device.sonar_id,
-      endpoint_text({head.bind_address, head.command_port}), status_text(head), rest_text(head)));
-}
-
-void Check::describe(const MicronHeadConfig& head) {
-  std::vector<std::string> ways;
-  for (const SerialTcpConfig& tcp : head.serial.tcp) {
-    ways.push_back("TCP " + endpoint_text(tcp.bind));
-  }
-  for (const SerialUdpConfig& udp : head.serial.udp) {
-    ways.push_back("UDP " + endpoint_text(udp.bind));
-  }
-  for (const SerialPtyConfig& pty : head.serial.pty) {
-    ways.push_back(pty.link.empty() ? "a pty" : "a pty at " + pty.link.string());
-  }
-  report_.summary.push_back(fmt::format("head     {}: Micron, node {}, {} duplex, line by {}, {}", head.name,
-                                        head.device.node, head.device.half_duplex ? "half" : "full",
-                                        fmt::join(ways, ", "), rest_text(head)));
-}
-
 void Check::check_head(std::size_t index) {
-  const AnyHeadConfig& any = config_.heads[index];
-  std::visit([this](const auto& head) { describe(head); }, any);
-  const HeadConfig& head = common(any);
+  const HeadConfig& head = config_.heads[index];
+  report_.summary.push_back(fmt::format("head     {}: {}, {}, {}", head.name, head.kind->title(),
+                                        head.kind->summary(head), rest_text(head)));
   try {
-    check_sampling_of(any);
+    check_sampling_of(head);
   } catch (const render::RequestError& error) {
     problem("sampling", fmt::format("head '{}': {}", head.name, error.what()));
   }
@@ -234,15 +190,17 @@ void Check::check_head(std::size_t index) {
 }
 
 void Check::check_addresses() {
-  for (const PlannedSocket& socket : planned_udp_sockets(config_)) {
-    try_socket<asio::ip::udp>(socket.endpoint, socket.key);
+  for (const PlannedSocket& socket : planned_sockets(config_)) {
+    if (socket.transport == PlannedSocket::Transport::udp) {
+      try_socket<asio::ip::udp>(socket.endpoint, socket.key);
+    } else {
+      try_socket<asio::ip::tcp>(socket.endpoint, socket.key);
+    }
   }
-  for (const PlannedSocket& socket : planned_tcp_sockets(config_)) {
-    try_socket<asio::ip::tcp>(socket.endpoint, socket.key);
-  }
-  const std::vector<InterfaceAddress> interfaces = interface_addresses();
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
-    check_netmask(i, interfaces);
+    for (const ConfigWarning& found : config_.heads[i].kind->network_warnings(config_.heads[i])) {
+      warning(fmt::format("heads[{}].{}", i, found.key), found.message);
+    }
   }
 }
 
@@ -281,27 +239,6 @@ void Check::try_socket(const Endpoint& endpoint, const std::string& key) {
   } else {
     problem(key, fmt::format("{} {} cannot be bound: {} (expected an address and port to listen on)",
                              transport, endpoint_text(endpoint), error.message()));
-  }
-}
-
-/// Later clients stay silent towards a head whose mask is not that of their own interface.
-void Check::check_netmask(std::size_t index, const std::vector<InterfaceAddress>& interfaces) {
-  const auto* gemini = std::get_if<GeminiHeadConfig>(&config_.heads[index]);
-  if (gemini == nullptr) {
-    return;
-  }
-  const gemini::DeviceConfig& device = gemini->device;
-  const std::optional<InterfaceAddress> owner = owner_of(device.alternate_address, interfaces);
-  if (owner && owner->netmask != device.netmask) {
-    warning(fmt::format("heads[{}].network.netmask", index),
-            fmt::format("{} is reported, but interface {} has {}: clients that compare them send nothing",
-                        address_text(device.netmask), owner->interface, address_text(owner->netmask)));
-  }
-  // Where the head is bound to it, trying the socket has already told.
-  if (!owner && gemini->bind_address != device.alternate_address) {
-    warning(fmt::format("heads[{}].network.alternate_address", index),
-            fmt::format("{} is not an address of this machine, but clients will send there",
-                        address_text(device.alternate_address)));
   }
 }
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
 
-#include "server/clock.hpp"
-#include "server/exit_codes.hpp"
+#include "server/clock/clock.hpp"
+#include "server/daemon/exit_codes.hpp"
 #include "server/pose/pose_inputs.hpp"
 
 namespace sonard::server {

@@ -16,8 +16,10 @@
 #include "renderer/sonar_renderer.hpp"
 #include "server/check.hpp"
 #include "server/config/loader.hpp"
-#include "server/daemon.hpp"
-#include "server/exit_codes.hpp"
+#include "server/daemon/daemon.hpp"
+#include "server/daemon/exit_codes.hpp"
+#include "server/daemon/process.hpp"
+#include "server/devices/kinds/kinds.hpp"
 #include "server/info/info.hpp"
 #include "server/listen.hpp"
 #include "server/logs/log_file.hpp"
@@ -25,7 +27,6 @@
 #include "server/offline/output_folder.hpp"
 #include "server/offline/render_run.hpp"
 #include "server/offline/voyage.hpp"
-#include "server/process.hpp"
 #include "server/program_log/stderr_sink.hpp"
 #include "server/replay/replay.hpp"
 
@@ -83,7 +84,7 @@ void print_error(const std::string& line) {
 
 /// Loads CONFIG, and logs as it says from then on.
 LoadedConfig load_and_log(const CommandLine& arguments) {
-  LoadedConfig loaded = load_config(arguments.config);
+  LoadedConfig loaded = load_config(arguments.config, head_kinds());
   const spdlog::level::level_enum level = arguments.log_level.empty()
                                               ? spdlog_level(loaded.config.log_level)
                                               : spdlog::level::from_str(arguments.log_level);
@@ -121,7 +122,7 @@ int replay(const CommandLine& arguments) {
 }
 
 int check(const CommandLine& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config);
+  const LoadedConfig loaded = load_config(arguments.config, head_kinds());
   const CheckReport report = check_config(loaded, !arguments.no_network);
   for (const std::string& line : report.summary) {
     fmt::print("{}\n", line);
@@ -160,12 +161,12 @@ int selftest(const CommandLine& arguments) {
 }
 
 int render_offline(const OfflineArguments& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config());
+  const LoadedConfig loaded = load_config(arguments.config(), head_kinds());
   for (const std::string& warning : loaded.warnings) {
     print_error("warning: " + warning);
   }
   try {
-    return render_trajectory(loaded, arguments.options(loaded.config.heads));
+    return render_trajectory(loaded, arguments.options());
   } catch (const StartError& error) {
     print_error(loaded.problem_with(error.key, error.what()));
     return error.exit_code;
@@ -278,7 +279,7 @@ int main_program(int argc, char** argv) {
   info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
   info_command->add_flag("--json", arguments.info.json, "For programs");
   CLI::Option* pictures = info_command->add_option("--png", arguments.info.pictures,
-                                                   "Folder for a picture of each ping of a Gemini");
+                                                   "Folder for a picture of each ping, or turn");
   info_command->add_option("--every", arguments.info.every, "Pictures of each N-th ping only")
       ->needs(pictures)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));

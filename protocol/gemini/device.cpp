@@ -10,6 +10,7 @@
 
 #include "protocol/common/byte_reader.hpp"
 #include "protocol/common/byte_writer.hpp"
+#include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/flash_store.hpp"
 #include "protocol/gemini/messages.hpp"
@@ -110,26 +111,32 @@ class Device::Impl {
     write_block(AddressBlock{config.alternate_address, config.netmask}, address_bank);
   }
 
-  void on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<const std::uint8_t> bytes);
+  // One for each event.
+  void take(TimePoint, const TimePassed&) {}
+  void take(TimePoint now, const BytesReceived& datagram);
+  void take(TimePoint, const ClientGone&) {
+  }  // it was never there: the surface is whoever sent the last command
+  void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
+  void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
+  void take(TimePoint now, const TriggerEdge&);
+  void take(TimePoint, const WaterChanged& water);
+  void take(TimePoint, const PingFed& feed) { pinger_.feed(feed.ping); }
+  void take(TimePoint, const PingGranted&) { pinger_.grant(); }
+
   void advance(TimePoint now);
-  std::optional<TimePoint> next_deadline() const;
-  std::vector<Outgoing> take_outgoing() { return std::exchange(outgoing_, {}); }
+  Actions actions();
   std::uint64_t clock_us(TimePoint now) const;
 
-  void set_out_of_water(bool out_of_water) {
-    out_of_water_ = out_of_water;
-    pinger_.set_out_of_water(out_of_water);
-  }
-  /// Everything that arrives while the head reboots falls on deaf ears.
-  bool rebooting(TimePoint now) const { return now < boot_time_; }
-
-  Pinger& pinger() { return pinger_; }
   const DeviceCounters& counters() const { return counters_; }
   Ipv4 surface() const { return surface_; }
   DeviceAddresses addresses() const { return addresses_; }
 
  private:
-  void connect(TimePoint now, Ipv4 from, Ipv4 to);
+  /// Everything that arrives while the head reboots falls on deaf ears.
+  bool rebooting(TimePoint now) const { return now < boot_time_; }
+  std::optional<TimePoint> next_deadline() const;
+  void connect(TimePoint now, const Peer& from);
+  void notice_surface();
   void check_surface(TimePoint now);
   void send_status(TimePoint now);
   Status make_status(TimePoint now) const;
@@ -155,7 +162,7 @@ class Device::Impl {
   void handle(TimePoint, const ProductionTest&) {}
   void handle(TimePoint, const PowerOnSelfTest&) {}
   void handle(TimePoint, const AbortProductionTest&) {}
-  void handle(TimePoint, const Unknown&) {}  // on_datagram has dropped it
+  void handle(TimePoint, const Unknown&) {}  // take() has dropped it
 
   template <class Block>
   void write_block(const Block& block, std::size_t bank) {
@@ -166,7 +173,11 @@ class Device::Impl {
   template <class Message>
   void reply(Message message) {
     message.header.sonar_id = config_.sonar_id;
-    outgoing_.push_back({Outgoing::To::surface, surface_, reply_from_, SharedBytes(encode(Report{message}))});
+    send_to_surface(SharedBytes(encode(Report{message})));
+  }
+  void send_to_surface(SharedBytes bytes) {
+    actions_.send.push_back(
+        {Outgoing::To::peer, {0, {surface_, config_.surface_port}, reply_from_}, std::move(bytes)});
   }
   void reply_with_flash(std::uint32_t address) {
     FlashReadback readback;
@@ -183,25 +194,27 @@ class Device::Impl {
   bool out_of_water_ = false;
 
   Ipv4 surface_ = 0;
+  Ipv4 noticed_surface_ = 0;  ///< that the last notice was about
   Ipv4 reply_from_ = 0;
   TimePoint last_command_{};
 
   FlashStore flash_;
   Pinger pinger_;
   std::vector<SharedBytes> ping_datagrams_;  ///< scratch of advance()
-  std::vector<Outgoing> outgoing_;
+  Actions actions_;                          ///< of the step that is under way
 };
 
 // ---- Commands
 // ---------------------------------------------------------------------------------------------------
 
-void Device::Impl::on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<const std::uint8_t> bytes) {
+void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
   if (rebooting(now)) {
     return;
   }
   check_surface(now);
+  const std::span<const std::uint8_t> bytes(datagram.bytes.data(), datagram.bytes.size());
   const auto header = decode_header(bytes);
-  if (!header || from == 0) {
+  if (!header || datagram.from.remote.address == 0) {
     ++counters_.bad_datagrams;
     return;
   }
@@ -219,18 +232,30 @@ void Device::Impl::on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<cons
     return;
   }
   ++counters_.commands;
-  connect(now, from, to);
+  connect(now, datagram.from);
   std::visit([&](const auto& message) { handle(now, message); }, *command);
 }
 
-void Device::Impl::connect(TimePoint now, Ipv4 from, Ipv4 to) {
-  if (surface_ != 0 && surface_ != from) {
+void Device::Impl::take(TimePoint now, const TriggerEdge&) {
+  if (!rebooting(now)) {
+    pinger_.on_trigger(now);
+  }
+}
+
+void Device::Impl::take(TimePoint, const WaterChanged& water) {
+  out_of_water_ = water.out_of_water;
+  pinger_.set_out_of_water(water.out_of_water);
+}
+
+void Device::Impl::connect(TimePoint now, const Peer& from) {
+  if (surface_ != 0 && surface_ != from.remote.address) {
     ++counters_.surface_changes;  // the newest wins; what is on the wire goes on to it
   }
-  surface_ = from;
-  reply_from_ = to;
+  surface_ = from.remote.address;
+  reply_from_ = from.local;
   last_command_ = now;
   pinger_.resume(now);
+  notice_surface();
 }
 
 void Device::Impl::handle(TimePoint now, const StatusRequest&) {
@@ -324,7 +349,7 @@ void Device::Impl::send_status(TimePoint now) {
   if (now < next_status_) {
     return;
   }
-  outgoing_.push_back({Outgoing::To::status, 0, 0, SharedBytes(encode(Report{make_status(now)}))});
+  actions_.send.push_back({Outgoing::To::everybody, {}, SharedBytes(encode(Report{make_status(now)}))});
   // Keeps the phase; what a late caller has missed is not made up for.
   next_status_ += config_.status_period * ((now - next_status_) / config_.status_period + 1);
 }
@@ -357,8 +382,31 @@ void Device::Impl::advance(TimePoint now) {
   ping_datagrams_.clear();
   pinger_.advance(now, ping_datagrams_);
   for (SharedBytes& bytes : ping_datagrams_) {
-    outgoing_.push_back({Outgoing::To::surface, surface_, reply_from_, std::move(bytes)});
+    send_to_surface(std::move(bytes));
   }
+}
+
+Actions Device::Impl::actions() {
+  notice_surface();
+  Actions actions = std::exchange(actions_, {});
+  actions.record = pinger_.take_record();
+  actions.render = pinger_.take_job();
+  actions.cancelled = pinger_.cancelled();
+  actions.next_ping = pinger_.next_ping();
+  actions.nobody_there = surface_ == 0;
+  actions.wake_at = next_deadline();
+  return actions;
+}
+
+void Device::Impl::notice_surface() {
+  if (noticed_surface_ == surface_) {
+    return;
+  }
+  actions_.notices.push_back(
+      {Notice::Level::info, surface_ != 0 ? "surface " + address_text(surface_) + " connected"
+                                          : "surface " + address_text(noticed_surface_) +
+                                                " lost: no command for the time-out, or reboot"});
+  noticed_surface_ = surface_;
 }
 
 std::optional<TimePoint> Device::Impl::next_deadline() const {
@@ -375,53 +423,44 @@ std::optional<TimePoint> Device::Impl::next_deadline() const {
 Device::Device(const DeviceConfig& config, TimePoint boot_time)
     : impl_(std::make_unique<Impl>(config, boot_time)) {}
 Device::~Device() = default;
-Device::Device(Device&&) noexcept = default;
-Device& Device::operator=(Device&&) noexcept = default;
 
-void Device::on_datagram(TimePoint now, Ipv4 from, Ipv4 to, std::span<const std::uint8_t> bytes) {
-  impl_->on_datagram(now, from, to, bytes);
-}
-void Device::on_image(TimePoint now, const PingImage& image) {
-  impl_->pinger().on_image(now, image);
-}
-void Device::on_image_failed(TimePoint, std::uint64_t ping_number) {
-  impl_->pinger().on_image_failed(ping_number);
-}
-void Device::set_out_of_water(bool out_of_water) {
-  impl_->set_out_of_water(out_of_water);
-}
-void Device::on_trigger(TimePoint now) {
-  if (!impl_->rebooting(now)) {
-    impl_->pinger().on_trigger(now);
-  }
-}
-void Device::offer(const std::optional<RecordedPing>& ping) {
-  impl_->pinger().offer(ping);
-}
-std::optional<PingWish> Device::ping_wish() const {
-  return impl_->pinger().wish();
-}
-void Device::permit_ping() {
-  impl_->pinger().permit();
-}
-void Device::advance(TimePoint now) {
+Actions Device::step(TimePoint now, const Event& event) {
+  std::visit([&](const auto& what) { impl_->take(now, what); }, event);
   impl_->advance(now);
+  return impl_->actions();
 }
-std::optional<TimePoint> Device::next_deadline() const {
-  return impl_->next_deadline();
+
+PingProgress Device::progress() const {
+  const DeviceCounters& count = counters();
+  return {.sent = count.pings_sent,
+          .ended = count.pings_sent + count.pings_failed + count.pings_cancelled,
+          .messages = count.lines_sent + count.lines_resent + count.tails_resent + count.heads_resent +
+                      count.retries_received};
 }
-std::vector<Outgoing> Device::take_outgoing() {
-  return impl_->take_outgoing();
+
+std::vector<Counter> Device::counts() const {
+  using Shown = Counter::Shown;
+  const DeviceCounters& count = counters();
+  return {
+      {"pings_sent", count.pings_sent},
+      {"pings_failed", count.pings_failed},
+      {"pings_suppressed", count.pings_suppressed, Shown::warns, "{} pings not made: out of the water"},
+      {"lines_sent", count.lines_sent},
+      {"lines_resent", count.lines_resent, Shown::often},
+      {"tails_resent", count.tails_resent, Shown::often},
+      {"heads_resent", count.heads_resent},
+      {"retries_dropped", count.retries_dropped},
+      {"commands", count.commands},
+      {"wrong_id", count.wrong_id, Shown::warns, "{} commands were for another sonar ID"},
+      {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were no commands of a Gemini 720i"},
+      {"unknown_type", count.unknown_type},
+      {"unsupported_data", count.unsupported_data, Shown::warns,
+       "{} ping configurations asked for data that is not made here (I/Q, channels) or for run mode 3"},
+      {"surface_changes", count.surface_changes},
+      {"surface_timeouts", count.surface_timeouts},
+      {"reboots", count.reboots}};
 }
-std::optional<PingJob> Device::take_job() {
-  return impl_->pinger().take_job();
-}
-std::optional<ServedPing> Device::take_served() {
-  return impl_->pinger().take_served();
-}
-std::optional<std::uint64_t> Device::called_off() const {
-  return impl_->pinger().called_off();
-}
+
 const DeviceCounters& Device::counters() const {
   return impl_->counters();
 }

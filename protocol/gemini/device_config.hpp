@@ -5,15 +5,11 @@
 #include <chrono>
 #include <cstdint>
 
+#include "protocol/common/endpoint.hpp"
+#include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/gain_law.hpp"
 
 namespace sonard::gemini {
-
-/// Time on any monotonic clock of the caller's choice; only differences matter.
-using TimePoint = std::chrono::nanoseconds;
-
-/// IPv4 address, first octet most significant (10.61.19.200 = 0x0A3D13C8).
-using Ipv4 = std::uint32_t;
 
 /// Section numbers are those of docs/protocols/gemini.md. The Device constructor refuses what is out of
 /// range.
@@ -24,7 +20,8 @@ struct DeviceConfig {
       0;                      ///< what the head reports beside it: reachable by the client and non-zero (1.2)
   Ipv4 netmask = 0xFFFFFF00;  ///< the real mask of the interface served, or later clients stay silent
   std::array<std::uint8_t, 6> mac{0x00, 0x12, 0x34, 0x00, 0x02, 0x01};
-  bool accept_id_zero = false;  ///< also take commands with header ID 0
+  bool accept_id_zero = false;         ///< also take commands with header ID 0
+  std::uint16_t surface_port = 52900;  ///< every reply goes to this port of the surface (1.1)
 
   /// True speed of sound at the head; 0: the water has the speed of the ping configuration, so that the
   /// client's ranges are true (6.7). Otherwise > 0.
@@ -47,10 +44,10 @@ struct DeviceConfig {
   /// still being sent, which shortens the shortest ping period by as much, and the pose is then a prediction.
   std::chrono::nanoseconds render_lead{0};
 
-  /// The head sends the pings that Device::offer() names, and no others.
+  /// The head sends the pings that it is fed (PingFed), and no others.
   bool plays_back = false;
-  /// A ping begins when Device::permit_ping() says so, and at no time of the head's own: whoever permits
-  /// keeps to PingWish. For pings that follow a simulated time.
+  /// A ping begins when it is granted (PingGranted), and at no time of the head's own: whoever grants it
+  /// keeps to NextPing. For pings that follow a simulated time.
   bool waits_for_permission = false;
 };
 

@@ -52,7 +52,7 @@ class LineSamples {
 }  // namespace
 
 bool fits(const PingImage& image, const PingJob& job) {
-  const std::size_t samples = static_cast<std::size_t>(job.lines()) * beam_count;
+  const std::size_t samples = static_cast<std::size_t>(job.bins()) * beam_count;
   return job.sixteen_bit ? image.u16.size() == samples && image.u8.empty()
                          : image.u8.size() == samples && image.u16.empty();
 }

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "protocol/common/ping_job.hpp"
+#include "protocol/common/shared_bytes.hpp"
 #include "protocol/gemini/messages.hpp"
-#include "protocol/gemini/ping_job.hpp"
-#include "protocol/gemini/shared_bytes.hpp"
 
 namespace sonard::gemini {
 
@@ -27,8 +27,6 @@ class EncodedPing {
   int line_count() const { return head_.line_count(); }
   /// Head, lines and tail: line_count() + 2.
   int datagram_count() const { return line_count() + 2; }
-  /// Bytes of memory that all copies share.
-  std::size_t shared_size() const { return bytes_->size(); }
   /// In the order of sending: 0 is the head, 1.. the lines, the last one the tail.
   SharedBytes datagram(int index) const;
 
@@ -46,12 +44,6 @@ class EncodedPing {
   std::uint16_t line_scale_;
   std::shared_ptr<const std::vector<std::uint8_t>> bytes_;
   std::vector<std::uint32_t> offsets_;  ///< of each datagram, and the end of the last
-};
-
-/// A ping that has begun to leave, for those who keep what a head said.
-struct ServedPing {
-  std::uint64_t ping_number = 0;  ///< that of its job
-  EncodedPing ping;
 };
 
 }  // namespace sonard::gemini

@@ -27,6 +27,7 @@ inline constexpr std::size_t flash_page_size = 1024;
 inline constexpr int beam_count = 256;            ///< of every 720i ping
 inline constexpr int channel_count = 96;          ///< receive elements
 inline constexpr double line_rate_hz = 90422.0;   ///< native range lines per second (6.7)
+inline constexpr double carrier_hz = 723'380.0;   ///< of the sound (9)
 inline constexpr std::uint16_t min_sonar_id = 2;  ///< 0 is "not set", 1 is reserved for production (1.4)
 
 enum class MessageType : std::uint8_t {

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace sonard::gemini {
 
 namespace {
 
-constexpr double carrier_hz = 723'380.0;  // docs/protocols/gemini.md 9
 constexpr int min_native_lines = 32;
 constexpr int max_native_lines_8_bit = 20'000;
 constexpr int max_native_lines_16_bit = 10'000;
@@ -21,31 +22,37 @@ double configured_speed_mps(const PingConfig& config) {
   return std::clamp(config.sound_speed_mps(), grid_base_mps, grid_top_mps);
 }
 
-/// In 0.1 m/s, as the ping head carries it.
-std::uint16_t speed_code(double speed_mps, bool snap) {
-  if (snap) {
-    const double step = std::round((speed_mps - grid_base_mps) / grid_step_mps);
-    speed_mps = grid_base_mps + std::clamp(step, 0.0, 59.0) * grid_step_mps;
+/// What a client sees of its settings.
+std::vector<Setting> settings_of(const PingJob& job) {
+  std::vector<Setting> settings{{"range", fmt::format("{:.2f}m", job.range_m())},
+                                {"lines", fmt::format("{}", job.bins())},
+                                {"compression", fmt::format("x{}", 1 << job.compression_log2)},
+                                {"gain", fmt::format("{:+.1f}dB", job.gain_db)},
+                                {"sound_speed", fmt::format("{:.1f}m/s", job.sound_speed_mps)},
+                                {"bits", job.sixteen_bit ? "16" : "8"}};
+  if (!job.transmit) {
+    settings.push_back({"transmit", "off"});
   }
-  return static_cast<std::uint16_t>(std::clamp(std::lround(speed_mps * 10.0), 1L, 0x7FFFL));
+  return settings;
 }
 
 PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   PingJob job;
   job.sixteen_bit = !config.eight_bit();
   const int most = job.sixteen_bit ? max_native_lines_16_bit : max_native_lines_8_bit;
-  job.native_lines = std::clamp<int>(config.end_range, min_native_lines, most);
+  job.native_bins = std::clamp<int>(config.end_range, min_native_lines, most);
   job.compression_log2 = config.compression_log2();
   job.sound_speed_mps =
       device.water_sound_speed_mps > 0.0 ? device.water_sound_speed_mps : configured_speed_mps(config);
   job.assumed_sound_speed_mps =
       config.uses_configured_sound_speed() ? configured_speed_mps(config) : job.sound_speed_mps;
-  job.line_step_m = job.sound_speed_mps / (2.0 * line_rate_hz);
+  job.native_bin_m = job.sound_speed_mps / (2.0 * line_rate_hz);
   job.pulse_s = config.tx_length / carrier_hz;
   job.transmit = config.tx_length != 0;
   job.gain_db = receive_gain_db(config.main_gain, config.spreading, device.gain);
-  job.rle_threshold = config.rle_threshold_applied();
   job.gain_percent = gain_percent(config.spreading);
+  job.listening_time = acoustic_time(job.native_bins);
+  job.settings = settings_of(job);
   return job;
 }
 
@@ -53,7 +60,7 @@ PingHead make_head(const PingConfig& config, const PingJob& job, const DeviceCon
   PingHead head;
   head.header.sonar_id = device.sonar_id;
   head.ext_mode = config.ext_mode;
-  head.end_range = static_cast<std::uint16_t>(job.native_lines);
+  head.end_range = static_cast<std::uint16_t>(job.native_bins);
   head.sample_channel = static_cast<std::uint8_t>(config.sample_channel & 0xFF);
   head.base_gain = static_cast<std::uint8_t>(config.main_gain >> 14);
   head.velocimeter_speed = speed_code(job.sound_speed_mps, device.snap_sound_speed);
@@ -69,12 +76,16 @@ PingHead make_head(const PingConfig& config, const PingJob& job, const DeviceCon
 
 }  // namespace
 
-std::chrono::nanoseconds acoustic_time(int native_lines) {
-  return std::chrono::nanoseconds{static_cast<std::int64_t>(std::ceil(native_lines * 1e9 / line_rate_hz))};
+std::uint16_t speed_code(double speed_mps, bool snap) {
+  if (snap) {
+    const double step = std::round((speed_mps - grid_base_mps) / grid_step_mps);
+    speed_mps = grid_base_mps + std::clamp(step, 0.0, 59.0) * grid_step_mps;
+  }
+  return static_cast<std::uint16_t>(std::clamp(std::lround(speed_mps * 10.0), 1L, 0x7FFFL));
 }
 
-std::chrono::nanoseconds PingPlan::listening_time() const {
-  return acoustic_time(job.native_lines);
+std::chrono::nanoseconds acoustic_time(int native_lines) {
+  return std::chrono::nanoseconds{static_cast<std::int64_t>(std::ceil(native_lines * 1e9 / line_rate_hz))};
 }
 
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device) {
@@ -86,31 +97,9 @@ std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& 
   plan.pings_out_of_water = config.pings_out_of_water();
   plan.interval = std::chrono::microseconds{config.interping_us};
   plan.job = make_job(config, device);
+  plan.rle_threshold = config.rle_threshold_applied();
   plan.head = make_head(config, plan.job, device);
   plan.line_scale = static_cast<std::uint16_t>(config.software_gain & 0xFFFF);
-  return plan;
-}
-
-PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device) {
-  PingPlan plan = asked;
-  if (recorded.due) {
-    plan.interval = {};
-  }
-  plan.job.native_lines = recorded.lines << recorded.compression_log2;
-  plan.job.compression_log2 = recorded.compression_log2;
-  plan.job.sound_speed_mps = recorded.sound_speed_mps;
-  plan.job.assumed_sound_speed_mps = recorded.sound_speed_mps;
-  plan.job.line_step_m = recorded.sound_speed_mps / (2.0 * line_rate_hz);
-  plan.job.sixteen_bit = false;
-  plan.job.rle_threshold = 0;
-
-  plan.head.ext_mode = static_cast<std::uint16_t>(asked.head.ext_mode | ext_bits::eight_bit);
-  plan.head.end_range = static_cast<std::uint16_t>(plan.job.native_lines);
-  plan.head.velocimeter_speed = speed_code(recorded.sound_speed_mps, device.snap_sound_speed);
-  plan.head.sound_speed_used = static_cast<std::uint16_t>(
-      (recorded.sound_speed_from_config ? sound_speed_from_config : 0U) | plan.head.velocimeter_speed);
-  plan.head.rle_threshold = 0;
-  plan.head.range_compression = static_cast<std::uint8_t>(recorded.compression_log2);
   return plan;
 }
 

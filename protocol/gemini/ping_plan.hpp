@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/messages.hpp"
-#include "protocol/gemini/ping_job.hpp"
 
 namespace sonard::gemini {
 
@@ -16,12 +16,12 @@ struct PingPlan {
   RunMode mode = RunMode::single;
   bool pings_out_of_water = false;
   std::chrono::nanoseconds interval{};  ///< start to start, in continuous mode
-  PingJob job;                          ///< lacks the number and the transmit time
-  PingHead head;                        ///< lacks the ping ID and the transmit time
-  std::uint16_t line_scale = 0;         ///< PingLine::scale
-
-  /// Time until the echo of the last native line is back.
-  std::chrono::nanoseconds listening_time() const;
+  /// Lacks the number and the time. Native bins are native lines: 32..20000 of sound speed / (2 * 90422 Hz)
+  /// each. The gain is relative to 50 percent and nominal main gain (gain_law.hpp).
+  PingJob job;
+  int rle_threshold = 0;         ///< samples below it become zero when the image travels; 0: none do
+  PingHead head;                 ///< lacks the ping ID and the transmit time
+  std::uint16_t line_scale = 0;  ///< PingLine::scale
 };
 
 /// Time from the transmit pulse until `native_lines` lines have been received, rounded up.
@@ -36,8 +36,8 @@ std::chrono::nanoseconds acoustic_time(int native_lines);
 /// moved inside. Everything not named in PingPlan has no effect on a 720i or on this model of it.
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device);
 
-/// What a head does about `asked` that has only this recorded ping to offer. A ping with a time of its own
-/// keeps it: the interval asked for does not matter.
-PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device);
+/// In 0.1 m/s, as the ping head carries it. @param snap to the grid of the device: 1400 + 3.2 k m/s, k =
+/// 0..59
+std::uint16_t speed_code(double speed_mps, bool snap);
 
 }  // namespace sonard::gemini

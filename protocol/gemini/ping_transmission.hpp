@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "protocol/common/shared_bytes.hpp"
 #include "protocol/gemini/encoded_ping.hpp"
 #include "protocol/gemini/pacer.hpp"
-#include "protocol/gemini/shared_bytes.hpp"
 
 namespace sonard::gemini {
 

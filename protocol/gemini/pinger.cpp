@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/gemini/recorded_form.hpp"
+
 namespace sonard::gemini {
 
 namespace {
@@ -116,17 +118,17 @@ const PingPlan* Pinger::wanted_plan() const {
 // The rate rules (8.4) between two starts: not before the last echo is back, nor more often than the head
 // can.
 std::chrono::nanoseconds Pinger::period_of(const PingPlan& plan) const {
-  return std::max(config_.min_ping_period, plan.listening_time());
+  return std::max(config_.min_ping_period, plan.job.listening_time);
 }
 
-// In time of the head. Where another time rules, whoever permits a ping has kept the rules in that one.
+// In time of the head. Where another time rules, whoever grants a ping has kept the rules in that one.
 TimePoint Pinger::earliest_by_rate() const {
   if (config_.waits_for_permission) {
     return single_ ? single_->asked_at : boot_time_;
   }
   TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
-  if (offered_) {
-    wanted_at = std::max(wanted_at, offered_->due.value_or(wanted_at));
+  if (fed_) {
+    wanted_at = std::max(wanted_at, fed_->due.value_or(wanted_at));
   }
   return std::max(wanted_at, earliest_start_);
 }
@@ -134,7 +136,7 @@ TimePoint Pinger::earliest_by_rate() const {
 // Nor before the previous tail was sent. nullopt while no ping can be started or none is wanted.
 std::optional<TimePoint> Pinger::next_transmit_time() const {
   if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr ||
-      (config_.plays_back && !offered_)) {
+      (config_.plays_back && !fed_)) {
     return std::nullopt;
   }
   const TimePoint time = earliest_by_rate();
@@ -146,19 +148,19 @@ std::optional<TimePoint> Pinger::next_transmit_time() const {
                                          : std::nullopt;
 }
 
-std::optional<PingWish> Pinger::wish() const {
+std::optional<NextPing> Pinger::next_ping() const {
   const auto transmit_time = next_transmit_time();
   if (!transmit_time) {
     return std::nullopt;
   }
   const PingPlan& plan = *wanted_plan();
   const auto interval = single_ ? std::chrono::nanoseconds{0} : plan.interval;
-  return PingWish{*transmit_time - config_.render_lead, std::max(interval, period_of(plan)),
-                  plan.listening_time()};
+  return NextPing{*transmit_time - config_.render_lead, std::max(interval, period_of(plan)),
+                  plan.job.listening_time};
 }
 
 std::optional<TimePoint> Pinger::acquisition_due() const {
-  if (config_.waits_for_permission && !permitted_) {
+  if (config_.waits_for_permission && !granted_) {
     return std::nullopt;
   }
   const auto transmit_time = next_transmit_time();
@@ -166,9 +168,9 @@ std::optional<TimePoint> Pinger::acquisition_due() const {
 }
 
 void Pinger::acquire(TimePoint now) {
-  permitted_ = false;
+  granted_ = false;
   const PingPlan asked = *wanted_plan();
-  const PingPlan plan = offered_ ? held_to(*offered_, asked, config_) : asked;
+  const PingPlan plan = fed_ ? held_to(*fed_, asked, config_) : asked;
   TimePoint transmit_time = *next_transmit_time();
   if (now - transmit_time > start_slack) {
     transmit_time = now;
@@ -183,34 +185,42 @@ void Pinger::acquire(TimePoint now) {
     ++counters_.pings_suppressed;
     return;
   }
-  acquisition_ =
-      Acquisition{plan, next_ping_number_++, transmit_time, asked_at, earliest_start_, std::nullopt, {}};
+  acquisition_ = Acquisition{.plan = plan,
+                             .number = next_ping_number_++,
+                             .transmit_time = transmit_time,
+                             .asked_at = asked_at,
+                             .earliest_start_before = earliest_start_,
+                             .gain_percent = asked.job.gain_percent};
   earliest_start_ = transmit_time + period_of(plan);
   job_ = asked.job;
-  if (const auto offered = std::exchange(offered_, std::nullopt)) {
-    job_->record = offered->record;
-    job_->recorded_gain_percent = offered->gain_percent;
+  if (const auto fed = std::exchange(fed_, std::nullopt)) {
+    job_->record = fed->record;
+    job_->differences = differences(asked, plan, fed->settings);
+    if (fed->settings.gain_percent >= 0.0) {
+      acquisition_->gain_percent = fed->settings.gain_percent;
+    }
   }
-  job_->ping_number = acquisition_->ping_number;
+  job_->number = acquisition_->number;
   job_->transmit_time = transmit_time;
+  job_->transmit_us = clock_us(transmit_time);
   ++counters_.pings_started;
 }
 
 std::optional<PingJob> Pinger::take_job() {
   if (job_) {
-    unanswered_ = job_->ping_number;
+    unanswered_ = job_->number;
   }
   return std::exchange(job_, std::nullopt);
 }
 
 void Pinger::on_image(TimePoint now, const PingImage& image) {
-  if (unanswered_ != image.ping_number) {
+  if (unanswered_ != image.number) {
     ++counters_.stale_images;
     return;
   }
   unanswered_.reset();
   if (!acquisition_) {
-    ++counters_.stale_images;  // called off meanwhile
+    ++counters_.stale_images;  // cancelled meanwhile
     return;
   }
   if (!fits(image, acquisition_->plan.job)) {
@@ -219,16 +229,18 @@ void Pinger::on_image(TimePoint now, const PingImage& image) {
     return;
   }
   PingHead head = acquisition_->plan.head;
-  head.ping_id =
-      static_cast<std::uint16_t>(acquisition_->ping_number & 0xFF);  // later surfaces want 0..255 (6.3)
-  head.transmit_time_us =
-      static_cast<std::uint64_t>((acquisition_->transmit_time - boot_time_) / std::chrono::microseconds{1});
+  head.ping_id = static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later surfaces want 0..255 (6.3)
+  head.transmit_time_us = clock_us(acquisition_->transmit_time);
   acquisition_->encoded.emplace(head, acquisition_->plan.line_scale, image);
+  acquisition_->record = record_of(head, image);
+  acquisition_->record.number = acquisition_->number;
+  acquisition_->record.transmit_time = acquisition_->transmit_time;
+  acquisition_->record.settings.gain_percent = acquisition_->gain_percent;
   acquisition_->ready_at = now;
 }
 
-void Pinger::on_image_failed(std::uint64_t ping_number) {
-  if (unanswered_ != ping_number) {
+void Pinger::on_image_failed(std::uint64_t number) {
+  if (unanswered_ != number) {
     return;
   }
   unanswered_.reset();
@@ -277,7 +289,7 @@ void Pinger::put_on_wire() {
   drop_retries(acquisition_->encoded->line_count());
   last_retry_arrival_.reset();
   last_retry_activity_.reset();
-  served_ = ServedPing{acquisition_->ping_number, *acquisition_->encoded};
+  record_ = std::move(acquisition_->record);
   transmission_.emplace(std::move(*acquisition_->encoded), acquisition_->transmit_time,
                         acquisition_->plan.job.compression_log2);
   acquisition_.reset();
@@ -357,6 +369,10 @@ void Pinger::advance(TimePoint now, std::vector<SharedBytes>& out) {
       progress = true;
     }
   }
+}
+
+std::uint64_t Pinger::clock_us(TimePoint time) const {
+  return static_cast<std::uint64_t>((time - boot_time_) / std::chrono::microseconds{1});
 }
 
 std::optional<TimePoint> Pinger::datagram_due() const {

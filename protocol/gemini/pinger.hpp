@@ -8,15 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/common/ping_wish.hpp"
+#include "protocol/common/ping_record.hpp"
+#include "protocol/common/shared_bytes.hpp"
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/device_counters.hpp"
 #include "protocol/gemini/pacer.hpp"
-#include "protocol/gemini/ping_job.hpp"
 #include "protocol/gemini/ping_plan.hpp"
 #include "protocol/gemini/ping_transmission.hpp"
 #include "protocol/gemini/retry_queue.hpp"
-#include "protocol/gemini/shared_bytes.hpp"
 
 namespace sonard::gemini {
 
@@ -36,13 +35,13 @@ class Pinger {
   void on_retry(TimePoint now, const RetryRequest& request);
   void on_trigger(TimePoint now);
   void on_image(TimePoint now, const PingImage& image);
-  void on_image_failed(std::uint64_t ping_number);
+  void on_image_failed(std::uint64_t number);
   void set_inter_packet_gap(std::chrono::nanoseconds gap) { pacer_.set_gap(gap); }
   void set_out_of_water(bool out_of_water) { out_of_water_ = out_of_water; }
-  void offer(const std::optional<RecordedPing>& ping) { offered_ = ping; }
-  /// See Device::ping_wish().
-  std::optional<PingWish> wish() const;
-  void permit() { permitted_ = true; }
+  void feed(const std::optional<RecordedPing>& ping) { fed_ = ping; }
+  /// See Actions::next_ping.
+  std::optional<NextPing> next_ping() const;
+  void grant() { granted_ = true; }
 
   /// The surface goes offline: no further pings. One that is on the wire is finished.
   void stop();
@@ -56,10 +55,10 @@ class Pinger {
   void advance(TimePoint now, std::vector<SharedBytes>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<PingJob> take_job();
-  /// See Device::take_served().
-  std::optional<ServedPing> take_served() { return std::exchange(served_, std::nullopt); }
-  /// See Device::called_off().
-  std::optional<std::uint64_t> called_off() const { return acquisition_ ? std::nullopt : unanswered_; }
+  /// The ping that has gone onto the wire since the last call; advance() begins one at most.
+  std::optional<PingRecord> take_record() { return std::exchange(record_, std::nullopt); }
+  /// See Actions::cancelled.
+  std::optional<std::uint64_t> cancelled() const { return acquisition_ ? std::nullopt : unanswered_; }
 
   /// Pinging is held back because the head is out of the water and was not told to ping all the same.
   bool stopped_by_air() const { return out_of_water_ && !pings_out_of_water_; }
@@ -72,14 +71,17 @@ class Pinger {
   };
   struct Acquisition {
     PingPlan plan;
-    std::uint64_t ping_number = 0;
+    std::uint64_t number = 0;
     TimePoint transmit_time{};
     TimePoint asked_at{};
-    TimePoint earliest_start_before{};   ///< earliest_start_ as it was, should this ping never begin
-    std::optional<EncodedPing> encoded;  ///< once the image is there
-    TimePoint ready_at{};                ///< when it came
+    TimePoint earliest_start_before{};  ///< earliest_start_ as it was, should this ping never begin
+    double gain_percent = 0.0;          ///< for logs; below 0: nobody knows
+    std::optional<EncodedPing> encoded = std::nullopt;  ///< once the image is there
+    PingRecord record = {};                             ///< from then on
+    TimePoint ready_at{};                               ///< when it came
   };
 
+  std::uint64_t clock_us(TimePoint time) const;
   const PingPlan* wanted_plan() const;
   std::chrono::nanoseconds period_of(const PingPlan& plan) const;
   bool sending() const { return transmission_ && !transmission_->finished(); }
@@ -108,8 +110,8 @@ class Pinger {
   bool suspended_ = false;
   bool out_of_water_ = false;
   bool pings_out_of_water_ = false;  ///< by the newest configuration
-  std::optional<RecordedPing> offered_;
-  bool permitted_ = false;
+  std::optional<RecordedPing> fed_;
+  bool granted_ = false;
 
   // Acquired.
   std::uint64_t next_ping_number_ = 0;
@@ -120,7 +122,7 @@ class Pinger {
 
   // On the wire.
   std::optional<PingTransmission> transmission_;
-  std::optional<ServedPing> served_;  ///< not yet taken
+  std::optional<PingRecord> record_;  ///< not yet taken
   RetryQueue retries_;
   std::optional<TimePoint> last_retry_arrival_;   ///< about the ping in transmission_
   std::optional<TimePoint> last_retry_activity_;  ///< arrival or service

@@ -24,13 +24,16 @@ void append_zeros(std::size_t run, std::vector<std::uint8_t>& out) {
 
 }  // namespace
 
+std::uint8_t least_literal(std::uint8_t threshold) {
+  return std::max(threshold, smallest_threshold);
+}
+
 void rle_encode(std::span<const std::uint8_t> beams, std::uint8_t threshold, std::vector<std::uint8_t>& out) {
   const std::size_t start = out.size();
-  // 0 and 1 have a meaning of their own in the coded form, so no literal may be that small.
-  const std::uint8_t least_literal = std::max(threshold, smallest_threshold);
+  const std::uint8_t least = least_literal(threshold);
   std::size_t run = 0;
   for (const std::uint8_t beam : beams) {
-    if (beam < least_literal) {
+    if (beam < least) {
       ++run;
       continue;
     }

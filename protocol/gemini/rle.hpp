@@ -8,11 +8,15 @@
 
 namespace sonard::gemini {
 
+/// Beams below it become zero under a threshold of 3..255; smaller thresholds act as 3, because 0 and 1 have
+/// a meaning of their own in the coded form.
+std::uint8_t least_literal(std::uint8_t threshold);
+
 /// Appends the coded form of one range line to `out` and pads it with 0x00 to a multiple of 4 bytes, counted
-/// from where this call began. Beams below `threshold` (3..255, smaller acts as 3; see
-/// PingConfig::rle_threshold_applied) become zero. A single zero is 0x01; runs of 2..255 are 0x00 followed by
-/// the count, longer runs are split; everything else is literal. The coded form never exceeds the line padded
-/// to 4.
+/// from where this call began. Beams below
+/// least_literal(threshold) become zero (PingConfig::rle_threshold_applied). A single zero is 0x01; runs
+/// of 2..255 are 0x00 followed by the count, longer runs are split; everything else is literal. The coded
+/// form never exceeds the line padded to 4.
 void rle_encode(std::span<const std::uint8_t> beams, std::uint8_t threshold, std::vector<std::uint8_t>& out);
 
 /// Decodes into `beams`; beams that `data` does not reach become zero. Stops at the end of `data` or when

@@ -13,18 +13,14 @@
 #include <span>
 #include <vector>
 
+#include "protocol/common/endpoint.hpp"
+#include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/head_clock.hpp"
 #include "protocol/gemini/messages.hpp"
 #include "protocol/gemini/ping_assembly.hpp"
 #include "protocol/gemini/response_time.hpp"
 
 namespace sonard::gemini {
-
-/// Time on any monotonic clock of the caller's choice; only differences matter.
-using TimePoint = std::chrono::nanoseconds;
-
-/// IPv4 address, first octet most significant (10.61.19.200 = 0x0A3D13C8).
-using Ipv4 = std::uint32_t;
 
 struct SurfaceConfig {
   std::uint16_t sonar_id = 0;  ///< the head to talk to; 0: the first whose status arrives

@@ -8,6 +8,7 @@
 
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/scanner.hpp"
+#include "protocol/micron/settings_text.hpp"
 
 namespace sonard::micron {
 namespace {
@@ -60,17 +61,27 @@ class Device::Impl {
  public:
   Impl(const DeviceConfig& config, TimePoint start)
       : config_(validated(config)),
+        warnings_(config_),
         scanner_(config_, counters_),
         input_(max_command_frame_size),
+        power_up_(start),
         clock_zero_(start),
         next_alive_(start) {}
 
-  void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
-  void on_host_gone() { input_.clear(); }
+  // One for each event.
+  void take(TimePoint, const TimePassed&) {}
+  void take(TimePoint now, const BytesReceived& piece);
+  void take(TimePoint, const ClientGone&) { input_.clear(); }
+  void take(TimePoint now, const PingRendered& ping) { scanner_.on_image(now, ping.image); }
+  void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }
+  void take(TimePoint, const TriggerEdge&) {}   // it has no such input
+  void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
+  void take(TimePoint, const PingFed& feed) { scanner_.feed(feed.ping); }
+  void take(TimePoint, const PingGranted&) { scanner_.grant(); }
+
   void power_cycle(TimePoint now);
   void advance(TimePoint now);
-  std::optional<TimePoint> next_deadline() const;
-  std::vector<std::vector<std::uint8_t>> take_outgoing() { return std::exchange(outgoing_, {}); }
+  Actions actions(TimePoint now);
 
   Scanner& scanner() { return scanner_; }
   const DeviceCounters& counters() const { return counters_; }
@@ -78,6 +89,8 @@ class Device::Impl {
 
  private:
   bool booting(TimePoint now) const { return now < boot_end_; }
+  std::optional<TimePoint> next_deadline() const;
+  void notice_state(TimePoint now);
   void read_frames(TimePoint now);
   bool take_frame(TimePoint now, const FrameBuffer::Frame& frame);
   bool has_parameters();
@@ -102,15 +115,21 @@ class Device::Impl {
 
   const DeviceConfig config_;
   DeviceCounters counters_;
+  SettingsWarnings warnings_;
   Scanner scanner_;
   FrameBuffer input_;
 
+  const TimePoint power_up_;
   TimePoint boot_end_{};    ///< in the future while the head boots
   TimePoint clock_zero_{};  ///< when the clock of the head was or would have been 0
   TimePoint next_alive_{};
   bool alives_stopped_ = false;
   bool sent_config_ = false;
-  std::vector<std::vector<std::uint8_t>> outgoing_;
+  std::vector<std::vector<std::uint8_t>> outgoing_;  ///< of the step that is under way
+
+  std::vector<Notice> notices_;
+  std::optional<HeadState> noticed_state_;
+  std::optional<TimePoint> idle_since_;
 };
 
 void Device::Impl::power_cycle(TimePoint now) {
@@ -125,12 +144,12 @@ void Device::Impl::power_cycle(TimePoint now) {
 
 // ---- Commands
 
-void Device::Impl::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
+void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
   if (booting(now)) {
-    counters_.unheard_bytes += bytes.size();
+    counters_.unheard_bytes += piece.bytes.size();
     return;
   }
-  input_.append(now, bytes);
+  input_.append(now, {piece.bytes.data(), piece.bytes.size()});
   read_frames(now);
 }
 
@@ -214,6 +233,9 @@ void Device::Impl::handle(TimePoint now, const SendData& command) {
 void Device::Impl::handle(TimePoint now, const HeadCommand& command) {
   scanner_.configure(now, command);
   sent_config_ = true;
+  if (!config_.plays_back) {
+    warnings_.check(command, notices_);
+  }
   if (config_.alive_after_head_command && !alives_stopped_) {
     send_alive(now);
   }
@@ -302,6 +324,42 @@ void Device::Impl::advance(TimePoint now) {
   scanner_.advance(now, outgoing_);
 }
 
+Actions Device::Impl::actions(TimePoint now) {
+  notice_state(now);
+  Actions actions;
+  for (std::vector<std::uint8_t>& frame : std::exchange(outgoing_, {})) {
+    actions.send.push_back({Outgoing::To::everybody, {}, SharedBytes(std::move(frame))});
+  }
+  actions.notices = std::exchange(notices_, {});
+  actions.record = scanner_.take_record();
+  actions.render = scanner_.take_job();
+  if (actions.render) {
+    actions.render->transmit_us = static_cast<std::uint64_t>((actions.render->transmit_time - power_up_) /
+                                                             std::chrono::microseconds{1});
+  }
+  actions.cancelled = scanner_.cancelled();
+  actions.next_ping = scanner_.next_ping();
+  actions.wake_at = next_deadline();
+  return actions;
+}
+
+/// `ready` after `scanning` is said when no line has been asked for in a while: between two lines of a scan
+/// some clients let a head be ready.
+void Device::Impl::notice_state(TimePoint now) {
+  constexpr std::chrono::seconds idle_after{2};
+  const HeadState state_now = state(now);
+  if (state_now != HeadState::ready || noticed_state_ != HeadState::scanning) {
+    idle_since_.reset();
+  } else if (!idle_since_) {
+    idle_since_ = now;
+  }
+  if (noticed_state_ == state_now || (idle_since_ && now - *idle_since_ < idle_after)) {
+    return;
+  }
+  notices_.push_back({Notice::Level::info, std::string(to_string(state_now))});
+  noticed_state_ = state_now;
+}
+
 std::optional<TimePoint> Device::Impl::next_deadline() const {
   TimePoint next = next_alive_;  // at the end of booting, too
   for (const auto& due : {scanner_.next_deadline(), input_.next_deadline()}) {
@@ -314,62 +372,51 @@ std::optional<TimePoint> Device::Impl::next_deadline() const {
 
 Device::Device(const DeviceConfig& config, TimePoint start) : impl_(std::make_unique<Impl>(config, start)) {}
 Device::~Device() = default;
-Device::Device(Device&&) noexcept = default;
-Device& Device::operator=(Device&&) noexcept = default;
 
-void Device::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
-  impl_->on_bytes(now, bytes);
+Actions Device::step(TimePoint now, const Event& event) {
+  std::visit([&](const auto& what) { impl_->take(now, what); }, event);
+  impl_->advance(now);
+  Actions actions = impl_->actions(now);
+  actions.nobody_there = std::holds_alternative<ClientGone>(event);
+  return actions;
 }
-void Device::on_host_gone() {
-  impl_->on_host_gone();
+
+PingProgress Device::progress() const {
+  const DeviceCounters& count = counters();
+  return {.sent = count.lines_sent,
+          .ended = count.lines_sent + count.pings_failed + count.pings_cancelled,
+          .messages = count.lines_sent};
 }
-void Device::on_line(TimePoint now, const MicronLine& line) {
-  impl_->scanner().on_line(now, line);
+
+std::vector<Counter> Device::counts() const {
+  using Shown = Counter::Shown;
+  const DeviceCounters& count = counters();
+  return {
+      {"lines_sent", count.lines_sent},
+      {"pings_failed", count.pings_failed},
+      {"pings_cancelled", count.pings_cancelled},
+      {"commands", count.commands},
+      {"dropped_bytes", count.dropped_bytes, Shown::warns, "{} bytes from clients were part of no command"},
+      {"bad_frames", count.bad_frames, Shown::warns, "{} commands made no sense"},
+      {"cut_frames", count.cut_frames},
+      {"wrong_node", count.wrong_node, Shown::warns, "{} commands were for another node"},
+      {"unknown_type", count.unknown_type},
+      {"not_ready", count.not_ready, Shown::warns, "{} requests came before any parameters"},
+      {"requests_beyond_cap", count.requests_beyond_cap},
+      {"boots", count.boots}};
 }
-void Device::on_line_failed(TimePoint now, std::uint64_t ping_number) {
-  impl_->scanner().on_line_failed(now, ping_number);
-}
+
 void Device::power_cycle(TimePoint now) {
   impl_->power_cycle(now);
 }
 void Device::lose_step() {
   impl_->scanner().lose_step();
 }
-std::optional<PingWish> Device::ping_wish() const {
-  return impl_->scanner().wish();
-}
-void Device::permit_ping() {
-  impl_->scanner().permit();
-}
-void Device::offer(const std::optional<RecordedLine>& line) {
-  impl_->scanner().offer(line);
-}
-void Device::advance(TimePoint now) {
-  impl_->advance(now);
-}
-std::optional<TimePoint> Device::next_deadline() const {
-  return impl_->next_deadline();
-}
-std::vector<std::vector<std::uint8_t>> Device::take_outgoing() {
-  return impl_->take_outgoing();
-}
-std::optional<MicronJob> Device::take_job() {
-  return impl_->scanner().take_job();
-}
-std::optional<SentLine> Device::take_sent_line() {
-  return impl_->scanner().take_sent_line();
-}
-std::optional<std::uint64_t> Device::called_off() const {
-  return impl_->scanner().called_off();
-}
 const DeviceCounters& Device::counters() const {
   return impl_->counters();
 }
 HeadState Device::state(TimePoint now) const {
   return impl_->state(now);
-}
-const std::optional<HeadCommand>& Device::parameters() const {
-  return impl_->scanner().parameters();
 }
 
 }  // namespace sonard::micron

@@ -63,10 +63,10 @@ struct DeviceConfig {
   /// rendered. >= 0
   std::optional<std::chrono::nanoseconds> line_period;
 
-  /// The head sends the lines that Device::offer() names, and no others.
+  /// The head sends the lines that it is fed (PingFed), and no others.
   bool plays_back = false;
-  /// A ping begins when Device::permit_ping() says so, as soon as one is owed, and its line leaves when it is
-  /// there: whoever permits keeps to PingWish. For pings that follow a simulated time.
+  /// A ping begins when it is granted (PingGranted), as soon as one is owed, and its line leaves when it is
+  /// there: whoever grants it keeps to NextPing. For pings that follow a simulated time.
   bool waits_for_permission = false;
 };
 

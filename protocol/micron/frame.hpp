@@ -9,10 +9,9 @@
 #include <span>
 #include <vector>
 
-namespace sonard::micron {
+#include "protocol/common/ping_job.hpp"
 
-/// Time on any monotonic clock of the caller's choice; only differences matter.
-using TimePoint = std::chrono::nanoseconds;
+namespace sonard::micron {
 
 inline constexpr std::uint8_t host_node = 0xFF;
 inline constexpr std::uint8_t broadcast_node = 0xFF;  ///< every head takes what is sent to it (2.3)

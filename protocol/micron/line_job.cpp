@@ -1,44 +1,51 @@
 #include "protocol/micron/line_job.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 
 #include "protocol/micron/line_timing.hpp"
+#include "protocol/micron/settings_text.hpp"
 #include "protocol/micron/units.hpp"
 
 namespace sonard::micron {
+namespace {
 
-MicronJob make_line_job(const HeadCommand& parameters, const DeviceConfig& config, int bearing) {
-  MicronJob job;
-  job.bearing = static_cast<std::uint16_t>(bearing);
+/// @param interval between two bins, in units of the wire
+void set_bins(PingJob& job, int bins, int interval, double sound_speed_mps) {
+  job.native_bins = bins;
+  job.sound_speed_mps = sound_speed_mps;
+  job.native_bin_m = bin_time_s(interval) * sound_speed_mps / 2.0;
+  job.listening_time = std::chrono::nanoseconds{static_cast<std::int64_t>(1e9 * bins * bin_time_s(interval))};
+}
+
+void set_gain(PingJob& job, int gain) {
+  job.gain_db = gain_db(gain);
+  job.gain_percent = 100.0 * job.gain_db / full_scale_db;
+}
+
+}  // namespace
+
+PingJob make_line_job(const HeadCommand& parameters, const DeviceConfig& config, int bearing) {
+  PingJob job;
   const bool mirrored = parameters.has(control_bits::invert) != config.mounted_inverted;
   job.bearing_rad = (mirrored ? -1.0 : 1.0) * bearing_rad(bearing);
-  job.bins = effective_bins(parameters);
-  job.bin_time_s = bin_time_s(effective_ad_interval(parameters));
-  job.sound_speed_mps = config.water_sound_speed_mps;
-  job.bin_length_m = job.bin_time_s * job.sound_speed_mps / 2.0;
-  job.gain_db = gain_db(parameters.gain[0]);
-  job.ad_low_db = level_db(parameters.ad_low);
-  job.ad_span_db = level_db(parameters.ad_span);
-  job.eight_bit = parameters.has(control_bits::eight_bit);
+  set_bins(job, effective_bins(parameters), effective_ad_interval(parameters), config.water_sound_speed_mps);
+  set_gain(job, parameters.gain[0]);
   job.transmit = !parameters.has(control_bits::transmit_off);
+  job.settings = settings_of(job, parameters, config);
   return job;
 }
 
-MicronJob make_line_job(const RecordedLine& recorded) {
-  const HeadData& line = recorded.line;
-  MicronJob job;
-  job.bearing = line.bearing;
+PingJob make_line_job(const RecordedPing& recorded, const HeadData& line) {
+  PingJob job;
   job.bearing_rad = recorded.bearing_rad;
-  job.bins = recorded.bins;
-  job.bin_time_s = bin_time_s(std::max<int>(line.ad_interval, 1));
-  job.sound_speed_mps = recorded.sound_speed_mps;
-  job.bin_length_m = job.bin_time_s * job.sound_speed_mps / 2.0;
-  job.gain_db = gain_db(line.gain);
-  job.ad_low_db = level_db(line.ad_low);
-  job.ad_span_db = level_db(line.ad_span);
-  job.eight_bit = line.eight_bit();
+  set_bins(job, recorded.settings.bins, std::max<int>(line.ad_interval, 1),
+           recorded.settings.sound_speed_mps);
+  set_gain(job, line.gain);
   job.transmit = (line.control & control_bits::transmit_off) == 0;
   job.record = recorded.record;
+  job.settings = settings_of(job, line);
   return job;
 }
 

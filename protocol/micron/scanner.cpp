@@ -6,6 +6,7 @@
 
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/line_job.hpp"
+#include "protocol/micron/recorded_form.hpp"
 
 namespace sonard::micron {
 namespace {
@@ -99,30 +100,35 @@ void Scanner::take_up_position(TimePoint begin) {
 
 // ---- Pings
 
+void Scanner::feed(const std::optional<RecordedPing>& ping) {
+  const auto line = ping ? recorded_line(ping->wire) : std::nullopt;
+  fed_ = line ? std::optional(FedPing{*ping, *line}) : std::nullopt;
+}
+
 std::optional<TimePoint> Scanner::ping_possible() const {
-  if (!placed_ || !parameters_ || owed_ == 0 || ping_ || unanswered_ || (config_.plays_back && !offered_)) {
+  if (!placed_ || !parameters_ || owed_ == 0 || ping_ || unanswered_ || (config_.plays_back && !fed_)) {
     return std::nullopt;
   }
   const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
   if (config_.waits_for_permission) {
-    return possible;  // whoever permits a ping has kept the pace in the time that rules
+    return possible;  // whoever grants a ping has kept the pace in the time that rules
   }
   const TimePoint due = std::max(possible, next_ping_at_);
-  return offered_ ? std::max(due, offered_->due.value_or(due)) : due;
+  return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
 }
 
-std::optional<PingWish> Scanner::wish() const {
+std::optional<NextPing> Scanner::next_ping() const {
   const auto possible = ping_possible();
   if (!possible) {
     return std::nullopt;
   }
   const LineTiming timing = line_timing(*parameters_, config_, parameters_->step);
-  return PingWish{*possible, std::max(config_.line_period.value_or(timing.period(config_)), timing.listen),
+  return NextPing{*possible, std::max(config_.line_period.value_or(timing.period(config_)), timing.listen),
                   timing.listen};
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return config_.waits_for_permission && !permitted_ ? std::nullopt : ping_possible();
+  return config_.waits_for_permission && !granted_ ? std::nullopt : ping_possible();
 }
 
 std::optional<TimePoint> Scanner::line_due() const {
@@ -139,14 +145,15 @@ TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) 
 }
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
-  permitted_ = false;
+  granted_ = false;
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
-  if (const auto recorded = std::exchange(offered_, std::nullopt)) {
-    repeat(transmit_time, *recorded);
+  if (const auto fed = std::exchange(fed_, std::nullopt)) {
+    repeat(transmit_time, *fed);
   } else {
     aim(transmit_time);
   }
-  ping_->number = job_->ping_number = next_ping_number_++;
+  keep_settings(*job_);
+  ping_->number = job_->number = next_ping_number_++;
   ping_->transmit_time = job_->transmit_time = transmit_time;
   ++counters_.pings_started;
 }
@@ -157,57 +164,66 @@ void Scanner::aim(TimePoint transmit_time) {
   const nanoseconds line_after = line_timing(*parameters_, config_, 0).listen + config_.line_overhead;
   Ping ping;
   ping.line = make_line();
-  ping.bins = job_->bins;
   ping.line_due = line_due_of(transmit_time, line_after);
   ping_ = std::move(ping);
 }
 
 /// No faster than its echoes came; the recording says how much slower.
-void Scanner::repeat(TimePoint transmit_time, const RecordedLine& recorded) {
-  job_ = make_line_job(recorded);
-  motor_.place(recorded.line.bearing);
-  const nanoseconds listening = job_->listening_time();
+void Scanner::repeat(TimePoint transmit_time, const FedPing& fed) {
+  job_ = make_line_job(fed.ping, fed.line);
+  job_->differences = differences(*parameters_, *job_, fed.line);
+  motor_.place(fed.line.bearing);
+  const nanoseconds listening = job_->listening_time;
   Ping ping;
-  ping.line = recorded.line;
-  ping.bins = recorded.bins;
+  ping.line = fed.line;
   ping.line_due = transmit_time + std::min(listening, config_.line_period.value_or(listening));
   ping_ = std::move(ping);
 }
 
-std::optional<MicronJob> Scanner::take_job() {
+void Scanner::keep_settings(const PingJob& job) {
+  ping_->settings = {.bins = job.bins(),
+                     .beams = 1,
+                     .bin_m = job.bin_m(),
+                     .sound_speed_mps = job.sound_speed_mps,
+                     .gain_percent = job.gain_percent,
+                     .frequency_hz = carrier_hz};
+  ping_->bearing_rad = job.bearing_rad;
+}
+
+std::optional<PingJob> Scanner::take_job() {
   auto job = std::exchange(job_, std::nullopt);
   if (job) {
-    unanswered_ = job->ping_number;
+    unanswered_ = job->number;
   }
   return job;
 }
 
 /// True when it answers the ping that is acquired.
-bool Scanner::answered(TimePoint now, std::uint64_t ping_number) {
-  if (unanswered_ != ping_number) {
+bool Scanner::answered(TimePoint now, std::uint64_t number) {
+  if (unanswered_ != number) {
     ++counters_.stale_lines;
     return false;
   }
   unanswered_.reset();
   free_since_ = now;
-  return ping_ && ping_->number == ping_number;
+  return ping_ && ping_->number == number;
 }
 
-void Scanner::on_line(TimePoint now, const MicronLine& line) {
-  if (!answered(now, line.ping_number)) {
+void Scanner::on_image(TimePoint now, const PingImage& image) {
+  if (!answered(now, image.number)) {
     return;
   }
-  if (line.samples.size() != static_cast<std::size_t>(ping_->bins)) {
+  if (image.u8.size() != static_cast<std::size_t>(ping_->settings.bins)) {
     ++counters_.pings_failed;
     end_ping();
     return;
   }
-  ping_->samples = line.samples;
+  ping_->samples = image.u8;
   ping_->line_due = std::max(ping_->line_due, now);
 }
 
-void Scanner::on_line_failed(TimePoint now, std::uint64_t ping_number) {
-  if (answered(now, ping_number)) {
+void Scanner::on_image_failed(TimePoint now, std::uint64_t number) {
+  if (answered(now, number)) {
     ++counters_.pings_failed;
     end_ping();
   }
@@ -248,13 +264,26 @@ std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
   return values;
 }
 
+PingRecord Scanner::record_of(const Ping& ping, const HeadData& line) const {
+  PingRecord record;
+  record.number = ping.number;
+  record.transmit_time = ping.transmit_time;
+  record.settings = ping.settings;
+  record.bearings_rad = {ping.bearing_rad};
+  record.bits_per_bin = line.eight_bit() ? 8 : 4;
+  record.samples = bins_of(ping);
+  record.wire = recorded_wire(line, config_.node);
+  return record;
+}
+
 void Scanner::send_line(std::vector<std::vector<std::uint8_t>>& out) {
   HeadData line = ping_->line;
   if (motor_error_) {
     line.status |= head_status_bits::motor_error;
   }
-  sent_ = SentLine{ping_->number, line, bins_of(*ping_)};
-  const auto packed = line.eight_bit() ? sent_->bins : pack_nibbles(sent_->bins, config_.nibble_order);
+  record_ = record_of(*ping_, line);
+  const auto packed =
+      line.eight_bit() ? record_->samples : pack_nibbles(record_->samples, config_.nibble_order);
   line.data = packed;
   out.push_back(encode(line, config_.node));
   ++counters_.lines_sent;

@@ -6,11 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/common/ping_wish.hpp"
+#include "protocol/common/ping_record.hpp"
 #include "protocol/micron/device_config.hpp"
 #include "protocol/micron/device_counters.hpp"
 #include "protocol/micron/line_timing.hpp"
-#include "protocol/micron/micron_job.hpp"
 #include "protocol/micron/motor.hpp"
 #include "protocol/micron/sweep.hpp"
 
@@ -36,22 +35,23 @@ class Scanner {
   void reverse();
   void request(TimePoint now);
 
-  void on_line(TimePoint now, const MicronLine& line);
-  void on_line_failed(TimePoint now, std::uint64_t ping_number);
+  void on_image(TimePoint now, const PingImage& image);
+  void on_image_failed(TimePoint now, std::uint64_t number);
   void lose_step() { motor_error_ = true; }
-  /// See Device::ping_wish().
-  std::optional<PingWish> wish() const;
-  void permit() { permitted_ = true; }
-  void offer(const std::optional<RecordedLine>& line) { offered_ = line; }
+  /// See Actions::next_ping.
+  std::optional<NextPing> next_ping() const;
+  void grant() { granted_ = true; }
+  /// Nothing, too, where `ping` does not say how it travelled.
+  void feed(const std::optional<RecordedPing>& ping);
 
   /// Appends the frames due at `now` to `out`.
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
   std::optional<TimePoint> next_deadline() const;
-  std::optional<MicronJob> take_job();
-  /// See Device::take_sent_line().
-  std::optional<SentLine> take_sent_line() { return std::exchange(sent_, std::nullopt); }
-  /// See Device::called_off().
-  std::optional<std::uint64_t> called_off() const { return ping_ ? std::nullopt : unanswered_; }
+  std::optional<PingJob> take_job();
+  /// The line that has left since the last call; advance() sends one at most.
+  std::optional<PingRecord> take_record() { return std::exchange(record_, std::nullopt); }
+  /// See Actions::cancelled.
+  std::optional<std::uint64_t> cancelled() const { return ping_ ? std::nullopt : unanswered_; }
 
   const std::optional<HeadCommand>& parameters() const { return parameters_; }
   int owed() const { return owed_; }
@@ -60,12 +60,17 @@ class Scanner {
   bool turning(TimePoint now) const { return motor_.turning(now); }
 
  private:
+  struct FedPing {
+    RecordedPing ping;
+    HeadData line;
+  };
   struct Ping {
     std::uint64_t number = 0;
     TimePoint transmit_time{};
     TimePoint line_due{};  ///< not earlier than this the line leaves
     HeadData line;         ///< what it will say, but for its data
-    int bins = 0;
+    RecordedSettings settings;
+    double bearing_rad = 0.0;
     std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
   };
 
@@ -77,14 +82,16 @@ class Scanner {
   TimePoint line_due_of(TimePoint transmit_time, std::chrono::nanoseconds line_after) const;
   void start_ping(TimePoint now, TimePoint due);
   void aim(TimePoint transmit_time);
-  void repeat(TimePoint transmit_time, const RecordedLine& recorded);
+  void repeat(TimePoint transmit_time, const FedPing& fed);
+  void keep_settings(const PingJob& job);
   HeadData make_line() const;
   std::vector<std::uint8_t> bins_of(const Ping& ping) const;
+  PingRecord record_of(const Ping& ping, const HeadData& line) const;
   void send_line(std::vector<std::vector<std::uint8_t>>& out);
   void end_ping();
   TimePoint time_of_next_ping();
   void cancel_ping();
-  bool answered(TimePoint now, std::uint64_t ping_number);
+  bool answered(TimePoint now, std::uint64_t number);
 
   const DeviceConfig& config_;
   DeviceCounters& counters_;
@@ -102,14 +109,14 @@ class Scanner {
   bool motor_error_ = false;
   int owed_ = 0;  ///< lines
   TimePoint owed_since_{};
-  std::optional<RecordedLine> offered_;
+  std::optional<FedPing> fed_;
 
   // What it does.
-  bool permitted_ = false;
+  bool granted_ = false;
   std::uint64_t next_ping_number_ = 0;
   std::optional<Ping> ping_;
-  std::optional<SentLine> sent_;             ///< not yet taken
-  std::optional<MicronJob> job_;             ///< not yet taken
+  std::optional<PingRecord> record_;         ///< not yet taken
+  std::optional<PingJob> job_;               ///< not yet taken
   std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
   TimePoint free_since_{};                   ///< when the last ping ended, or its job was answered
   TimePoint next_ping_at_{};                 ///< by the pace of lines

@@ -12,7 +12,6 @@
 namespace sonard::picture {
 namespace {
 
-constexpr int units_per_turn = 6400;
 constexpr int bearing_ahead = 3200;
 /// Halves of a unit: the edges of a step lie on them, also where it is odd.
 constexpr int slots_per_turn = 2 * units_per_turn;
@@ -59,6 +58,16 @@ cv::Mat matrix_of(const std::vector<TurnLine>& lines, int bins) {
 }
 
 }  // namespace
+
+int turn_bearing(double bearing_rad) {
+  const double turn_rad = std::remainder(bearing_rad, 2.0 * std::numbers::pi);
+  const int units = static_cast<int>(std::lround(turn_rad * units_per_turn / (2.0 * std::numbers::pi)));
+  return (bearing_ahead + units + units_per_turn) % units_per_turn;
+}
+
+int turn_units(double angle_rad) {
+  return std::max(1, static_cast<int>(std::lround(angle_rad * units_per_turn / (2.0 * std::numbers::pi))));
+}
 
 TurnImage::TurnImage(const TurnShape& shape, const FanLook& look)
     : shape_(shape),

@@ -7,46 +7,21 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "protocol/gemini/device_config.hpp"
-#include "protocol/micron/device_config.hpp"
 #include "protocol/pose/pose_codec.hpp"
 #include "renderer/backend.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
+#include "server/net/addresses.hpp"
 
 namespace sonard::server {
 
-/// IPv4 address, first octet most significant (127.0.0.1 = 0x7F000001).
-using Ipv4 = std::uint32_t;
-
-/// Where a datagram goes to, or what a socket is bound to.
-struct Endpoint {
-  Ipv4 address = 0;        ///< 0 binds all addresses
-  std::uint16_t port = 0;  ///< 0 lets the kernel choose (bind only)
-
-  bool operator==(const Endpoint&) const = default;
-};
-
-/// Block of addresses, "127.0.0.0/8".
-struct Cidr {
-  Ipv4 network = 0;        ///< host bits are zero
-  int prefix_length = 32;  ///< 0..32
-
-  bool contains(Ipv4 address) const;
-  bool operator==(const Cidr&) const = default;
-};
-
-/// Whom a socket listens to. A datagram or connection from elsewhere is counted and dropped.
-using AllowList = std::vector<Cidr>;
-
-/// True when one of the blocks contains the address; an empty list allows nobody.
-bool allows(const AllowList& list, Ipv4 address);
+class HeadKind;
 
 enum class LogLevel { trace, debug, info, warn, error };
 
@@ -148,70 +123,21 @@ struct PoseConfig {
   PingClock clock = PingClock::wall;
 };
 
-/// Where the 1 Hz status packets go.
-struct StatusDestination {
-  enum class Mode {
-    limited_broadcast,   ///< 255.255.255.255, as the device does
-    directed_broadcast,  ///< the broadcast address of the alternate address under its netmask
-    unicast,             ///< each of `hosts`
-  };
-  Mode mode = Mode::limited_broadcast;
-  std::vector<Ipv4> hosts;  ///< for `unicast` only, then not empty
+/// The part of a head's configuration that only its kind of device knows.
+struct DeviceSettings {
+  DeviceSettings() = default;
+  virtual ~DeviceSettings() = default;
+  DeviceSettings(const DeviceSettings&) = default;
+  DeviceSettings& operator=(const DeviceSettings&) = default;
 };
 
-/// Faults put on datagrams of one direction, each drawn anew for each datagram.
-struct LinkFaults {
-  double loss = 0.0;                   ///< probability, [0, 1]
-  double duplicate = 0.0;              ///< probability that a second copy goes too, [0, 1]
-  double reorder = 0.0;                ///< probability to be held back behind the next datagram, [0, 1]
-  std::chrono::nanoseconds delay{0};   ///< added to each datagram, >= 0
-  std::chrono::nanoseconds jitter{0};  ///< plus a uniform draw from [0, jitter], >= 0
-
-  /// True when every datagram passes at once and unchanged.
-  bool transparent() const {
-    return loss == 0.0 && duplicate == 0.0 && reorder == 0.0 && delay.count() == 0 && jitter.count() == 0;
-  }
-};
-
-/// Faults of the link between a head and its surface, to test drivers with. Seeded: the same datagrams in
-/// the same order meet the same fate.
-struct LinkConfig {
-  LinkFaults to_surface;
-  LinkFaults from_surface;
-  std::uint64_t seed = 1;
-};
-
-/// A TCP listener that gives a serial line's raw bytes to each client, as serial device servers do.
-struct SerialTcpConfig {
-  Endpoint bind;
-  AllowList allow;
-};
-
-/// A UDP socket that carries a serial line: a datagram for each write of either side.
-struct SerialUdpConfig {
-  Endpoint bind;
-  AllowList allow;
-};
-
-/// A pseudo terminal, whose slave is a serial device to whoever opens it.
-struct SerialPtyConfig {
-  /// Symbolic link to the slave, whose own name is new at each start; empty: none.
-  std::filesystem::path link;
-};
-
-/// Every way at once by which the clients of a serial device reach it.
-struct SerialLinkConfig {
-  std::vector<SerialTcpConfig> tcp;
-  std::vector<SerialUdpConfig> udp;
-  std::vector<SerialPtyConfig> pty;
-  int baud = 0;  ///< bits per second of the line, ten to a byte; 0: bytes pass as fast as they go
-};
-
-/// What all heads have.
+/// One head.
 struct HeadConfig {
+  const HeadKind* kind = nullptr;                ///< what it is; never null once it is loaded
+  std::shared_ptr<const DeviceSettings> device;  ///< of that kind
   std::string name;              ///< unique in the daemon; appears in every log line of this head
   render::Pose T_vehicle_sonar;  ///< mount
-  /// The sonar of the world that the mount is to be taken from (take_from_world() does); empty: none.
+  /// The sonar of the world that the mount is to be taken from (resolve_mounts() does); empty: none.
   std::string mount_from_world;
   bool hides_vehicle = false;  ///< whether DaemonConfig::vehicle_model is not in its images
   /// Everything of a ping that the device does not say by itself.
@@ -221,46 +147,6 @@ struct HeadConfig {
   /// debugging.
   std::optional<std::filesystem::path> dump_directory;
 };
-
-/// One Gemini 720i. The sonar's x axis is the acoustic axis, so a down tilt is in the mount. Its bearing
-/// table and the ping job fill in `aperture.beam_edges_rad` and `range` of the acoustics.
-struct GeminiHeadConfig : HeadConfig {
-  GeminiHeadConfig();
-
-  /// Identity, addresses and timing. `water_sound_speed_mps` is already chosen (0: follow the ping
-  /// configuration).
-  gemini::DeviceConfig device;
-  /// Whether beams point elsewhere in water of another sound speed than the head assumes, as those of a flat
-  /// array do (docs/physics.md 2.12).
-  bool steering_error = false;
-  /// Address of the command socket: one of this machine, or 0 for all of them.
-  Ipv4 bind_address = 0x7F000002;
-  std::uint16_t command_port = 52901;  ///< the head listens here and sends from here
-  std::uint16_t surface_port = 52900;  ///< every reply goes to this port of the surface
-  StatusDestination status;
-  AllowList allow;  ///< surfaces that are served; status packets are not affected
-
-  LinkConfig link;
-  /// A UDP socket whose every datagram counts as one edge of the external trigger (run mode 2).
-  std::optional<Endpoint> trigger;
-};
-
-/// One Micron. The head turns about the z axis of its mount, and looks along x where it says "ahead". Its
-/// jobs fill in `range` of the acoustics.
-struct MicronHeadConfig : HeadConfig {
-  MicronHeadConfig();
-
-  micron::DeviceConfig device;
-  SerialLinkConfig serial;
-  double nominal_gain_db = 36.0;  ///< of the client's, at which the level is that of the acoustics; [0, 80]
-  double chirp_bandwidth_hz = 100'000.0;  ///< sets the range cell; 0: a pulse without length
-};
-
-using AnyHeadConfig = std::variant<GeminiHeadConfig, MicronHeadConfig>;
-
-inline const HeadConfig& common(const AnyHeadConfig& head) {
-  return std::visit([](const HeadConfig& any) -> const HeadConfig& { return any; }, head);
-}
 
 /// The clock that names of logs and times in .glf logs show.
 enum class RecordingZone { utc, local };
@@ -275,7 +161,7 @@ enum class RecordingSync {
 /// Logs of what the heads say.
 struct RecordingConfig {
   std::filesystem::path directory;  ///< made when it is not there; one daemon at a time uses it
-  bool glf = true;                  ///< Geminis only
+  bool glf = true;                  ///< of heads whose users know it (HeadKind)
   bool mcap = true;
   bool pcapng = true;
   std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< a file of this size or more ends all files
@@ -290,14 +176,14 @@ struct DaemonConfig {
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
   /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries
-  /// the sonars that heads are mounted from (take_from_world() fills it in).
+  /// the sonars that heads are mounted from (resolve_mounts() fills it in).
   std::string vehicle_model;
   render::Backend backend = render::Backend::automatic;
   render::GpuBinning gpu_binning = render::GpuBinning::automatic;
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;
-  std::vector<AnyHeadConfig> heads;  ///< at least one
+  std::vector<HeadConfig> heads;  ///< at least one
   std::optional<RecordingConfig> recording;
 };
 

@@ -4,14 +4,13 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "renderer/acoustics/noise_budget.hpp"
 #include "renderer/acoustics/water.hpp"
-#include "server/config/addresses.hpp"
-#include "server/config/gemini_section.hpp"
-#include "server/config/micron_section.hpp"
+#include "server/config/head_kind.hpp"
 
 namespace sonard::server {
 namespace {
@@ -144,15 +143,18 @@ void warn_of_extrapolation(std::vector<ConfigWarning>& warnings) {
 
 }  // namespace
 
-AnyHeadConfig read_head(YamlSection& section, const HeadContext& context,
-                        std::vector<ConfigWarning>& warnings) {
-  enum class Type { gemini_720i, micron } type{};
-  section.require("type", "gemini_720i or micron");
-  section.choice("type", type, {{"gemini_720i", Type::gemini_720i}, {"micron", Type::micron}});
-  if (type == Type::micron) {
-    return read_micron_head(section, context, warnings);
+HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span<const HeadKind* const> kinds,
+                     std::vector<ConfigWarning>& warnings) {
+  std::vector<std::pair<std::string_view, const HeadKind*>> types;
+  std::vector<std::string_view> names;
+  for (const HeadKind* kind : kinds) {
+    types.emplace_back(kind->type(), kind);
+    names.push_back(kind->type());
   }
-  return read_gemini_head(section, context, warnings);
+  const HeadKind* kind = kinds.front();  // where the type is wrong the other keys are read all the same
+  section.require("type", fmt::format("{}", fmt::join(names, " or ")));
+  section.choice_of("type", kind, types);
+  return kind->read(section, context, warnings);
 }
 
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head) {
@@ -211,19 +213,6 @@ void read_pose(YamlSection& section, render::Pose& pose) {
   pose.orientation =
       glm::normalize(glm::angleAxis(rpy.z, glm::dvec3(0, 0, 1)) * glm::angleAxis(rpy.y, glm::dvec3(0, 1, 0)) *
                      glm::angleAxis(rpy.x, glm::dvec3(1, 0, 0)));
-}
-
-void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow) {
-  constexpr std::string_view expected = "an address block such as 10.61.19.0/24";
-  if (is_loopback(bind_address)) {
-    allow = {{0x7F000000, 8}};
-  } else if (bind_address != 0 || section.has("bind")) {  // otherwise the address itself was refused
-    section.require("allow", "the address blocks to serve, as the socket is not bound to loopback");
-  }
-  section.parsed_list("allow", allow, &parse_cidr, expected);
-  if (section.is_list("allow") && allow.empty()) {
-    section.report("allow", "nobody is listed (expected at least one address block)");
-  }
 }
 
 }  // namespace sonard::server

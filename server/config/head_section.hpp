@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct ConfigWarning {
   std::string message;
 };
 
-AnyHeadConfig read_head(YamlSection& section, const HeadContext& context,
-                        std::vector<ConfigWarning>& warnings);
+/// @param kinds those that a head may be of
+HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span<const HeadKind* const> kinds,
+                     std::vector<ConfigWarning>& warnings);
 
 /// Name, mount and dump of any head, and the sampling that it takes from the document.
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head);
@@ -42,9 +44,5 @@ void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head
 
 /// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down).
 void read_pose(YamlSection& section, render::Pose& pose);
-
-/// "allow" beside a bind address: a list of address blocks. Left out, loopback peers are served if the socket
-/// is bound to loopback; for any other address it has to be given.
-void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow);
 
 }  // namespace sonard::server

@@ -8,15 +8,14 @@
 #include <fmt/format.h>
 
 #include "renderer/acoustics/water.hpp"
-#include "server/config/addresses.hpp"
 #include "server/config/head_section.hpp"
+#include "server/config/network_section.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/config/yaml_section.hpp"
+#include "server/net/addresses.hpp"
 
 namespace sonard::server {
 namespace {
-
-constexpr std::string_view expected_endpoint = "an address and port such as 127.0.0.1:14600";
 
 std::string read_file(const std::filesystem::path& file) {
   const auto fail = [&](const std::error_code& cause) {
@@ -251,7 +250,8 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
   recording.queue_bytes = mebibytes << 20;
 }
 
-void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWarning>& warnings) {
+void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config,
+                   std::vector<ConfigWarning>& warnings) {
   HeadContext context;
   context.folder = config.file.parent_path();
   root.section("log", [&](YamlSection& section) { read_log(section, config.log_level); });
@@ -283,8 +283,9 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
     read_recording(section, context.folder, config.recording.emplace());
   });
   root.require("heads", "a list of sonar heads");
-  root.sections("heads",
-                [&](YamlSection& section) { config.heads.push_back(read_head(section, context, warnings)); });
+  root.sections("heads", [&](YamlSection& section) {
+    config.heads.push_back(read_head(section, context, kinds, warnings));
+  });
   if (root.is_list("heads") && config.heads.empty()) {
     root.report("heads", "no head is listed (expected at least one)");
   }
@@ -292,7 +293,7 @@ void read_document(YamlSection& root, DaemonConfig& config, std::vector<ConfigWa
 
 }  // namespace
 
-LoadedConfig load_config(const std::filesystem::path& file) {
+LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds) {
   const YAML::Node document = parse_yaml(file);
   YamlFindings findings;
   LoadedConfig loaded;
@@ -300,7 +301,7 @@ LoadedConfig load_config(const std::filesystem::path& file) {
   std::vector<ConfigWarning> warnings;
   {
     YamlSection root(findings, document, "");
-    read_document(root, loaded.config, warnings);
+    read_document(root, kinds, loaded.config, warnings);
   }
   if (findings.problems.empty()) {
     findings.problems = find_overlaps(loaded.config, findings.positions);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,8 @@ struct LoadedConfig {
 
 /// Reads and checks a configuration without touching what it names: no world is loaded, no socket opened.
 /// Relative paths in it are resolved against its folder.
+/// @param kinds those that heads may be of
 /// @throws ConfigError with every problem of the file.
-LoadedConfig load_config(const std::filesystem::path& file);
+LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds);
 
 }  // namespace sonard::server

@@ -93,6 +93,19 @@ class YamlSection {
     }
   }
 
+  /// The same for choices that are known only when the program runs.
+  template <typename Value>
+  void choice_of(std::string_view key, Value& out,
+                 const std::vector<std::pair<std::string_view, Value>>& choices) {
+    std::vector<std::string_view> words;
+    for (const auto& [word, value] : choices) {
+      words.push_back(word);
+    }
+    if (const std::optional<std::size_t> index = word_index(key, words)) {
+      out = choices[*index].second;
+    }
+  }
+
   /// A text that `parse` understands ("an address such as 127.0.0.2").
   template <typename Value>
   void parsed(std::string_view key, Value& out, std::optional<Value> (*parse)(std::string_view),

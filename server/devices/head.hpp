@@ -1,12 +1,14 @@
-// What the daemon knows of any head.
+// One head of the daemon: a device on its transport, whose pings are rendered or played back, and recorded.
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "renderer/skip_ledger.hpp"
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
+#include "server/config/config.hpp"
 
 namespace boost::asio {
 class io_context;
@@ -14,10 +16,12 @@ class io_context;
 
 namespace sonard::server {
 
+class ConnectedDevice;
 class Playback;
 class PoseHistory;
 class Recorder;
 class RenderService;
+struct RenderCounters;
 
 /// What a head needs of the daemon. Everything outlives the head.
 struct HeadServices {
@@ -27,30 +31,41 @@ struct HeadServices {
   const PoseHistory& poses;
   std::optional<double> water_surface_z_m;  ///< height above which a sonar is out of the water
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
-  Playback* playback = nullptr;             ///< for heads whose DeviceConfig::plays_back is set
+  Playback* playback = nullptr;             ///< null: pings are rendered
   Recorder* recorder = nullptr;             ///< null: nothing is recorded
   std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
 };
 
-/// A device on its transport. Constructor and destructor belong to the thread that owns the io_context while
-/// nobody runs it; everything else to the I/O thread. At most one render job is outstanding.
+/// The same for every kind of device: events go to Device::step(), and what it answers is done. While the
+/// transport is blocked events wait, so that a device does not talk faster than it is heard.
+///
+/// Constructor and destructor belong to the thread that owns the io_context while nobody runs it; everything
+/// else to the I/O thread. At most one render job is outstanding.
 ///
 /// Shutdown: stop() closes the transport and cancels the timers. Handlers that are still queued, and an image
 /// still being rendered, find the inner state stopped or gone and do nothing.
 class Head {
  public:
-  Head() = default;
-  virtual ~Head() = default;
+  /// @throws SocketError
+  Head(const HeadConfig& config, int stream, const HeadServices& services);
+  ~Head();
   Head(const Head&) = delete;
   Head& operator=(const Head&) = delete;
 
-  virtual void start() = 0;
-  virtual void stop() = 0;
+  void start();
+  void stop();
 
   /// PoseHistory has one more: a ping by the clock of the source may have waited for it.
-  virtual void poses_changed() = 0;
+  void poses_changed();
   /// See PingTimes::spare().
-  virtual std::optional<std::chrono::nanoseconds> spare_poses() const = 0;
+  std::optional<std::chrono::nanoseconds> spare_poses() const;
+
+  ConnectedDevice& connected();
+  const RenderCounters& render_counters() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace sonard::server

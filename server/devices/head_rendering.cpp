@@ -24,16 +24,16 @@ HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadSer
   }
 }
 
-bool HeadRendering::begin_ping(TimePoint now, const std::optional<PingWish>& wish) {
-  if (!wish) {
+bool HeadRendering::begin_ping(TimePoint now, const std::optional<NextPing>& next) {
+  if (!next) {
     rest_when_idle(now);
     return false;
   }
-  if (wish->from > now) {
+  if (next->from > now) {
     return false;
   }
   last_wanted_ = now;
-  ping_time_ = ping_times_->begin(wish->period, wish->listening);
+  ping_time_ = ping_times_->begin(next->period, next->listening);
   return ping_time_.has_value();
 }
 

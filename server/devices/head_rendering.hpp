@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/common/ping_wish.hpp"
+#include "protocol/common/ping_job.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
@@ -18,7 +18,7 @@
 #include "server/pose/posed_body.hpp"
 #include "server/program_log/peer_log.hpp"
 #include "server/recording/events.hpp"
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 
 namespace sonard::server {
 
@@ -50,7 +50,7 @@ class HeadRendering {
   TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
 
   /// By the clock of the source: whether the ping that the head wants, if it does, may begin. Then it does.
-  bool begin_ping(TimePoint now, const std::optional<PingWish>& wish);
+  bool begin_ping(TimePoint now, const std::optional<NextPing>& next);
   /// By the clock of the source: nobody wants pings.
   void rest();
   /// A client that asks for one ping after the other may take so long between two; after that nobody wants

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 
 namespace sonard::server {
 

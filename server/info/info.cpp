@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "server/devices/kinds/kinds.hpp"
 #include "server/info/info_text.hpp"
 #include "server/info/thumbnails.hpp"
 
@@ -22,7 +23,7 @@ std::int32_t utc_offset_s(const LogSummary& log, const InfoOptions& options) {
 
 void info(const std::filesystem::path& path, const InfoOptions& options) {
   const LogFile file(path);
-  const LogSummary log = summarise(file);
+  const LogSummary log = summarise(file, &ping_in);
   const std::int32_t offset_s = utc_offset_s(log, options);
   fmt::print("{}", options.json ? info_json(log, offset_s) : info_text(log, offset_s));
   for (const std::string& problem : log.problems) {

@@ -1,11 +1,14 @@
 #include "server/info/info_text.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <optional>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+
+#include "server/devices/kinds/kinds.hpp"
 
 namespace sonard::server {
 namespace {
@@ -22,14 +25,29 @@ std::string offset_text(std::int32_t utc_offset_s) {
   return fmt::format("{}{:02}:{:02}", utc_offset_s < 0 ? '-' : '+', minutes / 60, minutes % 60);
 }
 
-std::string title_of(const HeadSummary& head) {
-  return fmt::format("{} {}{}", head.scanning ? "Micron node" : "Gemini", head.id,
+/// The kind of device that a head was; null where neither the log nor its format says.
+const DeviceKind* kind_of(const HeadSummary& head, LogKind log) {
+  if (!head.device.empty()) {
+    return kind_of_type(head.device);
+  }
+  if (log != LogKind::glf && log != LogKind::dat) {
+    return nullptr;
+  }
+  const auto kinds = device_kinds();
+  const auto found = std::ranges::find_if(kinds, [](const DeviceKind* kind) { return kind->writes_glf(); });
+  return found == kinds.end() ? nullptr : *found;
+}
+
+std::string title_of(const HeadSummary& head, LogKind log) {
+  const DeviceKind* const kind = kind_of(head, log);
+  const std::string_view usual = head.scanning ? "scanning sonar" : "multibeam sonar";
+  return fmt::format("{} {}{}", kind != nullptr ? kind->title() : usual, head.id,
                      head.name.empty() ? "" : fmt::format(" '{}'", head.name));
 }
 
 std::string settings_text(const RecordedSettings& settings, bool scanning) {
-  std::string text = scanning ? fmt::format("{} bins", settings.lines)
-                              : fmt::format("{} lines of {} beams", settings.lines, settings.beams);
+  std::string text = scanning ? fmt::format("{} bins", settings.bins)
+                              : fmt::format("{} lines of {} beams", settings.bins, settings.beams);
   text +=
       fmt::format(", range {:.2f} m, sound speed {:.1f} m/s", settings.range_m(), settings.sound_speed_mps);
   if (settings.gain_percent >= 0.0) {
@@ -52,9 +70,9 @@ std::string rate_text(const PingRate& rate) {
                                               rate.gaps, rate.longest_gap_s));
 }
 
-std::string head_text(const HeadSummary& head) {
-  std::string text =
-      fmt::format("head     {}: {} {}\n", title_of(head), head.pings(), head.scanning ? "lines" : "pings");
+std::string head_text(const HeadSummary& head, LogKind log) {
+  std::string text = fmt::format("head     {}: {} {}\n", title_of(head, log), head.pings(),
+                                 head.scanning ? "lines" : "pings");
   if (const std::string rate = rate_text(ping_rate(head.times_ns)); !rate.empty()) {
     text += fmt::format("         {}\n", rate);
   }
@@ -118,18 +136,20 @@ std::string json_settings(const SettingsCount& count) {
   return fmt::format(
       R"({{"pings": {}, "lines": {}, "beams": {}, "metres_per_line": {}, "range_m": {}, "sound_speed_mps": {}, )"
       R"("gain_percent": {}, "frequency_hz": {}}})",
-      count.pings, settings.lines, settings.beams, settings.line_step_m, settings.range_m(),
+      count.pings, settings.bins, settings.beams, settings.bin_m, settings.range_m(),
       settings.sound_speed_mps, json_known(settings.gain_percent >= 0.0, settings.gain_percent),
       json_known(settings.frequency_hz > 0.0, settings.frequency_hz));
 }
 
-std::string json_head(const HeadSummary& head) {
+std::string json_head(const HeadSummary& head, LogKind log) {
   const PingRate rate = ping_rate(head.times_ns);
+  const DeviceKind* const kind = kind_of(head, log);
   return fmt::format(
-      R"({{"device": "{}", "name": {}, "id": {}, "pings": {}, "rate_hz": {}, "median_interval_s": {}, )"
+      R"({{"device": {}, "scanning": {}, "name": {}, "id": {}, "pings": {}, "rate_hz": {}, "median_interval_s": {}, )"
       R"("gaps": {}, "longest_gap_s": {}, "settings": {}}})",
-      head.scanning ? "micron" : "gemini", json_string(head.name), head.id, head.pings(), rate.rate_hz(),
-      rate.median_interval_s, rate.gaps, rate.longest_gap_s, json_list(head.settings, json_settings));
+      kind != nullptr ? json_string(std::string(kind->type())) : "null", head.scanning,
+      json_string(head.name), head.id, head.pings(), rate.rate_hz(), rate.median_interval_s, rate.gaps,
+      rate.longest_gap_s, json_list(head.settings, json_settings));
 }
 
 std::string json_span(const LogSummary& log, std::int32_t utc_offset_s) {
@@ -174,7 +194,7 @@ std::string info_text(const LogSummary& log, std::int32_t utc_offset_s) {
     text += span_text(log, utc_offset_s);
   }
   for (const HeadSummary& head : log.heads) {
-    text += head_text(head);
+    text += head_text(head, log.kind);
   }
   if (log.heads.empty()) {
     text += "head     none\n";
@@ -196,7 +216,8 @@ std::string info_json(const LogSummary& log, std::int32_t utc_offset_s) {
       "\n",
       json_string(log.path), name_of(log.kind).substr(1), log.size_bytes,
       log.closed ? fmt::format("{}", *log.closed) : "null", json_span(log, utc_offset_s),
-      json_list(log.heads, json_head), others, json_list(log.problems, json_string));
+      json_list(log.heads, [&](const HeadSummary& head) { return json_head(head, log.kind); }), others,
+      json_list(log.problems, json_string));
 }
 
 }  // namespace sonard::server

@@ -4,33 +4,37 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numbers>
-
-#include "protocol/micron/units.hpp"
 
 namespace sonard::server {
 namespace {
 
 constexpr int most_step = 255;
 
-bool same_bins(const RecordedScanLine& a, const RecordedScanLine& b) {
-  return a.settings.lines == b.settings.lines && a.settings.line_step_m == b.settings.line_step_m &&
+bool same_bins(const LoggedPing& a, const LoggedPing& b) {
+  return a.settings.bins == b.settings.bins && a.settings.bin_m == b.settings.bin_m &&
          a.bits_per_bin == b.bits_per_bin;
+}
+
+/// The short way from one bearing to another, clockwise positive.
+int shortest_turn(int from, int to) {
+  constexpr int turn = picture::units_per_turn;
+  const int way = ((to - from) % turn + turn) % turn;
+  return way > turn / 2 ? way - turn : way;
 }
 
 /// A turn as it grows.
 class GrowingTurn {
  public:
-  GrowingTurn(const RecordedScanLine& line, std::size_t place)
+  GrowingTurn(const LoggedPing& line, std::size_t place)
       : first_(&line), begin_(place), end_(place + 1), left_(picture_bearing(line)), last_(left_) {}
 
   /// False when the line belongs to the next one.
-  bool take(const RecordedScanLine& line) {
+  bool take(const LoggedPing& line) {
     const int bearing = picture_bearing(line);
-    const int way = micron::shortest_turn(last_, bearing);
+    const int way = shortest_turn(last_, bearing);
     const bool back = way != 0 && way_ != 0 && (way > 0) != (way_ > 0);
-    if (!same_bins(*first_, line) || back || std::abs(way_ + way) >= micron::units_per_turn ||
-        end_ - begin_ >= micron::units_per_turn) {
+    if (!same_bins(*first_, line) || back || std::abs(way_ + way) >= picture::units_per_turn ||
+        end_ - begin_ >= picture::units_per_turn) {
       return false;
     }
     way_ += way;
@@ -48,11 +52,11 @@ class GrowingTurn {
     turn.shape.step = usual_step();
     turn.shape.left = left_;
     turn.shape.width = std::max(std::abs(way_), turn.shape.step);
-    turn.shape.bins = first_->settings.lines;
-    turn.shape.bin_m = first_->settings.line_step_m;
+    turn.shape.bins = first_->settings.bins;
+    turn.shape.bin_m = first_->settings.bin_m;
     if (turn.shape.full_circle()) {
       turn.shape.left = 0;
-      turn.shape.width = micron::units_per_turn;
+      turn.shape.width = picture::units_per_turn;
     }
     return turn;
   }
@@ -65,7 +69,7 @@ class GrowingTurn {
     return step == 0 ? picture::TurnShape{}.step : std::min(step, most_step);
   }
 
-  const RecordedScanLine* first_;
+  const LoggedPing* first_;
   std::size_t begin_;
   std::size_t end_;
   int left_;     ///< bearing farthest counter-clockwise
@@ -76,19 +80,17 @@ class GrowingTurn {
 
 }  // namespace
 
-int picture_bearing(const RecordedScanLine& line) {
-  constexpr double units_per_rad = micron::units_per_turn / (2.0 * std::numbers::pi);
-  const double turns = std::remainder(-line.bearing_rad, 2.0 * std::numbers::pi);
-  return micron::wrapped(micron::bearing_ahead + static_cast<int>(std::lround(turns * units_per_rad)));
+int picture_bearing(const LoggedPing& line) {
+  return picture::turn_bearing(-line.bearing_rad);  // logs count to port
 }
 
-std::vector<RecordedTurn> turns_of(const RecordedScan& scan) {
+std::vector<RecordedTurn> turns_of(const LoggedHead& head) {
   std::vector<RecordedTurn> turns;
-  GrowingTurn turn(scan.lines.front(), 0);
-  for (std::size_t i = 1; i < scan.lines.size(); ++i) {
-    if (!turn.take(scan.lines[i])) {
+  GrowingTurn turn(head.pings.front(), 0);
+  for (std::size_t i = 1; i < head.pings.size(); ++i) {
+    if (!turn.take(head.pings[i])) {
       turns.push_back(turn.done());
-      turn = GrowingTurn(scan.lines[i], i);
+      turn = GrowingTurn(head.pings[i], i);
     }
   }
   turns.push_back(turn.done());

@@ -12,15 +12,15 @@ namespace sonard::server {
 /// Once round, or in a sector once from one limit to the other; the first and the last may be less.
 struct RecordedTurn {
   picture::TurnShape shape;  ///< bearings are those of the vehicle, whatever side the head is mounted on
-  std::size_t begin = 0;     ///< lines [begin, end) of RecordedScan::lines
+  std::size_t begin = 0;     ///< lines [begin, end) of LoggedHead::pings
   std::size_t end = 0;
 };
 
 /// 1/16 gradian, 3200 ahead, rising to starboard, as pictures have it.
-int picture_bearing(const RecordedScanLine& line);
+int picture_bearing(const LoggedPing& line);
 
 /// By the bearings alone: a turn ends where the head has come round or turns back, with another length or
 /// number of bins, and after as many lines as there are bearings where it stands still. Every line is in one.
-std::vector<RecordedTurn> turns_of(const RecordedScan& scan);
+std::vector<RecordedTurn> turns_of(const LoggedHead& head);
 
 }  // namespace sonard::server

@@ -16,13 +16,13 @@ namespace {
 constexpr picture::FanLook thumbnail_look{.radius_px = 300, .grid = true};
 
 // Bearings of the recording are positive to port, those of pictures to starboard.
-picture::FanShape shape_of(const RecordedHead& head, const RecordedSettings& settings) {
+picture::FanShape shape_of(const LoggedHead& head, const RecordedSettings& settings) {
   picture::FanShape shape;
   for (const double bearing_rad : head.bearings_rad) {
     shape.bearings_rad.push_back(-bearing_rad);
   }
-  shape.lines = settings.lines;
-  shape.line_step_m = settings.line_step_m;
+  shape.lines = settings.bins;
+  shape.line_step_m = settings.bin_m;
   return shape;
 }
 
@@ -35,8 +35,7 @@ bool drawable(const picture::FanShape& shape, const RecordedSettings& settings) 
 }
 
 // Names come from the log: they are no way out of the folder.
-template <class Head>
-std::string file_name(const Head& head, std::uint64_t number) {
+std::string file_name(const LoggedHead& head, std::uint64_t number) {
   std::string name = head.name.empty() ? fmt::format("{}", head.device_id) : head.name;
   std::ranges::replace_if(
       name, [](char c) { return c == '/' || c == '\0'; }, '_');
@@ -49,12 +48,12 @@ void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
   }
 }
 
-std::uint64_t write_fans(const Recording& recording, const RecordedHead& head, const LogFile& file,
+std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, const LogFile& file,
                          const std::filesystem::path& folder, std::uint64_t every) {
   std::optional<picture::FanImage> fan;
   std::uint64_t written = 0;
-  for (std::uint64_t ping = 0; ping < head.images.size(); ping += every, ++written) {
-    const RecordedImage& image = head.images[ping];
+  for (std::uint64_t ping = 0; ping < head.pings.size(); ping += every, ++written) {
+    const LoggedPing& image = head.pings[ping];
     const picture::FanShape shape = shape_of(head, image.settings);
     if (!drawable(shape, image.settings)) {
       throw file.error(fmt::format("ping {} of sonar {} has beams that make no fan", ping, head.device_id));
@@ -62,16 +61,16 @@ std::uint64_t write_fans(const Recording& recording, const RecordedHead& head, c
     if (!fan || fan->geometry().shape() != shape) {
       fan.emplace(shape, thumbnail_look);
     }
-    std::vector<std::uint8_t> pixels = recording.pixels(image);
-    const cv::Mat polar(image.settings.lines, image.settings.beams, CV_8UC1, pixels.data());
+    std::vector<std::uint8_t> pixels = recording.samples(image);
+    const cv::Mat polar(image.settings.bins, image.settings.beams, CV_8UC1, pixels.data());
     write_picture(folder / file_name(head, ping),
                   fan->draw(polar, fmt::format("{} ping {}", head.device_id, ping)));
   }
   return written;
 }
 
-picture::TurnLine drawn_line(const Recording& recording, const RecordedScanLine& line) {
-  picture::TurnLine drawn{picture_bearing(line), recording.bins(line)};
+picture::TurnLine drawn_line(const Recording& recording, const LoggedPing& line) {
+  picture::TurnLine drawn{picture_bearing(line), recording.samples(line)};
   if (line.bits_per_bin == 4) {
     constexpr int to_full_scale = 17;
     std::ranges::transform(drawn.samples, drawn.samples.begin(), [](std::uint8_t bin) {
@@ -81,7 +80,7 @@ picture::TurnLine drawn_line(const Recording& recording, const RecordedScanLine&
   return drawn;
 }
 
-std::uint64_t write_turns(const Recording& recording, const RecordedScan& scan,
+std::uint64_t write_turns(const Recording& recording, const LoggedHead& scan,
                           const std::filesystem::path& folder, std::uint64_t every) {
   const std::vector<RecordedTurn> turns = turns_of(scan);
   std::uint64_t written = 0;
@@ -89,7 +88,7 @@ std::uint64_t write_turns(const Recording& recording, const RecordedScan& scan,
     const RecordedTurn& turn = turns[number];
     std::vector<picture::TurnLine> lines;
     for (std::size_t place = turn.begin; place < turn.end; ++place) {
-      lines.push_back(drawn_line(recording, scan.lines[place]));
+      lines.push_back(drawn_line(recording, scan.pings[place]));
     }
     const picture::TurnImage image(turn.shape, thumbnail_look);
     write_picture(
@@ -109,11 +108,9 @@ std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
     throw LogError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   }
   std::uint64_t written = 0;
-  for (const RecordedHead& head : recording.heads()) {
-    written += write_fans(recording, head, file, folder, every);
-  }
-  for (const RecordedScan& scan : recording.scans()) {
-    written += write_turns(recording, scan, folder, every);
+  for (const LoggedHead& head : recording.heads()) {
+    written += head.scanning ? write_turns(recording, head, folder, every)
+                             : write_fans(recording, head, file, folder, every);
   }
   return written;
 }

@@ -1,11 +1,10 @@
 #include "server/logs/capture_summary.hpp"
 
-#include <variant>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "protocol/common/byte_reader.hpp"
-#include "protocol/gemini/codec.hpp"
 #include "protocol/pcapng/blocks.hpp"
 
 namespace sonard::server {
@@ -16,7 +15,6 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::uint8_t udp = 17;
 constexpr std::uint8_t tcp = 6;
 constexpr std::size_t udp_header_size = 8;
-constexpr std::uint16_t resent_head_bit = 0x0100;  // of PingHead::ping_id
 
 struct Payload {
   std::uint8_t transport = 0;
@@ -39,34 +37,24 @@ Payload payload_of(Bytes packet) {
   return payload;
 }
 
-RecordedSettings settings_of(const gemini::PingHead& head) {
-  RecordedSettings settings;
-  settings.lines = head.line_count();
-  settings.beams = head.beams;
-  settings.sound_speed_mps = head.sound_speed_mps();
-  settings.line_step_m =
-      head.sound_speed_mps() / (2.0 * gemini::line_rate_hz) * (1 << head.compression_log2());
-  settings.sound_speed_from_config = (head.sound_speed_used & gemini::sound_speed_from_config) != 0;
-  return settings;
-}
-
-void add_packet(LogSummary& log, const pcapng::Packet& packet) {
+void add_packet(LogSummary& log, const pcapng::Packet& packet, const PingFinder& ping_in) {
   const auto time_ns = static_cast<std::int64_t>(packet.time_ns);
   include(log, time_ns);
   const Payload payload = payload_of(packet.bytes);
   count(log, payload.transport == udp   ? "UDP packets"
              : payload.transport == tcp ? "TCP packets"
                                         : "other packets");
-  const auto report = gemini::decode_report(payload.bytes);
-  const auto* const head = report ? std::get_if<gemini::PingHead>(&*report) : nullptr;
-  if (head != nullptr && plausible_time(time_ns) && (head->ping_id & resent_head_bit) == 0) {
-    add_ping(head_of(log, {}, head->header.sonar_id, false), time_ns, settings_of(*head));
+  const std::optional<PingSeen> ping = ping_in(payload.bytes);
+  if (ping && plausible_time(time_ns)) {
+    HeadSummary& head = head_of(log, {}, ping->device_id, ping->settings.beams == 1);
+    head.device = ping->device;
+    add_ping(head, time_ns, ping->settings);
   }
 }
 
 }  // namespace
 
-void summarise_capture(LogSummary& log, const LogFile& file) {
+void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& ping_in) {
   const auto whole = pcapng::recover(file.bytes());
   if (!whole) {
     throw file.error(to_string(whole.error()));
@@ -79,7 +67,7 @@ void summarise_capture(LogSummary& log, const LogFile& file) {
     }
     if ((*block)->type == static_cast<std::uint32_t>(pcapng::BlockType::enhanced_packet)) {
       if (const auto packet = pcapng::read_packet(**block)) {
-        add_packet(log, *packet);
+        add_packet(log, *packet, ping_in);
       }
     }
     offset = (*block)->end();

@@ -5,9 +5,8 @@
 
 namespace sonard::server {
 
-/// Pings of Geminis by their ping heads, at the times at which they were captured; other packets by
-/// transport.
+/// Pings where `ping_in` finds them, at the times at which they were captured; other packets by transport.
 /// @throws LogError when the file is broken from its start
-void summarise_capture(LogSummary& log, const LogFile& file);
+void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& ping_in);
 
 }  // namespace sonard::server

@@ -28,10 +28,10 @@ glf::LogView opened(const LogFile& file, bool& cut) {
 
 RecordedSettings settings_of(const glf::ImageRecord& image) {
   RecordedSettings settings;
-  settings.lines = static_cast<int>(image.lines);
+  settings.bins = static_cast<int>(image.lines);
   settings.beams = static_cast<int>(image.beams);
   settings.sound_speed_mps = image.sound_speed_mps;
-  settings.line_step_m = image.sound_speed_mps / 2.0 / image.modulation_frequency_hz;
+  settings.bin_m = image.sound_speed_mps / 2.0 / image.modulation_frequency_hz;
   settings.sound_speed_from_config = (image.ping_flags & glf::ping_flag_bits::manual_sound_speed) != 0;
   settings.gain_percent = image.gain_percent;
   return settings;
@@ -58,27 +58,23 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
       ++bad_images_;
       continue;
     }
-    RecordedHead& head = this->head({}, image->origin.device_id);
-    if (head.images.empty()) {
+    LoggedHead& head = this->head({}, image->origin.device_id, /*scanning=*/false);
+    if (head.pings.empty()) {
       head.bearings_rad.resize(image->bearings_rad.size());
       // bearing_for_log() undoes itself, and its sign is that of our frame: port is positive.
       std::ranges::copy(image->bearings_rad, head.bearings_rad.begin());
     }
-    head.images.push_back({*time_ns, settings_of(*image), place});
+    head.pings.push_back({.time_ns = *time_ns, .settings = settings_of(*image), .wire = {}, .place = place});
   }
   sort_by_time();
 }
 
-std::vector<std::uint8_t> GlfRecording::pixels(const RecordedImage& image) const {
-  auto record = view_.image(view_.index().records.at(image.place));
+std::vector<std::uint8_t> GlfRecording::samples(const LoggedPing& ping) const {
+  auto record = view_.image(view_.index().records.at(ping.place));
   if (!record) {
     throw file_.error(to_string(record.error()));
   }
   return std::move(record->pixels);
-}
-
-std::vector<std::uint8_t> GlfRecording::bins(const RecordedScanLine&) const {
-  throw file_.error("has no scan lines");
 }
 
 std::vector<std::string> GlfRecording::problems() const {

@@ -1,4 +1,4 @@
-// The images of a Gemini's .glf or .dat.
+// The images of a .glf or .dat.
 #pragma once
 
 #include "protocol/glf/log_view.hpp"
@@ -11,8 +11,7 @@ class GlfRecording final : public Recording {
   /// @throws LogError
   explicit GlfRecording(const LogFile& file);
 
-  std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
-  std::vector<std::uint8_t> bins(const RecordedScanLine& line) const override;
+  std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;
   std::vector<std::string> problems() const override;
   bool closed() const override { return view_.index().closed && !cut_; }
   const glf::LogView& view() const { return view_; }

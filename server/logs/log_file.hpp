@@ -15,7 +15,7 @@ struct LogError : std::runtime_error {
 };
 
 enum class LogKind {
-  glf,     ///< packed, of a Gemini (docs/logs.md 1)
+  glf,     ///< packed (docs/logs.md 1)
   dat,     ///< the same, bare
   mcap,    ///< sonard's own
   pcapng,  ///< packets

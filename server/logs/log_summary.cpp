@@ -11,18 +11,12 @@ namespace sonard::server {
 namespace {
 
 void add_pings(LogSummary& log, const Recording& recording) {
-  for (const RecordedHead& recorded : recording.heads()) {
-    HeadSummary& head = head_of(log, recorded.name, recorded.device_id, false);
-    for (const RecordedImage& image : recorded.images) {
-      add_ping(head, image.time_ns, image.settings);
-      include(log, image.time_ns);
-    }
-  }
-  for (const RecordedScan& recorded : recording.scans()) {
-    HeadSummary& head = head_of(log, recorded.name, recorded.device_id, true);
-    for (const RecordedScanLine& line : recorded.lines) {
-      add_ping(head, line.time_ns, line.settings);
-      include(log, line.time_ns);
+  for (const LoggedHead& logged : recording.heads()) {
+    HeadSummary& head = head_of(log, logged.name, logged.device_id, logged.scanning);
+    head.device = logged.device;
+    for (const LoggedPing& ping : logged.pings) {
+      add_ping(head, ping.time_ns, ping.settings);
+      include(log, ping.time_ns);
     }
   }
   log.problems = recording.problems();
@@ -84,7 +78,7 @@ PingRate ping_rate(const std::vector<std::int64_t>& times_ns) {
   return rate;
 }
 
-LogSummary summarise(const LogFile& file) {
+LogSummary summarise(const LogFile& file, const PingFinder& ping_in) {
   LogSummary log;
   log.path = file.path().string();
   log.kind = file.kind();
@@ -98,7 +92,7 @@ LogSummary summarise(const LogFile& file) {
       summarise_mcap(log, file);
       break;
     case LogKind::pcapng:
-      summarise_capture(log, file);
+      summarise_capture(log, file, ping_in);
       break;
   }
   for (HeadSummary& head : log.heads) {
@@ -123,7 +117,8 @@ HeadSummary& head_of(LogSummary& log, const std::string& name, std::uint16_t id,
   const auto known = std::ranges::find_if(log.heads, [&](const HeadSummary& head) {
     return head.name == name && head.id == id && head.scanning == scanning;
   });
-  return known != log.heads.end() ? *known : log.heads.emplace_back(HeadSummary{name, id, scanning, {}, {}});
+  return known != log.heads.end() ? *known
+                                  : log.heads.emplace_back(HeadSummary{name, {}, id, scanning, {}, {}});
 }
 
 void include(LogSummary& log, std::int64_t time_ns) {

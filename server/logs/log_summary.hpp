@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,10 +34,11 @@ PingRate ping_rate(const std::vector<std::int64_t>& times_ns);
 
 struct HeadSummary {
   std::string name;                     ///< empty where the log has none
-  std::uint16_t id = 0;                 ///< sonar ID, or node
-  bool scanning = false;                ///< a Micron: a ping is a line of one beam; else a Gemini
+  std::string device;                   ///< its type in the configuration; empty where the log does not say
+  std::uint16_t id = 0;                 ///< that it has on the wire
+  bool scanning = false;                ///< a ping is a line of one beam
   std::vector<SettingsCount> settings;  ///< in order of appearance
-  std::vector<std::int64_t> times_ns;   ///< of pings, rising; the clock is that of RecordedImage
+  std::vector<std::int64_t> times_ns;   ///< of pings, rising; the clock is that of LoggedPing
 
   std::uint64_t pings() const { return times_ns.size(); }
 };
@@ -52,8 +55,17 @@ struct LogSummary {
   std::vector<std::string> problems;                                 ///< one phrase each
 };
 
+/// The beginning of a ping in a datagram, as a device that knows its bytes finds it.
+struct PingSeen {
+  std::string device;
+  std::uint16_t device_id = 0;
+  RecordedSettings settings;
+};
+using PingFinder = std::function<std::optional<PingSeen>(std::span<const std::uint8_t> datagram)>;
+
+/// @param ping_in finds the pings of a .pcapng
 /// @throws LogError when the log is broken from its start
-LogSummary summarise(const LogFile& file);
+LogSummary summarise(const LogFile& file, const PingFinder& ping_in);
 
 /// Adds a ping; times come in any order, and summarise() sorts them.
 void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings);

@@ -8,10 +8,11 @@
 #include <fmt/format.h>
 
 #include "protocol/log/log_messages.hpp"
-#include "protocol/micron/codec.hpp"
 
 namespace sonard::server {
 namespace {
+
+constexpr std::size_t most_line_bins = 65'535;  // more than any scanning head sends
 
 mcap::Reader opened(const LogFile& file) {
   auto reader = mcap::Reader::open(file.bytes());
@@ -30,9 +31,9 @@ bool makes_sense(const log::SonarImage& image) {
 
 RecordedSettings settings_of(const log::SonarImage& image) {
   RecordedSettings settings;
-  settings.lines = static_cast<int>(image.range_lines());
+  settings.bins = static_cast<int>(image.range_lines());
   settings.beams = static_cast<int>(image.beams());
-  settings.line_step_m = image.metres_per_line();
+  settings.bin_m = image.metres_per_line();
   settings.sound_speed_mps = image.sound_speed_mps();
   settings.gain_percent = image.gain_percent();
   settings.frequency_hz = image.frequency_hz();
@@ -41,7 +42,7 @@ RecordedSettings settings_of(const log::SonarImage& image) {
 
 bool makes_sense(const log::ScanLine& line) {
   return plausible_time(line.transmit_time_ns()) && !line.bins().empty() &&
-         line.bins().size() <= micron::max_bins &&
+         line.bins().size() <= most_line_bins &&
          line.device_id() <= std::numeric_limits<std::uint16_t>::max() && std::isfinite(line.bearing_rad()) &&
          std::isfinite(line.metres_per_bin()) && line.metres_per_bin() > 0.0 &&
          std::isfinite(line.sound_speed_mps()) && line.sound_speed_mps() > 0.0;
@@ -49,25 +50,17 @@ bool makes_sense(const log::ScanLine& line) {
 
 RecordedSettings settings_of(const log::ScanLine& line) {
   RecordedSettings settings;
-  settings.lines = static_cast<int>(line.bins().size());
+  settings.bins = static_cast<int>(line.bins().size());
   settings.beams = 1;
-  settings.line_step_m = line.metres_per_bin();
+  settings.bin_m = line.metres_per_bin();
   settings.sound_speed_mps = line.sound_speed_mps();
   settings.gain_percent = line.gain_percent();
   settings.frequency_hz = line.frequency_hz();
   return settings;
 }
 
-std::optional<micron::HeadData> wire_line_of(const log::ScanLine& line) {
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(line.wire_line().data());
-  const auto report = micron::decode_report({bytes, line.wire_line().size()});
-  const auto* const said = report ? std::get_if<micron::HeadData>(&*report) : nullptr;
-  if (said == nullptr) {
-    return std::nullopt;
-  }
-  micron::HeadData kept = *said;
-  kept.data = {};
-  return kept;
+std::vector<std::uint8_t> bytes_of(const std::string& text) {
+  return {text.begin(), text.end()};
 }
 
 }  // namespace
@@ -97,12 +90,16 @@ void McapRecording::add_image(std::span<const std::uint8_t> message) {
     ++bad_images_;
     return;
   }
-  RecordedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()));
-  if (head.images.empty()) {
+  LoggedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()), false);
+  if (head.pings.empty()) {
+    head.device = image->device();
     head.bearings_rad.assign(image->bearings_rad().begin(), image->bearings_rad().end());
   }
-  head.images.push_back({image->transmit_time_ns(), settings_of(*image), messages_.size()});
-  messages_.push_back(message);
+  head.pings.push_back({.time_ns = image->transmit_time_ns(),
+                        .settings = settings_of(*image),
+                        .wire = {},
+                        .place = messages_.size()});
+  messages_.push_back({message, false});
 }
 
 void McapRecording::add_line(std::span<const std::uint8_t> message) {
@@ -111,26 +108,29 @@ void McapRecording::add_line(std::span<const std::uint8_t> message) {
     ++bad_lines_;
     return;
   }
-  scan(line->head(), static_cast<std::uint16_t>(line->device_id()))
-      .lines.push_back({line->transmit_time_ns(), settings_of(*line), line->bearing_rad(),
-                        line->bits_per_bin() == 4 ? 4 : 8, wire_line_of(*line), messages_.size()});
-  messages_.push_back(message);
+  LoggedHead& head = this->head(line->head(), static_cast<std::uint16_t>(line->device_id()), true);
+  if (head.pings.empty()) {
+    head.device = line->device();
+  }
+  head.pings.push_back({.time_ns = line->transmit_time_ns(),
+                        .settings = settings_of(*line),
+                        .bearing_rad = line->bearing_rad(),
+                        .bits_per_bin = line->bits_per_bin() == 4 ? 4 : 8,
+                        .wire = bytes_of(line->wire_line()),
+                        .place = messages_.size()});
+  messages_.push_back({message, true});
 }
 
-std::vector<std::uint8_t> McapRecording::pixels(const RecordedImage& image) const {
-  const auto message = log::decode<log::SonarImage>(messages_.at(image.place));
-  if (!message) {
-    throw file_.error("an image cannot be read");  // it could when the log was opened
+std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
+  const Message& message = messages_.at(ping.place);
+  if (message.is_line) {
+    if (const auto line = log::decode<log::ScanLine>(message.bytes)) {
+      return bytes_of(line->bins());
+    }
+  } else if (const auto image = log::decode<log::SonarImage>(message.bytes)) {
+    return bytes_of(image->pixels());
   }
-  return {message->pixels().begin(), message->pixels().end()};
-}
-
-std::vector<std::uint8_t> McapRecording::bins(const RecordedScanLine& line) const {
-  const auto message = log::decode<log::ScanLine>(messages_.at(line.place));
-  if (!message) {
-    throw file_.error("a scan line cannot be read");  // it could when the log was opened
-  }
-  return {message->bins().begin(), message->bins().end()};
+  throw file_.error("a ping cannot be read");  // it could when the log was opened
 }
 
 std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) const {

@@ -15,8 +15,7 @@ class McapRecording final : public Recording {
   /// @throws LogError
   explicit McapRecording(const LogFile& file);
 
-  std::vector<std::uint8_t> pixels(const RecordedImage& image) const override;
-  std::vector<std::uint8_t> bins(const RecordedScanLine& line) const override;
+  std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;
   std::vector<std::string> problems() const override;
   bool closed() const override { return reader_.finished(); }
   const mcap::Reader& reader() const { return reader_; }
@@ -31,7 +30,12 @@ class McapRecording final : public Recording {
 
   const LogFile& file_;
   mcap::Reader reader_;
-  std::vector<std::span<const std::uint8_t>> messages_;  ///< of images and lines; views of the file
+  /// Of a ping, a view of the file.
+  struct Message {
+    std::span<const std::uint8_t> bytes;
+    bool is_line = false;
+  };
+  std::vector<Message> messages_;
   std::uint64_t bad_images_ = 0;
   std::uint64_t bad_lines_ = 0;
   std::optional<WireError> unreadable_;  ///< why the images end before the file does

@@ -9,37 +9,23 @@
 
 namespace sonard::server {
 
-namespace {
-
-template <class Head>
-Head& known_or_new(std::vector<Head>& heads, const std::string& name, std::uint16_t device_id) {
-  const auto known = std::ranges::find_if(
-      heads, [&](const Head& head) { return head.name == name && head.device_id == device_id; });
-  if (known != heads.end()) {
+LoggedHead& Recording::head(const std::string& name, std::uint16_t device_id, bool scanning) {
+  const auto known = std::ranges::find_if(heads_, [&](const LoggedHead& head) {
+    return head.name == name && head.device_id == device_id && head.scanning == scanning;
+  });
+  if (known != heads_.end()) {
     return *known;
   }
-  Head& head = heads.emplace_back();
+  LoggedHead& head = heads_.emplace_back();
   head.name = name;
   head.device_id = device_id;
+  head.scanning = scanning;
   return head;
 }
 
-}  // namespace
-
-RecordedHead& Recording::head(const std::string& name, std::uint16_t device_id) {
-  return known_or_new(heads_, name, device_id);
-}
-
-RecordedScan& Recording::scan(const std::string& name, std::uint16_t device_id) {
-  return known_or_new(scans_, name, device_id);
-}
-
 void Recording::sort_by_time() {
-  for (RecordedHead& head : heads_) {
-    std::ranges::stable_sort(head.images, {}, &RecordedImage::time_ns);
-  }
-  for (RecordedScan& scan : scans_) {
-    std::ranges::stable_sort(scan.lines, {}, &RecordedScanLine::time_ns);
+  for (LoggedHead& head : heads_) {
+    std::ranges::stable_sort(head.pings, {}, &LoggedPing::time_ns);
   }
 }
 

@@ -14,6 +14,12 @@
 
 namespace sonard::server {
 
+/// A head as it is numbered in its configuration.
+struct HeadPlace {
+  int stream = 0;      ///< among all heads
+  int glf_number = 0;  ///< among those whose users know .glf logs
+};
+
 /// One ping of a fan, or one sweep of a scanning head, as the files that hold it.
 struct Frame {
   std::string npy;                ///< samples

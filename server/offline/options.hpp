@@ -5,9 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "protocol/gemini/ping_settings.hpp"
-#include "protocol/micron/scan_settings.hpp"
 #include "protocol/pose/pose_codec.hpp"
+#include "server/devices/survey.hpp"
 
 namespace sonard::server {
 
@@ -31,10 +30,9 @@ struct OfflineOptions {
   std::optional<double> rate_hz;  ///< pings a second, > 0; nullopt: as fast as the head can
   Shard shard;
   bool overwrite = false;
-  bool truth = false;           ///< also which body is heard in each bin
-  int radius_px = 900;          ///< of pictures
-  gemini::PingSettings gemini;  ///< of a Gemini
-  micron::ScanSettings micron;  ///< of a Micron
+  bool truth = false;    ///< also which body is heard in each bin
+  int radius_px = 900;   ///< of pictures
+  SurveyOptions survey;  ///< what the sonar is asked for
 };
 
 }  // namespace sonard::server

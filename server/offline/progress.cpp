@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 
 namespace sonard::server {
 namespace {

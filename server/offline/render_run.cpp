@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,18 +20,18 @@
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sonar_renderer.hpp"
-#include "server/clock.hpp"
-#include "server/daemon.hpp"
-#include "server/devices/heads.hpp"
-#include "server/exit_codes.hpp"
+#include "server/clock/clock.hpp"
+#include "server/daemon/daemon.hpp"
+#include "server/daemon/exit_codes.hpp"
+#include "server/devices/device_kind.hpp"
+#include "server/offline/fan_frames.hpp"
 #include "server/offline/frame_source.hpp"
-#include "server/offline/gemini_frames.hpp"
 #include "server/offline/glf_file.hpp"
 #include "server/offline/json_text.hpp"
 #include "server/offline/output_folder.hpp"
 #include "server/offline/progress.hpp"
-#include "server/offline/scan_frames.hpp"
 #include "server/offline/sidecar.hpp"
+#include "server/offline/sweep_frames.hpp"
 #include "server/offline/voyage.hpp"
 
 namespace sonard::server {
@@ -42,10 +41,10 @@ constexpr int png_compression = 3;  // as sonarview's pictures: nearly as small 
 constexpr const char* app_name = "sonard " SONARD_VERSION;
 
 std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
-  const std::vector<AnyHeadConfig>& heads = loaded.config.heads;
+  const std::vector<HeadConfig>& heads = loaded.config.heads;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < heads.size(); ++i) {
-    names.push_back(common(heads[i]).name);
+    names.push_back(heads[i].name);
     if (name.empty() || names.back() == name) {
       return i;
     }
@@ -54,22 +53,25 @@ std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
                    fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")));
 }
 
-HeadPlace place_of(const std::vector<AnyHeadConfig>& heads, std::size_t head) {
+HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
   HeadPlace place{static_cast<int>(head), 0};
   for (std::size_t i = 0; i < head; ++i) {
-    place.gemini_number += std::holds_alternative<GeminiHeadConfig>(heads[i]) ? 1 : 0;
+    place.glf_number += kind_of(heads[i]).writes_glf() ? 1 : 0;
   }
   return place;
 }
 
-std::unique_ptr<FrameSource> make_source(const std::vector<AnyHeadConfig>& heads, std::size_t head,
+std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, std::size_t head,
                                          const Voyage& voyage, const OfflineOptions& options,
                                          BodyTruth* truth) {
-  if (const auto* gemini = std::get_if<GeminiHeadConfig>(&heads[head])) {
-    return std::make_unique<GeminiFrames>(*gemini, place_of(heads, head), voyage, options, truth);
+  const DeviceKind& kind = kind_of(heads[head]);
+  std::unique_ptr<Survey> survey = kind.survey(heads[head], options.survey);
+  if (kind.scanning()) {
+    return std::make_unique<SweepFrames>(heads[head], static_cast<int>(head), std::move(survey), voyage,
+                                         options, truth);
   }
-  return std::make_unique<ScanFrames>(std::get<MicronHeadConfig>(heads[head]), static_cast<int>(head), voyage,
-                                      options, truth);
+  return std::make_unique<FanFrames>(heads[head], place_of(heads, head), std::move(survey), voyage, options,
+                                     truth);
 }
 
 std::uint32_t crc_of(const std::filesystem::path& path) {
@@ -116,7 +118,7 @@ render::RendererOptions tested(const render::RendererOptions& options) {
 }
 
 /// @throws StartError, pose::TrajectoryError where there are none
-std::unique_ptr<FrameSource> make_frames(const std::vector<AnyHeadConfig>& heads, std::size_t head,
+std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, std::size_t head,
                                          const Voyage& voyage, const OfflineOptions& options,
                                          BodyTruth* truth) {
   try {
@@ -127,7 +129,7 @@ std::unique_ptr<FrameSource> make_frames(const std::vector<AnyHeadConfig>& heads
   std::unique_ptr<FrameSource> frames = make_source(heads, head, voyage, options, truth);
   if (frames->count() == 0) {
     throw pose::TrajectoryError(fmt::format("{}: ends before the first sweep of head '{}' does",
-                                            options.trajectory.string(), common(heads[head]).name));
+                                            options.trajectory.string(), heads[head].name));
   }
   return frames;
 }
@@ -137,7 +139,7 @@ std::unique_ptr<FrameSource> make_frames(const std::vector<AnyHeadConfig>& heads
 render::World world_heard_by(DaemonConfig& config, std::size_t head) {
   render::World world = load_world_of(config);
   for (render::Body& body : world.bodies) {
-    if (common(config.heads[head]).hides_vehicle && body.name == config.vehicle_model) {
+    if (config.heads[head].hides_vehicle && body.name == config.vehicle_model) {
       body.parts.clear();
     }
   }
@@ -150,7 +152,7 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       head_(chosen_head(loaded, options.head)),
       world_(world_heard_by(config_, head_)),
       voyage_(pose::load_trajectory(options.trajectory, options.axes),
-              common(config_.heads[head_]).hides_vehicle ? std::string() : config_.vehicle_model),
+              config_.heads[head_].hides_vehicle ? std::string() : config_.vehicle_model),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, voyage_, options, truth_.get())),
@@ -167,7 +169,7 @@ std::string RenderRun::manifest() const {
   text.add("trajectory_crc32", fmt::format("\"{:08x}\"", crc_of(options_.trajectory)));
   text.add("axes", options_.axes == pose::Axes::ned_frd ? "\"ned_frd\"" : "\"enu_flu\"");
   text.add("backend", json_string(render::name_of(renderer_.backend())));
-  text.add("head", json_string(common(config_.heads[head_]).name));
+  text.add("head", json_string(config_.heads[head_].name));
   text.add("settings", "{" + frames_->settings_json() + "}");
   text.add("frames", std::to_string(frames_->count()));
   text.add("radius_px", std::to_string(options_.radius_px));

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "protocol/mavlink/frames.hpp"
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "server/pose/mavlink_poses.hpp"
 #include "server/pose/udp_listener.hpp"
 

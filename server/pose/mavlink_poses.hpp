@@ -10,7 +10,7 @@
 
 #include "protocol/mavlink/messages.hpp"
 #include "protocol/pose/pose_codec.hpp"
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 
 namespace sonard::server {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 #include "server/pose/pose_history.hpp"
 
 namespace sonard::server {

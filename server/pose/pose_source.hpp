@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "protocol/pose/pose_codec.hpp"
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 
 namespace boost::asio {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "protocol/pose/pose_codec.hpp"
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 
 namespace sonard::server {
 

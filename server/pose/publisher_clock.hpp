@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 
 namespace sonard::server {
 

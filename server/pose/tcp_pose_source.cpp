@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {

@@ -6,7 +6,7 @@
 #include <bit>
 #include <utility>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "server/pose/pose_source.hpp"
 
 namespace sonard::server {

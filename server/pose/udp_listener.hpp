@@ -12,7 +12,7 @@
 #include <boost/asio/ip/udp.hpp>
 
 #include "protocol/pose/pose_codec.hpp"
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 
 namespace sonard::server {

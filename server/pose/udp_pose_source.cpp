@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "server/pose/udp_listener.hpp"
 
 namespace sonard::server {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/common.h>
 
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 
 namespace sonard::server {
 

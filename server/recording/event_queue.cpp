@@ -49,8 +49,7 @@ void EventQueue::done(const RecordingEvent& event) {
 void EventQueue::count_dropped(const RecordingEvent& event) {
   if (const auto* wire = std::get_if<WirePassed>(&event.what)) {
     dropped_pieces_ += wire->pieces.size();
-  } else if (std::holds_alternative<GeminiPingServed>(event.what) ||
-             std::holds_alternative<MicronLineSent>(event.what)) {
+  } else if (std::holds_alternative<PingSent>(event.what)) {
     ++dropped_images_;
   } else {
     ++dropped_others_;

@@ -3,15 +3,12 @@
 namespace sonard::server {
 namespace {
 
-std::size_t payload(const GeminiPingServed& event) {
-  const gemini::EncodedPing& ping = event.served.ping;
-  return ping.shared_size() + static_cast<std::size_t>(ping.datagram_count()) * sizeof(std::uint32_t);
+std::size_t payload(const PingSent& event) {
+  const PingRecord& ping = event.ping;
+  return ping.samples.size() + ping.wire.size() + ping.bearings_rad.size() * sizeof(double);
 }
-std::size_t payload(const GeminiStatusSent& event) {
-  return event.datagram.size();
-}
-std::size_t payload(const MicronLineSent& event) {
-  return event.line.bins.size();
+std::size_t payload(const StatusSent& event) {
+  return event.message.size();
 }
 std::size_t payload(const PingPosed& event) {
   return sizeof(PosesUsed) + event.poses->bodies.size() * sizeof(PosedBody);
@@ -23,7 +20,7 @@ std::size_t payload(const WirePassed& event) {
   }
   return bytes;
 }
-std::size_t payload(const ClientLeft&) {
+std::size_t payload(const StreamEnded&) {
   return 0;
 }
 

@@ -2,18 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <string>
 #include <variant>
 #include <vector>
 
-#include "protocol/gemini/encoded_ping.hpp"
-#include "protocol/gemini/shared_bytes.hpp"
-#include "protocol/micron/micron_job.hpp"
+#include "protocol/common/ping_record.hpp"
+#include "protocol/common/shared_bytes.hpp"
 #include "renderer/pose.hpp"
-#include "server/clock.hpp"
-#include "server/config/config.hpp"
+#include "server/clock/clock.hpp"
+#include "server/net/wire.hpp"
 #include "server/pose/posed_body.hpp"
 
 namespace sonard::server {
@@ -26,24 +23,15 @@ struct PosesUsed {
   std::vector<PosedBody> bodies;  ///< those that were heard of
 };
 
-/// A ping of a Gemini goes onto the wire.
-struct GeminiPingServed {
-  gemini::ServedPing served;
-  TimePoint transmit_time{};
-  double gain_percent = 50.0;
+/// A ping goes onto the wire.
+struct PingSent {
+  PingRecord ping;
   std::shared_ptr<const PosesUsed> poses;
 };
 
-/// A status packet of a Gemini, as it goes to everybody.
-struct GeminiStatusSent {
-  gemini::SharedBytes datagram;
-};
-
-/// A line of a Micron has left.
-struct MicronLineSent {
-  micron::SentLine line;
-  micron::MicronJob job;
-  std::shared_ptr<const PosesUsed> poses;
+/// A message goes to everybody: the status of a head whose logs keep that (HeadToRecord::glf_status).
+struct StatusSent {
+  SharedBytes message;
 };
 
 /// A ping is about to be rendered.
@@ -51,39 +39,15 @@ struct PingPosed {
   std::shared_ptr<const PosesUsed> poses;
 };
 
-enum class WireTransport : std::uint8_t { udp, tcp, pty };
-
-/// The two ends of a wire. Those of a pseudo terminal have no addresses.
-struct WireEnds {
-  WireTransport transport = WireTransport::udp;
-  Endpoint client;
-  Endpoint head;
-  std::string pty;  ///< path of the slave
-};
-
-struct WirePiece {
-  Endpoint client;
-  Endpoint head;
-  gemini::SharedBytes bytes;
-};
-
-/// Datagrams, or pieces of a stream, as they passed the socket in one go.
-struct WirePassed {
-  bool to_client = false;
-  WireTransport transport = WireTransport::udp;
-  std::string pty;  ///< path of the slave
-  std::vector<WirePiece> pieces;
-};
-
 /// A stream has come to its end.
-struct ClientLeft {
+struct StreamEnded {
   WireEnds ends;
 };
 
 struct RecordingEvent {
   int head = 0;      ///< its place in the configuration
   TimePoint time{};  ///< when it happened
-  std::variant<GeminiPingServed, GeminiStatusSent, MicronLineSent, PingPosed, WirePassed, ClientLeft> what;
+  std::variant<PingSent, StatusSent, PingPosed, WirePassed, StreamEnded> what;
 };
 
 /// Bytes of memory that an event holds, near enough for a bound. What events share counts for each.

@@ -2,11 +2,8 @@
 
 #include <variant>
 
-#include "protocol/gemini/codec.hpp"
 #include "protocol/glf/codec.hpp"
-#include "server/recording/gemini_glf.hpp"
 #include "server/recording/log_names.hpp"
-#include "server/recording/served_pixels.hpp"
 
 namespace sonard::server {
 
@@ -14,17 +11,19 @@ void GlfLog::write(const RecordingEvent& event) {
   if (event.head != head_ || file().failed()) {
     return;
   }
-  if (const auto* ping = std::get_if<GeminiPingServed>(&event.what)) {
+  if (const auto* ping = std::get_if<PingSent>(&event.what)) {
     write(*ping);
-  } else if (const auto* status = std::get_if<GeminiStatusSent>(&event.what)) {
+  } else if (const auto* status = std::get_if<StatusSent>(&event.what)) {
     write(*status, event.time);
   }
 }
 
-void GlfLog::write(const GeminiPingServed& ping) {
-  const glf::ImageRecord image = to_glf_image({ping.served.ping.head(), served_pixels(ping.served.ping),
-                                               setting().unix_ns(ping.transmit_time), ping.gain_percent},
-                                              {setting().utc_offset_s, head().gemini_number});
+GlfLogOrigin GlfLog::origin() const {
+  return {setting().utc_offset_s, head().glf_number.value_or(0), head().device_id};
+}
+
+void GlfLog::write(const PingSent& sent) {
+  const glf::ImageRecord image = glf_image(sent.ping, setting().unix_ns(sent.ping.transmit_time), origin());
   if (!file().begun()) {
     const std::filesystem::path& directory = setting().config.directory;
     file().begin(dat_path(directory, free_stem(directory, image.origin.time_s, head().name)));
@@ -32,11 +31,13 @@ void GlfLog::write(const GeminiPingServed& ping) {
   file().append(glf::encode(image));
 }
 
-void GlfLog::write(const GeminiStatusSent& status, TimePoint time) {
-  const auto report = gemini::decode_report({status.datagram.data(), status.datagram.size()});
-  if (file().begun() && report && std::holds_alternative<gemini::Status>(*report)) {
-    file().append(glf::encode(to_glf_status(std::get<gemini::Status>(*report), setting().unix_ns(time),
-                                            {setting().utc_offset_s, head().gemini_number})));
+void GlfLog::write(const StatusSent& status, TimePoint time) {
+  if (!file().begun()) {
+    return;
+  }
+  if (auto record = head().glf_status({status.message.data(), status.message.size()})) {
+    record->origin = glf_origin(setting().unix_ns(time), origin());
+    file().append(glf::encode(*record));
   }
 }
 

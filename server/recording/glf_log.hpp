@@ -1,6 +1,7 @@
-// The .dat of one Gemini while it grows (docs/logs.md 1 and "Recording").
+// The .dat of one head while it grows (docs/logs.md 1 and "Recording").
 #pragma once
 
+#include "server/recording/glf_records.hpp"
 #include "server/recording/log.hpp"
 
 namespace sonard::server {
@@ -9,7 +10,7 @@ namespace sonard::server {
 /// What makes a .glf of it is GlfPacking.
 class GlfLog final : public Log {
  public:
-  /// @param head the place of a Gemini in LogSetting::heads
+  /// @param head the place of a head with a glf_number in LogSetting::heads
   GlfLog(const LogSetting& setting, int head) : Log(setting), head_(head) {}
 
   void write(const RecordingEvent& event) override;
@@ -17,8 +18,9 @@ class GlfLog final : public Log {
   void close() override { file().end(); }
 
  private:
-  void write(const GeminiPingServed& ping);
-  void write(const GeminiStatusSent& status, TimePoint time);
+  void write(const PingSent& sent);
+  void write(const StatusSent& status, TimePoint time);
+  GlfLogOrigin origin() const;
   const HeadToRecord& head() const { return setting().heads[static_cast<std::size_t>(head_)]; }
 
   int head_;

@@ -1,20 +1,14 @@
 // A head's end of the recorder. Without a recorder nothing is done.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <span>
+#include <utility>
 
-#include "server/clock.hpp"
-#include "server/devices/datagram.hpp"
+#include "server/clock/clock.hpp"
 #include "server/recording/events.hpp"
+#include "server/recording/recorder.hpp"
 
 namespace sonard::server {
-
-class Recorder;
-
-/// @param local what our end is where a datagram does not say it
-WirePassed passed(std::span<const Datagram> datagrams, bool to_client, const Endpoint& local);
 
 /// Belongs to the I/O thread, as its head does. Nothing here waits.
 class HeadRecording {
@@ -26,18 +20,19 @@ class HeadRecording {
 
   bool on() const { return recorder_ != nullptr; }
 
-  /// @param local as passed() has it
-  void datagrams(std::span<const Datagram> datagrams, bool to_client, const Endpoint& local) const;
-  void piece(const WireEnds& ends, bool to_client, std::span<const std::uint8_t> bytes) const;
-  void client_left(const WireEnds& ends) const;
-  void gemini_status(const gemini::SharedBytes& datagram) const;
-  void gemini_ping(GeminiPingServed ping) const;
-  void micron_line(MicronLineSent line) const;
-  void posed(const std::shared_ptr<const PosesUsed>& poses) const;
+  void wire(WirePassed passed) const { push(std::move(passed)); }
+  void stream_ended(const WireEnds& ends) const { push(StreamEnded{ends}); }
+  void status(const SharedBytes& message) const { push(StatusSent{message}); }
+  void ping(PingSent ping) const { push(std::move(ping)); }
+  void posed(const std::shared_ptr<const PosesUsed>& poses) const { push(PingPosed{poses}); }
 
  private:
   template <class What>
-  void push(What what) const;
+  void push(What what) const {
+    if (on()) {
+      recorder_->push({head_, clock_->now(), std::move(what)});
+    }
+  }
 
   Recorder* recorder_;
   int head_;

@@ -3,9 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "protocol/glf/records.hpp"
+#include "server/config/config.hpp"
 #include "server/recording/events.hpp"
 #include "server/recording/growing_log.hpp"
 
@@ -14,9 +19,13 @@ namespace sonard::server {
 /// A head as its logs name it.
 struct HeadToRecord {
   std::string name;
-  std::uint16_t device_id = 0;  ///< sonar ID of a Gemini, node of a Micron
-  bool is_gemini = true;
-  std::uint8_t gemini_number = 0;  ///< 0..9, counted over the Geminis of the configuration
+  std::string device;           ///< its type in the configuration
+  std::uint16_t device_id = 0;  ///< that it has on the wire
+  /// Where the users of such heads know .glf logs: its place among those, 0..9.
+  std::optional<std::uint8_t> glf_number;
+  /// What a status of the head says in fields that a .glf has; nullopt for other messages to everybody.
+  /// Empty: it has no such status.
+  std::function<std::optional<glf::StatusRecord>(std::span<const std::uint8_t>)> glf_status;
 };
 
 /// The same for all logs that begin together. Both clocks are read when they begin and hold for all of them,

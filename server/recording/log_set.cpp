@@ -39,7 +39,7 @@ LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& h
     logs_.push_back(std::make_unique<PcapngLog>(setting_));
   }
   for (std::size_t head = 0; config.glf && head < heads.size(); ++head) {
-    if (heads[head].is_gemini) {
+    if (heads[head].glf_number) {
       logs_.push_back(std::make_unique<GlfLog>(setting_, static_cast<int>(head)));
     }
   }

@@ -4,20 +4,12 @@
 #include <utility>
 #include <variant>
 
-#include "protocol/gemini/bearings.hpp"
 #include "protocol/log/log_messages.hpp"
-#include "protocol/micron/codec.hpp"
 #include "protocol/pose/pose_message.hpp"
-#include "server/config/addresses.hpp"
 #include "server/recording/log_names.hpp"
-#include "server/recording/served_pixels.hpp"
 
 namespace sonard::server {
 namespace {
-
-constexpr double gemini_frequency_hz = 723'380.0;  // docs/protocols/gemini.md 9
-constexpr double micron_frequency_hz = 700'000.0;  // docs/configuration.md, water
-constexpr double micron_full_gain_db = 80.0;       // docs/protocols/micron.md 3
 
 void set(pose::Pose& message, const render::Pose& value) {
   const glm::dvec3& p = value.position_m;
@@ -29,44 +21,45 @@ std::string text(std::span<const std::uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-log::SonarImage to_message(const GeminiPingServed& ping, const std::string& head, std::int64_t transmit_ns) {
-  const gemini::PingHead& said = ping.served.ping.head();
+log::SonarImage image_message(const PingSent& sent, const HeadToRecord& head, std::int64_t transmit_ns) {
+  const PingRecord& ping = sent.ping;
   log::SonarImage image;
-  image.set_head(head);
-  image.set_device_id(said.header.sonar_id);
-  image.set_ping_number(ping.served.ping_number);
+  image.set_head(head.name);
+  image.set_device(head.device);
+  image.set_device_id(head.device_id);
+  image.set_ping_number(ping.number);
   image.set_transmit_time_ns(transmit_ns);
-  image.set_range_lines(static_cast<std::uint32_t>(said.line_count()));
-  image.set_beams(said.beams);
-  image.set_pixels(text(served_pixels(ping.served.ping)));
-  for (const double bearing_rad : gemini::bearings_rad(said.beams)) {
-    image.add_bearings_rad(-bearing_rad);  // the wire counts to starboard
+  image.set_range_lines(static_cast<std::uint32_t>(ping.settings.bins));
+  image.set_beams(static_cast<std::uint32_t>(ping.settings.beams));
+  image.set_pixels(text(ping.samples));
+  for (const double bearing_rad : ping.bearings_rad) {
+    image.add_bearings_rad(-bearing_rad);  // devices count to starboard
   }
-  image.set_metres_per_line(said.sound_speed_mps() / (2.0 * gemini::line_rate_hz) *
-                            (1 << said.compression_log2()));
-  image.set_sound_speed_mps(said.sound_speed_mps());
-  image.set_gain_percent(ping.gain_percent);
-  image.set_frequency_hz(gemini_frequency_hz);
-  set(*image.mutable_t_world_vehicle(), ping.poses->T_world_vehicle);
-  set(*image.mutable_t_world_sonar(), ping.poses->T_world_sonar);
+  image.set_metres_per_line(ping.settings.bin_m);
+  image.set_sound_speed_mps(ping.settings.sound_speed_mps);
+  image.set_gain_percent(ping.settings.gain_percent);
+  image.set_frequency_hz(ping.settings.frequency_hz);
+  set(*image.mutable_t_world_vehicle(), sent.poses->T_world_vehicle);
+  set(*image.mutable_t_world_sonar(), sent.poses->T_world_sonar);
   return image;
 }
 
-log::ScanLine to_message(const MicronLineSent& sent, const HeadToRecord& head, std::int64_t transmit_ns) {
+log::ScanLine line_message(const PingSent& sent, const HeadToRecord& head, std::int64_t transmit_ns) {
+  const PingRecord& ping = sent.ping;
   log::ScanLine line;
   line.set_head(head.name);
+  line.set_device(head.device);
   line.set_device_id(head.device_id);
-  line.set_line_number(sent.line.ping_number);
+  line.set_line_number(ping.number);
   line.set_transmit_time_ns(transmit_ns);
-  line.set_bearing_rad(-sent.job.bearing_rad);  // the device counts to starboard
-  line.set_bins(text(sent.line.bins));
-  line.set_bits_per_bin(sent.line.line.eight_bit() ? 8 : 4);
-  line.set_wire_line(
-      text(micron::encode(micron::Report{sent.line.line}, static_cast<std::uint8_t>(head.device_id))));
-  line.set_metres_per_bin(sent.job.bin_length_m);
-  line.set_sound_speed_mps(sent.job.sound_speed_mps);
-  line.set_gain_percent(100.0 * sent.job.gain_db / micron_full_gain_db);
-  line.set_frequency_hz(micron_frequency_hz);
+  line.set_bearing_rad(-ping.bearings_rad.front());  // devices count to starboard
+  line.set_bins(text(ping.samples));
+  line.set_bits_per_bin(static_cast<std::uint32_t>(ping.bits_per_bin));
+  line.set_wire_line(text(ping.wire));
+  line.set_metres_per_bin(ping.settings.bin_m);
+  line.set_sound_speed_mps(ping.settings.sound_speed_mps);
+  line.set_gain_percent(ping.settings.gain_percent);
+  line.set_frequency_hz(ping.settings.frequency_hz);
   set(*line.mutable_t_world_vehicle(), sent.poses->T_world_vehicle);
   set(*line.mutable_t_world_sonar(), sent.poses->T_world_sonar);
   return line;
@@ -94,16 +87,14 @@ void McapLog::write(const RecordingEvent& event) {
   }
 }
 
-void McapLog::add(int head, TimePoint time, const GeminiPingServed& ping) {
-  const std::int64_t transmit_ns = setting().unix_ns(ping.transmit_time);
-  add_message("/" + name(head) + "/image", time, transmit_ns, to_message(ping, name(head), transmit_ns));
-  image_waits_ = true;
-}
-
-void McapLog::add(int head, TimePoint time, const MicronLineSent& line) {
-  const std::int64_t transmit_ns = setting().unix_ns(line.job.transmit_time);
-  add_message("/" + name(head) + "/line", time, transmit_ns,
-              to_message(line, setting().heads[static_cast<std::size_t>(head)], transmit_ns));
+void McapLog::add(int head, TimePoint time, const PingSent& sent) {
+  const std::int64_t transmit_ns = setting().unix_ns(sent.ping.transmit_time);
+  const std::string topic = "/" + head_of(head).name;
+  if (sent.ping.settings.beams > 1) {
+    add_message(topic + "/image", time, transmit_ns, image_message(sent, head_of(head), transmit_ns));
+  } else {
+    add_message(topic + "/line", time, transmit_ns, line_message(sent, head_of(head), transmit_ns));
+  }
   image_waits_ = true;
 }
 
@@ -121,10 +112,10 @@ void McapLog::add(int, TimePoint time, const PingPosed& pose) {
 }
 
 void McapLog::add(int head, TimePoint time, const WirePassed& wire) {
-  const std::string topic = "/" + name(head) + "/wire";
+  const std::string topic = "/" + head_of(head).name + "/wire";
   for (const WirePiece& piece : wire.pieces) {
     log::WireBytes message;
-    message.set_head(name(head));
+    message.set_head(head_of(head).name);
     message.set_direction(wire.to_client ? log::WireBytes::DIRECTION_TO_CLIENT
                                          : log::WireBytes::DIRECTION_FROM_CLIENT);
     message.set_transport(to_message(wire.transport));

@@ -26,19 +26,18 @@ class McapLog final : public Log {
   void close() override;
 
  private:
-  void add(int head, TimePoint time, const GeminiPingServed& ping);
-  void add(int head, TimePoint time, const MicronLineSent& line);
+  void add(int head, TimePoint time, const PingSent& ping);
   void add(int head, TimePoint time, const PingPosed& pose);
   void add(int head, TimePoint time, const WirePassed& wire);
-  void add(int, TimePoint, const GeminiStatusSent&) {}  // is among the bytes
-  void add(int, TimePoint, const ClientLeft&) {}
+  void add(int, TimePoint, const StatusSent&) {}  // is among the bytes
+  void add(int, TimePoint, const StreamEnded&) {}
 
   template <class Message>
   void add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns, const Message& message);
   template <class Message>
   std::uint16_t channel(const std::string& topic);
   void write_taken();
-  const std::string& name(int head) const { return setting().heads[static_cast<std::size_t>(head)].name; }
+  const HeadToRecord& head_of(int head) const { return setting().heads[static_cast<std::size_t>(head)]; }
 
   mcap::Writer writer_;
   std::map<std::string, std::uint16_t> schemas_;   ///< by name

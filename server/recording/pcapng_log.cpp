@@ -11,7 +11,7 @@ pcapng::Endpoint end_of(const Endpoint& endpoint) {
   return {endpoint.address, endpoint.port};
 }
 
-pcapng::ByteView view(const gemini::SharedBytes& bytes) {
+pcapng::ByteView view(const SharedBytes& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
@@ -32,7 +32,7 @@ void PcapngLog::write(const RecordingEvent& event) {
       file().begin(pcapng_path(setting().config.directory, setting().stem));
     }
     wire->transport == WireTransport::udp ? write_datagrams(event, *wire) : write_stream(event, *wire);
-  } else if (const auto* left = std::get_if<ClientLeft>(&event.what)) {
+  } else if (const auto* left = std::get_if<StreamEnded>(&event.what)) {
     end_stream(event, left->ends);
   }
 }

@@ -140,7 +140,7 @@ void Recorder::Impl::run() {
     for (RecordingEvent& event : queue.take()) {
       record(event);
       queue.done(event);
-      event.what = ClientLeft{};  // gives its memory back now
+      event.what = StreamEnded{};  // gives its memory back now
     }
     look_after_logs();
     pack_slice();
@@ -160,8 +160,7 @@ void Recorder::Impl::record(const RecordingEvent& event) {
   }
   set->write(event);
   set->flush(clock.now());
-  if (std::holds_alternative<GeminiPingServed>(event.what) ||
-      std::holds_alternative<MicronLineSent>(event.what)) {
+  if (std::holds_alternative<PingSent>(event.what)) {
     ++images;
     images_lost += set->any_good() ? 0 : 1;
   }
@@ -227,22 +226,6 @@ void Recorder::Impl::log_totals() const {
       "dropped_wire_pieces={} dropped_others={}",
       total.images, total.images_lost, total.logs_written, total.logs_failed, total.dropped.images,
       total.dropped.pieces, total.dropped.others);
-}
-
-std::vector<HeadToRecord> recorded_heads(const std::vector<AnyHeadConfig>& heads) {
-  constexpr std::uint8_t most_numbered = 9;
-  std::vector<HeadToRecord> recorded;
-  std::uint8_t geminis = 0;
-  for (const AnyHeadConfig& head : heads) {
-    if (const auto* gemini = std::get_if<GeminiHeadConfig>(&head)) {
-      recorded.push_back({gemini->name, gemini->device.sonar_id, true, geminis});
-      geminis = static_cast<std::uint8_t>(std::min<int>(geminis + 1, most_numbered));
-    } else {
-      const auto& micron = std::get<MicronHeadConfig>(head);
-      recorded.push_back({micron.name, micron.device.node, false, 0});
-    }
-  }
-  return recorded;
 }
 
 }  // namespace sonard::server

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 #include "server/recording/event_queue.hpp"
 #include "server/recording/log.hpp"
@@ -63,8 +63,5 @@ class Recorder {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// By their places in the configuration.
-std::vector<HeadToRecord> recorded_heads(const std::vector<AnyHeadConfig>& heads);
 
 }  // namespace sonard::server

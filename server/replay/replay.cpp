@@ -4,7 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "server/daemon.hpp"
+#include "server/daemon/daemon.hpp"
 #include "server/replay/replay_config.hpp"
 
 namespace sonard::server {
@@ -15,12 +15,11 @@ int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config,
   for (const std::string& problem : recording->problems()) {
     spdlog::warn("{}: {}", log.string(), problem);
   }
-  const ReplayConfig replayed =
-      replay_config(config ? std::move(*config) : loopback_config(recording->heads(), recording->scans()),
-                    recording->heads(), recording->scans(), file);
+  const ReplayConfig replayed = replay_config(
+      config ? std::move(*config) : loopback_config(recording->heads(), file), recording->heads(), file);
   for (const PlayedHead& head : replayed.played) {
     const std::vector<std::int64_t> times_ns = head.times_ns();
-    spdlog::info("head={} plays number {}: {} pings of {:.1f} s", head.name, head.device_id(),
+    spdlog::info("head={} plays number {}: {} pings of {:.1f} s", head.name, head.logged->device_id,
                  times_ns.size(), 1e-9 * static_cast<double>(times_ns.back() - times_ns.front()));
   }
   render::World world;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/clock.hpp"
+#include "server/clock/clock.hpp"
 
 namespace sonard::server {
 

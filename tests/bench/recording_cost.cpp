@@ -5,13 +5,16 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/encoded_ping.hpp"
+#include "protocol/gemini/recorded_form.hpp"
 #include "renderer/sonar_renderer.hpp"
 #include "server/recording/head_recording.hpp"
 #include "server/recording/log_set.hpp"
@@ -52,8 +55,12 @@ class ScratchFolder {
   fs::path path_;
 };
 
-/// A ping as a head sends it: how well it can be compressed decides what a .glf costs.
-gemini::EncodedPing make_ping() {
+/// A ping as a head sends and records it: how well it can be compressed decides what a .glf costs.
+struct Ping {
+  gemini::EncodedPing encoded;
+  PingRecord record;
+};
+Ping make_ping() {
   const test::Scene scene = test::make_scene("plane");
   render::SonarRenderer renderer(scene.world, {render::Backend::ray});
   render::PingSamples samples = renderer.render_ping(scene.request());
@@ -62,30 +69,30 @@ gemini::EncodedPing make_ping() {
   head.ext_mode = gemini::ext_bits::eight_bit;
   head.end_range = lines;
   head.sound_speed_used = 0x8000 | 15'000;
-  return {head, 0, {0, std::move(samples.u8), {}}};
+  const PingImage image{0, std::move(samples.u8), {}};
+  return {{head, 0, image}, gemini::record_of(head, image)};
 }
 
 /// All that a head tells the recorder of one ping.
 struct PingEvents {
-  server::GeminiPingServed served;
-  std::vector<std::vector<server::Datagram>> batches;  ///< as a head sends them
+  server::PingSent sent;
+  std::vector<server::WirePassed> batches;  ///< as a head sends them
 
-  PingEvents(const gemini::EncodedPing& ping, std::uint64_t number, TimePoint time)
-      : served{{number, ping},
-               time,
-               50.0,
-               std::make_shared<const server::PosesUsed>(server::PosesUsed{time, {}, {}, {}})} {
-    for (int i = 0; i < ping.datagram_count(); ++i) {
+  PingEvents(const Ping& ping, std::uint64_t number, TimePoint time)
+      : sent{ping.record, std::make_shared<const server::PosesUsed>(server::PosesUsed{time, {}, {}, {}})} {
+    sent.ping.number = number;
+    sent.ping.transmit_time = time;
+    for (int i = 0; i < ping.encoded.datagram_count(); ++i) {
       if (i % gemini::DeviceConfig{}.burst_lines == 0) {
-        batches.emplace_back();
+        batches.push_back({.to_client = true, .pty = {}, .pieces = {}});
       }
-      batches.back().push_back({{0x7F000001, 52'900}, 0, ping.datagram(i)});
+      batches.back().pieces.push_back({{0x7F000001, 52'900}, {0x7F000002, 52'901}, ping.encoded.datagram(i)});
     }
   }
 };
 
-const std::vector<server::HeadToRecord> one_head{{"bow", 513, true, 0}};
-constexpr server::Endpoint head_end{0x7F000002, 52'901};
+const std::vector<server::HeadToRecord> one_head{
+    {"bow", "gemini_720i", 513, 0, [](std::span<const std::uint8_t>) { return std::nullopt; }}};
 
 server::RecordingConfig config_of(const fs::path& folder, const std::string& formats) {
   server::RecordingConfig config;
@@ -98,7 +105,7 @@ server::RecordingConfig config_of(const fs::path& folder, const std::string& for
 }
 
 /// What the serving thread does for a ping, while the recorder works.
-Timing time_serving(const gemini::EncodedPing& ping) {
+Timing time_serving(const Ping& ping) {
   const ScratchFolder folder;
   const server::SteadyClock clock;
   server::Recorder recorder(config_of(folder.path(), "all_formats"), one_head);
@@ -108,10 +115,10 @@ Timing time_serving(const gemini::EncodedPing& ping) {
   for (int done = 0; repetition.wants_more(done, start_s); ++done) {
     PingEvents events(ping, static_cast<std::uint64_t>(done), clock.now());
     const double begin_s = now_s();
-    recording.posed(events.served.poses);
-    recording.gemini_ping(std::move(events.served));
-    for (const std::vector<server::Datagram>& batch : events.batches) {
-      recording.datagrams(batch, /*to_client=*/true, head_end);
+    recording.posed(events.sent.poses);
+    recording.ping(std::move(events.sent));
+    for (server::WirePassed& batch : events.batches) {
+      recording.wire(std::move(batch));
     }
     timing.add(1e3 * (now_s() - begin_s));
   }
@@ -127,7 +134,7 @@ double cpu_s() {
 }
 
 /// What the recorder's thread does for a ping: encodes, compresses and hands to the kernel.
-Timing time_writing(const gemini::EncodedPing& ping, const std::string& formats) {
+Timing time_writing(const Ping& ping, const std::string& formats) {
   const ScratchFolder folder;
   const server::RecordingConfig config = config_of(folder.path(), formats);
   TimePoint time = server::SteadyClock().now();
@@ -137,10 +144,10 @@ Timing time_writing(const gemini::EncodedPing& ping, const std::string& formats)
   for (int done = 0; repetition.wants_more(done, start_s); ++done) {
     time += ping_interval;
     PingEvents events(ping, static_cast<std::uint64_t>(done), time);
-    std::vector<server::RecordingEvent> queued{{0, time, server::PingPosed{events.served.poses}},
-                                               {0, time, std::move(events.served)}};
-    for (const std::vector<server::Datagram>& batch : events.batches) {
-      queued.push_back({0, time, server::passed(batch, /*to_client=*/true, head_end)});
+    std::vector<server::RecordingEvent> queued{{0, time, server::PingPosed{events.sent.poses}},
+                                               {0, time, std::move(events.sent)}};
+    for (server::WirePassed& batch : events.batches) {
+      queued.push_back({0, time, std::move(batch)});
     }
     const double begin_s = cpu_s();
     for (const server::RecordingEvent& event : queued) {
@@ -155,7 +162,7 @@ Timing time_writing(const gemini::EncodedPing& ping, const std::string& formats)
 }  // namespace
 
 void measure_recording(Measurements& results) {
-  const gemini::EncodedPing ping = make_ping();
+  const Ping ping = make_ping();
   const auto add = [&](const std::string& formats, const std::string& metric, const Timing& timing) {
     const Subject subject{scene_name, "ray", formats};
     results.add(subject, metric, timing.median(), "ms");

@@ -2,6 +2,9 @@
 // Promises: every datagram that leaves is a message of a head, from this head, small enough not to fragment;
 // the next deadline lies in the future; time goes on whatever comes in.
 #include <optional>
+#include <span>
+#include <utility>
+#include <variant>
 
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/device.hpp"
@@ -11,6 +14,13 @@
 namespace {
 
 using namespace sonard::gemini;
+using sonard::Actions;
+using sonard::Ipv4;
+using sonard::Outgoing;
+using sonard::PingImage;
+using sonard::PingJob;
+using sonard::SharedBytes;
+using sonard::TimePoint;
 using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
@@ -24,17 +34,17 @@ enum Kind { datagram_kinds = 2, trigger = 2, toggle_water = 3, image = 4, image_
 
 class Bench {
  public:
-  Bench() : device_(config(), now_) {}
+  Bench() : device_(config(), now_) { step(sonard::TimePassed{}); }
 
   void play(const Event& event) {
     run_until(now_ + event.delay);
     switch (event.kind) {
       case trigger:
-        device_.on_trigger(now_);
+        step(sonard::TriggerEdge{});
         break;
       case toggle_water:
         out_of_water_ = !out_of_water_;
-        device_.set_out_of_water(out_of_water_);
+        step(sonard::WaterChanged{out_of_water_});
         break;
       case image:
         answer_job(true);
@@ -44,10 +54,10 @@ class Bench {
         break;
       default:
         if (event.kind < datagram_kinds) {
-          device_.on_datagram(now_, surfaces[event.kind], alternate_address, event.datagram);
+          const sonard::Peer from{0, {surfaces[event.kind], 52900}, alternate_address};
+          step(sonard::BytesReceived{from, SharedBytes(event.datagram)});
         }
     }
-    advance();
   }
 
  private:
@@ -60,37 +70,38 @@ class Bench {
 
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;  // a few seconds of pings as large as answer_job() makes them
-    for (int i = 0; i < most_wake_ups; ++i) {
-      const auto deadline = device_.next_deadline();
-      if (!deadline || *deadline > target) {
-        break;
-      }
-      now_ = *deadline;
-      advance();
+    for (int i = 0; i < most_wake_ups && wake_at_ && *wake_at_ <= target; ++i) {
+      now_ = *wake_at_;
+      step(sonard::TimePassed{});
     }
     now_ = target;
-    advance();
+    step(sonard::TimePassed{});
   }
 
-  void advance() {
-    device_.advance(now_);
-    for (const Outgoing& outgoing : device_.take_outgoing()) {
+  void step(const sonard::Event& event) {
+    const Actions actions = device_.step(now_, event);
+    for (const Outgoing& outgoing : actions.send) {
       const std::span<const std::uint8_t> bytes{outgoing.bytes};
       require(bytes.size() <= max_datagram_size, "no datagram fragments");
       const auto report = decode_report(bytes);
       require(report.has_value() && !std::holds_alternative<Unknown>(*report),
               "a head speaks its own protocol");
       require(header_of(*report).sonar_id == sonar_id, "a head signs with its own ID");
-      require(outgoing.to == Outgoing::To::status || outgoing.surface != 0,
+      require(outgoing.to == Outgoing::To::everybody || outgoing.peer.remote.address != 0,
               "every datagram has somewhere to go");
     }
-    if (auto job = device_.take_job()) {
+    if (actions.render) {
       require(!job_.has_value(), "one job at a time");
-      require(job->native_lines > 0 && job->lines() > 0, "a job has lines");
-      job_ = *job;
+      require(actions.render->native_bins > 0 && actions.render->bins() > 0, "a job has lines");
+      job_ = *actions.render;
     }
-    const auto deadline = device_.next_deadline();
-    require(!deadline || *deadline > now_, "the next deadline is later than now");
+    if (actions.record) {
+      const auto samples = static_cast<std::size_t>(actions.record->settings.bins) * beam_count;
+      require(actions.record->samples.size() == samples, "a record holds a whole image");
+    }
+    require(!actions.cancelled || (job_ && job_->number == *actions.cancelled), "what is cancelled is out");
+    require(!actions.wake_at || *actions.wake_at > now_, "the next deadline is later than now");
+    wake_at_ = actions.wake_at;
   }
 
   void answer_job(bool rendered) {
@@ -100,13 +111,13 @@ class Bench {
     constexpr int most_lines = 512;  // more take time and no other path
     const PingJob job = *job_;
     job_.reset();
-    if (!rendered || job.lines() > most_lines) {
-      device_.on_image_failed(now_, job.ping_number);
+    if (!rendered || job.bins() > most_lines) {
+      step(sonard::PingNotRendered{job.number});
       return;
     }
     PingImage image;
-    image.ping_number = job.ping_number;
-    const auto samples = static_cast<std::size_t>(job.lines()) * beam_count;
+    image.number = job.number;
+    const auto samples = static_cast<std::size_t>(job.bins()) * beam_count;
     if (job.sixteen_bit) {
       image.u16.assign(samples, 0x1234);
     } else {
@@ -115,11 +126,12 @@ class Bench {
         image.u8[i] = static_cast<std::uint8_t>(i);
       }
     }
-    device_.on_image(now_, image);
+    step(sonard::PingRendered{std::move(image)});
   }
 
   TimePoint now_{};
   Device device_;
+  std::optional<TimePoint> wake_at_;
   std::optional<PingJob> job_;
   bool out_of_water_ = false;
 };

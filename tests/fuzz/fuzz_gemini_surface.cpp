@@ -1,6 +1,7 @@
 // Any sequence of datagrams and pauses against the surface's side of the protocol.
 // Promises: every datagram that leaves is a command; an image that is delivered has the size that its head
 // announced; time goes on whatever comes in.
+#include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/surface.hpp"
 #include "tests/fuzz/require.hpp"
@@ -9,6 +10,7 @@
 namespace {
 
 using namespace sonard::gemini;
+using sonard::TimePoint;
 using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;

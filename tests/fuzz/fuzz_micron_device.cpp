@@ -1,7 +1,13 @@
 // Any sequence of bytes, lines, faults and pauses against a Micron head.
 // Promises: every frame that leaves is a whole message of a head, from this head; the next deadline lies in
 // the future; no more lines than were asked for; time goes on whatever comes in.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
+#include <span>
+#include <utility>
+#include <variant>
 
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/device.hpp"
@@ -11,6 +17,12 @@
 namespace {
 
 using namespace sonard::micron;
+using sonard::Actions;
+using sonard::Outgoing;
+using sonard::PingImage;
+using sonard::PingJob;
+using sonard::SharedBytes;
+using sonard::TimePoint;
 using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
@@ -20,14 +32,17 @@ enum Kind { byte_kinds = 1, host_gone = 1, power_cycle = 2, lose_step = 3, line 
 
 class Bench {
  public:
+  Bench() { step(sonard::TimePassed{}); }
+
   void play(const Event& event) {
     run_until(now_ + event.delay);
     switch (event.kind) {
       case host_gone:
-        device_.on_host_gone();
+        step(sonard::ClientGone{});
         break;
       case power_cycle:
         device_.power_cycle(now_);
+        step(sonard::TimePassed{});
         break;
       case lose_step:
         device_.lose_step();
@@ -43,36 +58,33 @@ class Bench {
           hear(event);
         }
     }
-    advance();
   }
 
  private:
   void hear(const Event& event) {
-    if (event.as_is || event.datagram.empty()) {
-      device_.on_bytes(now_, event.datagram);
-    } else {
-      device_.on_bytes(
-          now_, frame_to_head(default_head_node, event.datagram[0], std::span{event.datagram}.subspan(1)));
-    }
+    const std::span<const std::uint8_t> bytes = event.datagram;
+    step(sonard::BytesReceived{
+        {},
+        SharedBytes(event.as_is || bytes.empty()
+                        ? event.datagram
+                        : frame_to_head(default_head_node, bytes[0], bytes.subspan(1)))});
   }
 
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;
-    for (int i = 0; i < most_wake_ups; ++i) {
-      const auto deadline = device_.next_deadline();
-      if (!deadline || *deadline > target) {
-        break;
-      }
-      now_ = std::max(now_, *deadline);
-      advance();
+    for (int i = 0; i < most_wake_ups && wake_at_ && *wake_at_ <= target; ++i) {
+      now_ = std::max(now_, *wake_at_);
+      step(sonard::TimePassed{});
     }
     now_ = target;
-    advance();
+    step(sonard::TimePassed{});
   }
 
-  void advance() {
-    device_.advance(now_);
-    for (const auto& frame : device_.take_outgoing()) {
+  void step(const sonard::Event& event) {
+    const Actions actions = device_.step(now_, event);
+    for (const Outgoing& outgoing : actions.send) {
+      const std::span<const std::uint8_t> frame{outgoing.bytes};
+      require(outgoing.to == Outgoing::To::everybody, "all clients share the line");
       require(next_frame(frame, max_report_frame_size) == static_cast<std::ptrdiff_t>(frame.size()),
               "one whole frame at a time");
       const FrameHeader header = frame_header(frame);
@@ -81,36 +93,45 @@ class Bench {
       require(report.has_value() && !std::holds_alternative<Unknown>(*report),
               "a head speaks its own protocol");
     }
-    if (auto job = device_.take_job()) {
+    if (actions.render) {
+      const PingJob& job = *actions.render;
       require(!job_.has_value(), "one job at a time");
-      require(job->bins >= 1 && job->bins <= max_bins && job->bearing < 6400, "a job can be rendered");
-      require(job->transmit_time <= now_, "a job is not ahead of its time");
-      job_ = *job;
+      require(job.bins() >= 1 && job.bins() <= max_bins, "a job can be rendered");
+      constexpr double half_a_turn = std::numbers::pi + 1e-9;  // and what rounding makes of it
+      require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
+      require(job.transmit_time <= now_, "a job is not ahead of its time");
+      job_ = job;
     }
+    if (actions.record) {
+      require(actions.record->samples.size() == static_cast<std::size_t>(actions.record->settings.bins),
+              "a record holds a whole line");
+    }
+    require(!actions.cancelled || (job_ && job_->number == *actions.cancelled), "what is cancelled is out");
     const auto& counters = device_.counters();
     require(counters.lines_sent + counters.pings_failed + counters.pings_cancelled <= counters.pings_started,
             "every line has its ping");
-    const auto deadline = device_.next_deadline();
-    require(!deadline || *deadline > now_, "the next deadline is later than now");
+    require(!actions.wake_at || *actions.wake_at > now_, "the next deadline is later than now");
+    wake_at_ = actions.wake_at;
   }
 
   void answer_job(bool rendered) {
     if (!job_) {
       return;
     }
-    const MicronJob job = *job_;
+    const PingJob job = *job_;
     job_.reset();
     if (rendered) {
-      device_.on_line(now_,
-                      {job.ping_number, std::vector<std::uint8_t>(static_cast<std::size_t>(job.bins), 77)});
+      step(sonard::PingRendered{
+          PingImage{job.number, std::vector<std::uint8_t>(static_cast<std::size_t>(job.bins()), 77), {}}});
     } else {
-      device_.on_line_failed(now_, job.ping_number);
+      step(sonard::PingNotRendered{job.number});
     }
   }
 
   TimePoint now_{};
   Device device_{DeviceConfig{}, now_};
-  std::optional<MicronJob> job_;
+  std::optional<TimePoint> wake_at_;
+  std::optional<PingJob> job_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 namespace {
 
 using namespace sonard::micron;
+using sonard::TimePoint;
 using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;

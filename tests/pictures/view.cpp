@@ -4,16 +4,17 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <utility>
-#include <variant>
 
-#include "protocol/gemini/ping_job.hpp"
-#include "protocol/micron/micron_job.hpp"
+#include "protocol/common/ping_job.hpp"
 #include "protocol/micron/units.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "server/config/loader.hpp"
-#include "server/devices/gemini_settings.hpp"
-#include "server/devices/micron_settings.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/kind.hpp"
 
 namespace sonard::pictures {
 namespace {
@@ -50,47 +51,49 @@ class Vehicle {
   std::optional<pose::Trajectory> trajectory_;
 };
 
-void aim(View& view, const server::GeminiHeadConfig& head, const Vehicle& vehicle, double range_m,
-         double sound_speed_mps, double time_s) {
-  gemini::PingJob job;
+void aim_gemini(View& view, const server::HeadConfig& head, const Vehicle& vehicle, double range_m,
+                double sound_speed_mps, double time_s) {
+  PingJob job;
   job.sound_speed_mps = sound_speed_mps;
-  job.line_step_m = sound_speed_mps / (2 * line_rate_hz);
-  job.native_lines = static_cast<int>(range_m / job.line_step_m);
+  job.native_bin_m = sound_speed_mps / (2 * line_rate_hz);
+  job.native_bins = static_cast<int>(range_m / job.native_bin_m);
   job.compression_log2 = 1;
-  view.settings = server::to_sonar_settings(job, head);
+  view.settings = server::gemini_kind().sonar_settings(job, head);
   view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
 }
 
-void aim(View& view, const server::MicronHeadConfig& head, const Vehicle& vehicle, double range_m,
-         double sound_speed_mps, double time_s, double line_s) {
-  micron::MicronJob job;
-  job.bins = micron_bins;
-  job.bin_length_m = range_m / micron_bins;
+void aim_micron(View& view, const server::HeadConfig& head, const Vehicle& vehicle, double range_m,
+                double sound_speed_mps, double time_s, double line_s) {
+  PingJob job;
+  job.native_bins = micron_bins;
+  job.native_bin_m = range_m / micron_bins;
   job.sound_speed_mps = sound_speed_mps;
-  job.gain_db = head.nominal_gain_db;
-  view.settings = server::to_sonar_settings(job, head);
+  job.gain_db = server::micron_config(head).nominal_gain_db;
+  view.settings = server::micron_kind().sonar_settings(job, head);
   view.scan_step = micron_step;
   for (int i = 0; i < micron::units_per_turn / micron_step; ++i) {
-    job.bearing = static_cast<std::uint16_t>(micron::wrapped(i * micron_step));
-    job.bearing_rad = micron::bearing_rad(job.bearing);
+    const int bearing = micron::wrapped(i * micron_step);
     const render::Pose T_world_mount = vehicle.at(time_s + i * line_s) * head.T_vehicle_sonar;
-    view.scan.push_back({job.bearing, server::T_world_transducer(T_world_mount, job)});
+    view.scan.push_back({bearing, server::T_world_transducer(T_world_mount, micron::bearing_rad(bearing))});
   }
 }
 
 }  // namespace
 
 View configured_view(const std::string& config, double range_m, double time_s, double line_s) {
-  const server::DaemonConfig daemon = server::load_config(SONARD_SOURCE_DIR "/configs/" + config).config;
+  const server::DaemonConfig daemon =
+      server::load_config(SONARD_SOURCE_DIR "/configs/" + config, server::head_kinds()).config;
   const Vehicle vehicle(daemon.poses);
   View view;
   view.world = render::load_world(daemon.world_file);
   const double sound_speed_mps = daemon.water.sound_speed_mps;
-  const server::AnyHeadConfig& head = daemon.heads.front();
-  if (const auto* gemini = std::get_if<server::GeminiHeadConfig>(&head)) {
-    aim(view, *gemini, vehicle, range_m, sound_speed_mps, time_s);
+  const server::HeadConfig& head = daemon.heads.front();
+  if (head.kind == &server::gemini_kind()) {
+    aim_gemini(view, head, vehicle, range_m, sound_speed_mps, time_s);
+  } else if (head.kind == &server::micron_kind()) {
+    aim_micron(view, head, vehicle, range_m, sound_speed_mps, time_s, line_s);
   } else {
-    aim(view, std::get<server::MicronHeadConfig>(head), vehicle, range_m, sound_speed_mps, time_s, line_s);
+    throw std::invalid_argument(config + ": its first head is neither a Gemini nor a Micron");
   }
   return view;
 }

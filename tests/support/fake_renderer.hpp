@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 
 namespace sonard::test {
 

@@ -10,7 +10,7 @@ namespace sonard::test {
 
 /// An address of 127.0.0.0/8 that no other process of this test run uses, so that tests may run at the same
 /// time and still bind 52900 and 52901. `host` is 1..254.
-inline server::Ipv4 own_loopback_address(std::uint8_t host) {
+inline Ipv4 own_loopback_address(std::uint8_t host) {
   const auto pid = static_cast<std::uint32_t>(getpid());
   return 0x7F000000u | (1 + pid % 0xFFFE) << 8 | host;
 }

@@ -22,7 +22,7 @@ int checked(int result, const char* what) {
   return result;
 }
 
-sockaddr_in to_sockaddr(const server::Endpoint& endpoint) {
+sockaddr_in to_sockaddr(const Endpoint& endpoint) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(endpoint.port);
@@ -30,7 +30,7 @@ sockaddr_in to_sockaddr(const server::Endpoint& endpoint) {
   return address;
 }
 
-Client connected(int type, const server::Endpoint& to, server::Ipv4 from, int receive_buffer_bytes) {
+Client connected(int type, const Endpoint& to, Ipv4 from, int receive_buffer_bytes) {
   Client client(checked(socket(AF_INET, type | SOCK_CLOEXEC, 0), "socket"));
   if (receive_buffer_bytes > 0) {
     checked(
@@ -47,11 +47,11 @@ Client connected(int type, const server::Endpoint& to, server::Ipv4 from, int re
 
 }  // namespace
 
-Client Client::tcp(const server::Endpoint& to, server::Ipv4 from, int receive_buffer_bytes) {
+Client Client::tcp(const Endpoint& to, Ipv4 from, int receive_buffer_bytes) {
   return connected(SOCK_STREAM, to, from, receive_buffer_bytes);
 }
 
-Client Client::udp(const server::Endpoint& to, server::Ipv4 from) {
+Client Client::udp(const Endpoint& to, Ipv4 from) {
   return connected(SOCK_DGRAM, to, from, 0);
 }
 
@@ -99,7 +99,7 @@ std::size_t Client::readable() const {
   return static_cast<std::size_t>(count);
 }
 
-server::Endpoint Client::endpoint() const {
+Endpoint Client::endpoint() const {
   sockaddr_in address{};
   socklen_t length = sizeof address;
   checked(getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &length), "getsockname");

@@ -18,8 +18,8 @@ class Client {
  public:
   /// Connected, or an exception.
   /// @param receive_buffer_bytes 0: as the kernel likes
-  static Client tcp(const server::Endpoint& to, server::Ipv4 from = 0x7F000001, int receive_buffer_bytes = 0);
-  static Client udp(const server::Endpoint& to, server::Ipv4 from = 0x7F000001);
+  static Client tcp(const Endpoint& to, Ipv4 from = 0x7F000001, int receive_buffer_bytes = 0);
+  static Client udp(const Endpoint& to, Ipv4 from = 0x7F000001);
   static Client tty(const std::string& path);
 
   explicit Client(int fd) : fd_(fd) {}
@@ -40,7 +40,7 @@ class Client {
   /// Bytes that wait to be read.
   std::size_t readable() const;
   /// Our own address.
-  server::Endpoint endpoint() const;
+  Endpoint endpoint() const;
   void close();
   /// Closes a TCP connection with a reset.
   void reset();

@@ -11,8 +11,8 @@ namespace sonard::client {
 ///     FILE.png          a picture, whatever OpenCV reads; colours as brightness
 ///     FILE.npy          a ping of sonard's `dump`
 ///     FILE.csv#NUMBER   the ping of that number of such a dump, by its index
-///     FILE.jsonl#TURN   a turn of `sonarview micron --raw`
-///     FILE.glf#IMAGE    an image of a Gemini's log, or of a FILE.dat, counted from 0
+///     FILE.jsonl#TURN   a turn of a scanning head, by `sonarview --raw`
+///     FILE.glf#IMAGE    an image of such a log, or of a FILE.dat, counted from 0
 ///
 /// Samples come out as in sonarview's polar pictures: a column for each beam or step, range upwards.
 /// @return CV_64FC1, black 0, full scale 255 whatever the number of bits

@@ -1,4 +1,4 @@
-// Images of a Gemini's log.
+// Images of a .glf log.
 #pragma once
 
 #include <cstdint>

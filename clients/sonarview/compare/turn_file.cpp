@@ -12,8 +12,6 @@
 #include <system_error>
 #include <vector>
 
-#include "protocol/micron/messages.hpp"
-#include "protocol/micron/units.hpp"
 #include "renderer/picture/turn_image.hpp"
 
 namespace sonard::client {
@@ -52,18 +50,18 @@ int integer(const YAML::Node& object, const char* key, int least, int most) {
 /// An object of docs/sonarview.md, "Lines in a file". JSON is YAML.
 ScanLine parse_line(const std::string& text) {
   const YAML::Node object = YAML::Load(text);
-  const int control = integer(object, "control", 0, 65'535);
-  const int last_bearing = micron::units_per_turn - 1;
+  const int last_bearing = picture::units_per_turn - 1;
   ScanLine scan;
   scan.turn = object["turn"].as<std::uint64_t>();
   scan.line.bearing = integer(object, "bearing", 0, last_bearing);
-  scan.line.samples = bytes_of(object["bins"].as<std::string>(),
-                               (control & micron::control_bits::eight_bit) != 0 ? 1 : four_bit_scale);
+  scan.line.samples =
+      bytes_of(object["bins"].as<std::string>(), integer(object, "bits", 4, 8) == 8 ? 1 : four_bit_scale);
   scan.shape.step = integer(object, "step", 1, 255);
   scan.shape.bins = static_cast<int>(scan.line.samples.size());
-  if ((control & micron::control_bits::continuous) == 0) {
+  if (!object["all_round"].as<bool>()) {
     scan.shape.left = integer(object, "left_limit", 0, last_bearing);
-    scan.shape.width = micron::wrapped(integer(object, "right_limit", 0, last_bearing) - scan.shape.left);
+    const int width = integer(object, "right_limit", 0, last_bearing) - scan.shape.left;
+    scan.shape.width = width < 0 ? width + picture::units_per_turn : width;
   }
   if (scan.shape.bins == 0 || scan.shape.width == 0) {
     throw std::runtime_error("there is nothing in the line");
@@ -91,7 +89,7 @@ cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
     try {
       scan = parse_line(text);
     } catch (const YAML::Exception&) {
-      refuse("is no line of sonarview micron --raw");
+      refuse("is no line of a scanning head (expected what sonarview --raw writes)");
     } catch (const std::runtime_error& error) {
       refuse(error.what());
     }

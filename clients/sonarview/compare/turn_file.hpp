@@ -1,4 +1,4 @@
-// Lines of a scanning head as `sonarview micron --raw` writes them.
+// Lines of a scanning head as sonarview writes them with --raw.
 #pragma once
 
 #include <cstdint>

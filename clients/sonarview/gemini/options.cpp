@@ -13,7 +13,7 @@ std::chrono::nanoseconds to_ns(double seconds) {
   return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
 }
 
-gemini::Ipv4 address_of(const std::string& option, const std::string& text) {
+Ipv4 address_of(const std::string& option, const std::string& text) {
   const auto address = parse_ipv4(text);
   if (!address) {
     throw CLI::ValidationError(option, "expected an IPv4 address, found '" + text + "'");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/ping_settings.hpp"
 #include "protocol/gemini/surface.hpp"
 
@@ -16,8 +17,8 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  gemini::Ipv4 surface_address = 0x7F000001;  ///< commands leave from here
-  gemini::Ipv4 bind_address = 0;              ///< reports arrive here; 0: on all addresses
+  Ipv4 surface_address = 0x7F000001;  ///< commands leave from here
+  Ipv4 bind_address = 0;              ///< reports arrive here; 0: on all addresses
   gemini::SurfaceConfig surface;
   gemini::PingSettings settings;
 

@@ -28,7 +28,7 @@ std::string ping_line(const gemini::ReceivedPing& ping) {
       ping.lines_lost, ping.lines_repaired, ping.retries.total(), took_ms, samples_crc32(ping.samples));
 }
 
-void PingRate::add(gemini::TimePoint finished) {
+void PingRate::add(TimePoint finished) {
   if (pings_++ == 0) {
     first_ = finished;
   }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/surface.hpp"
 
 namespace sonard::client {
@@ -20,14 +21,14 @@ std::string ping_line(const gemini::ReceivedPing& ping);
 /// Pings per second, from the end of the first to the end of the newest.
 class PingRate {
  public:
-  void add(gemini::TimePoint finished);
+  void add(TimePoint finished);
   /// 0 for fewer than two pings.
   double hz() const;
 
  private:
   std::uint64_t pings_ = 0;
-  gemini::TimePoint first_{};
-  gemini::TimePoint last_{};
+  TimePoint first_{};
+  TimePoint last_{};
 };
 
 /// Counters of the program beside those of the surface.

@@ -24,7 +24,6 @@ namespace {
 
 using boost::asio::ip::udp;
 using boost::system::error_code;
-using gemini::TimePoint;
 
 constexpr std::size_t datagram_buffer_bytes = 2048;  // as in the libraries
 constexpr int datagrams_a_turn = 256;                // then timers and signals have their turn

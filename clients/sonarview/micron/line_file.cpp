@@ -25,10 +25,11 @@ void LineFile::write(const micron::ReceivedLine& line, std::uint64_t turn) {
   std::string text = fmt::format(
       R"({{"number":{},"turn":{},"unix_s":{:.6f},"bearing":{},"status":{},"sweep":{},"control":{},)"
       R"("range_scale":{},"tx_word":{},"gain":{},"slope":{},"ad_span":{},"ad_low":{},"heading_offset":{},)"
-      R"("ad_interval":{},"left_limit":{},"right_limit":{},"step":{},"bins":")",
+      R"("ad_interval":{},"left_limit":{},"right_limit":{},"step":{},"all_round":{},"bits":{},"bins":")",
       line.number, turn, unix_s, head.bearing, head.status, static_cast<int>(head.sweep), head.control,
       head.range_scale, head.tx_word, head.gain, head.slope, head.ad_span, head.ad_low, head.heading_offset,
-      head.ad_interval, head.left_limit, head.right_limit, head.step);
+      head.ad_interval, head.left_limit, head.right_limit, head.step,
+      (head.control & micron::control_bits::continuous) != 0, head.eight_bit() ? 8 : 4);
   for (const std::uint8_t bin : line.bins) {
     text += fmt::format("{:02x}", bin);
   }

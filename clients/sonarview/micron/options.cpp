@@ -4,9 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 #include "protocol/micron/units.hpp"
 
@@ -17,20 +15,6 @@ constexpr int most_ad_interval = 65'535;
 
 std::chrono::nanoseconds to_ns(double seconds) {
   return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
-
-LineAddress host_and_port(LineAddress::Way way, const std::string& option, const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  unsigned port = 0;
-  if (colon != std::string::npos && colon > 0) {
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
-    port = error == std::errc() && rest == end && port <= 65'535 ? port : 0;
-  }
-  if (port == 0) {
-    throw CLI::ValidationError(option, "expected HOST:PORT, found '" + text + "'");
-  }
-  return {.way = way, .place = text.substr(0, colon), .port = static_cast<std::uint16_t>(port)};
 }
 
 int step_of(double degrees) {
@@ -62,17 +46,8 @@ MicronArguments::MicronArguments(CLI::App& app) {
 }
 
 void MicronArguments::declare_link(CLI::App& app) {
-  CLI::Option* tcp = app.add_option("--tcp", tcp_, "HOST:PORT of a serial device server, or of sonard");
-  CLI::Option* udp = app.add_option("--udp", udp_, "HOST:PORT, the same in datagrams");
-  CLI::Option* tty = app.add_option("--tty", tty_, "Serial device or pseudo terminal");
-  tcp->excludes(udp)->excludes(tty)->group("Link (one of --tcp, --udp, --tty)");
-  udp->excludes(tty)->group("Link (one of --tcp, --udp, --tty)");
-  tty->group("Link (one of --tcp, --udp, --tty)");
-  const std::string group = tcp->get_group();
-  app.add_option("--baud", baud_, "Bits per second of a serial device, 8N1")
-      ->needs(tty)
-      ->capture_default_str()
-      ->group(group);
+  constexpr const char* group = LinkArguments::group;
+  link_.declare(app);
   app.add_option("--node", node_, "Node of the head")
       ->check(CLI::Range(1, 254))
       ->capture_default_str()
@@ -140,19 +115,6 @@ void MicronArguments::declare_run(CLI::App& app) {
   app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
 }
 
-LineAddress MicronArguments::line() const {
-  if (!tcp_.empty()) {
-    return host_and_port(LineAddress::Way::tcp, "--tcp", tcp_);
-  }
-  if (!udp_.empty()) {
-    return host_and_port(LineAddress::Way::udp, "--udp", udp_);
-  }
-  if (!tty_.empty()) {
-    return {.way = LineAddress::Way::tty, .place = tty_, .baud = baud_};
-  }
-  throw CLI::ValidationError("--tcp, --udp, --tty", "one of them must say where the head is");
-}
-
 micron::ScanSettings MicronArguments::scan() const {
   micron::ScanSettings scan = options_.scan;
   scan.step = step_of(step_deg_);
@@ -172,7 +134,7 @@ micron::ScanSettings MicronArguments::scan() const {
 
 MicronOptions MicronArguments::options() const {
   MicronOptions options = options_;
-  options.line = line();
+  options.line = link_.address();
   options.host.node = static_cast<std::uint8_t>(node_);
   options.scan = scan();
   options.duration = to_ns(seconds_);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/micron/serial_line.hpp"
+#include "clients/sonarview/link_arguments.hpp"
 #include "protocol/micron/host.hpp"
 #include "protocol/micron/scan_settings.hpp"
 
@@ -50,15 +50,11 @@ class MicronArguments {
   void declare_link(CLI::App& app);
   void declare_sonar(CLI::App& app);
   void declare_run(CLI::App& app);
-  LineAddress line() const;
   micron::ScanSettings scan() const;
 
   MicronOptions options_;
   // As they are typed, before they have their units.
-  std::string tcp_;
-  std::string udp_;
-  std::string tty_;
-  unsigned baud_ = 115'200;
+  LinkArguments link_;
   int node_ = micron::default_head_node;
   double step_deg_ = 1.8;
   std::vector<double> sector_deg_;

@@ -24,7 +24,6 @@ namespace sonard::client {
 namespace {
 
 using boost::system::error_code;
-using micron::TimePoint;
 using std::chrono::nanoseconds;
 
 constexpr nanoseconds progress_period = std::chrono::seconds{1};

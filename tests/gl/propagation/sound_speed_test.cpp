@@ -7,8 +7,10 @@
 
 #include "protocol/gemini/ping_plan.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "server/devices/gemini_settings.hpp"
-#include "server/devices/micron_settings.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/settings.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/settings.hpp"
 #include "tests/support/backend_test.hpp"
 
 namespace sonard::server {
@@ -20,7 +22,7 @@ constexpr double assumed_mps = 1500.0;
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
 /// What a client that counts 20 m at 1500 m/s makes the head ask for, in water of another speed.
-gemini::PingJob gemini_job(double water_mps) {
+PingJob gemini_job(double water_mps) {
   gemini::PingSettings settings;
   settings.range_m = 20.0;
   settings.sound_speed_mps = assumed_mps;
@@ -57,7 +59,8 @@ TEST_P(SoundSpeed, GeminiShowsAWallAtTheRatioOfTheSpeeds) {
   const render::World wall =
       make_world({make_body("wall", make_quad({12, -30, -5}, {0, 60, 0}, {0, 0, 10}))});
   for (const double water_mps : {1500.0, 1450.0, 1545.0}) {
-    render::SonarSettings settings = to_sonar_settings(gemini_job(water_mps), GeminiHeadConfig{});
+    render::SonarSettings settings =
+        gemini_sonar_settings(gemini_job(water_mps), gemini_kind().make_default());
     settings.aperture.beam_edges_rad = render::equal_angle_edges(2, 1 * degree);
     const render::EchoImage image = image_of(wall, settings);
     const double line_m = shown_m(1, 90'422.0);
@@ -69,13 +72,13 @@ TEST_P(SoundSpeed, GeminiShowsAWallAtTheRatioOfTheSpeeds) {
 TEST_P(SoundSpeed, MicronToo) {
   const render::World wall = make_world({make_body("wall", make_quad({6, -5, -5}, {0, 10, 0}, {0, 0, 10}))});
   for (const double water_mps : {1500.0, 1450.0, 1545.0}) {
-    micron::MicronJob job;
-    job.bins = 400;
-    job.bin_time_s = 52 * 640e-9;
+    constexpr double bin_time_s = 52 * 640e-9;
+    PingJob job;
+    job.native_bins = 400;
     job.sound_speed_mps = water_mps;
-    job.bin_length_m = job.bin_time_s * water_mps / 2;
-    const render::EchoImage image = image_of(wall, to_sonar_settings(job, MicronHeadConfig{}));
-    const double bin_m = shown_m(1, 1 / job.bin_time_s);
+    job.native_bin_m = bin_time_s * water_mps / 2;
+    const render::EchoImage image = image_of(wall, micron_sonar_settings(job, micron_kind().make_default()));
+    const double bin_m = shown_m(1, 1 / bin_time_s);
     EXPECT_NEAR(first_line(image, 0), static_cast<int>(6.0 * assumed_mps / water_mps / bin_m), 1)
         << water_mps;
   }
@@ -87,10 +90,12 @@ TEST_P(SoundSpeed, FlatArrayHearsAPostWhereItsDelaysPoint) {
   const auto at = static_cast<float>(10 * std::sin(bearing));
   const render::World post = make_world(
       {make_body("post", make_quad({10 * std::cos(bearing), at - 0.015F, -0.5F}, {0, 0.03F, 0}, {0, 0, 1}))});
-  GeminiHeadConfig head;
   for (const bool error : {false, true}) {
-    head.steering_error = error;
-    const render::EchoImage image = image_of(post, to_sonar_settings(gemini_job(1450.0), head));
+    GeminiConfig config;
+    config.steering_error = error;
+    HeadConfig head = gemini_kind().make_default();
+    head.device = std::make_shared<GeminiConfig>(config);
+    const render::EchoImage image = image_of(post, gemini_sonar_settings(gemini_job(1450.0), head));
     const auto loudest = std::max_element(image.intensity.begin(), image.intensity.end());
     ASSERT_GT(*loudest, 0.0F);
     const auto beam = (loudest - image.intensity.begin()) / image.lines;

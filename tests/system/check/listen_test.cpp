@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "tests/support/loopback.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/unit/pose_input/child_process.hpp"
@@ -26,7 +26,7 @@ class Listen : public testing::Test {
  protected:
   ~Listen() override { std::filesystem::remove(config_); }
 
-  std::string address() const { return server::address_text(own_loopback_address(3)); }
+  std::string address() const { return address_text(own_loopback_address(3)); }
 
   ProcessResult listen_with(const std::string& poses) const {
     std::ofstream(config_) << "world: {file: " << SONARD_SOURCE_DIR

@@ -374,7 +374,7 @@ class Wire(LinkTest):
         ping = surface.next_ping()
         self.assertEqual(ping.crc32(), int(self.rendered()[ping.transmit_us], 16))
         self.end_daemon(daemon)
-        socket_line = key_values(daemon.wait_for_line("head=bow socket: ", PATIENCE_S))
+        socket_line = key_values(daemon.wait_for_line("head=bow transport: ", PATIENCE_S))
         self.assertGreater(int(socket_line["blocked"]), 0, "the link was not slow enough for this test to mean something")
         self.assertEqual((socket_line["send_failed"], socket_line["overflowed"]), ("0", "0"))
 

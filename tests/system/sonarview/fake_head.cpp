@@ -1,10 +1,13 @@
 #include "tests/system/sonarview/fake_head.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 
-#include "server/config/addresses.hpp"
+#include "protocol/common/endpoint.hpp"
+#include "protocol/micron/units.hpp"
 
 namespace sonard::test {
 
@@ -29,17 +32,16 @@ FakeHead::FakeHead(server::SerialLinkConfig link, Settings settings)
   // The line comes back where it was.
   for (std::size_t i = 0; i < link_config_.tcp.size(); ++i) {
     link_config_.tcp[i].bind = link_->addresses().tcp[i];
-    tcp_ = server::endpoint_text(link_config_.tcp[i].bind);
+    tcp_ = endpoint_text(link_config_.tcp[i].bind);
   }
-  for (const server::Endpoint& endpoint : link_->addresses().udp) {
-    udp_ = server::endpoint_text(endpoint);
+  for (const Endpoint& endpoint : link_->addresses().udp) {
+    udp_ = endpoint_text(endpoint);
   }
   for (const std::string& path : link_->addresses().pty) {
     tty_ = link_config_.pty.front().link.empty() ? path : link_config_.pty.front().link.string();
   }
-  device_.advance(clock_.now());
-  device_.take_outgoing();  // what it said before anybody could hear it
-  step();
+  const Actions unheard = device_.step(clock_.now(), TimePassed{});  // said before anybody could hear it
+  arm_timer(unheard.wake_at);
   thread_ = std::thread([this] { io_.run(); });
 }
 
@@ -52,10 +54,9 @@ void FakeHead::open() {
   link_ = std::make_unique<server::SerialLink>(io_, link_config_, clock_);
   link_->start(
       [this](std::span<const std::uint8_t> bytes, const std::string&) {
-        device_.on_bytes(clock_.now(), bytes);
-        step();
+        step(BytesReceived{{}, SharedBytes(Bytes(bytes.begin(), bytes.end()))});
       },
-      [this](const std::string&) { device_.on_host_gone(); });
+      [this](const std::string&) { step(ClientGone{}); });
 }
 
 void FakeHead::vanish() {
@@ -69,27 +70,36 @@ void FakeHead::vanish() {
   });
 }
 
-void FakeHead::step() {
-  device_.advance(clock_.now());
-  for (const Bytes& frame : device_.take_outgoing()) {
-    send(frame);
-  }
-  while (const auto job = device_.take_job()) {
-    pings_ = job->ping_number + 1;
-    if (settings_.vanish_at_ping == job->ping_number) {
+void FakeHead::step(const Event& event) {
+  Actions actions = device_.step(clock_.now(), event);
+  send_all(actions);
+  while (actions.render) {
+    const PingJob job = *std::move(actions.render);
+    pings_ = job.number + 1;
+    if (settings_.vanish_at_ping == job.number) {
       vanish();
     }
-    micron::MicronLine line{job->ping_number, {}};
-    for (int bin = 0; bin < job->bins; ++bin) {
-      line.samples.push_back(settings_.echo(job->bearing, bin));
-    }
-    device_.on_line(clock_.now(), line);
-    device_.advance(clock_.now());
-    for (const Bytes& frame : device_.take_outgoing()) {
-      send(frame);
-    }
+    actions = device_.step(clock_.now(), PingRendered{echoes(job)});
+    send_all(actions);
   }
-  arm_timer();
+  arm_timer(actions.wake_at);
+}
+
+PingImage FakeHead::echoes(const PingJob& job) const {
+  constexpr double unit_rad = 2.0 * std::numbers::pi / micron::units_per_turn;
+  const auto from_ahead = static_cast<int>(std::lround(job.bearing_rad / unit_rad));
+  PingImage image;
+  image.number = job.number;
+  for (int bin = 0; bin < job.bins(); ++bin) {
+    image.u8.push_back(settings_.echo(micron::wrapped(micron::bearing_ahead + from_ahead), bin));
+  }
+  return image;
+}
+
+void FakeHead::send_all(const Actions& actions) {
+  for (const Outgoing& frame : actions.send) {
+    send(Bytes(frame.bytes.begin(), frame.bytes.end()));
+  }
 }
 
 void FakeHead::send(const Bytes& frame) {
@@ -120,16 +130,15 @@ void FakeHead::send_piece() {
   });
 }
 
-void FakeHead::arm_timer() {
-  const auto deadline = device_.next_deadline();
-  if (!deadline) {
+void FakeHead::arm_timer(const std::optional<TimePoint>& wake_at) {
+  if (!wake_at) {
     timer_.cancel();
     return;
   }
-  timer_.expires_at(server::to_steady(*deadline));
+  timer_.expires_at(server::to_steady(*wake_at));
   timer_.async_wait([this](const boost::system::error_code& cancelled) {
     if (!cancelled) {
-      step();
+      step(TimePassed{});
     }
   });
 }

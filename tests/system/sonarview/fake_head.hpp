@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "protocol/micron/device.hpp"
-#include "server/devices/serial/serial_link.hpp"
+#include "server/net/serial_link.hpp"
 
 namespace sonard::test {
 
@@ -52,10 +52,12 @@ class FakeHead {
   static micron::DeviceConfig quick();
   void open();
   void vanish();
-  void step();
+  void step(const Event& event);
+  PingImage echoes(const PingJob& job) const;
+  void send_all(const Actions& actions);
   void send(const Bytes& frame);
   void send_piece();
-  void arm_timer();
+  void arm_timer(const std::optional<TimePoint>& wake_at);
 
   server::SerialLinkConfig link_config_;
   Settings settings_;

@@ -93,7 +93,7 @@ class SonarviewMicron : public testing::Test {
   static server::SerialLinkConfig by_tcp() { return {{{any_port(), loopback()}}, {}, {}, 0}; }
   static server::SerialLinkConfig by_udp() { return {{}, {{any_port(), loopback()}}, {}, 0}; }
   static server::SerialLinkConfig by_pty(const fs::path& link = {}) { return {{}, {}, {{link}}, 0}; }
-  static server::Endpoint any_port() { return {0x7F000001, 0}; }
+  static Endpoint any_port() { return {0x7F000001, 0}; }
   static server::AllowList loopback() { return {{0x7F000000, 8}}; }
 
   static ProcessResult run(std::vector<std::string> arguments) {
@@ -208,7 +208,7 @@ TEST_F(SonarviewMicron, four_bit_lines_hold_the_window) {
     expected += std::string("0") + "0123456789abcdef"[nibble];
   }
   EXPECT_THAT(lines[0], HasSubstr("\"bearing\":3200,"));
-  EXPECT_THAT(lines[0], HasSubstr("\"bins\":\"" + expected + "\"}"));
+  EXPECT_THAT(lines[0], HasSubstr("\"bits\":4,\"bins\":\"" + expected + "\"}"));
 }
 
 TEST_F(SonarviewMicron, writes_lines_as_they_came) {
@@ -220,7 +220,8 @@ TEST_F(SonarviewMicron, writes_lines_as_they_came) {
   const auto lines = lines_of(path("lines.jsonl"));
   ASSERT_EQ(lines.size(), 200U);
   const std::regex form(
-      R"re(\{"number":(\d+),"turn":0,"unix_s":\d+\.\d+,"bearing":(\d+),.*"step":32,"bins":"([0-9a-f]+)"\})re");
+      R"re(\{"number":(\d+),"turn":0,"unix_s":\d+\.\d+,"bearing":(\d+),.*"step":32,"all_round":true,"bits":8,)re"
+      R"re("bins":"([0-9a-f]+)"\})re");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     std::smatch found;
     ASSERT_TRUE(std::regex_match(lines[i], found, form)) << lines[i];

@@ -87,12 +87,13 @@ TEST_F(Frame, PingOfADump) {
 }
 
 TEST_F(Frame, TurnOfAScan) {
-  // Steps of 90 degrees; bearing 3200 is ahead, in the middle of a picture that begins astern. Control 3: 8
-  // bit, continuous.
+  // Steps of 90 degrees; bearing 3200 is ahead, in the middle of a picture that begins astern. 8
+  // bits, all round.
   const auto line = [](int turn, int bearing, const char* bins) {
     return R"({"number":0,"turn":)" + std::to_string(turn) + R"(,"unix_s":1.5,"bearing":)" +
-           std::to_string(bearing) + R"(,"control":3,"left_limit":0,"right_limit":0,"step":1600,"bins":")" +
-           bins + "\"}\n";
+           std::to_string(bearing) +
+           R"(,"left_limit":0,"right_limit":0,"step":1600,"all_round":true,"bits":8,"bins":")" + bins +
+           "\"}\n";
   };
   const std::string steps = line(0, 3200, "1020");
   std::string text = steps + line(1, 3200, "01ff") + line(1, 4800, "0304") + line(1, 0, "0506");

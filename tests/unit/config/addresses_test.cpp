@@ -1,4 +1,4 @@
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 
 #include <gtest/gtest.h>
 

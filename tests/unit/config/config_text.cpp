@@ -4,6 +4,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "server/devices/kinds/kinds.hpp"
+
 namespace sonard::server {
 
 ConfigFolder::ConfigFolder() {
@@ -21,7 +23,7 @@ ConfigFolder::~ConfigFolder() {
 
 LoadedConfig ConfigFolder::load(const std::string& text) const {
   std::ofstream(folder_ / "config.yaml", std::ios::binary) << text;
-  return load_config(folder_ / "config.yaml");
+  return load_config(folder_ / "config.yaml", head_kinds());
 }
 
 std::vector<std::string> ConfigFolder::complaints(const std::string& text) const {

@@ -3,10 +3,18 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <tuple>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/config/overlaps.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/micron/kind.hpp"
 #include "tests/unit/config/config_text.hpp"
 
 namespace sonard::server {
@@ -20,6 +28,11 @@ using testing::IsEmpty;
 using testing::StartsWith;
 
 class Loader : public ConfigFolder {};
+
+/// The first head, which is a Gemini.
+const GeminiConfig& gemini_of(const DaemonConfig& config) {
+  return gemini_config(config.heads.at(0));
+}
 
 TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   const LoadedConfig loaded = load(minimal_config);
@@ -35,24 +48,26 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_EQ(config.poses.stale_policy, StalePolicy::hold);
 
   ASSERT_EQ(config.heads.size(), 1U);
-  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
+  const HeadConfig& head = config.heads[0];
+  EXPECT_EQ(head.kind, &gemini_kind());
   EXPECT_EQ(head.name, "front");
-  EXPECT_EQ(head.device.sonar_id, 513);
-  EXPECT_EQ(head.device.alternate_address, 0x7F000002U);
-  EXPECT_EQ(head.device.netmask, 0xFF000000U);
-  EXPECT_EQ(head.device.fixed_address, 0x0A3D13C8U);  // 10.61.19.200, docs/protocols/gemini.md 1.2
-  EXPECT_EQ(head.device.min_ping_period, std::chrono::microseconds{33'300});  // 8.4
-  EXPECT_EQ(head.device.water_sound_speed_mps, 0.0);
-  EXPECT_EQ(head.bind_address, 0x7F000002U);
-  EXPECT_EQ(head.command_port, 52901);
-  EXPECT_EQ(head.surface_port, 52900);
-  EXPECT_EQ(head.status.mode, StatusDestination::Mode::limited_broadcast);
-  EXPECT_THAT(head.allow, ElementsAre(Cidr{0x7F000000, 8}));
-  EXPECT_TRUE(head.link.to_surface.transparent());
-  EXPECT_TRUE(head.link.from_surface.transparent());
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
-  EXPECT_FALSE(head.trigger);
   EXPECT_FALSE(head.dump_directory);
+  const GeminiConfig& gemini = gemini_config(head);
+  EXPECT_EQ(gemini.device.sonar_id, 513);
+  EXPECT_EQ(gemini.device.alternate_address, 0x7F000002U);
+  EXPECT_EQ(gemini.device.netmask, 0xFF000000U);
+  EXPECT_EQ(gemini.device.fixed_address, 0x0A3D13C8U);  // 10.61.19.200, docs/protocols/gemini.md 1.2
+  EXPECT_EQ(gemini.device.min_ping_period, std::chrono::microseconds{33'300});  // 8.4
+  EXPECT_EQ(gemini.device.water_sound_speed_mps, 0.0);
+  EXPECT_EQ(gemini.bind_address, 0x7F000002U);
+  EXPECT_EQ(gemini.command_port, 52901);
+  EXPECT_EQ(gemini.device.surface_port, 52900);
+  EXPECT_EQ(gemini.status.mode, StatusDestination::Mode::limited_broadcast);
+  EXPECT_THAT(gemini.allow, ElementsAre(Cidr{0x7F000000, 8}));
+  EXPECT_TRUE(gemini.link.to_client.transparent());
+  EXPECT_TRUE(gemini.link.from_client.transparent());
+  EXPECT_FALSE(gemini.trigger);
 }
 
 TEST_F(Loader, reads_the_backend) {
@@ -71,7 +86,7 @@ TEST_F(Loader, reads_where_grids_are_binned) {
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
   const LoadedConfig loaded =
       load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");
-  const render::PaperModel& paper = std::get<GeminiHeadConfig>(loaded.config.heads[0]).acoustics.paper;
+  const render::PaperModel& paper = loaded.config.heads.at(0).acoustics.paper;
   EXPECT_EQ(paper.speckle, render::PaperModel::Speckle::folded_gaussian);
   EXPECT_EQ(paper.speckle_mean, 0.9);
   EXPECT_EQ(paper.speckle_sd, 0.30);  // docs/physics.md 1.2, A8
@@ -84,7 +99,7 @@ TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device
   const LoadedConfig loaded =
       load(minimal_config + "water: {temperature_c: 10, salinity_ppt: 0, depth_m: 5, ph: 7}\n");
   const double expected_db_per_m = 0.161088 * std::pow(723.38 / 720.0, 2);
-  const render::PhysicalModel& model = std::get<GeminiHeadConfig>(loaded.config.heads[0]).acoustics.physical;
+  const render::PhysicalModel& model = loaded.config.heads.at(0).acoustics.physical;
   EXPECT_NEAR(model.absorption_db_per_m, expected_db_per_m, 1e-6);
   EXPECT_NEAR(model.tvg_absorption_db_per_m, expected_db_per_m, 1e-6);
 }
@@ -93,27 +108,25 @@ TEST_F(Loader, takes_water_properties_that_are_given_outright) {
   const LoadedConfig loaded = load(minimal_config +
                                    "    acoustics: {physical: {tvg_absorption_db_per_km: 120}}\n"
                                    "water: {absorption_db_per_km: 80, sound_speed_mps: 1482.5}\n");
-  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(loaded.config.heads[0]);
-  EXPECT_DOUBLE_EQ(head.acoustics.physical.absorption_db_per_m, 0.080);
-  EXPECT_DOUBLE_EQ(head.acoustics.physical.tvg_absorption_db_per_m, 0.120);
-  EXPECT_DOUBLE_EQ(head.device.water_sound_speed_mps, 1482.5);
+  const render::PhysicalModel& model = loaded.config.heads.at(0).acoustics.physical;
+  EXPECT_DOUBLE_EQ(model.absorption_db_per_m, 0.080);
+  EXPECT_DOUBLE_EQ(model.tvg_absorption_db_per_m, 0.120);
+  EXPECT_DOUBLE_EQ(gemini_of(loaded.config).device.water_sound_speed_mps, 1482.5);
 }
 
 TEST_F(Loader, computes_the_speed_of_sound_when_asked_to) {
   const std::string water = "water: {temperature_c: 10, salinity_ppt: 35, depth_m: 10, sound_speed_mps: ";
-  EXPECT_NEAR(std::get<GeminiHeadConfig>(load(minimal_config + water + "computed}\n").config.heads[0])
-                  .device.water_sound_speed_mps,
-              1489.97,
-              5e-3);  // Mackenzie, docs/physics.md 2.2
-  EXPECT_EQ(std::get<GeminiHeadConfig>(load(minimal_config + water + "ping_configuration}\n").config.heads[0])
-                .device.water_sound_speed_mps,
-            0.0);
+  const auto speed_mps = [&](const std::string& word) {
+    return gemini_of(load(minimal_config + water + word + "}\n").config).device.water_sound_speed_mps;
+  };
+  EXPECT_NEAR(speed_mps("computed"), 1489.97, 5e-3);  // Mackenzie, docs/physics.md 2.2
+  EXPECT_EQ(speed_mps("ping_configuration"), 0.0);
 }
 
 TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
   const LoadedConfig down =
       load(minimal_config + "    mount: {position_m: [0.5, 0, -0.25], rpy_deg: [0, 20, 0]}\n");
-  const render::Pose& mount = std::get<GeminiHeadConfig>(down.config.heads[0]).T_vehicle_sonar;
+  const render::Pose& mount = down.config.heads.at(0).T_vehicle_sonar;
   EXPECT_EQ(mount.position_m, glm::dvec3(0.5, 0, -0.25));
   // A down tilt of 20 degrees: the acoustic axis points forward and down.
   const glm::dvec3 axis = mount.orientation * glm::dvec3(1, 0, 0);
@@ -123,7 +136,7 @@ TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
 
   // Rz(90) Ry(0) Rx(90): the body's y axis goes up by the roll and stays there; x turns to the left.
   const LoadedConfig rolled = load(minimal_config + "    mount: {rpy_deg: [90, 0, 90]}\n");
-  const glm::dquat& q = std::get<GeminiHeadConfig>(rolled.config.heads[0]).T_vehicle_sonar.orientation;
+  const glm::dquat& q = rolled.config.heads.at(0).T_vehicle_sonar.orientation;
   EXPECT_NEAR(glm::length(q * glm::dvec3(0, 1, 0) - glm::dvec3(0, 0, 1)), 0, 1e-12);
   EXPECT_NEAR(glm::length(q * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)), 0, 1e-12);
 }
@@ -134,14 +147,14 @@ TEST_F(Loader, reads_the_link_and_its_units) {
                                    "      seed: 18446744073709551615\n"
                                    "      to_surface: {loss: 0.05, delay_ms: 1.5, jitter_ms: 0.25}\n"
                                    "      from_surface: {reorder: 0.01, duplicate: 1}\n");
-  const LinkConfig& link = std::get<GeminiHeadConfig>(loaded.config.heads[0]).link;
+  const LinkConfig& link = gemini_of(loaded.config).link;
   EXPECT_EQ(link.seed, 18446744073709551615U);
-  EXPECT_EQ(link.to_surface.loss, 0.05);
-  EXPECT_EQ(link.to_surface.delay, std::chrono::microseconds{1500});
-  EXPECT_EQ(link.to_surface.jitter, std::chrono::microseconds{250});
-  EXPECT_EQ(link.from_surface.reorder, 0.01);
-  EXPECT_EQ(link.from_surface.duplicate, 1.0);
-  EXPECT_FALSE(link.to_surface.transparent());
+  EXPECT_EQ(link.to_client.loss, 0.05);
+  EXPECT_EQ(link.to_client.delay, std::chrono::microseconds{1500});
+  EXPECT_EQ(link.to_client.jitter, std::chrono::microseconds{250});
+  EXPECT_EQ(link.from_client.reorder, 0.01);
+  EXPECT_EQ(link.from_client.duplicate, 1.0);
+  EXPECT_FALSE(link.to_client.transparent());
 }
 
 TEST_F(Loader, resolves_paths_against_the_folder_of_the_file) {
@@ -154,7 +167,7 @@ TEST_F(Loader, resolves_paths_against_the_folder_of_the_file) {
   EXPECT_EQ(loaded.config.poses.trajectory->speed, 2.0);
   EXPECT_TRUE(loaded.config.poses.trajectory->loop);
   EXPECT_EQ(loaded.config.poses.trajectory->axes, pose::Axes::ned_frd);
-  EXPECT_EQ(std::get<GeminiHeadConfig>(loaded.config.heads[0]).dump_directory, folder_ / "pings");
+  EXPECT_EQ(loaded.config.heads.at(0).dump_directory, folder_ / "pings");
 }
 
 TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
@@ -235,7 +248,7 @@ TEST_F(Loader, noise_follows_from_a_budget) {
     return load(minimal_config + "    acoustics: {physical: " + text + "}\n");
   };
   const auto level_db = [&](const std::string& text) {
-    return common(physical(text).config.heads.at(0)).acoustics.physical.noise_level_db;
+    return physical(text).config.heads.at(0).acoustics.physical.noise_level_db;
   };
   // -15 + 20 log10 723.38 - 30 + 10 log10 94000 - 200
   EXPECT_NEAR(level_db("{noise_budget: {}}"), -138.08, 0.01);
@@ -325,14 +338,11 @@ TEST_F(Loader, wants_an_allow_list_for_everything_but_loopback) {
 }
 
 TEST_F(Loader, reads_where_status_packets_go) {
-  EXPECT_THAT(std::get<GeminiHeadConfig>(
-                  load(minimal_config + "      status: [127.0.0.1, 127.0.0.9]\n").config.heads[0])
-                  .status.hosts,
-              ElementsAre(0x7F000001U, 0x7F000009U));
-  EXPECT_EQ(
-      std::get<GeminiHeadConfig>(load(minimal_config + "      status: directed_broadcast\n").config.heads[0])
-          .status.mode,
-      StatusDestination::Mode::directed_broadcast);
+  const auto status = [&](const std::string& text) {
+    return gemini_of(load(minimal_config + "      status: " + text + "\n").config).status;
+  };
+  EXPECT_THAT(status("[127.0.0.1, 127.0.0.9]").hosts, ElementsAre(0x7F000001U, 0x7F000009U));
+  EXPECT_EQ(status("directed_broadcast").mode, StatusDestination::Mode::directed_broadcast);
   EXPECT_THAT(complaints(minimal_config + "      status: []\n"), ElementsAre(HasSubstr("no host is listed")));
   EXPECT_THAT(complaints(minimal_config + "      status: multicast\n"),
               ElementsAre(HasSubstr("'multicast' is not understood (expected one of limited_broadcast")));
@@ -382,11 +392,10 @@ TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
     return load(world + "poses: {udp: {bind: 127.0.0.1:1}" + clock + "}\n" + heads).config;
   };
   EXPECT_EQ(loaded("").poses.clock, PingClock::wall);
-  EXPECT_FALSE(std::get<GeminiHeadConfig>(loaded("").heads.at(0)).device.waits_for_permission);
+  EXPECT_FALSE(gemini_of(loaded("")).device.waits_for_permission);
   EXPECT_EQ(loaded(", clock: source").poses.clock, PingClock::source);
   EXPECT_EQ(loaded(", clock: lock_step").poses.clock, PingClock::lock_step);
-  EXPECT_TRUE(
-      std::get<GeminiHeadConfig>(loaded(", clock: lock_step").heads.at(0)).device.waits_for_permission);
+  EXPECT_TRUE(gemini_of(loaded(", clock: lock_step")).device.waits_for_permission);
   EXPECT_THAT(complaints(world + "poses: {udp: {bind: 127.0.0.1:1}, clock: sim}\n" + heads),
               ElementsAre(HasSubstr("poses.clock: ")));
   EXPECT_THAT(complaints(world + "poses: {initial: {position_m: [0, 0, 0]}, clock: source}\n" + heads),
@@ -409,8 +418,8 @@ TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
 }
 
 TEST_F(Loader, leaves_a_mount_to_the_world) {
-  const HeadConfig head = common(
-      load(minimal_config + "    mount: {from_world: bow}\n    hides_vehicle: true\n").config.heads[0]);
+  const HeadConfig head =
+      load(minimal_config + "    mount: {from_world: bow}\n    hides_vehicle: true\n").config.heads.at(0);
   EXPECT_EQ(head.mount_from_world, "bow");
   EXPECT_TRUE(head.hides_vehicle);
   EXPECT_THAT(complaints(minimal_config + "    mount: {from_world: bow, rpy_deg: [0, 1, 0]}\n"),
@@ -456,6 +465,100 @@ TEST_F(Loader, knows_that_a_socket_on_all_addresses_overlaps_every_other) {
   EXPECT_THAT(complaints(minimal_config + any + ", command_port: 52911}\n"), IsEmpty());
 }
 
+/// A head that goes on in the list of heads, reached as `serial` says.
+std::string micron_of(const std::string& name, int node, const std::string& serial) {
+  return "  - {name: " + name + ", type: micron, serial: {" + serial +
+         "}, device: {node: " + std::to_string(node) + "}}\n";
+}
+
+TEST_F(Loader, lets_heads_of_two_kinds_have_the_same_id) {
+  std::string text = minimal_config + micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
+  text.replace(text.find("513"), 3, "2");
+  const DaemonConfig config = load(text).config;
+  ASSERT_EQ(config.heads.size(), 2U);
+  for (const HeadConfig& head : config.heads) {
+    EXPECT_EQ(head.kind->device_id(head), 2);
+  }
+  EXPECT_THAT(complaints(minimal_config + micron_of("front", 2, "tcp: [{bind: 127.0.0.9:4001}]")),
+              ElementsAre(HasSubstr("heads[1].name: 'front' already belongs to heads[0]")))
+      << "names are those of the daemon";
+}
+
+TEST_F(Loader, lets_heads_of_two_lines_be_the_same_node_but_not_have_the_same_terminal) {
+  EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
+                         micron_of("b", 2, "pty: [{link: b}, {}]")),
+              IsEmpty());
+  EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
+                         micron_of("b", 3, "pty: [{link: b}, {link: ./a}, {}]")),
+              ElementsAre(HasSubstr("config.yaml:12:43: heads[2].serial.pty: '" + (folder_ / "a").string() +
+                                    "' already belongs to heads[1] (expected one of its own)")));
+}
+
+TEST_F(Loader, knows_the_sockets_of_all_inputs_and_heads_by_their_transport) {
+  const std::string text =
+      "world: {file: world.sdf}\n"
+      "poses: {tcp: {bind: 127.0.0.1:1}, mavlink: {bind: 127.0.0.1:2}, udp: {bind: 127.0.0.1:3}}\n" +
+      minimal_config.substr(minimal_config.find("heads:")) + "    trigger: {bind: 127.0.0.1:4}\n" +
+      micron_of("mast", 2, "tcp: [{bind: 127.0.0.1:3}, {bind: 127.0.0.1:5}], udp: [{bind: 127.0.0.1:1}]");
+  using Transport = PlannedSocket::Transport;
+  std::vector<std::tuple<Transport, Endpoint, std::string>> sockets;
+  for (const PlannedSocket& socket : planned_sockets(load(text).config)) {
+    sockets.emplace_back(socket.transport, socket.endpoint, socket.key);
+  }
+  const auto at = [](std::uint16_t port) { return Endpoint{0x7F000001, port}; };
+  EXPECT_THAT(sockets, testing::UnorderedElementsAre(
+                           std::tuple(Transport::udp, at(3), "poses.udp.bind"),
+                           std::tuple(Transport::udp, at(2), "poses.mavlink.bind"),
+                           std::tuple(Transport::tcp, at(1), "poses.tcp.bind"),
+                           std::tuple(Transport::udp, Endpoint{0x7F000002, 52901}, "heads[0].network.bind"),
+                           std::tuple(Transport::udp, at(4), "heads[0].trigger.bind"),
+                           std::tuple(Transport::udp, at(1), "heads[1].serial.udp[0].bind"),
+                           std::tuple(Transport::tcp, at(3), "heads[1].serial.tcp[0].bind"),
+                           std::tuple(Transport::tcp, at(5), "heads[1].serial.tcp[1].bind")));
+}
+
+TEST_F(Loader, refuses_a_socket_of_a_head_that_an_input_has) {
+  const std::string poses = "world: {file: w.sdf}\nposes: {tcp: {bind: 127.0.0.9:4001}}\nheads:\n";
+  EXPECT_THAT(
+      complaints(poses + micron_of("mast", 2, "tcp: [{bind: 0.0.0.0:4001, allow: [127.0.0.0/8]}]")),
+      ElementsAre(HasSubstr("heads[0].serial.tcp[0].bind: TCP 0.0.0.0:4001 overlaps 127.0.0.9:4001 of "
+                            "poses.tcp.bind")));
+}
+
+TEST_F(Loader, names_the_types_that_a_head_can_be_of) {
+  std::vector<std::string_view> types;
+  for (const HeadKind* kind : head_kinds()) {
+    types.push_back(kind->type());
+  }
+  ASSERT_THAT(types, testing::IsSupersetOf({"gemini_720i", "micron"}));
+  std::string text = minimal_config;
+  text.replace(text.find("gemini_720i"), 11, "gemini_7200");
+  EXPECT_THAT(complaints(text),
+              ElementsAre(fmt::format(
+                  "config.yaml:6:11: heads[0].type: 'gemini_7200' is not understood (expected one of {})",
+                  fmt::join(types, ", "))));
+  text = minimal_config;
+  text.erase(text.find("    type"), std::string("    type: gemini_720i\n").size());
+  EXPECT_THAT(complaints(text),
+              ElementsAre(fmt::format("config.yaml:5:5: heads[0].type: missing (expected {})",
+                                      fmt::join(types, " or "))));
+}
+
+TEST_F(Loader, takes_no_other_types_than_it_is_given) {
+  const std::string micron = micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
+  load(minimal_config + micron);  // which writes the file
+  const HeadKind* const kinds[] = {&gemini_kind()};
+  try {
+    load_config(folder_ / "config.yaml", kinds);
+    FAIL() << "a head of a type that is not among the kinds";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(
+        error.lines(),
+        testing::Contains(HasSubstr(
+            "config.yaml:11:24: heads[1].type: 'micron' is not understood (expected one of gemini_720i)")));
+  }
+}
+
 TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
   std::string text = minimal_config + "sampling: {preset: grid, views: 0}\nwater: {ph: 15}\nbogus: 1\n";
   text.replace(text.find("513"), 3, "1");
@@ -466,8 +569,7 @@ TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
 
 TEST_F(Loader, reads_the_error_that_is_aimed_at) {
   const auto preset = [&](const std::string& section) {
-    return std::get<GeminiHeadConfig>(load(minimal_config + section).config.heads[0])
-        .acoustics.sampling.preset;
+    return load(minimal_config + section).config.heads.at(0).acoustics.sampling.preset;
   };
   using Preset = render::Sampling::Preset;
   EXPECT_EQ(preset(""), Preset::normal);
@@ -496,12 +598,12 @@ TEST_F(Loader, wants_one_document_that_is_a_mapping) {
 
 TEST_F(Loader, says_why_a_file_cannot_be_read) {
   try {
-    load_config(folder_ / "absent.yaml");
+    load_config(folder_ / "absent.yaml", head_kinds());
     FAIL() << "loaded a file that is not there";
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("absent.yaml: cannot be read: No such file or directory"));
   }
-  EXPECT_THROW(load_config(folder_), ConfigError);
+  EXPECT_THROW(load_config(folder_, head_kinds()), ConfigError);
 }
 
 }  // namespace

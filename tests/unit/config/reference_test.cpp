@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include "server/devices/kinds/kinds.hpp"
 #include "tests/unit/config/config_text.hpp"
 
 namespace sonard::server {
@@ -134,7 +135,7 @@ std::string expected_text(const YAML::Node& node) {
   return "";
 }
 
-class Reference : public ConfigFolder, public testing::WithParamInterface<const char*> {
+class Reference : public ConfigFolder, public testing::WithParamInterface<std::string> {
  protected:
   /// What the loader says about Schema::nonsense(), by key.
   std::map<std::string, std::string> complaints_by_key() {
@@ -151,8 +152,27 @@ class Reference : public ConfigFolder, public testing::WithParamInterface<const 
   Schema schema_{GetParam()};
 };
 
-INSTANTIATE_TEST_SUITE_P(HeadTypes, Reference, testing::Values("gemini_720i", "micron"),
-                         [](const auto& type) { return std::string(type.param); });
+std::set<std::string> head_types() {
+  std::set<std::string> types;
+  for (const HeadKind* kind : head_kinds()) {
+    types.emplace(kind->type());
+  }
+  return types;
+}
+
+INSTANTIATE_TEST_SUITE_P(HeadTypes, Reference, testing::ValuesIn(head_types()),
+                         [](const auto& type) { return type.param; });
+
+TEST(Schema, has_heads_of_the_same_types_as_the_loader) {
+  const YAML::Node root = YAML::LoadFile(source_folder + "/configs/schema/sonard.schema.json");
+  const std::string prefix = "#/$defs/";
+  std::set<std::string> types;
+  for (const auto& head : root["properties"]["heads"]["items"]["oneOf"]) {
+    const YAML::Node def = root["$defs"][head["$ref"].as<std::string>().substr(prefix.size())];
+    types.insert(def["properties"]["type"]["const"].as<std::string>());
+  }
+  EXPECT_EQ(types, head_types());
+}
 
 TEST_P(Reference, schema_and_loader_know_the_same_keys) {
   const std::map<std::string, std::string> said = complaints_by_key();

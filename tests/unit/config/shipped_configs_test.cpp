@@ -9,6 +9,9 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "server/config/loader.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/kinds/kinds.hpp"
 
 namespace sonard::server {
 namespace {
@@ -23,7 +26,7 @@ TEST(ShippedConfigs, load_without_warnings) {
   for (const auto& entry : std::filesystem::directory_iterator(configs)) {
     if (entry.path().extension() == ".yaml") {
       ++files;
-      EXPECT_THAT(load_config(entry.path()).warnings, IsEmpty()) << entry.path();
+      EXPECT_THAT(load_config(entry.path(), head_kinds()).warnings, IsEmpty()) << entry.path();
     }
   }
   EXPECT_GE(files, 4);
@@ -38,12 +41,17 @@ TEST(ShippedConfigs, trajectories_load) {
   EXPECT_GE(files, 6);
 }
 
+DaemonConfig shipped(const char* file) {
+  return load_config(configs / file, head_kinds()).config;
+}
+
 void expect_demo_head(const DaemonConfig& config) {
   ASSERT_EQ(config.heads.size(), 1U);
-  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
-  EXPECT_EQ(head.device.sonar_id, 513);
-  EXPECT_EQ(head.command_port, 52901);
-  EXPECT_EQ(head.surface_port, 52900);
+  const HeadConfig& head = config.heads[0];
+  ASSERT_EQ(head.kind, &gemini_kind());
+  EXPECT_EQ(gemini_config(head).device.sonar_id, 513);
+  EXPECT_EQ(gemini_config(head).command_port, 52901);
+  EXPECT_EQ(gemini_config(head).device.surface_port, 52900);
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
   EXPECT_EQ(config.poses.udp->bind, (Endpoint{0x7F000001, 14600}));
   EXPECT_TRUE(config.poses.T_world_vehicle_initial.has_value());
@@ -55,7 +63,7 @@ TEST(ShippedConfigs, demo_starts_where_its_trajectory_starts) {
   const pose::Transform first =
       pose::load_trajectory(configs / "trajectories" / "docking_demo.csv").points().front().T_world_vehicle;
   for (const char* file : {"demo.yaml", "gemini-netns.yaml", "paper.yaml"}) {
-    const render::Pose initial = load_config(configs / file).config.poses.T_world_vehicle_initial.value();
+    const render::Pose initial = shipped(file).poses.T_world_vehicle_initial.value();
     const glm::dvec3 position(first.position_m.x, first.position_m.y, first.position_m.z);
     EXPECT_LT(glm::length(initial.position_m - position), 1e-3) << file;
     const glm::dquat q(first.orientation.w, first.orientation.x, first.orientation.y, first.orientation.z);
@@ -64,9 +72,9 @@ TEST(ShippedConfigs, demo_starts_where_its_trajectory_starts) {
 }
 
 TEST(ShippedConfigs, demo_serves_loopback) {
-  const DaemonConfig config = load_config(configs / "demo.yaml").config;
+  const DaemonConfig config = shipped("demo.yaml");
   expect_demo_head(config);
-  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
+  const GeminiConfig& head = gemini_config(config.heads[0]);
   EXPECT_EQ(head.bind_address, 0x7F000002U);
   EXPECT_EQ(head.device.alternate_address, 0x7F000002U);
   EXPECT_EQ(head.device.netmask, 0xFF000000U);
@@ -75,9 +83,9 @@ TEST(ShippedConfigs, demo_serves_loopback) {
 }
 
 TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
-  const DaemonConfig config = load_config(configs / "gemini-netns.yaml").config;
+  const DaemonConfig config = shipped("gemini-netns.yaml");
   expect_demo_head(config);
-  const GeminiHeadConfig& head = std::get<GeminiHeadConfig>(config.heads[0]);
+  const GeminiConfig& head = gemini_config(config.heads[0]);
   EXPECT_EQ(head.bind_address, 0x0A3D13C8U);
   EXPECT_EQ(head.device.alternate_address, 0x0A3D13C8U);
   EXPECT_EQ(head.device.netmask, 0xFFFFFF00U);
@@ -86,8 +94,7 @@ TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
 }
 
 TEST(ShippedConfigs, paper_uses_the_model_of_the_paper) {
-  EXPECT_EQ(std::get<GeminiHeadConfig>(load_config(configs / "paper.yaml").config.heads[0]).acoustics.model,
-            render::Model::paper);
+  EXPECT_EQ(shipped("paper.yaml").heads.at(0).acoustics.model, render::Model::paper);
 }
 
 }  // namespace

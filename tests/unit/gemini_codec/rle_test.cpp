@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace sonard::gemini {
@@ -41,6 +42,18 @@ TEST(RleEncode, values_below_the_threshold_become_zero_and_the_threshold_stays) 
   EXPECT_EQ(encoded({49, 50, 51, 0}, 50), (Bytes{1, 50, 51, 1}));
   EXPECT_EQ(encoded({2, 3, 1, 1}, 3), (Bytes{1, 3, 0, 2}));
   EXPECT_EQ(encoded({2, 3, 1, 1}, 1), (Bytes{1, 3, 0, 2})) << "1 and 2 have a meaning of their own";
+}
+
+TEST(RleEncode, least_literal_is_the_smallest_value_that_is_kept) {
+  for (int threshold = 0; threshold <= 255; ++threshold) {
+    const auto given = static_cast<std::uint8_t>(threshold);
+    const int least = least_literal(given);
+    EXPECT_EQ(least, std::max(threshold, 3));
+    for (int value = 0; value <= 255; ++value) {
+      const Bytes line{static_cast<std::uint8_t>(value)};
+      EXPECT_EQ(decoded(encoded(line, given), 1), value < least ? Bytes{0} : line) << threshold;
+    }
+  }
 }
 
 TEST(RleEncode, nothing_to_code) {

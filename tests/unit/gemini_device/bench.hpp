@@ -94,10 +94,10 @@ inline std::uint8_t test_sample(std::uint64_t ping, int line, int beam) {
 
 inline PingImage test_image(const PingJob& job) {
   PingImage image;
-  image.ping_number = job.ping_number;
-  for (int line = 0; line < job.lines(); ++line) {
+  image.number = job.number;
+  for (int line = 0; line < job.bins(); ++line) {
     for (int beam = 0; beam < beam_count; ++beam) {
-      const std::uint8_t sample = test_sample(job.ping_number, line, beam);
+      const std::uint8_t sample = test_sample(job.number, line, beam);
       if (job.sixteen_bit) {
         image.u16.push_back(static_cast<std::uint16_t>(sample << 8 | (255 - sample)));
       } else {
@@ -112,7 +112,7 @@ class Bench {
  public:
   struct Sent {
     TimePoint at{};
-    Outgoing::To to = Outgoing::To::surface;
+    Outgoing::To to = Outgoing::To::peer;
     Ipv4 surface = 0;
     Ipv4 reply_from = 0;
     SharedBytes bytes;
@@ -120,7 +120,7 @@ class Bench {
     std::uint8_t type() const { return bytes[0]; }
   };
 
-  explicit Bench(const DeviceConfig& config = example_config()) : device(config, 0ns) { step(); }
+  explicit Bench(const DeviceConfig& config = example_config()) : device(config, 0ns) { step(TimePassed{}); }
 
   // What a test sets.
   std::chrono::nanoseconds render_time{0};
@@ -137,25 +137,17 @@ class Bench {
   TimePoint now{};
   std::vector<Sent> sent;
   std::vector<PingJob> jobs;
-  std::vector<ServedPing> served;
+  std::vector<PingRecord> records;
+  std::vector<Notice> notices;
+  Actions last;  ///< of the last step
 
   void raw(std::span<const std::uint8_t> bytes, Ipv4 from = surface_address, Ipv4 to = head_address) {
-    device.on_datagram(now, from, to, bytes);
-    step();
+    step(BytesReceived{{0, {from, surface_port}, to}, SharedBytes(copy(bytes))});
   }
   void command(const Command& command, Ipv4 from = surface_address) { raw(encode(command), from); }
-  void image(const PingImage& image) {
-    device.on_image(now, image);
-    step();
-  }
-  void trigger() {
-    device.on_trigger(now);
-    step();
-  }
-  void set_out_of_water(bool out) {
-    device.set_out_of_water(out);
-    step();
-  }
+  void image(const PingImage& image) { step(PingRendered{image}); }
+  void trigger() { step(TriggerEdge{}); }
+  void set_out_of_water(bool out) { step(WaterChanged{out}); }
 
   /// When something happens next of itself.
   TimePoint next_event() const {
@@ -167,8 +159,9 @@ class Bench {
       now = std::max(now, next_event());
       if (image_ && image_->first <= now) {
         answer();
+      } else {
+        step(TimePassed{});
       }
-      step();
     }
     now = end;
   }
@@ -215,39 +208,40 @@ class Bench {
     return n;
   }
 
- private:
-  void step() {
-    device.advance(now);
-    if (std::optional<ServedPing> begun = device.take_served()) {
-      served.push_back(std::move(*begun));
+  void step(const Event& event) {
+    last = device.step(now, event);
+    if (last.record) {
+      records.push_back(*last.record);
     }
-    const auto deadline = device.next_deadline();
+    notices.insert(notices.end(), last.notices.begin(), last.notices.end());
     timer_ = TimePoint::max();
-    if (deadline) {
-      EXPECT_GT(*deadline, now) << "the head would keep its caller spinning";
-      timer_ = *deadline + lateness();
+    if (last.wake_at) {
+      EXPECT_GT(*last.wake_at, now) << "the head would keep its caller spinning";
+      timer_ = *last.wake_at + lateness();
     }
-    for (Outgoing& outgoing : device.take_outgoing()) {
-      sent.push_back({now, outgoing.to, outgoing.surface, outgoing.reply_from, outgoing.bytes});
+    for (const Outgoing& outgoing : last.send) {
+      sent.push_back({now, outgoing.to, outgoing.peer.remote.address, outgoing.peer.local, outgoing.bytes});
       if (on_sent) {
         on_sent(sent.back());
       }
     }
-    if (const auto job = device.take_job()) {
-      jobs.push_back(*job);
+    if (last.render) {
+      jobs.push_back(*last.render);
       if (renderer_answers) {
         EXPECT_FALSE(image_) << "a second job while one is unanswered";
-        image_.emplace(now + render_time, *job);
+        image_.emplace(now + render_time, *last.render);
       }
     }
   }
+
+ private:
   void answer() {
     const PingJob job = image_->second;
     image_.reset();
     if (renderer_fails) {
-      device.on_image_failed(now, job.ping_number);
+      step(PingNotRendered{job.number});
     } else {
-      device.on_image(now, render(job));
+      step(PingRendered{render(job)});
     }
   }
 

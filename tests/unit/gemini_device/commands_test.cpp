@@ -10,7 +10,7 @@ std::vector<std::vector<std::uint8_t>> answers(Bench& bench, std::span<const std
   bench.raw(command);
   std::vector<std::vector<std::uint8_t>> result;
   for (std::size_t i = before; i < bench.sent.size(); ++i) {
-    EXPECT_EQ(bench.sent[i].to, Outgoing::To::surface);
+    EXPECT_EQ(bench.sent[i].to, Outgoing::To::peer);
     EXPECT_EQ(bench.sent[i].surface, surface_address);
     EXPECT_EQ(bench.sent[i].reply_from, head_address);
     result.push_back(copy(bench.sent[i].bytes));

@@ -17,8 +17,8 @@ constexpr std::string_view example_ping =
 
 PingImage image_of_beam_numbers(const PingJob& job) {
   PingImage image;
-  image.ping_number = job.ping_number;
-  for (int i = 0; i < job.lines() * beam_count; ++i) {
+  image.number = job.number;
+  for (int i = 0; i < job.bins() * beam_count; ++i) {
     image.u8.push_back(static_cast<std::uint8_t>(i % beam_count));
   }
   return image;
@@ -72,16 +72,16 @@ TEST(PingContent, WorkedExampleMakesThisJob) {
   bench.raw(from_hex(example_ping));
   ASSERT_EQ(bench.jobs.size(), 1U);
   const PingJob& job = bench.jobs[0];
-  EXPECT_EQ(job.ping_number, 0U);
+  EXPECT_EQ(job.number, 0U);
   EXPECT_EQ(job.transmit_time, 1s);
-  EXPECT_EQ(job.native_lines, 483);
-  EXPECT_EQ(job.lines(), 483);
+  EXPECT_EQ(job.native_bins, 483);
+  EXPECT_EQ(job.bins(), 483);
   EXPECT_EQ(job.compression_log2, 0);
   EXPECT_FALSE(job.sixteen_bit);
   EXPECT_TRUE(job.transmit);
   EXPECT_NEAR(job.sound_speed_mps, 1499.2, 1e-9);
-  EXPECT_NEAR(job.line_step_m, 0.0082900179, 1e-9);  // 1499.2 / 180844
-  EXPECT_NEAR(job.gain_db, -5.5, 1e-9);              // base gain 11 dB instead of 16.5
+  EXPECT_NEAR(job.native_bin_m, 0.0082900179, 1e-9);  // 1499.2 / 180844
+  EXPECT_NEAR(job.gain_db, -5.5, 1e-9);               // base gain 11 dB instead of 16.5
 }
 
 TEST(PingContent, LinesCountUpAndOnlyTheLastSaysSo) {
@@ -114,38 +114,13 @@ TEST(PingContent, PingIdWrapsAt256WithTheUpperByteZero) {
   EXPECT_EQ(bench.all<PingTail>().back().second.ping_id, heads.back().second.ping_id);
 }
 
-TEST(PingContent, WhatIsServedIsWhatIsSent) {
-  Bench bench;
-  bench.command(ping_of(40, RunMode::continuous, 40ms));
-  bench.run_connected(2s);
-  const auto heads = bench.all<PingHead>();
-  ASSERT_GT(heads.size(), 10U);
-  ASSERT_EQ(bench.served.size(), heads.size());
-  for (std::size_t i = 0; i < heads.size(); ++i) {
-    EXPECT_EQ(bench.served[i].ping_number, i);
-    EXPECT_EQ(bench.served[i].ping.head(), heads[i].second);
-    EXPECT_EQ(bench.served[i].ping.datagram_count(), 42);
-  }
-  std::size_t at = 0;
-  for (const ServedPing& served : bench.served) {
-    for (int line = 0; line < 40 && at < bench.all<PingLine>().size(); ++line, ++at) {
-      const auto datagram = served.ping.datagram(1 + line);
-      EXPECT_EQ(std::get<PingLine>(*decode_report({datagram.data(), datagram.size()})),
-                bench.all<PingLine>()[at].second);
-    }
-    if (at > 400) {
-      break;
-    }
-  }
-}
-
-TEST(PingContent, APingThatIsCalledOffBeforeItsHeadIsNotServed) {
+TEST(PingContent, APingThatIsCancelledBeforeItsHeadIsNotRecorded) {
   Bench bench;
   bench.renderer_answers = false;
   bench.command(ping_of(40));
   bench.run_connected(1s);
   EXPECT_EQ(bench.jobs.size(), 1U);
-  EXPECT_TRUE(bench.served.empty());
+  EXPECT_TRUE(bench.records.empty());
 }
 
 struct Compression {
@@ -172,7 +147,7 @@ TEST(PingContent, RangeCompressionDividesTheLines) {
     const PingHead head = bench.all<PingHead>()[0].second;
     EXPECT_EQ(head.end_range, 2411) << "the head reports native lines";
     EXPECT_EQ(head.range_compression, c.applied);
-    EXPECT_EQ(bench.jobs[0].native_lines, 2411);
+    EXPECT_EQ(bench.jobs[0].native_bins, 2411);
     EXPECT_EQ(bench.jobs[0].compression_log2, c.applied);
     EXPECT_TRUE(bench.all<PingLine>().back().second.last());
   }
@@ -182,8 +157,8 @@ TEST(PingContent, RunLengthCodingDropsWhatIsBelowTheThreshold) {
   Bench bench;
   bench.render = [](const PingJob& job) {
     PingImage image;
-    image.ping_number = job.ping_number;
-    for (int line = 0; line < job.lines(); ++line) {
+    image.number = job.number;
+    for (int line = 0; line < job.bins(); ++line) {
       std::vector<std::uint8_t> beams(256, 49);  // all below 50
       if (line == 1) {
         beams[0] = 50;
@@ -218,8 +193,8 @@ TEST(PingContent, SixteenBitSamplesTravelMostSignificantByteFirstAndUncoded) {
   Bench bench;
   bench.render = [](const PingJob& job) {
     PingImage image;
-    image.ping_number = job.ping_number;
-    image.u16.assign(static_cast<std::size_t>(job.lines()) * beam_count, 0x0102);
+    image.number = job.number;
+    image.u16.assign(static_cast<std::size_t>(job.bins()) * beam_count, 0x0102);
     image.u16[1] = 0xFEDC;
     return image;
   };
@@ -256,7 +231,7 @@ TEST(PingContent, TooFewOrTooManyLinesAreReportedAsSent) {
     config.range_compression = 4;
     bench.command(config);
     ASSERT_EQ(bench.jobs.size(), 1U);
-    EXPECT_EQ(bench.jobs[0].native_lines, c.sent);
+    EXPECT_EQ(bench.jobs[0].native_bins, c.sent);
     bench.image(test_image(bench.jobs[0]));
     bench.run_for(2s);
     EXPECT_EQ(bench.all<PingHead>()[0].second.end_range, c.sent);
@@ -316,7 +291,7 @@ TEST(PingContent, SpeedOfSoundComesFromTheConfigurationOrTheWater) {
     ping(bench, config);
     EXPECT_NEAR(bench.jobs[0].sound_speed_mps, s.job_mps, 1e-9);
     EXPECT_NEAR(bench.jobs[0].assumed_sound_speed_mps, s.assumed_mps, 1e-9);
-    EXPECT_NEAR(bench.jobs[0].line_step_m, s.job_mps / 180844.0, 1e-12);
+    EXPECT_NEAR(bench.jobs[0].native_bin_m, s.job_mps / 180844.0, 1e-12);
     EXPECT_EQ(bench.all<PingHead>()[0].second.velocimeter_speed, s.velocimeter);
     EXPECT_EQ(bench.all<PingHead>()[0].second.sound_speed_used, s.used);
   }

@@ -193,7 +193,7 @@ TEST(Pinging, NewConfigurationReplacesAPingRenderedAhead) {
   bench.run_for(1ms);
   EXPECT_EQ(bench.device.counters().stale_images, 1U);
   ASSERT_EQ(bench.jobs.size(), 3U);
-  EXPECT_EQ(bench.jobs[2].native_lines, 300);
+  EXPECT_EQ(bench.jobs[2].native_bins, 300);
   bench.image(test_image(bench.jobs[2]));
   bench.run_for(200ms);
   EXPECT_EQ(bench.count(MessageType::ping_head), 2U);
@@ -424,9 +424,9 @@ TEST(Pinging, ImagesNobodyAskedForAreDropped) {
   bench.image(PingImage{});
   bench.command(ping_of(100));
   PingImage other = test_image(bench.jobs[0]);
-  other.ping_number = 17;
+  other.number = 17;
   bench.image(other);
-  bench.device.on_image_failed(bench.now, 17);
+  bench.step(PingNotRendered{17});
   EXPECT_EQ(bench.device.counters().stale_images, 2U);
   bench.image(test_image(bench.jobs[0]));
   bench.run_for(100ms);

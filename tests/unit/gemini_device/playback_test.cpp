@@ -1,7 +1,8 @@
-// A head that plays back: it sends what it is offered, when that is due, whatever the surface asks for.
+// A head that plays back: it sends what it is fed, when that is due, whatever the surface asks for.
 #include <algorithm>
 
 #include "bench.hpp"
+#include "protocol/gemini/gain_law.hpp"
 
 namespace sonard::gemini {
 namespace {
@@ -14,18 +15,22 @@ DeviceConfig player() {
 
 /// 40 lines of 4 native ones at 1480.5 m/s.
 RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
-  return {.record = record,
-          .lines = 40,
-          .compression_log2 = 2,
-          .sound_speed_mps = 1480.5,
-          .sound_speed_from_config = true,
-          .gain_percent = 31.5,
-          .due = due};
+  RecordedPing ping;
+  ping.record = record;
+  ping.settings = {.bins = 40,
+                   .beams = beam_count,
+                   .bin_m = 4 * 1480.5 / (2 * line_rate_hz),
+                   .sound_speed_mps = 1480.5,
+                   .sound_speed_from_config = true,
+                   .gain_percent = 31.5,
+                   .frequency_hz = carrier_hz};
+  ping.due = due;
+  return ping;
 }
 
 PingImage recorded_image(const PingJob& job) {
   PingImage image;
-  image.ping_number = job.ping_number;
+  image.number = job.number;
   for (int i = 0; i < 40 * beam_count; ++i) {
     image.u8.push_back(static_cast<std::uint8_t>(*job.record + static_cast<std::uint64_t>(i % 251)));
   }
@@ -38,18 +43,17 @@ struct Playback : testing::Test {
   Playback() { bench.render = recorded_image; }
 };
 
-TEST_F(Playback, NothingIsSentThatIsNotOffered) {
+TEST_F(Playback, NothingIsSentThatIsNotFed) {
   bench.command(ping_of(64));
   bench.run_connected(2s);
   EXPECT_TRUE(bench.ping_datagrams().empty());
-  bench.device.offer(recorded(7));
-  bench.command(to_head<StatusRequest>());
+  bench.step(PingFed{recorded(7)});
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
 }
 
 TEST_F(Playback, ThePingIsTheRecordedOneWhateverIsAskedFor) {
-  bench.device.offer(recorded(7));
+  bench.step(PingFed{recorded(7)});
   PingConfig asked = ping_of(500);
   asked.ext_mode = 0x0200;  // 16 bit
   asked.range_compression = 0;
@@ -78,19 +82,26 @@ TEST_F(Playback, ThePingIsTheRecordedOneWhateverIsAskedFor) {
 }
 
 TEST_F(Playback, TheJobSaysWhatWasAskedForAndWhichRecordAnswers) {
-  bench.device.offer(recorded(7));
+  bench.step(PingFed{recorded(7)});
   PingConfig asked = ping_of(500);
   asked.rle_threshold = 9;
   bench.command(asked);
   ASSERT_EQ(bench.jobs.size(), 1U);
   EXPECT_EQ(bench.jobs[0].record, 7U);
-  EXPECT_EQ(bench.jobs[0].recorded_gain_percent, 31.5);
-  EXPECT_EQ(bench.jobs[0].native_lines, 500);
-  EXPECT_EQ(bench.jobs[0].rle_threshold, 9);
+  EXPECT_EQ(bench.jobs[0].native_bins, 500);
+  EXPECT_EQ(bench.jobs[0].gain_percent, gain_percent(asked.spreading));
+  std::vector<std::string> kinds;
+  for (const Difference& difference : bench.jobs[0].differences) {
+    kinds.push_back(difference.kind);
+  }
+  EXPECT_EQ(kinds, (std::vector<std::string>{"range", "compression", "gain", "sound_speed", "run_lengths"}));
+  bench.run_for(100ms);
+  ASSERT_EQ(bench.records.size(), 1U);
+  EXPECT_EQ(bench.records[0].settings, recorded(7).settings) << "what is recorded again is what was sent";
 }
 
 TEST_F(Playback, APingLeavesWhenItIsDue) {
-  bench.device.offer(recorded(0, 700ms));
+  bench.step(PingFed{recorded(0, 700ms)});
   bench.command(ping_of(64));
   bench.run_for(699ms);
   EXPECT_EQ(bench.count(MessageType::ping_head), 0U);
@@ -102,7 +113,7 @@ TEST_F(Playback, APingLeavesWhenItIsDue) {
 
 TEST_F(Playback, OneThatIsLateLeavesAtOnce) {
   bench.run_until(900ms);
-  bench.device.offer(recorded(0, 700ms));
+  bench.step(PingFed{recorded(0, 700ms)});
   bench.command(ping_of(64));
   bench.run_for(50ms);
   const auto heads = bench.all<PingHead>();
@@ -113,8 +124,7 @@ TEST_F(Playback, OneThatIsLateLeavesAtOnce) {
 TEST_F(Playback, TimesOfTheRecordingCountNotTheIntervalAskedFor) {
   bench.command(ping_of(64, RunMode::continuous, 500ms));
   for (std::uint64_t k = 0; k < 4; ++k) {
-    bench.device.offer(recorded(k, 100ms + 120ms * k));
-    bench.command(to_head<StatusRequest>());
+    bench.step(PingFed{recorded(k, 100ms + 120ms * k)});
     bench.run_until(100ms + 120ms * k + 60ms);
   }
   const auto heads = bench.all<PingHead>();
@@ -125,17 +135,56 @@ TEST_F(Playback, TimesOfTheRecordingCountNotTheIntervalAskedFor) {
 }
 
 TEST_F(Playback, WithoutTimesTheIntervalCounts) {
-  bench.device.offer(recorded(0));
+  bench.step(PingFed{recorded(0)});
   bench.command(ping_of(64, RunMode::continuous, 500ms));
-  bench.device.offer(recorded(1));
+  bench.step(PingFed{recorded(1)});
   bench.run_for(499ms);
   EXPECT_EQ(bench.count(MessageType::ping_head), 1U);
   bench.run_for(1ms);
   EXPECT_EQ(bench.count(MessageType::ping_head), 2U);
 }
 
+TEST_F(Playback, APingIsFedInPlaceOfTheOneBefore) {
+  bench.step(PingFed{recorded(5)});
+  bench.step(PingFed{recorded(6)});
+  bench.step(PingFed{std::nullopt});
+  bench.command(ping_of(64));
+  EXPECT_TRUE(bench.jobs.empty());
+  bench.step(PingFed{recorded(7)});
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  EXPECT_EQ(bench.jobs[0].record, 7U);
+  bench.command(ping_of(64));
+  bench.run_for(1s);
+  EXPECT_EQ(bench.jobs.size(), 1U) << "gone with its job";
+}
+
+TEST_F(Playback, OutOfTheWaterAPingIsKept) {
+  bench.step(PingFed{recorded(7)});
+  bench.set_out_of_water(true);
+  PingConfig obedient = ping_of(64, RunMode::continuous, 100ms);
+  obedient.ext_mode = 0x0004;
+  bench.command(obedient);
+  bench.run_for(1s);
+  EXPECT_TRUE(bench.jobs.empty());
+  bench.set_out_of_water(false);
+  bench.run_for(200ms);
+  ASSERT_EQ(bench.jobs.size(), 1U) << "its job has not been out";
+  EXPECT_EQ(bench.jobs[0].record, 7U);
+}
+
+TEST_F(Playback, ARecordingWithoutAGainLeavesThatOfTheSurface) {
+  RecordedPing ping = recorded(7);
+  ping.settings.gain_percent = -1.0;
+  bench.step(PingFed{ping});
+  PingConfig asked = ping_of(64);
+  bench.command(asked);
+  bench.run_for(100ms);
+  ASSERT_EQ(bench.records.size(), 1U);
+  EXPECT_EQ(bench.records[0].settings.gain_percent, gain_percent(asked.spreading));
+}
+
 TEST_F(Playback, LostLinesAreSentAgain) {
-  bench.device.offer(recorded(3));
+  bench.step(PingFed{recorded(3)});
   bench.command(ping_of(64));
   bench.run_for(100ms);
   const std::size_t before = bench.sent.size();

@@ -200,7 +200,7 @@ class LossyBench {
   LossyBench(std::unique_ptr<Receiver> receiver, const DeviceConfig& device, double loss, unsigned seed)
       : bench(device), receiver_(std::move(receiver)), loss_(loss), random_(seed) {
     bench.on_sent = [this](const Bench::Sent& sent) {
-      if (sent.to == Outgoing::To::surface && !lost(sent.bytes)) {
+      if (sent.to == Outgoing::To::peer && !lost(sent.bytes)) {
         to_surface_.emplace(sent.at + latency, sent.bytes);
       }
     };

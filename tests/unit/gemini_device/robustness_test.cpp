@@ -1,5 +1,6 @@
 // Nothing that a peer sends makes the head grow, stall or talk for ever.
 #include <algorithm>
+#include <memory>
 #include <random>
 
 #include "bench.hpp"
@@ -94,13 +95,12 @@ TEST(Robustness, RandomDatagramsAtRandomTimes) {
   }
 }
 
-TEST(Robustness, HeadCanBeMoved) {
-  Device device(example_config(), 0ns);
-  device.advance(0ns);
-  Device moved(std::move(device));
-  moved.on_datagram(1ms, surface_address, head_address, encode(Command{to_head<StatusRequest>()}));
-  moved.advance(1ms);
-  EXPECT_EQ(moved.take_outgoing().size(), 2U);
+TEST(Robustness, HeadIsUsedThroughTheInterfaceOfAllHeads) {
+  const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(example_config(), 0ns);
+  EXPECT_EQ(head->step(0ns, TimePassed{}).send.size(), 1U);
+  const Peer from{0, {surface_address, surface_port}, head_address};
+  const SharedBytes request(encode(Command{to_head<StatusRequest>()}));
+  EXPECT_EQ(head->step(1ms, BytesReceived{from, request}).send.size(), 1U);
 }
 
 }  // namespace

@@ -7,11 +7,11 @@ namespace {
 TEST(Status, IsTheWorkedExampleByteForByte) {
   Device device(example_config(), 0ns);
   const TimePoint now = std::chrono::microseconds{0x12345678};
-  device.on_datagram(now, surface_address, head_address, encode(to_head<NetworkConfig>()));
-  device.advance(now);
-  const auto sent = device.take_outgoing();
+  const BytesReceived command{{0, {surface_address, surface_port}, head_address},
+                              SharedBytes(encode(Command{to_head<NetworkConfig>()}))};
+  const auto sent = device.step(now, command).send;
   ASSERT_EQ(sent.size(), 1U);
-  EXPECT_EQ(sent[0].to, Outgoing::To::status);
+  EXPECT_EQ(sent[0].to, Outgoing::To::everybody);
   EXPECT_EQ(copy(sent[0].bytes), from_hex("40 01 59 02 00 00 00 00 19 01 59 02 c8 13 3d 0a"
                                           "c9 02 a8 c0 05 02 a8 c0 00 00 55 01 55 03 60 09"
                                           "86 02 00 00 55 80 56 80 58 80 57 80 00 00 78 80"
@@ -50,10 +50,10 @@ TEST(Status, GoesOnWhilePinging) {
 
 TEST(Status, KeepsItsPhaseWhenTheCallerWasLate) {
   Device device(example_config(), 10s);
-  device.advance(10s);
-  device.advance(13s + 400ms);  // three are overdue: one is sent
-  EXPECT_EQ(device.take_outgoing().size(), 2U);
-  EXPECT_EQ(device.next_deadline(), TimePoint{14s});
+  EXPECT_EQ(device.step(10s, TimePassed{}).send.size(), 1U);
+  const Actions late = device.step(13s + 400ms, TimePassed{});
+  EXPECT_EQ(late.send.size(), 1U) << "three are overdue: one is sent";
+  EXPECT_EQ(late.wake_at, TimePoint{14s});
 }
 
 TEST(Status, NamesTheSurfaceWhileItIsConnected) {
@@ -86,8 +86,7 @@ TEST(Status, TellsWhenTheHeadIsOutOfTheWater) {
 TEST(Status, HeadClockKeepsCountingBeyond32Bits) {
   Device device(example_config(), 0ns);
   const std::chrono::microseconds beyond{0x1'0000'0005};
-  device.advance(beyond);
-  const auto sent = device.take_outgoing();
+  const auto sent = device.step(beyond, TimePassed{}).send;
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(copy(std::span(sent[0].bytes).subspan(48, 8)), from_hex("05 00 00 00 01 00 00 00"));
 }

@@ -67,7 +67,7 @@ class Bench {
 
   /// Runs until the surface is done; false when that takes longer than `limit`.
   bool run(std::chrono::nanoseconds limit) {
-    device_.advance(now_);
+    tell_head(TimePassed{});
     surface_.advance(now_);
     carry();
     while (!surface_.finished() && now_ < limit) {
@@ -117,7 +117,7 @@ class Bench {
         next = due;
       }
     };
-    consider(device_.next_deadline());
+    consider(head_wake_at_);
     consider(surface_.next_deadline());
     if (!events_.empty()) {
       consider(events_.top().at);
@@ -128,22 +128,29 @@ class Bench {
       events_.pop();
       happen();
     }
-    device_.advance(now_);
+    if (head_wake_at_ && *head_wake_at_ <= now_) {
+      tell_head(TimePassed{});
+    }
     surface_.advance(now_);
     carry();
   }
 
-  void carry() {
-    for (auto& datagram : device_.take_outgoing()) {
+  void tell_head(const sonard::Event& event) {
+    const Actions actions = device_.step(now_, event);
+    for (const Outgoing& datagram : actions.send) {
       transport([this, bytes = datagram.bytes] { surface_.on_datagram(now_, bytes); });
     }
-    for (auto& datagram : surface_.take_outgoing()) {
-      transport([this, bytes = std::move(datagram.bytes)] {
-        device_.on_datagram(now_, surface_address, head_address, bytes);
-      });
+    if (actions.render) {
+      render(*actions.render);
     }
-    if (const auto job = device_.take_job()) {
-      render(*job);
+    head_wake_at_ = actions.wake_at;
+  }
+
+  void carry() {
+    for (auto& datagram : surface_.take_outgoing()) {
+      transport([this, bytes = SharedBytes(std::move(datagram.bytes))] {
+        tell_head(BytesReceived{{0, {surface_address, 52900}, head_address}, bytes});
+      });
     }
     for (auto& ping : surface_.take_pings()) {
       pings_.push_back(std::move(ping));
@@ -164,8 +171,8 @@ class Bench {
 
   void render(const PingJob& job) {
     PingImage image;
-    image.ping_number = job.ping_number;
-    const auto samples = static_cast<std::size_t>(job.lines()) * beam_count;
+    image.number = job.number;
+    const auto samples = static_cast<std::size_t>(job.bins()) * beam_count;
     if (job.sixteen_bit) {
       image.u16.resize(samples);
       for (auto& sample : image.u16) {
@@ -180,7 +187,7 @@ class Bench {
       }
     }
     images_[static_cast<std::uint64_t>(job.transmit_time / 1us)] = image;
-    at(now_ + settings_.render_time, [this, image] { device_.on_image(now_, image); });
+    at(now_ + settings_.render_time, [this, image] { tell_head(PingRendered{image}); });
   }
 
   double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
@@ -190,6 +197,7 @@ class Bench {
   std::mt19937_64 random_;
   Device device_;
   Surface surface_;
+  std::optional<TimePoint> head_wake_at_;
   TimePoint now_ = 0s;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t next_order_ = 0;
@@ -217,7 +225,7 @@ TEST_P(LossyLink, EveryImageArrivesWholeAndUnchanged) {
     ASSERT_EQ(ping.lines_lost, 0) << "ping " << ping.number;
     const PingImage* sent = bench.image_sent(ping);
     ASSERT_NE(sent, nullptr) << "ping " << ping.number;
-    EXPECT_EQ(ping.head.ping_id & 0xFF, static_cast<int>(sent->ping_number & 0xFF));
+    EXPECT_EQ(ping.head.ping_id & 0xFF, static_cast<int>(sent->number & 0xFF));
     ASSERT_TRUE(ping.samples.u8 == expected_u8(*sent, settings.rle_threshold)) << "ping " << ping.number;
     ASSERT_TRUE(ping.samples.u16 == sent->u16) << "ping " << ping.number;
   }

@@ -61,7 +61,8 @@ class Info(unittest.TestCase):
                 self.assertEqual(seen["bytes"], os.path.getsize(path))
                 self.assertEqual(seen["other_records"], {"statuses": 3})
                 bow, stern = seen["heads"]
-                self.assertEqual((bow["device"], bow["id"], bow["pings"]), ("gemini", 600, 10))
+                self.assertEqual((bow["device"], bow["scanning"], bow["id"], bow["pings"]),
+                                 ("gemini_720i", False, 600, 10))
                 self.assertEqual((stern["id"], stern["pings"]), (601, 4))
                 self.assertAlmostEqual(bow["median_interval_s"], 0.5, places=5)
                 self.assertAlmostEqual(bow["rate_hz"], 2.0, places=4)
@@ -90,8 +91,8 @@ class Info(unittest.TestCase):
 
     def test_text_for_people(self):
         text = self.run_info(self.write("log.glf")).stdout
-        for part in ("closed", "Gemini 600: 10 pings", "Gemini 601: 4 pings", "9x 100 lines of 256 beams", "gain 80 %",
-                     "1 gaps of more than twice that, the longest 2.500 s", "3 statuses",
+        for part in ("closed", "Gemini 720i 600: 10 pings", "Gemini 720i 601: 4 pings", "9x 100 lines of 256 beams",
+                     "gain 80 %", "1 gaps of more than twice that, the longest 2.500 s", "3 statuses",
                      "2026-11-20T14:22:33.250 to 2026-11-20T14:22:39.750 as written"):
             self.assertIn(part, text)
 

@@ -9,27 +9,28 @@ namespace sonard::server {
 namespace {
 
 /// A line at a bearing of the wire, 1/16 gradian.
-RecordedScanLine at(int bearing, int bins = 100) {
-  RecordedScanLine line;
+LoggedPing at(int bearing, int bins = 100) {
+  LoggedPing line;
   line.bearing_rad = -(bearing - 3200) * std::numbers::pi / 3200.0;
-  line.settings.lines = bins;
+  line.settings.bins = bins;
   line.settings.beams = 1;
-  line.settings.line_step_m = 0.05;
+  line.settings.bin_m = 0.05;
   return line;
 }
 
-RecordedScan scan_of(const std::vector<int>& bearings) {
-  RecordedScan scan;
+LoggedHead scan_of(const std::vector<int>& bearings) {
+  LoggedHead scan;
+  scan.scanning = true;
   for (const int bearing : bearings) {
-    scan.lines.push_back(at(bearing));
+    scan.pings.push_back(at(bearing));
   }
   return scan;
 }
 
 TEST(RecordedTurns, all_round_a_turn_ends_where_it_began) {
-  RecordedScan scan;
+  LoggedHead scan;
   for (int line = 0; line < 450; ++line) {
-    scan.lines.push_back(at((3000 + 32 * line) % 6400));  // 200 to the turn
+    scan.pings.push_back(at((3000 + 32 * line) % 6400));  // 200 to the turn
   }
   const auto turns = turns_of(scan);
   ASSERT_EQ(turns.size(), 3U);
@@ -65,8 +66,8 @@ TEST(RecordedTurns, a_missing_line_is_a_gap_and_no_other_step) {
 }
 
 TEST(RecordedTurns, other_bins_begin_another_turn) {
-  RecordedScan scan = scan_of({3200, 3232, 3264});
-  scan.lines.push_back(at(3296, 200));
+  LoggedHead scan = scan_of({3200, 3232, 3264});
+  scan.pings.push_back(at(3296, 200));
   const auto turns = turns_of(scan);
   ASSERT_EQ(turns.size(), 2U);
   EXPECT_EQ(turns[1].begin, 3U);

@@ -9,6 +9,8 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -33,12 +35,12 @@ inline std::uint8_t test_sample(std::uint64_t ping, std::size_t bin) {
   return static_cast<std::uint8_t>(ping * 31 + bin * 7);
 }
 
-inline MicronLine test_line(const MicronJob& job) {
-  MicronLine line{job.ping_number, Bytes(static_cast<std::size_t>(job.bins))};
-  for (std::size_t bin = 0; bin < line.samples.size(); ++bin) {
-    line.samples[bin] = test_sample(job.ping_number, bin);
+inline PingImage test_line(const PingJob& job) {
+  PingImage image{job.number, Bytes(static_cast<std::size_t>(job.bins())), {}};
+  for (std::size_t bin = 0; bin < image.u8.size(); ++bin) {
+    image.u8[bin] = test_sample(job.number, bin);
   }
-  return line;
+  return image;
 }
 
 /// A sector from `left` to `right`, clockwise first; 20 bins, so that lines are quick.
@@ -66,11 +68,13 @@ class Bench {
     Bytes bytes;
   };
 
-  explicit Bench(const DeviceConfig& config = {}) : device(config, 0ns) { step(); }
+  explicit Bench(const DeviceConfig& config = {}) : device(config, 0ns), node_(config.node) {
+    step(TimePassed{});
+  }
 
   // What a test sets.
   std::chrono::nanoseconds render_time{0};
-  std::function<MicronLine(const MicronJob&)> render = test_line;
+  std::function<PingImage(const PingJob&)> render = test_line;
   bool renderer_answers = true;  ///< false: the test answers the jobs itself
   bool renderer_fails = false;
   /// Sees each frame as it is sent; may not call the bench.
@@ -80,22 +84,17 @@ class Bench {
   Device device;
   TimePoint now{};
   std::vector<Sent> sent;
-  std::vector<MicronJob> jobs;
-  std::vector<SentLine> sent_lines;
+  std::vector<PingJob> jobs;
+  std::vector<PingRecord> records;
+  std::vector<Notice> notices;
+  Actions last;  ///< of the last step
 
   void raw(std::span<const std::uint8_t> bytes) {
-    device.on_bytes(now, bytes);
-    step();
+    step(BytesReceived{{}, SharedBytes(Bytes(bytes.begin(), bytes.end()))});
   }
-  void command(const Command& command) { raw(encode(command)); }
-  void answer(const MicronLine& line) {
-    device.on_line(now, line);
-    step();
-  }
-  void fail(std::uint64_t ping_number) {
-    device.on_line_failed(now, ping_number);
-    step();
-  }
+  void command(const Command& command) { raw(encode(command, node_)); }
+  void answer(const PingImage& line) { step(PingRendered{line}); }
+  void fail(std::uint64_t number) { step(PingNotRendered{number}); }
   /// The head is turned to a bearing and then rebooted; nothing said so far counts. Returns when that was.
   TimePoint reboot_at(std::uint16_t bearing) {
     command(sector(bearing, bearing));
@@ -106,7 +105,7 @@ class Bench {
   }
   void power_cycle() {
     device.power_cycle(now);
-    step();
+    step(TimePassed{});
   }
 
   /// When something happens next of itself.
@@ -115,14 +114,15 @@ class Bench {
   void run_once() {
     now = std::max(now, next_event());
     if (job_ && job_->first <= now) {
-      const MicronJob job = std::exchange(job_, std::nullopt)->second;
+      const PingJob job = std::exchange(job_, std::nullopt)->second;
       if (renderer_fails) {
-        device.on_line_failed(now, job.ping_number);
+        fail(job.number);
       } else {
-        device.on_line(now, render(job));
+        answer(render(job));
       }
+    } else {
+      step(TimePassed{});
     }
-    step();
   }
   void run_until(TimePoint end) {
     while (next_event() <= end) {
@@ -183,17 +183,16 @@ class Bench {
     return infos;
   }
 
- private:
-  void step() {
-    device.advance(now);
-    const auto deadline = device.next_deadline();
-    timer_ = deadline.value_or(TimePoint::max());
+  void step(const Event& event) {
+    last = device.step(now, event);
+    timer_ = last.wake_at.value_or(TimePoint::max());
     EXPECT_GT(timer_, now) << "the head would keep its caller spinning";
-    if (std::optional<SentLine> line = device.take_sent_line()) {
-      sent_lines.push_back(std::move(*line));
+    if (last.record) {
+      records.push_back(*last.record);
     }
-    for (Bytes& frame : device.take_outgoing()) {
-      sent.push_back({now, std::move(frame)});
+    notices.insert(notices.end(), last.notices.begin(), last.notices.end());
+    for (const Outgoing& frame : last.send) {
+      sent.push_back({now, Bytes(frame.bytes.begin(), frame.bytes.end())});
       EXPECT_EQ(next_frame(sent.back().bytes, max_report_frame_size),
                 static_cast<std::ptrdiff_t>(sent.back().bytes.size()))
           << "one whole frame at a time";
@@ -201,18 +200,26 @@ class Bench {
         on_sent(sent.back());
       }
     }
-    if (const auto job = device.take_job()) {
-      jobs.push_back(*job);
+    if (last.render) {
+      jobs.push_back(*last.render);
       if (renderer_answers) {
         EXPECT_FALSE(job_) << "a second job while one is unanswered";
-        job_.emplace(now + render_time, *job);
+        job_.emplace(now + render_time, *last.render);
       }
     }
   }
 
+ private:
+  std::uint8_t node_;
   TimePoint timer_ = TimePoint::max();
-  std::optional<std::pair<TimePoint, MicronJob>> job_;
+  std::optional<std::pair<TimePoint, PingJob>> job_;
 };
+
+/// What a log shows of a job; empty: nothing.
+inline std::string setting(const PingJob& job, std::string_view name) {
+  const auto found = std::ranges::find(job.settings, name, &Setting::name);
+  return found == job.settings.end() ? std::string() : found->value;
+}
 
 inline std::vector<int> bearings_of(const std::vector<HeadData>& lines) {
   std::vector<int> bearings;

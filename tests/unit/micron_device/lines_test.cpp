@@ -2,6 +2,7 @@
 #include <tuple>
 
 #include "bench.hpp"
+#include "protocol/micron/recorded_form.hpp"
 
 namespace sonard::micron {
 namespace {
@@ -11,18 +12,19 @@ TEST(Line, is_the_published_frame) {
   Bench bench;
   HeadCommand command;
   command.bins = 8;
-  bench.render = [](const MicronJob& job) {
-    return MicronLine{job.ping_number, {176, 64, 10, 18, 20, 230, 64, 10}};
+  bench.render = [](const PingJob& job) {
+    return PingImage{job.number, {176, 64, 10, 18, 20, 230, 64, 10}, {}};
   };
   bench.make_ready(command);
   bench.raw(fixture("send_data"));
   bench.run_for(500ms);
   ASSERT_EQ(bench.sent.size(), 2U);
   EXPECT_EQ(bench.sent[1].bytes, fixture("head_data"));
-  ASSERT_EQ(bench.sent_lines.size(), 2U);
-  EXPECT_EQ(bench.sent_lines[1].ping_number, 1U);
-  EXPECT_TRUE(bench.sent_lines[1].line.eight_bit());
-  EXPECT_EQ(bench.sent_lines[1].bins, (Bytes{176, 64, 10, 18, 20, 230, 64, 10}));
+  ASSERT_EQ(bench.records.size(), 2U);
+  EXPECT_EQ(bench.records[1].number, 1U);
+  EXPECT_EQ(bench.records[1].bits_per_bin, 8);
+  EXPECT_TRUE(recorded_line(bench.records[1].wire)->eight_bit());
+  EXPECT_EQ(bench.records[1].samples, (Bytes{176, 64, 10, 18, 20, 230, 64, 10}));
 }
 
 TEST(Line, of_4_bits_is_the_published_frame) {
@@ -33,14 +35,15 @@ TEST(Line, of_4_bits_is_the_published_frame) {
   command.ad_span = 77;
   command.ad_low = 40;
   command.bins = 8;
-  bench.render = [](const MicronJob& job) {
-    return MicronLine{job.ping_number, {200, 79, 45, 40, 0, 89, 60, 44}};
+  bench.render = [](const PingJob& job) {
+    return PingImage{job.number, {200, 79, 45, 40, 0, 89, 60, 44}, {}};
   };
   bench.make_ready(command);
   const auto lines = bench.scan(51);
   EXPECT_EQ(encode(lines.back()), fixture("head_data_4_bit"));
-  EXPECT_FALSE(bench.sent_lines.back().line.eight_bit());
-  EXPECT_EQ(bench.sent_lines.back().bins, (Bytes{15, 8, 1, 0, 0, 10, 4, 0}));
+  EXPECT_EQ(bench.records.back().bits_per_bin, 4);
+  EXPECT_FALSE(recorded_line(bench.records.back().wire)->eight_bit());
+  EXPECT_EQ(bench.records.back().samples, (Bytes{15, 8, 1, 0, 0, 10, 4, 0}));
 }
 
 TEST(Line, of_the_rock_driver_begins_as_recorded) {
@@ -115,7 +118,7 @@ TEST(Line, of_4_bits_with_an_odd_number_of_bins_in_either_order) {
     command.bins = 3;
     command.ad_low = 0;
     command.ad_span = 255;
-    bench.render = [](const MicronJob& job) { return MicronLine{job.ping_number, {16, 128, 255}}; };
+    bench.render = [](const PingJob& job) { return PingImage{job.number, {16, 128, 255}, {}}; };
     bench.make_ready(command);
     const HeadData line = bench.scan(1)[0];
     EXPECT_EQ(line.status, 0);
@@ -160,20 +163,25 @@ TEST(Job, is_the_parameters_in_si_units) {
   bench.raw(fixture("head_command_rock"));
   bench.command(SendData{});
   bench.run_for(1s);
-  const MicronJob& job = bench.jobs.at(0);
-  EXPECT_EQ(job.ping_number, 0U);
-  EXPECT_EQ(job.bearing, 3200);
+  const PingJob& job = bench.jobs.at(0);
+  EXPECT_EQ(job.number, 0U);
   EXPECT_DOUBLE_EQ(job.bearing_rad, 0.0);
-  EXPECT_EQ(job.bins, 200);
-  EXPECT_DOUBLE_EQ(job.bin_time_s, 66.56e-6);
-  EXPECT_DOUBLE_EQ(job.bin_length_m, 104 * 0.48e-3);
+  EXPECT_EQ(job.bins(), 200);
+  EXPECT_EQ(job.native_bins, 200);
+  EXPECT_EQ(job.compression_log2, 0);
+  EXPECT_EQ(job.listening_time, 200 * 66'560ns);
+  EXPECT_DOUBLE_EQ(job.bin_m(), 104 * 0.48e-3);
   EXPECT_NEAR(job.range_m(), 9.984, 1e-12);
   EXPECT_DOUBLE_EQ(job.gain_db, 32.0);
-  EXPECT_NEAR(job.ad_span_db, 25.41, 0.005);
-  EXPECT_NEAR(job.ad_low_db, 2.51, 0.005);
-  EXPECT_TRUE(job.eight_bit);
+  EXPECT_DOUBLE_EQ(job.gain_percent, 40.0);
+  EXPECT_EQ(setting(job, "window"), "2.5+25.4dB") << "AD low and AD span";
+  EXPECT_EQ(setting(job, "bits"), "8");
+  EXPECT_FALSE(job.sixteen_bit);
   EXPECT_TRUE(job.transmit);
-  EXPECT_EQ(bench.jobs.at(1).bearing, 3112) << "5 degrees to the left";
+  const auto lines = bench.all<HeadData>();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].second.bearing, 3200);
+  EXPECT_EQ(lines[1].second.bearing, 3112) << "5 degrees to the left";
   EXPECT_NEAR(bench.jobs.at(1).bearing_rad * 180 / std::numbers::pi, -4.95, 1e-9);
 }
 
@@ -183,7 +191,7 @@ TEST(Job, uses_the_true_speed_of_sound) {
   Bench bench(config);
   bench.make_ready(all_round());
   bench.command(SendData{});
-  EXPECT_DOUBLE_EQ(bench.jobs.at(0).bin_length_m, 53 * 640e-9 * 1450.0 / 2);
+  EXPECT_DOUBLE_EQ(bench.jobs.at(0).bin_m(), 53 * 640e-9 * 1450.0 / 2);
 }
 
 TEST(Job, asks_for_noise_only_with_the_transmitter_off) {
@@ -205,7 +213,8 @@ TEST(Job, keeps_to_what_a_head_can_do) {
     const HeadData line = bench.scan(1)[0];
     EXPECT_EQ(line.data.size(), static_cast<std::size_t>(jobs_bins));
     EXPECT_EQ(line.ad_interval, interval) << "echoed as it came";
-    EXPECT_DOUBLE_EQ(bench.jobs[0].bin_time_s, 640e-9);
+    EXPECT_EQ(bench.jobs[0].listening_time, jobs_bins * 640ns);
+    EXPECT_DOUBLE_EQ(bench.jobs[0].bin_m(), 640e-9 * 1500.0 / 2);
   }
 }
 

@@ -14,24 +14,23 @@ DeviceConfig waiting() {
 struct Permission : ::testing::Test {
   Bench bench{waiting()};
 
-  /// Permits what is wished for by now, as a server does.
-  bool permit() {
-    const auto wish = bench.device.ping_wish();
-    if (!wish || wish->from > bench.now) {
+  /// Grants what the head would begin by now, as a server does.
+  bool grant() {
+    const auto next = bench.last.next_ping;
+    if (!next || next->from > bench.now) {
       return false;
     }
-    bench.device.permit_ping();
-    bench.raw({});
+    bench.step(PingGranted{});
     return true;
   }
 };
 
 TEST_F(Permission, NothingIsWishedForUntilLinesAreOwed) {
-  EXPECT_FALSE(bench.device.ping_wish());
+  EXPECT_FALSE(bench.last.next_ping);
   bench.make_ready(all_round());
-  EXPECT_FALSE(bench.device.ping_wish());
+  EXPECT_FALSE(bench.last.next_ping);
   bench.command(SendData{});
-  EXPECT_TRUE(bench.device.ping_wish());
+  EXPECT_TRUE(bench.last.next_ping);
 }
 
 TEST_F(Permission, NothingIsSentWithoutIt) {
@@ -46,10 +45,10 @@ TEST_F(Permission, NothingIsSentWithoutIt) {
 TEST_F(Permission, TheWishSaysHowLinesFollow) {
   bench.make_ready(all_round());
   bench.command(SendData{});
-  ASSERT_TRUE(bench.device.ping_wish());
+  ASSERT_TRUE(bench.last.next_ping);
   const LineTiming timing = line_timing(all_round(), waiting(), 32);
-  EXPECT_EQ(bench.device.ping_wish()->period, timing.period(waiting()));
-  EXPECT_EQ(bench.device.ping_wish()->listening, timing.listen);
+  EXPECT_EQ(bench.last.next_ping->period, timing.period(waiting()));
+  EXPECT_EQ(bench.last.next_ping->listening, timing.listen);
 }
 
 TEST_F(Permission, LinesAreTheSameAndInOrderHoweverFast) {
@@ -59,7 +58,7 @@ TEST_F(Permission, LinesAreTheSameAndInOrderHoweverFast) {
     if (line % 2 == 0) {
       bench.command(SendData{});  // two lines
     }
-    ASSERT_TRUE(permit());
+    ASSERT_TRUE(grant());
     bench.run_for(1ms);  // no head turns as fast as that by its own clock
   }
   ASSERT_EQ(bench.all<HeadData>().size(), 20U);
@@ -78,7 +77,7 @@ TEST_F(Permission, ALinePeriodOfNothingStillListens) {
   Bench as_fast_as_rendered(config);
   as_fast_as_rendered.make_ready(all_round());
   as_fast_as_rendered.command(SendData{});
-  const auto wish = as_fast_as_rendered.device.ping_wish();
+  const auto wish = as_fast_as_rendered.last.next_ping;
   ASSERT_TRUE(wish);
   EXPECT_EQ(wish->period, wish->listening);
 }

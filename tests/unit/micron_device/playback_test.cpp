@@ -1,5 +1,6 @@
-// A head that plays back: it sends what it is offered, when that is due, whatever the host asks for.
+// A head that plays back: it sends what it is fed, when that is due, whatever the host asks for.
 #include "bench.hpp"
+#include "protocol/micron/recorded_form.hpp"
 
 namespace sonard::micron {
 namespace {
@@ -10,25 +11,32 @@ DeviceConfig player() {
   return config;
 }
 
-/// 30 bins of 8 bits, at 1000, from a sector that no test asks for; 30 * 100 * 640 ns of listening: 1.92 ms.
-RecordedLine recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
-  RecordedLine line;
-  line.record = record;
-  line.line.status = head_status_bits::eight_bit;
-  line.line.sweep = SweepCode::left_limit;
-  line.line.control = 0x2301;
-  line.line.range_scale = 0x4123;
-  line.line.gain = 77;
-  line.line.ad_interval = 100;
-  line.line.left_limit = 1000;
-  line.line.right_limit = 1200;
-  line.line.step = 7;
-  line.line.bearing = 1000;
-  line.bins = 30;
-  line.bearing_rad = 2.16;  // mounted boot down: on the other side
-  line.sound_speed_mps = 1480.0;
-  line.due = due;
+/// At 1000, of 8 bits, from a sector that no test asks for.
+HeadData recorded_head_data() {
+  HeadData line;
+  line.status = head_status_bits::eight_bit;
+  line.sweep = SweepCode::left_limit;
+  line.control = 0x2301;
+  line.range_scale = 0x4123;
+  line.gain = 77;
+  line.ad_interval = 100;
+  line.left_limit = 1000;
+  line.right_limit = 1200;
+  line.step = 7;
+  line.bearing = 1000;
   return line;
+}
+
+/// 30 bins; 30 * 100 * 640 ns of listening: 1.92 ms.
+RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt,
+                      const HeadData& line = recorded_head_data()) {
+  RecordedPing ping;
+  ping.record = record;
+  ping.settings = {.bins = 30, .beams = 1, .bin_m = 100 * 640e-9 * 1480.0 / 2.0, .sound_speed_mps = 1480.0};
+  ping.bearing_rad = 2.16;  // mounted boot down: on the other side
+  ping.wire = recorded_wire(line, default_head_node);
+  ping.due = due;
+  return ping;
 }
 
 struct MicronPlayback : ::testing::Test {
@@ -36,7 +44,7 @@ struct MicronPlayback : ::testing::Test {
   MicronPlayback() { bench.make_ready(all_round()); }
 };
 
-TEST_F(MicronPlayback, nothing_is_sent_that_is_not_offered_or_not_asked_for) {
+TEST_F(MicronPlayback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
   bench.command(SendData{});
   bench.run_for(3s);
   EXPECT_TRUE(bench.all<HeadData>().empty());
@@ -44,60 +52,102 @@ TEST_F(MicronPlayback, nothing_is_sent_that_is_not_offered_or_not_asked_for) {
 
   Bench unasked{player()};
   unasked.make_ready(all_round());
-  unasked.device.offer(recorded(0));
+  unasked.step(PingFed{recorded(0)});
   unasked.run_for(3s);
   EXPECT_TRUE(unasked.all<HeadData>().empty());
 }
 
 TEST_F(MicronPlayback, the_line_is_the_recorded_one_whatever_is_asked_for) {
-  bench.device.offer(recorded(5));
+  bench.step(PingFed{recorded(5)});
   bench.command(SendData{});
   bench.run_for(100ms);
   const auto lines = bench.all<HeadData>();
-  ASSERT_EQ(lines.size(), 1U) << "of the two that were asked for one was offered";
+  ASSERT_EQ(lines.size(), 1U) << "of the two that were asked for one was fed";
   Bytes bins(30);
   for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-    bins[bin] = test_sample(bench.jobs.at(0).ping_number, bin);
+    bins[bin] = test_sample(bench.jobs.at(0).number, bin);
   }
-  HeadData expected = recorded(5).line;
+  HeadData expected = recorded_head_data();
   expected.data = bins;
   EXPECT_EQ(lines[0].second, expected);
-  ASSERT_EQ(bench.sent_lines.size(), 1U);
-  EXPECT_EQ(bench.sent_lines[0].line, recorded(5).line);
-  EXPECT_EQ(bench.sent_lines[0].bins, bins);
+  ASSERT_EQ(bench.records.size(), 1U);
+  EXPECT_EQ(bench.records[0].wire, recorded(5).wire) << "what is recorded again is what was sent";
+  EXPECT_EQ(bench.records[0].samples, bins);
+  EXPECT_EQ(bench.records[0].bits_per_bin, 8);
+  EXPECT_EQ(bench.records[0].bearings_rad, std::vector<double>{2.16});
 }
 
 TEST_F(MicronPlayback, the_job_is_what_the_line_was_made_with) {
-  bench.device.offer(recorded(5));
+  bench.step(PingFed{recorded(5)});
   bench.command(SendData{});
   ASSERT_EQ(bench.jobs.size(), 1U);
-  const MicronJob& job = bench.jobs[0];
+  const PingJob& job = bench.jobs[0];
   EXPECT_EQ(job.record, 5U);
-  EXPECT_EQ(job.bins, 30);
-  EXPECT_EQ(job.bearing, 1000);
+  EXPECT_EQ(job.bins(), 30);
   EXPECT_EQ(job.bearing_rad, 2.16);
   EXPECT_EQ(job.sound_speed_mps, 1480.0);
-  EXPECT_DOUBLE_EQ(job.bin_length_m, 100 * 640e-9 * 1480.0 / 2.0);
-  EXPECT_EQ(bench.device.parameters()->bins, 20) << "what the host asks for";
+  EXPECT_DOUBLE_EQ(job.bin_m(), 100 * 640e-9 * 1480.0 / 2.0);
+  EXPECT_EQ(job.listening_time, 1920us);
+  EXPECT_DOUBLE_EQ(job.gain_db, 77 * 80.0 / 210);
+  EXPECT_EQ(setting(job, "bits"), "8");
+  EXPECT_EQ(setting(job, "scan"), "") << "what the host asks for is not what is sent";
+}
+
+TEST_F(MicronPlayback, the_job_says_how_it_differs_from_what_is_asked_for) {
+  bench.step(PingFed{recorded(5)});
+  bench.command(SendData{});
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  std::vector<std::string> kinds;
+  for (const Difference& difference : bench.jobs[0].differences) {
+    kinds.push_back(difference.kind);
+  }
+  EXPECT_EQ(kinds, (std::vector<std::string>{"range", "bins", "gain", "sector", "step"}));
+  EXPECT_EQ(bench.jobs[0].differences.at(1).text, "20 bins asked for, 30 sent");
+}
+
+TEST_F(MicronPlayback, a_ping_that_does_not_say_how_it_travelled_is_none) {
+  RecordedPing ping = recorded(5);
+  ping.wire.clear();
+  bench.step(PingFed{ping});
+  bench.command(SendData{});
+  bench.run_for(3s);
+  EXPECT_TRUE(bench.jobs.empty());
+  EXPECT_TRUE(bench.all<HeadData>().empty());
+}
+
+TEST_F(MicronPlayback, a_ping_is_fed_in_place_of_the_one_before) {
+  bench.step(PingFed{recorded(5)});
+  bench.step(PingFed{recorded(6)});
+  bench.step(PingFed{std::nullopt});
+  bench.command(SendData{});
+  EXPECT_TRUE(bench.jobs.empty());
+  bench.step(PingFed{recorded(7)});
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
 TEST_F(MicronPlayback, bins_of_4_bits_travel_as_they_did) {
-  RecordedLine line = recorded(0);
-  line.line.control = 0x2300;
-  line.line.status = 0;
-  line.bins = 5;
-  bench.render = [](const MicronJob& job) { return MicronLine{job.ping_number, {15, 0, 7, 8, 1}}; };
-  bench.device.offer(line);
+  HeadData line = recorded_head_data();
+  line.control = 0x2300;
+  line.status = 0;
+  RecordedPing ping = recorded(0, std::nullopt, line);
+  ping.settings.bins = 5;
+  ping.bits_per_bin = 4;
+  bench.render = [](const PingJob& job) { return PingImage{job.number, {15, 0, 7, 8, 1}, {}}; };
+  bench.step(PingFed{ping});
   bench.command(SendData{});
   bench.run_for(100ms);
   const auto lines = bench.all<HeadData>();
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(Bytes(lines[0].second.data.begin(), lines[0].second.data.end()), (Bytes{0xF0, 0x78, 0x10}));
+  ASSERT_EQ(bench.records.size(), 1U);
+  EXPECT_EQ(bench.records[0].samples, (Bytes{15, 0, 7, 8, 1}));
+  EXPECT_EQ(bench.records[0].bits_per_bin, 4);
 }
 
 TEST_F(MicronPlayback, a_line_is_made_when_it_is_due_and_leaves_when_its_echoes_are_in) {
   const TimePoint due = bench.now + 700ms;
-  bench.device.offer(recorded(0, due));
+  bench.step(PingFed{recorded(0, due)});
   bench.command(SendData{});
   bench.run_for(2s);
   const auto lines = bench.all<HeadData>();
@@ -108,28 +158,28 @@ TEST_F(MicronPlayback, a_line_is_made_when_it_is_due_and_leaves_when_its_echoes_
 
 TEST_F(MicronPlayback, lines_come_as_close_as_the_host_asks_for_them) {
   std::uint64_t record = 0;
-  bench.device.offer(recorded(record));
+  bench.step(PingFed{recorded(record)});
   bench.command(SendData{});
   const TimePoint begin = bench.now;
-  while (bench.sent_lines.size() < 10 && bench.now < begin + 1s) {
-    const std::size_t before = bench.sent_lines.size();
+  while (bench.records.size() < 10 && bench.now < begin + 1s) {
+    const std::size_t before = bench.records.size();
     bench.run_once();
-    if (bench.sent_lines.size() > before) {
-      bench.device.offer(recorded(++record));
+    if (bench.records.size() > before) {
+      bench.step(PingFed{recorded(++record)});
       bench.command(SendData{});
     }
   }
-  ASSERT_EQ(bench.sent_lines.size(), 10U);
+  ASSERT_EQ(bench.records.size(), 10U);
   EXPECT_EQ(bench.now - begin, 10 * 1920us) << "neither turning nor a line of 115200 baud takes time";
 }
 
 TEST_F(MicronPlayback, new_parameters_do_not_cost_a_line_that_has_begun) {
   bench.renderer_answers = false;
-  bench.device.offer(recorded(3));
+  bench.step(PingFed{recorded(3)});
   bench.command(SendData{});
   bench.command(all_round(64));
-  EXPECT_EQ(bench.device.called_off(), std::nullopt);
-  bench.answer({bench.jobs.at(0).ping_number, Bytes(30, 9)});
+  EXPECT_EQ(bench.last.cancelled, std::nullopt);
+  bench.answer({bench.jobs.at(0).number, Bytes(30, 9), {}});
   bench.run_for(1s);
   EXPECT_EQ(bench.all<HeadData>().size(), 1U);
   EXPECT_EQ(bench.device.counters().pings_cancelled, 0U);

@@ -73,7 +73,8 @@ TEST(Requests, wait_until_the_head_is_centred) {
   bench.run_until(reboot + 6s);
   ASSERT_EQ(bench.jobs.size(), 2U);
   EXPECT_EQ(bench.jobs[0].transmit_time, reboot + 2700ms);
-  EXPECT_EQ(bench.jobs[0].bearing, 3200);
+  EXPECT_DOUBLE_EQ(bench.jobs[0].bearing_rad, 0.0);
+  EXPECT_EQ(bench.all<HeadData>().at(0).second.bearing, 3200);
 }
 
 TEST(Requests, survive_new_parameters_and_are_answered_with_them_only) {
@@ -86,7 +87,7 @@ TEST(Requests, survive_new_parameters_and_are_answered_with_them_only) {
   next.ad_span = 81;
   next.bins = 30;
   bench.command(next);
-  EXPECT_EQ(bench.device.called_off(), 0U);
+  EXPECT_EQ(bench.last.cancelled, 0U);
   bench.renderer_answers = true;
   bench.answer(test_line(bench.jobs[0]));
   bench.run_for(2s);

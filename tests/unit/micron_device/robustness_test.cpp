@@ -1,4 +1,5 @@
 // Nothing that a peer sends makes the head grow, stall or talk for ever; nobody's absence stops it.
+#include <memory>
 #include <random>
 
 #include "bench.hpp"
@@ -17,7 +18,7 @@ TEST(Robustness, host_that_vanishes_in_the_middle_of_a_line_leaves_a_running_hea
   bench.make_ready(all_round());
   bench.scan(5);
   bench.raw(begin_of("head_command_uxv", 30));
-  bench.device.on_host_gone();
+  bench.step(ClientGone{});
   bench.run_for(10s);
   EXPECT_EQ(bench.device.state(bench.now), HeadState::ready) << "what was owed is sent to nobody";
 
@@ -68,7 +69,7 @@ TEST(Robustness, ping_that_cannot_be_rendered_is_a_line_that_does_not_come) {
 TEST(Robustness, line_of_the_wrong_size_counts_as_failed) {
   Bench bench;
   bench.make_ready(all_round());
-  bench.render = [](const MicronJob& job) { return MicronLine{job.ping_number, Bytes(19)}; };
+  bench.render = [](const PingJob& job) { return PingImage{job.number, Bytes(19), {}}; };
   bench.command(SendData{});
   bench.run_for(1s);
   EXPECT_TRUE(bench.all<HeadData>().empty());
@@ -78,11 +79,11 @@ TEST(Robustness, line_of_the_wrong_size_counts_as_failed) {
 TEST(Robustness, answers_to_no_job_are_dropped) {
   Bench bench;
   bench.make_ready(all_round());
-  bench.answer(MicronLine{0, Bytes(20)});
+  bench.answer(PingImage{0, Bytes(20), {}});
   bench.fail(5);
   bench.renderer_answers = false;
   bench.command(SendData{});
-  bench.answer(MicronLine{77, Bytes(20)});
+  bench.answer(PingImage{77, Bytes(20), {}});
   bench.answer(test_line(bench.jobs.at(0)));
   bench.answer(test_line(bench.jobs.at(0)));
   bench.run_for(1s);
@@ -140,7 +141,7 @@ TEST(Robustness, random_bytes_at_random_times) {
       bench.raw(bytes);
       bench.renderer_fails = draw(10) == 0;
       if (draw(100) == 0) {
-        bench.device.on_host_gone();
+        bench.step(ClientGone{});
       }
       bench.run_for(std::chrono::microseconds(draw(100) == 0 ? draw(5'000'000) : draw(50'000)));
     }
@@ -153,13 +154,11 @@ TEST(Robustness, random_bytes_at_random_times) {
   }
 }
 
-TEST(Robustness, head_can_be_moved) {
-  Device device(DeviceConfig{}, 0ns);
-  device.advance(0ns);
-  Device moved(std::move(device));
-  moved.on_bytes(5s, fixture("send_version"));
-  moved.advance(5s);
-  EXPECT_EQ(moved.take_outgoing().size(), 3U) << "an alive from before, the version, an alive";
+TEST(Robustness, head_is_used_through_the_interface_of_all_heads) {
+  const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(DeviceConfig{}, 0ns);
+  EXPECT_EQ(head->step(0ns, TimePassed{}).send.size(), 1U) << "an alive";
+  const BytesReceived request{{}, SharedBytes(fixture("send_version"))};
+  EXPECT_EQ(head->step(5s, request).send.size(), 2U) << "the version, an alive";
 }
 
 }  // namespace

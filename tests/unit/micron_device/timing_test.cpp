@@ -1,5 +1,6 @@
 // The pace of lines (docs/protocols/micron.md 8.4).
 #include <cmath>
+#include <deque>
 
 #include "bench.hpp"
 #include "protocol/micron/line_timing.hpp"
@@ -207,25 +208,29 @@ TEST(Timing, caller_that_is_a_little_late_keeps_the_pace) {
   DeviceConfig config;
   config.line_period = 40ms;
   Device device(config, 0ns);
-  device.advance(10s);
-  device.on_bytes(10s, encode(all_round()));
+  const auto hears = [](const Command& command) { return BytesReceived{{}, SharedBytes(encode(command))}; };
+  device.step(10s, hears(all_round()));
   TimePoint now = 12s;
-  device.on_bytes(now, encode(SendData{}));
+  std::deque<Event> events{hears(SendData{})};
   std::vector<TimePoint> transmitted;
+  std::optional<TimePoint> wake_at;
   while (transmitted.size() < 50) {
-    device.advance(now);
-    for (const auto& frame : device.take_outgoing()) {
-      if (frame[10] == 2) {
-        device.on_bytes(now, encode(SendData{}));
-        device.advance(now);
+    if (events.empty()) {
+      now = wake_at.value() + 3ms;
+      events.push_back(TimePassed{});
+    }
+    const Actions actions = device.step(now, events.front());
+    events.pop_front();
+    for (const Outgoing& frame : actions.send) {
+      if (frame.bytes[10] == 2) {
+        events.push_back(hears(SendData{}));
       }
     }
-    if (const auto job = device.take_job()) {
-      transmitted.push_back(job->transmit_time);
-      device.on_line(now, test_line(*job));
-      device.advance(now);
+    if (actions.render) {
+      transmitted.push_back(actions.render->transmit_time);
+      events.push_back(PingRendered{test_line(*actions.render)});
     }
-    now = *device.next_deadline() + 3ms;
+    wake_at = actions.wake_at;
   }
   EXPECT_NEAR(ms(transmitted.back() - transmitted.front()), 49 * 40.0, 10.0);
 }

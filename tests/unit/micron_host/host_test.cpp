@@ -74,9 +74,7 @@ TEST(Host, unpacks_4_bit_lines) {
     HeadCommand command = all_round();
     command.control = 0x2306;
     command.bins = 5;
-    session.head.render = [](const MicronJob& job) {
-      return MicronLine{job.ping_number, {0, 16, 32, 255, 128}};
-    };
+    session.head.render = [](const PingJob& job) { return PingImage{job.number, {0, 16, 32, 255, 128}, {}}; };
     session.host.start(0ns, command, 1);
     session.run_to_end();
     EXPECT_EQ(session.lines.at(0).bins, (Bytes{0, 1, 2, 15, 8}));

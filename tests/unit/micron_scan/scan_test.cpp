@@ -19,7 +19,8 @@
 #include "protocol/micron/units.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/sonar_renderer.hpp"
-#include "server/devices/micron_settings.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/settings.hpp"
 
 namespace sonard::server {
 namespace {
@@ -66,21 +67,21 @@ bool sees_furniture(double world_azimuth_rad) {
 /// A line of a scan, and where and when it was heard.
 struct Line {
   micron::ReceivedLine received;
-  micron::MicronJob job;
+  PingJob job;
 };
 
 /// Head, renderer and host around one clock that runs as fast as they do.
 class Scan {
  public:
-  explicit Scan(MicronHeadConfig config)
+  explicit Scan(HeadConfig config)
       : config_(std::move(config)),
-        device_(config_.device, 0ns),
+        device_(micron_config(config_).device, 0ns),
         host_({}, 0ns),
         renderer_(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
                   {render::Backend::ray, 0}) {}
 
   /// Of the vehicle; at rest at the start, bow to the east.
-  std::function<double(micron::TimePoint)> yaw_rad = [](micron::TimePoint) { return 0.0; };
+  std::function<double(TimePoint)> yaw_rad = [](TimePoint) { return 0.0; };
 
   std::vector<Line> run(const micron::HeadCommand& command, std::uint64_t lines) {
     host_.start(now_, command, lines);
@@ -88,60 +89,65 @@ class Scan {
     while (!host_.finished() && now_ < 120s) {
       step();
       for (micron::ReceivedLine& line : host_.take_lines()) {
-        const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const micron::MicronJob& one) {
-          return one.bearing == line.head.bearing && one.ping_number >= next_job_;
+        const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const PingJob& one) {
+          return one.bearing_rad == micron::bearing_rad(line.head.bearing) && one.number >= next_job_;
         });
         if (job == jobs_.end()) {
           ADD_FAILURE() << "a line at " << line.head.bearing << " was never rendered";
           return scan;
         }
-        next_job_ = job->ping_number + 1;
+        next_job_ = job->number + 1;
         scan.push_back({std::move(line), *job});
       }
     }
     return scan;
   }
 
-  micron::TimePoint now() const { return now_; }
+  TimePoint now() const { return now_; }
 
  private:
   void step() {
     host_.advance(now_);
     for (const auto& frame : host_.take_outgoing()) {
-      device_.on_bytes(now_, frame);
+      happen(BytesReceived{{}, SharedBytes(frame)});
     }
-    device_.advance(now_);
-    while (const std::optional<micron::MicronJob> job = device_.take_job()) {
-      answer(*job);
-      device_.advance(now_);
-    }
-    for (const auto& frame : device_.take_outgoing()) {
-      host_.on_bytes(now_, frame);
-    }
+    happen(TimePassed{});
     host_.advance(now_);
-    std::optional<micron::TimePoint> next = device_.next_deadline();
+    std::optional<TimePoint> next = wake_at_;
     if (const auto other = host_.next_deadline(); other && (!next || *other < *next)) {
       next = other;
     }
     now_ = std::max(now_ + 1us, next.value_or(now_ + 1ms));
   }
 
-  void answer(const micron::MicronJob& job) {
+  void happen(const Event& event) {
+    const Actions actions = device_.step(now_, event);
+    wake_at_ = actions.wake_at;
+    for (const Outgoing& frame : actions.send) {
+      host_.on_bytes(now_, {frame.bytes.data(), frame.bytes.size()});
+    }
+    if (actions.render) {
+      happen(PingRendered{answer(*actions.render)});
+    }
+  }
+
+  PingImage answer(const PingJob& job) {
     const glm::dquat yaw = glm::angleAxis(yaw_rad(job.transmit_time), glm::dvec3(0, 0, 1));
     const render::Pose T_world_mount = render::Pose{start_m, yaw} * config_.T_vehicle_sonar;
     render::PingSamples samples =
-        renderer_.render_ping({T_world_transducer(T_world_mount, job), to_sonar_settings(job, config_),
-                               job.ping_number, config_.seed});
+        renderer_.render_ping({T_world_transducer(T_world_mount, job.bearing_rad),
+                               micron_sonar_settings(job, config_), job.number, config_.seed});
     jobs_.push_back(job);
-    device_.on_line(now_, {job.ping_number, std::move(samples.u8)});
+    return {job.number, std::move(samples.u8), {}};
   }
 
-  MicronHeadConfig config_;
-  micron::TimePoint now_{};
+  HeadConfig config_;
+  TimePoint now_{};
   micron::Device device_;
   micron::Host host_;
   render::SonarRenderer renderer_;
-  std::vector<micron::MicronJob> jobs_;
+  std::optional<TimePoint> wake_at_;
+  std::vector<PingJob> jobs_;
   std::uint64_t next_job_ = 0;
 };
 
@@ -151,8 +157,11 @@ micron::HeadCommand all_round() {
 }
 
 /// Without anything random, and with the edges of the beam sharp: what is heard is where things are.
-MicronHeadConfig plain_head() {
-  MicronHeadConfig config;
+HeadConfig plain_head() {
+  HeadConfig config = micron_kind().make_default();
+  auto device = std::make_shared<MicronConfig>();
+  device->chirp_bandwidth_hz = 0;
+  config.device = std::move(device);
   config.acoustics.physical.noise = false;
   config.acoustics.physical.speckle = render::PhysicalModel::Speckle::off;
   config.acoustics.physical.backscatter = render::PhysicalModel::Backscatter::lambert;
@@ -160,7 +169,6 @@ MicronHeadConfig plain_head() {
   config.acoustics.physical.ring_down.on = false;
   config.acoustics.physical.interference.probability = 0;
   config.acoustics.aperture.elevation = render::Aperture::Elevation::top_hat;
-  config.chirp_bandwidth_hz = 0;
   return config;
 }
 
@@ -171,14 +179,14 @@ int first_echo(const Line& line) {
 }
 
 /// Within one bin of the closed form, at every bearing that hears nothing but wall.
-void expect_walls(const std::vector<Line>& scan, const std::function<double(micron::TimePoint)>& yaw_rad) {
+void expect_walls(const std::vector<Line>& scan, const std::function<double(TimePoint)>& yaw_rad) {
   int walls = 0, worst = 0;
   for (const Line& line : scan) {
     const double azimuth = yaw_rad(line.job.transmit_time) - micron::bearing_rad(line.received.head.bearing);
     if (sees_furniture(azimuth)) {
       continue;
     }
-    const int expected = static_cast<int>(wall_span(azimuth).nearest_m / line.job.bin_length_m);
+    const int expected = static_cast<int>(wall_span(azimuth).nearest_m / line.job.bin_m());
     worst = std::max(worst, std::abs(first_echo(line) - expected));
     EXPECT_LE(std::abs(first_echo(line) - expected), 1)
         << "bearing " << line.received.head.bearing << ", azimuth " << azimuth / degree;
@@ -203,9 +211,9 @@ TEST(MicronScan, AStillHeadHearsTheWallsWhereTheyAre) {
 TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
   Scan scan(plain_head());
   constexpr double turn_rad = 20 * degree;
-  constexpr micron::TimePoint begin = 6s;  // it is centred and scans by then
+  constexpr TimePoint begin = 6s;  // it is centred and scans by then
   constexpr std::chrono::duration<double> duration{8.3};
-  const auto yaw_rad = [&](micron::TimePoint time) {
+  const auto yaw_rad = [&](TimePoint time) {
     return turn_rad * std::clamp(std::chrono::duration<double>(time - begin) / duration, 0.0, 1.0);
   };
   scan.yaw_rad = yaw_rad;
@@ -217,7 +225,7 @@ TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
   const auto south_wall = [&](std::size_t from) {
     double lines_there = 0, bearing = 0, yaw = 0;
     for (std::size_t i = from; i < from + 200; ++i) {
-      const double range_m = first_echo(lines[i]) * lines[i].job.bin_length_m;
+      const double range_m = first_echo(lines[i]) * lines[i].job.bin_m();
       const double at = micron::bearing_rad(lines[i].received.head.bearing);
       if (at > 70 * degree && at < 130 * degree && range_m > 4.4 && range_m < 4.6) {
         ++lines_there;
@@ -236,7 +244,7 @@ TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
 }
 
 TEST(MicronScan, WithEverythingOnTheStrongestEchoIsTheWall) {
-  Scan scan{MicronHeadConfig{}};
+  Scan scan(micron_kind().make_default());
   const std::vector<Line> lines = scan.run(all_round(), 200);
   ASSERT_EQ(lines.size(), 200u);
   for (const Line& line : lines) {
@@ -246,13 +254,13 @@ TEST(MicronScan, WithEverythingOnTheStrongestEchoIsTheWall) {
     }
     const auto& bins = line.received.bins;
     // Beyond the ring-down.
-    const auto rings = static_cast<std::ptrdiff_t>(std::ceil(1.0 / line.job.bin_length_m));
+    const auto rings = static_cast<std::ptrdiff_t>(std::ceil(1.0 / line.job.bin_m()));
     const auto strongest = std::max_element(bins.begin() + rings, bins.end());
-    const double range_m = (static_cast<double>(strongest - bins.begin()) + 0.5) * line.job.bin_length_m;
+    const double range_m = (static_cast<double>(strongest - bins.begin()) + 0.5) * line.job.bin_m();
     const Span wall = wall_span(azimuth);
-    EXPECT_GT(range_m, wall.nearest_m - 1.5 * line.job.bin_length_m) << azimuth / degree;
+    EXPECT_GT(range_m, wall.nearest_m - 1.5 * line.job.bin_m()) << azimuth / degree;
     // At the elevations of a beam of 35 degrees a wall is up to 7.6 % further.
-    EXPECT_LT(range_m, 1.076 * wall.furthest_m + 1.5 * line.job.bin_length_m) << azimuth / degree;
+    EXPECT_LT(range_m, 1.076 * wall.furthest_m + 1.5 * line.job.bin_m()) << azimuth / degree;
     EXPECT_GE(*strongest, 90);   // 28 dB: plain above the noise
     EXPECT_LE(*strongest, 191);  // an imaging head says no more
   }

@@ -1,36 +1,66 @@
 // What heads are asked for along a voyage.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
-#include "protocol/gemini/bearings.hpp"
-#include "server/offline/gemini_frames.hpp"
-#include "server/offline/scan_frames.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "server/npy/npy_file.hpp"
+#include "server/offline/fan_frames.hpp"
+#include "server/offline/sweep_frames.hpp"
 
 namespace sonard::server {
 namespace {
 
 using namespace std::chrono_literals;
 
+using testing::HasSubstr;
+
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-/// One metre a second along x, for `seconds`, from the stamp 100 s on.
-Voyage ahead(int seconds) {
+/// Along x from the origin, for `seconds`, from the stamp 100 s on.
+Voyage ahead(int seconds, double speed_mps = 1.0) {
   const std::int64_t start = 100 * second_ns;
-  return Voyage(pose::Trajectory({{start, {{0, 0, 0}, {1, 0, 0, 0}}},
-                                  {start + seconds * second_ns, {{1.0 * seconds, 0, 0}, {1, 0, 0, 0}}}}));
+  return Voyage(
+      pose::Trajectory({{start, {{0, 0, 0}, {1, 0, 0, 0}}},
+                        {start + seconds * second_ns, {{speed_mps * seconds, 0, 0}, {1, 0, 0, 0}}}}));
 }
 
-TEST(GeminiFrames, PingAtTheRateAskedForWithNumberAndPose) {
-  GeminiHeadConfig head;
+/// A Gemini whose device is set up by `change`.
+template <class Change>
+HeadConfig gemini(const Change& change) {
+  HeadConfig head = gemini_kind().make_default();
+  auto config = std::make_shared<GeminiConfig>();
+  change(config->device);
+  head.device = std::move(config);
+  return head;
+}
+
+FanFrames fans_of(const HeadConfig& head, const HeadPlace& place, const Voyage& voyage,
+                  const OfflineOptions& options) {
+  return {head, place, kind_of(head).survey(head, options.survey), voyage, options, nullptr};
+}
+
+SweepFrames sweeps_of(const HeadConfig& head, const Voyage& voyage, const OfflineOptions& options) {
+  return {head, 0, kind_of(head).survey(head, options.survey), voyage, options, nullptr};
+}
+
+TEST(FanFrames, PingAtTheRateAskedForWithNumberAndPose) {
+  HeadConfig head = gemini_kind().make_default();
   head.T_vehicle_sonar.position_m = {0.5, 0, 0};
   head.seed = 9;
   const Voyage voyage = ahead(2);
   OfflineOptions options;
   options.rate_hz = 4.0;
-  const GeminiFrames frames(head, {1, 0}, voyage, options, nullptr);
+  const FanFrames frames = fans_of(head, {1, 0}, voyage, options);
   EXPECT_EQ(frames.count(), 9);
   EXPECT_EQ(frames.name(3), "ping_000003");
   const render::PingRequest ping = frames.request(3);
@@ -44,32 +74,33 @@ TEST(GeminiFrames, PingAtTheRateAskedForWithNumberAndPose) {
 }
 
 // docs/protocols/gemini.md 8.4, 8.5.
-TEST(GeminiFrames, TheNaturalRateIsTheFastestThatHeadWaterAndLinkAllow) {
-  GeminiHeadConfig head;
+TEST(FanFrames, TheNaturalRateIsTheFastestThatHeadWaterAndLinkAllow) {
+  HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.min_ping_period = 100ms; });
   const Voyage voyage = ahead(10);
   const auto frames_with = [&](double range_m, int compression_log2) {
     OfflineOptions options;
-    options.gemini.range_m = range_m;
-    options.gemini.compression_log2 = compression_log2;
-    return GeminiFrames(head, {}, voyage, options, nullptr).count();
+    options.survey.range_m = range_m;
+    options.survey.compression_log2 = compression_log2;
+    return fans_of(head, {}, voyage, options).count();
   };
-  head.device.min_ping_period = 100ms;
   EXPECT_EQ(frames_with(20, 0), 101);  // the head
-  head.device.min_ping_period = 1ms;
-  head.device.line_period = 100us;
+  head = gemini([](gemini::DeviceConfig& device) {
+    device.min_ping_period = 1ms;
+    device.line_period = 100us;
+  });
   EXPECT_EQ(frames_with(20, 0), 1 + static_cast<int>(10.0 / (2413 * 100e-6)));  // the link
   EXPECT_EQ(frames_with(20, 4), 1 + static_cast<int>(10.0 * 90422.0 / 2411));   // the water
 }
 
-TEST(GeminiFrames, RecordsAreThoseOfTheLog) {
-  GeminiHeadConfig head;
-  head.device.sonar_id = 777;
+TEST(FanFrames, RecordsAreThoseOfTheLog) {
+  const HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.sonar_id = 777; });
   const Voyage voyage = ahead(1);
   OfflineOptions options;
   options.rate_hz = 2.0;
-  options.gemini.range_m = 1.0;
-  options.gemini.gain_percent = 30.0;
-  const GeminiFrames frames(head, {0, 2}, voyage, options, nullptr);
+  options.survey.range_m = 1.0;
+  options.survey.gain_percent = 30.0;
+  const FanFrames frames = fans_of(head, {0, 2}, voyage, options);
+  EXPECT_TRUE(frames.makes_glf());
   constexpr int lines = 121;  // 1 m of 1500 / 2 / 90422 m
   std::vector<std::uint8_t> pixels(lines * 256U, 7);
   pixels[1] = 200;
@@ -86,12 +117,12 @@ TEST(GeminiFrames, RecordsAreThoseOfTheLog) {
   EXPECT_FALSE(frames.record(1, npy_bytes({lines, 255, std::vector<std::uint8_t>(lines * 255U), {}})));
 }
 
-TEST(ScanFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
-  const MicronHeadConfig head;
+TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
+  const HeadConfig head = micron_kind().make_default();
   const Voyage voyage = ahead(10);
   OfflineOptions options;
   options.rate_hz = 50.0;  // 501 lines
-  const ScanFrames frames(head, 0, voyage, options, nullptr);
+  const SweepFrames frames = sweeps_of(head, voyage, options);
   EXPECT_EQ(frames.count(), 2);
   EXPECT_EQ(frames.first_line(1), 200);
   EXPECT_EQ(frames.first_line(2), 400);
@@ -104,13 +135,13 @@ TEST(ScanFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
   EXPECT_DOUBLE_EQ(frames.request(250).T_world_sonar.position_m.x, 5.0);
 }
 
-TEST(ScanFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
-  const MicronHeadConfig head;
+TEST(SweepFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
+  const HeadConfig head = micron_kind().make_default();
   const Voyage voyage = ahead(3);
   OfflineOptions options;
-  options.rate_hz = 50.0;                                  // 151 lines
-  options.micron.sector = micron::ScanSector{2400, 4000};  // 90 degrees about ahead: 51 bearings
-  const ScanFrames frames(head, 0, voyage, options, nullptr);
+  options.rate_hz = 50.0;                     // 151 lines
+  options.survey.sector_deg = {-45.0, 45.0};  // 51 bearings
+  const SweepFrames frames = sweeps_of(head, voyage, options);
   ASSERT_EQ(frames.count(), 3);
   EXPECT_EQ(frames.first_line(1), 51);
   EXPECT_EQ(frames.first_line(2), 101);
@@ -124,10 +155,174 @@ TEST(ScanFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
   EXPECT_NEAR(azimuth_rad(100), std::numbers::pi / 4, 1e-12);
 }
 
-TEST(ScanFrames, WithoutTimeForASweepThereIsNone) {
-  const MicronHeadConfig head;
+TEST(SweepFrames, WithoutTimeForASweepThereIsNone) {
+  const HeadConfig head = micron_kind().make_default();
   const Voyage voyage = ahead(1);
-  EXPECT_EQ(ScanFrames(head, 0, voyage, {}, nullptr).count(), 0);
+  EXPECT_EQ(sweeps_of(head, voyage, {}).count(), 0);
+}
+
+TEST(SweepFrames, GoIntoNoLogOfFans) {
+  const HeadConfig head = micron_kind().make_default();
+  const Voyage voyage = ahead(10);
+  const SweepFrames frames = sweeps_of(head, voyage, {});
+  EXPECT_FALSE(frames.makes_glf());
+  EXPECT_FALSE(frames.record(0, {}));
+}
+
+// ---- What lies beside the samples
+
+/// A board 0.8 m ahead of the origin, from y = 1 m, which is to port, to another y.
+render::World board(float right_m = -1.0F) {
+  auto mesh = std::make_shared<render::TriangleMesh>();
+  mesh->positions = {{0.8F, 1, -1}, {0.8F, 1, 1}, {0.8F, right_m, 1}, {0.8F, right_m, -1}};
+  mesh->indices = {0, 1, 2, 0, 2, 3};
+  render::World world;
+  render::Body& body = world.bodies.emplace_back();
+  body.name = "board";
+  body.parts.push_back({mesh, {}, {}, nullptr});
+  return world;
+}
+
+TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
+  HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.sonar_id = 777; });
+  head.name = "bow";
+  head.seed = 5;
+  const Voyage voyage = ahead(1);
+  OfflineOptions options;
+  options.rate_hz = 2.0;
+  options.radius_px = 64;
+  options.survey.range_m = 1.0;
+  options.survey.compression_log2 = 2;
+  FanFrames frames = fans_of(head, {3, 0}, voyage, options);
+  render::SonarRenderer renderer(board(), {render::Backend::ray, 0});
+  const Frame frame = frames.render(renderer, 1);
+  for (const char* line :
+       {"\n  \"frame\": 1,\n", "\n  \"head\": \"bow\",\n", "\n  \"type\": \"gemini_720i\",\n",
+        "\n  \"stamp_s\": 100.5,\n", "\n  \"device_id\": 777,\n", "\n  \"ping_number\": 1,\n",
+        "\n  \"stream\": 3,\n", "\n  \"seed\": 5,\n", "\"axes\": [\"line\", \"beam\"], \"shape\": [30, 256]}",
+        "\n  \"truth\": null\n",
+        "\n  \"settings\": {\"range_m\": 1, \"gain_percent\": 50, \"sound_speed_mps\": 1500, "
+        "\"compression\": 2, \"bits\": 8, \"native_lines\": 121, \"period_s\": 0.5},\n"}) {
+    EXPECT_THAT(frame.sidecar, HasSubstr(line));
+  }
+  EXPECT_EQ(frame.sidecar.find("sonar_id"), std::string::npos);
+  ASSERT_TRUE(parse_npy(frame.npy, 30, 256, false));
+  const auto record = frames.record(1, frame.npy);
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->pixels, parse_npy(frame.npy, 30, 256, false)->u8);
+}
+
+TEST(FanFrames, OfSixteenBitsTheLogHasTheHighOnes) {
+  const HeadConfig head = gemini_kind().make_default();
+  const Voyage voyage = ahead(1);
+  OfflineOptions options;
+  options.radius_px = 64;
+  options.survey.range_m = 1.0;
+  options.survey.bits = 16;
+  const FanFrames frames = fans_of(head, {}, voyage, options);
+  std::vector<std::uint16_t> samples(121U * 256U, 0x1234);
+  samples[0] = 0xFF01;
+  const auto record = frames.record(0, npy_bytes({121, 256, {}, samples}));
+  ASSERT_TRUE(record);
+  std::vector<std::uint8_t> expected(samples.size(), 0x12);
+  expected[0] = 0xFF;
+  EXPECT_EQ(record->pixels, expected);
+  EXPECT_FALSE(frames.record(0, npy_bytes({121, 256, expected, {}}))) << "they are not of this frame";
+}
+
+TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
+  HeadConfig head = micron_kind().make_default();
+  auto config = std::make_shared<MicronConfig>();
+  config->device.node = 9;
+  head.device = config;
+  head.name = "mast";
+  const Voyage voyage = ahead(1);
+  OfflineOptions options;
+  options.rate_hz = 50.0;
+  options.radius_px = 64;
+  options.survey.range_m = 2.0;
+  options.survey.bins = 40;
+  options.survey.step_deg = 9.0;
+  options.survey.sector_deg = {-45.0, 45.0};
+  SweepFrames frames = sweeps_of(head, voyage, options);
+  render::SonarRenderer renderer(board(), {render::Backend::ray, 0});
+  frames.pass(renderer, 0);
+  const Frame frame = frames.render(renderer, 1);
+  for (const char* line :
+       {"\n  \"frame\": 1,\n", "\n  \"head\": \"mast\",\n", "\n  \"type\": \"micron\",\n",
+        "\n  \"device_id\": 9,\n", "\n  \"first_ping_number\": 11,\n",
+        "\"axes\": [\"bin\", \"line\"], \"shape\": [40, 10]}",
+        "\n  \"settings\": {\"range_m\": 2, \"gain_percent\": 50, \"sound_speed_mps\": 1500, \"bins\": 40, "
+        "\"step_deg\": 9, \"sector_deg\": [-45",
+        "\"period_s\": 0.02},\n  \"stamps_s\": [100.22, "}) {
+    EXPECT_THAT(frame.sidecar, HasSubstr(line));
+  }
+  EXPECT_TRUE(parse_npy(frame.npy, 40, 10, false));
+}
+
+// ---- Pictures
+
+/// How much louder the left half of a picture is than the right one: 1 where all is on the left. Echoes are
+/// of the colour of fire, grid and letters grey.
+double left_over_right(const cv::Mat& picture) {
+  const auto loudness = [&](int first, int end) {
+    double sum = 0.0;
+    for (int row = 0; row < picture.rows; ++row) {
+      for (int column = first; column < end; ++column) {
+        const auto& colour = picture.at<cv::Vec3b>(row, column);
+        sum += std::max(0, colour[2] - colour[0]);  // red beyond blue
+      }
+    }
+    return sum;
+  };
+  const double left = loudness(0, picture.cols / 2);
+  const double right = loudness(picture.cols / 2, picture.cols);
+  return (left - right) / (left + right);
+}
+
+OfflineOptions quiet_options() {
+  OfflineOptions options;
+  options.rate_hz = 50.0;
+  options.radius_px = 200;
+  options.survey.range_m = 1.5;
+  return options;
+}
+
+void take_noise_off(HeadConfig& head) {
+  head.acoustics.physical.noise = false;
+  head.acoustics.physical.speckle = render::PhysicalModel::Speckle::off;
+  head.acoustics.physical.ring_down.on = false;
+  head.acoustics.physical.interference.probability = 0.0;
+}
+
+TEST(FanFrames, HavePortOnTheLeftOfTheirPictures) {
+  HeadConfig head = gemini_kind().make_default();
+  take_noise_off(head);
+  const Voyage voyage = ahead(1, 0.0);
+  FanFrames frames = fans_of(head, {}, voyage, quiet_options());
+  render::SonarRenderer renderer(board(0.3F), {render::Backend::ray, 0});
+  EXPECT_GT(left_over_right(frames.render(renderer, 0).draw()), 0.3);
+}
+
+TEST(SweepFrames, HavePortOnTheLeftOfTheirPicturesHoweverTheHeadIsMounted) {
+  for (const bool inverted : {false, true}) {
+    SCOPED_TRACE(inverted ? "boot down" : "boot up");
+    HeadConfig head = micron_kind().make_default();
+    take_noise_off(head);
+    auto config = std::make_shared<MicronConfig>();
+    config->device.mounted_inverted = inverted;
+    head.device = config;
+    const Voyage voyage = ahead(5, 0.0);
+    OfflineOptions options = quiet_options();
+    render::SonarRenderer renderer(board(0.3F), {render::Backend::ray, 0});
+    SweepFrames turns = sweeps_of(head, voyage, options);
+    EXPECT_GT(left_over_right(turns.render(renderer, 0).draw()), 0.3);
+    // Lopsided, so that a sector on the wrong side misses the board: as the head says it, from 80 degrees to
+    // the side where the board is to 10 beyond ahead.
+    options.survey.sector_deg = inverted ? std::vector{-10.0, 80.0} : std::vector{-80.0, 10.0};
+    SweepFrames sweeps = sweeps_of(head, voyage, options);
+    EXPECT_GT(left_over_right(sweeps.render(renderer, 0).draw()), 0.3);
+  }
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <regex>
 #include <sstream>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "tests/unit/pose_input/source_fixture.hpp"
 
 namespace sonard::server {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "server/pose/tcp_pose_source.hpp"
 #include "server/pose/udp_pose_source.hpp"
 #include "tests/unit/pose_input/child_process.hpp"

@@ -7,7 +7,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "tests/unit/pose_input/source_fixture.hpp"
 
 namespace sonard::server {

@@ -6,7 +6,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/udp.hpp>
 
-#include "server/config/addresses.hpp"
+#include "server/net/addresses.hpp"
 #include "tests/unit/pose_input/source_fixture.hpp"
 
 namespace sonard::server {

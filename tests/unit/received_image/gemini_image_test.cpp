@@ -15,7 +15,8 @@
 #include "protocol/gemini/surface.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "server/config/config.hpp"
-#include "server/devices/gemini_settings.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/settings.hpp"
 
 namespace sonard {
 namespace {
@@ -67,38 +68,42 @@ class Client {
   }
 
   void step(float intensity) {
-    device_.advance(now_);
+    happen(TimePassed{}, intensity);
     surface_.advance(now_);
-    for (const auto& datagram : device_.take_outgoing()) {
-      surface_.on_datagram(now_, datagram.bytes);
-    }
     for (const auto& datagram : surface_.take_outgoing()) {
-      device_.on_datagram(now_, surface_address, head_address, datagram.bytes);
-    }
-    if (const auto job = device_.take_job()) {
-      device_.on_image(now_, render(*job, intensity));
+      happen(BytesReceived{{0, {surface_address, 52900}, head_address}, SharedBytes(datagram.bytes)}, intensity);
     }
     now_ += 200us;
   }
 
-  gemini::PingImage render(const gemini::PingJob& job, float intensity) {
-    render::PingRequest request;
-    request.settings = server::to_sonar_settings(job, head_);
-    request.ping_number = job.ping_number;
-    request.seed = 7;
-    line_m_ = job.line_step_m * (1 << job.compression_log2);
-    const render::EchoImage echo{
-        beams, job.native_lines,
-        std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(job.native_lines),
-                           intensity)};
-    return {job.ping_number, receiver_.receive(echo, request, 0, workers_).u8, {}};
+  void happen(const Event& event, float intensity) {
+    const Actions actions = device_.step(now_, event);
+    for (const Outgoing& datagram : actions.send) {
+      surface_.on_datagram(now_, datagram.bytes);
+    }
+    if (actions.render) {
+      happen(PingRendered{render(*actions.render, intensity)}, intensity);
+    }
   }
 
-  static constexpr gemini::Ipv4 head_address = 0x7F000002;
-  static constexpr gemini::Ipv4 surface_address = 0x7F000001;
+  PingImage render(const PingJob& job, float intensity) {
+    render::PingRequest request;
+    request.settings = server::gemini_sonar_settings(job, head_);
+    request.ping_number = job.number;
+    request.seed = 7;
+    line_m_ = job.bin_m();
+    const render::EchoImage echo{
+        beams, job.native_bins,
+        std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(job.native_bins),
+                           intensity)};
+    return {job.number, receiver_.receive(echo, request, 0, workers_).u8, {}};
+  }
 
-  server::GeminiHeadConfig head_;
-  gemini::TimePoint now_ = 0s;
+  static constexpr Ipv4 head_address = 0x7F000002;
+  static constexpr Ipv4 surface_address = 0x7F000001;
+
+  server::HeadConfig head_ = server::gemini_kind().make_default();
+  TimePoint now_ = 0s;
   gemini::Device device_;
   gemini::Surface surface_;
   gemini::PingConfig config_;
@@ -113,7 +118,7 @@ class Client {
 constexpr double level = 0.05;
 
 render::SonarSettings even_gain() {
-  render::SonarSettings settings = server::GeminiHeadConfig().acoustics;
+  render::SonarSettings settings = server::gemini_acoustics();
   settings.physical.pulse = render::PhysicalModel::Pulse::point;  // lines are independent
   settings.physical.tvg_log_coefficient = 0;
   settings.physical.tvg_absorption_db_per_m = 0;
@@ -243,7 +248,7 @@ double mean_level_db(const Image& image, double from_m, double to_m) {
 
 // The head as it comes, in empty water, at 50 m: noise rises by the law of the TVG, and then no more.
 TEST(GeminiImage, NoiseFloorRisesWithTheTvgAndIsFlatOverTheLastQuarterOf50m) {
-  const Image image = Client(server::GeminiHeadConfig().acoustics, 6028, 2).images(1, 0).front();
+  const Image image = Client(server::gemini_acoustics(), 6028, 2).images(1, 0).front();
   EXPECT_NEAR(image.lines * image.line_m, 50, 0.1);
   std::vector<double> levels;
   for (double from_m = 37.5; from_m < 49; from_m += 1.25) {
@@ -253,7 +258,7 @@ TEST(GeminiImage, NoiseFloorRisesWithTheTvgAndIsFlatOverTheLastQuarterOf50m) {
   EXPECT_LT(*most - *least, 1.0);
   EXPECT_GT(*least, 20 * std::log10(10)) << "it is seen";
   EXPECT_LT(*most, 20 * std::log10(128)) << "and leaves room for echoes";
-  const double absorption = server::GeminiHeadConfig().acoustics.physical.tvg_absorption_db_per_m;
+  const double absorption = server::gemini_acoustics().physical.tvg_absorption_db_per_m;
   EXPECT_NEAR(mean_level_db(image, 29.5, 30.5) - mean_level_db(image, 24.5, 25.5),
               30 * std::log10(30.0 / 25) + 2 * absorption * 5, 0.5);
 }

@@ -12,7 +12,8 @@
 #include "protocol/micron/codec.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "server/config/config.hpp"
-#include "server/devices/micron_settings.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/settings.hpp"
 #include "tests/support/correlation.hpp"
 
 namespace sonard {
@@ -23,20 +24,20 @@ constexpr double range_m = 25;
 
 class MicronClient {
  public:
-  explicit MicronClient(const server::MicronHeadConfig& head) : head_(head) {}
+  explicit MicronClient(const server::HeadConfig& head) : head_(head) {}
 
   /// The next line, as decoded.
   std::vector<std::uint8_t> line(float intensity, bool transmit = true, double bearing_rad = 0) {
-    micron::MicronJob job;
+    PingJob job;
     job.bearing_rad = bearing_rad;
-    job.bins = bins;
-    job.bin_length_m = range_m / bins;
+    job.native_bins = bins;
+    job.native_bin_m = range_m / bins;
     job.sound_speed_mps = 1500;
-    job.gain_db = head_.nominal_gain_db;
+    job.gain_db = server::micron_config(head_).nominal_gain_db;
     job.transmit = transmit;
     render::PingRequest request;
-    request.settings = server::to_sonar_settings(job, head_);
-    request.T_world_sonar = server::T_world_transducer({}, job);
+    request.settings = server::micron_sonar_settings(job, head_);
+    request.T_world_sonar = server::T_world_transducer({}, job.bearing_rad);
     request.ping_number = ping_number_++;
     request.seed = 3;
     const render::EchoImage echo{1, bins, std::vector<float>(bins, intensity)};
@@ -51,7 +52,7 @@ class MicronClient {
   }
 
  private:
-  server::MicronHeadConfig head_;
+  server::HeadConfig head_;
   render::Receiver receiver_;
   render::WorkerPool workers_{1};
   std::uint64_t ping_number_ = 0;
@@ -71,7 +72,7 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
     grid.insert(k * 255 / 160);
   }
   EXPECT_EQ(*grid.rbegin(), 191);
-  MicronClient client{server::MicronHeadConfig()};
+  MicronClient client{server::micron_kind().make_default()};
   std::set<int> seen;
   for (float intensity = 1e-14F; intensity < 1e-2F; intensity *= 10) {
     for (const std::uint8_t code : client.line(intensity)) {
@@ -85,7 +86,7 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
 
 // Blank first row; a peak at 0.2 to 0.35 m, gone by 0.8 to 1 m; the water behind it mostly exactly 0.
 TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
-  MicronClient client{server::MicronHeadConfig()};
+  MicronClient client{server::micron_kind().make_default()};
   const std::vector<std::uint8_t> line = client.line(0);
   EXPECT_EQ(line[0], 0);
   const auto peak = std::max_element(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(bin_at(2)));
@@ -102,14 +103,14 @@ TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
 }
 
 TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
-  MicronClient client{server::MicronHeadConfig()};
+  MicronClient client{server::micron_kind().make_default()};
   EXPECT_EQ(client.line(0, false)[bin_at(0.3)], 0);
 }
 
 // docs/physics.md 2.16: from sweep to sweep of a vehicle at rest echoes repeat by about 0.95, noise does not.
 // An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
 TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
-  server::MicronHeadConfig head;
+  server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.noise_level_db = 40 - 80 + 9 - 20;
@@ -139,7 +140,7 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
 // even between 2 and 11 dB, 6.5 +-2.6 on the average. A quarter of a line is 125 exponentials in intensity,
 // whose mean level is known to 0.4 dB.
 TEST(MicronImage, OnePingOfFourteenIsHitByInterferenceToItsEnd) {
-  server::MicronHeadConfig head;
+  server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.noise_level_db = 40 - 80 + 9;

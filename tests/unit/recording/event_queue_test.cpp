@@ -46,8 +46,8 @@ TEST(EventQueue, CountsWhatItDropsByWhatIsLost) {
   auto& pieces = std::get<WirePassed>(two_datagrams.what).pieces;
   pieces.push_back(pieces.front());
   EXPECT_FALSE(queue.push(two_datagrams));
-  const gemini::SharedBytes status(std::vector<std::uint8_t>(1500));
-  EXPECT_FALSE(queue.push({0, {}, GeminiStatusSent{status}}));
+  const SharedBytes status(std::vector<std::uint8_t>(1500));
+  EXPECT_FALSE(queue.push({0, {}, StatusSent{status}}));
   EXPECT_EQ(queue.dropped().images, 2U);
   EXPECT_EQ(queue.dropped().pieces, 2U);
   EXPECT_EQ(queue.dropped().others, 1U);
@@ -65,9 +65,9 @@ TEST(EventQueue, HasRoomAgainWhenEventsAreWorkedOffNotWhenTheyAreTaken) {
 }
 
 TEST(EventQueue, CountsAllBytesOfAPing) {
-  // 16 bytes of header and 256 samples a line.
-  EXPECT_GE(memory_of(ping_event(1, 1000, {})), 272'000U);
-  EXPECT_LE(memory_of(ping_event(1, 1000, {})), 290'000U);
+  // 256 samples a line, and 256 bearings.
+  EXPECT_GE(memory_of(ping_event(1, 1000, {})), 258'000U);
+  EXPECT_LE(memory_of(ping_event(1, 1000, {})), 262'000U);
 }
 
 TEST(EventQueue, WakesWhoeverWaits) {

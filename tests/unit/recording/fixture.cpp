@@ -67,42 +67,43 @@ std::uint8_t sample(std::uint64_t ping_number, int line, int beam) {
   return static_cast<std::uint8_t>((x ^ (x >> 31)) & 0xFF);
 }
 
-gemini::EncodedPing encoded_ping(std::uint64_t number, int lines, std::uint16_t ext_mode,
-                                 std::uint8_t rle_threshold) {
-  gemini::PingHead head;
-  head.header.sonar_id = 601;
-  head.ping_id = static_cast<std::uint16_t>(number & 0xFF);
-  head.ext_mode = ext_mode;
-  head.end_range = static_cast<std::uint16_t>(lines);
-  head.sound_speed_used = 0x8000 | 15'000;
-  head.rle_threshold = rle_threshold;
-  gemini::PingImage image{number, {}, {}};
+PingRecord ping_record(std::uint64_t number, int lines, TimePoint time) {
+  constexpr int beams = 256;
+  PingRecord ping;
+  ping.number = number;
+  ping.transmit_time = time;
+  ping.settings = {.bins = lines,
+                   .beams = beams,
+                   .bin_m = 1500.0 / 2.0 / 90'422.0,
+                   .sound_speed_mps = 1500.0,
+                   .gain_percent = 50.0,
+                   .frequency_hz = 720'000.0};
+  for (int beam = 0; beam < beams; ++beam) {
+    ping.bearings_rad.push_back((beam - 127.5) / 128.0);
+  }
+  ping.sector_rad = 2.0;
   for (int line = 0; line < lines; ++line) {
-    for (int beam = 0; beam < gemini::beam_count; ++beam) {
-      if (head.eight_bit()) {
-        image.u8.push_back(sample(number, line, beam));
-      } else {
-        image.u16.push_back(static_cast<std::uint16_t>(sample(number, line, beam) << 8 | 0x5A));
-      }
+    for (int beam = 0; beam < beams; ++beam) {
+      ping.samples.push_back(sample(number, line, beam));
     }
   }
-  return {head, 0, image};
+  return ping;
 }
 
 RecordingEvent ping_event(std::uint64_t number, int lines, TimePoint time) {
   const auto poses = std::make_shared<const server::PosesUsed>(server::PosesUsed{time, {}, {}, {}});
-  return {0, time, server::GeminiPingServed{{number, encoded_ping(number, lines)}, time, 50.0, poses}};
+  return {0, time, server::PingSent{ping_record(number, lines, time), poses}};
 }
 
 RecordingEvent wire_event(std::size_t bytes, TimePoint time) {
-  const gemini::SharedBytes data(std::vector<std::uint8_t>(bytes, 0x42));
+  const SharedBytes data(std::vector<std::uint8_t>(bytes, 0x42));
   return {0, time,
           server::WirePassed{
               true, server::WireTransport::udp, {}, {{{0x7F000001, 52900}, {0x7F000002, 52901}, data}}}};
 }
 
-std::vector<server::HeadToRecord> one_gemini() {
-  return {{"bow", 601, true, 0}};
+std::vector<server::HeadToRecord> one_head() {
+  return {{"bow", "gemini_720i", 601, 0, [](std::span<const std::uint8_t>) { return std::nullopt; }}};
 }
 
 }  // namespace sonard::test

@@ -47,14 +47,13 @@ void write_file(const std::filesystem::path& path, const std::vector<std::uint8_
 /// Sample of a ping at (line, beam): hard to compress, and different for every ping.
 std::uint8_t sample(std::uint64_t ping_number, int line, int beam);
 
-/// A ping of so many lines with these samples, of sonar 601.
-gemini::EncodedPing encoded_ping(std::uint64_t number, int lines, std::uint16_t ext_mode = 0x0004,
-                                 std::uint8_t rle_threshold = 0);
+/// A ping of so many lines of 256 beams with these samples.
+PingRecord ping_record(std::uint64_t number, int lines, server::TimePoint time);
 server::RecordingEvent ping_event(std::uint64_t number, int lines, server::TimePoint time);
 /// One datagram of so many bytes to a client at 127.0.0.1:52900.
 server::RecordingEvent wire_event(std::size_t bytes, server::TimePoint time);
 
-/// "bow", the one head.
-std::vector<server::HeadToRecord> one_gemini();
+/// "bow", the one head, 601, with a .glf.
+std::vector<server::HeadToRecord> one_head();
 
 }  // namespace sonard::test

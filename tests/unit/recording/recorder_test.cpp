@@ -96,7 +96,7 @@ std::multiset<std::uint64_t> numbers_up_to(std::uint64_t count) {
 }
 
 TEST_F(RecorderTest, WritesWhatItWasGivenIntoEveryLog) {
-  Recorder recorder(config, test::one_gemini());
+  Recorder recorder(config, test::one_head());
   for (std::uint64_t number = 0; number < 10; ++number) {
     recorder.push(test::ping_event(number, lines, clock.now()));
     recorder.push(test::wire_event(100, clock.now()));
@@ -113,7 +113,7 @@ TEST_F(RecorderTest, WritesWhatItWasGivenIntoEveryLog) {
 
 TEST_F(RecorderTest, WritesOnlyTheKindsThatAreAskedFor) {
   config.mcap = config.pcapng = false;
-  Recorder recorder(config, test::one_gemini());
+  Recorder recorder(config, test::one_head());
   recorder.push(test::ping_event(0, lines, clock.now()));
   recorder.stop();
   EXPECT_EQ(files("").size(), 1U);
@@ -121,14 +121,14 @@ TEST_F(RecorderTest, WritesOnlyTheKindsThatAreAskedFor) {
 }
 
 TEST_F(RecorderTest, MakesNoFileWithoutAnEvent) {
-  Recorder(config, test::one_gemini()).stop();
+  Recorder(config, test::one_head()).stop();
   EXPECT_TRUE(files("").empty());
 }
 
 TEST_F(RecorderTest, BeginsNewFilesWhenOneIsFull) {
   config.rotate_bytes = 300'000;
   {
-    Recorder recorder(config, test::one_gemini());
+    Recorder recorder(config, test::one_head());
     for (std::uint64_t number = 0; number < 30; ++number) {
       recorder.push(test::ping_event(number, lines, clock.now()));
     }
@@ -144,7 +144,7 @@ TEST_F(RecorderTest, BeginsNewFilesWhenOneIsFull) {
 
 TEST_F(RecorderTest, BeginsNewFilesWhenTimeIsOver) {
   config.rotate_after = std::chrono::minutes{10};
-  Recorder recorder(config, test::one_gemini());
+  Recorder recorder(config, test::one_head());
   const TimePoint begin = clock.now();
   for (std::uint64_t number = 0; number < 30; ++number) {  // one a minute
     recorder.push(test::ping_event(number, 32, begin + number * std::chrono::minutes{1}));
@@ -157,7 +157,7 @@ TEST_F(RecorderTest, BeginsNewFilesWhenTimeIsOver) {
 
 TEST_F(RecorderTest, DropsAndCountsWhatDoesNotFitTheQueue) {
   config.queue_bytes = 200'000;
-  Recorder recorder(config, test::one_gemini());
+  Recorder recorder(config, test::one_head());
   constexpr std::uint64_t pushed = 400;
   for (std::uint64_t number = 0; number < pushed; ++number) {
     recorder.push(test::ping_event(number, lines, clock.now()));
@@ -174,7 +174,7 @@ TEST_F(RecorderTest, GivesUpFilesThatCannotBeWrittenAndKeepsWhatIsWhole) {
   std::uint64_t lost = 0;
   {
     const test::FileSizeLimit limit(400'000);
-    Recorder recorder(config, test::one_gemini());
+    Recorder recorder(config, test::one_head());
     for (std::uint64_t number = 0; number < 20; ++number) {
       recorder.push(test::wire_event(1000, clock.now()));
       recorder.push(test::ping_event(number, lines, clock.now()));
@@ -186,7 +186,7 @@ TEST_F(RecorderTest, GivesUpFilesThatCannotBeWrittenAndKeepsWhatIsWhole) {
     lost = recorder.counters().images_lost;
     EXPECT_EQ(packets(), 20U) << "a small file is not full";
   }
-  Recorder(config, test::one_gemini()).stop();  // there is room again
+  Recorder(config, test::one_head()).stop();  // there is room again
   const std::multiset<std::uint64_t> kept = glf_pings(20);
   EXPECT_EQ(kept, numbers_up_to(kept.size()));
   EXPECT_GE(kept.size(), 6U);
@@ -200,7 +200,7 @@ TEST_F(RecorderTest, GivesUpFilesThatCannotBeWrittenAndKeepsWhatIsWhole) {
 TEST_F(RecorderTest, TriesAgainWithTheNextFiles) {
   config.pcapng = config.glf = false;
   config.rotate_after = std::chrono::minutes{10};
-  Recorder recorder(config, test::one_gemini());
+  Recorder recorder(config, test::one_head());
   const TimePoint begin = clock.now();
   {
     const test::FileSizeLimit limit(100'000);
@@ -217,9 +217,9 @@ TEST_F(RecorderTest, TriesAgainWithTheNextFiles) {
 }
 
 TEST_F(RecorderTest, LocksItsFolder) {
-  const Recorder first(config, test::one_gemini());
+  const Recorder first(config, test::one_head());
   try {
-    const Recorder second(config, test::one_gemini());
+    const Recorder second(config, test::one_head());
     FAIL() << "two recorders share a folder";
   } catch (const RecordingError& error) {
     EXPECT_NE(std::string(error.what()).find(config.directory.string()), std::string::npos);
@@ -228,7 +228,7 @@ TEST_F(RecorderTest, LocksItsFolder) {
 
 TEST_F(RecorderTest, SaysWhyAFolderCannotBeUsed) {
   test::write_file(folder.path() / "made", {1});
-  EXPECT_THROW(Recorder(config, test::one_gemini()), RecordingError);
+  EXPECT_THROW(Recorder(config, test::one_head()), RecordingError);
 }
 
 TEST_F(RecorderTest, NamesAndTimesFollowTheZone) {
@@ -238,7 +238,7 @@ TEST_F(RecorderTest, NamesAndTimesFollowTheZone) {
     config.zone = RecordingZone::local;
     config.directory = folder.path() / zone;
     const double before_s = static_cast<double>(std::time(nullptr)) - 315'532'800.0;
-    Recorder recorder(config, test::one_gemini());
+    Recorder recorder(config, test::one_head());
     recorder.push(test::ping_event(0, lines, clock.now()));
     recorder.stop();
     const Bytes bytes = test::contents(files(".glf").front());
@@ -248,25 +248,6 @@ TEST_F(RecorderTest, NamesAndTimesFollowTheZone) {
   }
   unsetenv("TZ");
   tzset();
-}
-
-TEST(RecordedHeads, NumberTheGeminis) {
-  std::vector<AnyHeadConfig> heads;
-  GeminiHeadConfig gemini;
-  gemini.name = "a";
-  gemini.device.sonar_id = 77;
-  MicronHeadConfig micron;
-  micron.name = "b";
-  heads.emplace_back(gemini);
-  heads.emplace_back(micron);
-  heads.emplace_back(gemini);
-  const std::vector<HeadToRecord> recorded = recorded_heads(heads);
-  EXPECT_EQ(recorded[0].name, "a");
-  EXPECT_EQ(recorded[0].device_id, 77);
-  EXPECT_EQ(recorded[0].gemini_number, 0);
-  EXPECT_FALSE(recorded[1].is_gemini);
-  EXPECT_EQ(recorded[1].device_id, micron.device.node);
-  EXPECT_EQ(recorded[2].gemini_number, 1);
 }
 
 }  // namespace

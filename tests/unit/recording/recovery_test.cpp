@@ -24,7 +24,7 @@ constexpr int pings = 3;
 struct RecoveryTest : testing::Test {
   test::TemporaryFolder folder;
   RecordingConfig config;
-  std::vector<HeadToRecord> heads = test::one_gemini();
+  std::vector<HeadToRecord> heads = test::one_head();
   LogSetting setting{config, heads, {}, 0, "stem"};
 
   RecoveryTest() { config.directory = folder.path(); }

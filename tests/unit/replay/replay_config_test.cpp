@@ -1,45 +1,60 @@
-// Which recorded head is served as which, what a 720i can send, and what is told about requests that differ.
+// Which recorded head is served as which, and what a head cannot play.
 #include "server/replay/replay_config.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <functional>
+#include <memory>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
 #include "protocol/gemini/bearings.hpp"
-#include "protocol/micron/line_job.hpp"
-#include "server/replay/differences.hpp"
+#include "protocol/micron/recorded_form.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/kind.hpp"
 
 namespace sonard::server {
 namespace {
 
-RecordedSettings settings(double line_step_m = 1500.0 / (2 * 90422.0)) {
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+RecordedSettings settings(double bin_m = 1500.0 / (2 * 90422.0)) {
   RecordedSettings settings;
-  settings.lines = 482;
+  settings.bins = 482;
   settings.beams = 256;
-  settings.line_step_m = line_step_m;
+  settings.bin_m = bin_m;
   settings.sound_speed_mps = 1500.0;
   settings.gain_percent = 50.0;
   return settings;
 }
 
-RecordedHead recorded(std::uint16_t device_id) {
-  RecordedHead head;
+/// A fan of a Gemini, in a log that does not say so.
+LoggedHead fan(std::uint16_t device_id, const std::string& name = "") {
+  LoggedHead head;
+  head.name = name;
   head.device_id = device_id;
-  head.images.push_back({0, settings(), 0});
+  head.pings.push_back({.settings = settings(), .wire = {}});
   for (const double bearing_rad : gemini::bearings_rad()) {
     head.bearings_rad.push_back(-bearing_rad);
   }
   return head;
 }
 
-GeminiHeadConfig configured(const std::string& name, std::uint16_t id) {
-  GeminiHeadConfig head;
+HeadConfig gemini(const std::string& name, std::uint16_t id) {
+  HeadConfig head = gemini_kind().make_default();
   head.name = name;
-  head.device.sonar_id = id;
+  auto config = std::make_shared<GeminiConfig>(gemini_config(head));
+  config->device.sonar_id = id;
+  config->device.waits_for_permission = true;
+  config->device.render_lead = std::chrono::milliseconds{5};
+  head.device = config;
   return head;
 }
 
@@ -56,188 +71,245 @@ struct ReplayConfigTest : testing::Test {
     std::filesystem::remove(path);
     spdlog::set_level(spdlog::level::info);
   }
+
+  ReplayConfig replay(const std::vector<LoggedHead>& logged) const {
+    return replay_config(config, logged, LogFile(path));
+  }
+  DaemonConfig loopback(const std::vector<LoggedHead>& logged) const {
+    return loopback_config(logged, LogFile(path));
+  }
+  /// What is said against playing these on loopback, without the name of the log.
+  std::string complaint(const std::vector<LoggedHead>& logged) const {
+    return complaint([&] { replay_config(loopback(logged), logged, LogFile(path)); });
+  }
+  /// What is said against playing these on the heads of `config`.
+  std::string configured_complaint(const std::vector<LoggedHead>& logged) const {
+    return complaint([&] { replay(logged); });
+  }
+
+ private:
+  std::string complaint(const std::function<void()>& play) const {
+    try {
+      play();
+    } catch (const LogError& error) {
+      const std::string before = path.string() + ": ";
+      EXPECT_THAT(error.what(), StartsWith(before));
+      return std::string(error.what()).substr(before.size());
+    }
+    return "it is played";
+  }
 };
 
 TEST_F(ReplayConfigTest, heads_find_their_recording_by_id) {
-  config.heads = {configured("a", 600), configured("b", 513), MicronHeadConfig{}};
-  const std::vector<RecordedHead> heads{recorded(513), recorded(600)};
-  const ReplayConfig replay = replay_config(config, heads, {}, LogFile(path));
+  config.heads = {gemini("a", 600), gemini("b", 513), micron_kind().make_default()};
+  const std::vector<LoggedHead> logged{fan(513), fan(600)};
+  const ReplayConfig replay = this->replay(logged);
   ASSERT_EQ(replay.played.size(), 2U);
   EXPECT_EQ(replay.daemon.heads.size(), 2U);
-  EXPECT_EQ(std::get<const RecordedHead*>(replay.played[0].recorded), &heads[1]);
-  EXPECT_EQ(std::get<const RecordedHead*>(replay.played[1].recorded), &heads[0]);
-  for (const AnyHeadConfig& head : replay.daemon.heads) {
-    EXPECT_TRUE(std::get<GeminiHeadConfig>(head).device.plays_back);
+  EXPECT_EQ(replay.played[0].logged, &logged[1]);
+  EXPECT_EQ(replay.played[1].logged, &logged[0]);
+  EXPECT_EQ(replay.played[0].name, "a");
+  EXPECT_EQ(replay.daemon.heads[0].name, "a");
+}
+
+TEST_F(ReplayConfigTest, a_name_says_more_than_an_id) {
+  config.heads = {gemini("a", 600), gemini("b", 513)};
+  const std::vector<LoggedHead> logged{fan(600, "b"), fan(513, "a")};
+  const ReplayConfig replay = this->replay(logged);
+  ASSERT_EQ(replay.played.size(), 2U);
+  EXPECT_EQ(replay.played[0].logged, &logged[1]);
+  EXPECT_EQ(replay.played[1].logged, &logged[0]);
+}
+
+TEST_F(ReplayConfigTest, heads_are_held_to_their_recording_and_keep_the_rest) {
+  config.heads = {gemini("a", 600), gemini("b", 601)};
+  config.poses.udp.emplace();
+  const ReplayConfig replay = this->replay({fan(600), fan(601)});
+  ASSERT_EQ(replay.daemon.heads.size(), 2U);
+  for (const HeadConfig& head : replay.daemon.heads) {
+    const gemini::DeviceConfig& device = gemini_config(head).device;
+    EXPECT_TRUE(device.plays_back);
+    EXPECT_FALSE(device.waits_for_permission);
+    EXPECT_EQ(device.min_ping_period, std::chrono::milliseconds{1});
+    EXPECT_EQ(device.render_lead, std::chrono::nanoseconds{0});
   }
+  EXPECT_EQ(gemini_config(replay.daemon.heads[1]).device.sonar_id, 601);
+  EXPECT_FALSE(gemini_config(config.heads[0]).device.plays_back) << "that of others is not changed";
+  EXPECT_FALSE(replay.daemon.poses.udp) << "nothing is rendered";
+  EXPECT_TRUE(replay.daemon.poses.T_world_vehicle_initial);
 }
 
 TEST_F(ReplayConfigTest, one_head_plays_one_recording_whatever_the_ids) {
-  config.heads = {configured("a", 600)};
-  const std::vector<RecordedHead> heads{recorded(513)};
-  const ReplayConfig replay = replay_config(config, heads, {}, LogFile(path));
-  EXPECT_EQ(std::get<GeminiHeadConfig>(replay.daemon.heads.at(0)).device.sonar_id, 600);
+  config.heads = {gemini("a", 600)};
+  const std::vector<LoggedHead> logged{fan(513)};
+  const ReplayConfig replay = this->replay(logged);
+  EXPECT_EQ(replay.played.at(0).logged, &logged[0]);
+  EXPECT_EQ(gemini_config(replay.daemon.heads.at(0)).device.sonar_id, 600);
 }
 
 TEST_F(ReplayConfigTest, no_head_at_all_is_an_error) {
-  config.heads = {configured("a", 600), configured("b", 601)};
-  const std::vector<RecordedHead> heads{recorded(513)};
-  EXPECT_THROW(replay_config(config, heads, {}, LogFile(path)), LogError);
+  config.heads = {gemini("a", 600), gemini("b", 601)};
+  EXPECT_EQ(configured_complaint({fan(513)}), "has no pings of a head that is to be served");
 }
 
 TEST_F(ReplayConfigTest, images_of_other_heads_are_an_error_that_says_so) {
-  std::vector<RecordedHead> heads{recorded(513)};
-  heads[0].images[0].settings.beams = 512;
-  try {
-    replay_config(loopback_config(heads, {}), heads, {}, LogFile(path));
-    FAIL() << "512 beams are taken";
-  } catch (const LogError& error) {
-    EXPECT_EQ(std::string(error.what()), path.string() +
-                                             ": sonar 513 has an image of 482 lines of 512 beams, which a "
-                                             "Gemini 720i cannot send (expected 256 beams)");
-  }
+  std::vector<LoggedHead> logged{fan(513)};
+  logged[0].pings[0].settings.beams = 512;
+  const std::string why =
+      "sonar 513 has an image of 482 lines of 512 beams, which a Gemini 720i cannot send (expected 256 "
+      "beams)";
+  EXPECT_EQ(complaint(logged), why);
+  config.heads = {gemini("a", 513)};
+  EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
 }
 
 TEST_F(ReplayConfigTest, times_that_make_no_sense_are_an_error) {
-  std::vector<RecordedHead> heads{recorded(513)};
-  heads[0].images.push_back({std::int64_t{91} * 86'400 * 1'000'000'000, settings(), 1});
-  EXPECT_THROW(replay_config(loopback_config(heads, {}), heads, {}, LogFile(path)), LogError);
-}
-
-TEST(WireForm, compression_follows_from_the_length_of_a_line) {
-  for (int log2 = 0; log2 <= 4; ++log2) {
-    const auto form = wire_form(settings(1500.0 / (2 * 90422.0) * (1 << log2)));
-    ASSERT_TRUE(form);
-    EXPECT_EQ(form->ping.compression_log2, log2);
-    EXPECT_EQ(form->ping.lines, 482);
-    EXPECT_TRUE(form->exact);
-  }
-  // As a .glf rounds it: 90422 / 16 = 5651.4, written as 5651.
-  EXPECT_TRUE(wire_form(settings(1500.0 / (2 * 5651.0)))->exact);
-}
-
-TEST(WireForm, lines_that_a_720i_does_not_have_are_no_exact_ones) {
-  const auto form = wire_form(settings(1500.0 / (2 * 18750.0)));
-  ASSERT_TRUE(form);
-  EXPECT_FALSE(form->exact);
-}
-
-std::vector<std::string> texts(const std::vector<Difference>& found) {
-  std::vector<std::string> texts;
-  std::ranges::transform(found, std::back_inserter(texts), &Difference::text);
-  return texts;
-}
-
-struct Asked : testing::Test {
-  gemini::PingJob asked;
-  RecordedSettings sent = settings();
-  Asked() {
-    asked.native_lines = 482;
-    asked.line_step_m = 1500.0 / (2 * 90422.0);
-    asked.sound_speed_mps = asked.assumed_sound_speed_mps = 1500.0;
-    asked.gain_percent = 50.2;
-  }
-  std::vector<std::string> all() const { return texts(differences(asked, wire_form(sent)->ping, sent)); }
-};
-
-TEST_F(Asked, the_same_is_no_difference) {
-  EXPECT_TRUE(all().empty());
-}
-
-TEST_F(Asked, each_kind_is_told) {
-  asked.native_lines = 2411;
-  asked.compression_log2 = 2;
-  asked.gain_percent = 80.0;
-  asked.assumed_sound_speed_mps = 1480.0;
-  asked.sixteen_bit = true;
-  asked.rle_threshold = 3;
-  asked.transmit = false;
-  EXPECT_EQ(all(), (std::vector<std::string>{
-                       "range 20.00 m asked for, 4.00 m sent", "compression x4 asked for, x1 sent",
-                       "gain 80 % asked for, 50 % sent", "sound speed 1480.0 m/s asked for, 1500.0 m/s sent",
-                       "16 bits asked for, 8 bits sent", "run lengths asked for, all samples sent",
-                       "listening only asked for, a ping with its echoes sent"}));
+  std::vector<LoggedHead> logged{fan(513)};
+  logged[0].pings.push_back(
+      {.time_ns = std::int64_t{91} * 86'400 * 1'000'000'000, .settings = settings(), .wire = {}});
+  EXPECT_EQ(complaint(logged), "its times span 91 days (expected at most 90)");
+  logged[0].pings.back().time_ns = std::int64_t{90} * 86'400 * 1'000'000'000;
+  EXPECT_EQ(complaint(logged), "it is played");
 }
 
 // ---- Microns
 
-RecordedScan scanned(const std::string& name, std::uint16_t node) {
-  RecordedScanLine line;
-  line.settings.lines = 20;
+LoggedHead scan(const std::string& name, std::uint16_t node) {
+  LoggedPing line;
+  line.settings.bins = 20;
   line.settings.beams = 1;
-  line.wire_line.emplace();
-  return {name, node, {line}};
+  line.wire = micron::recorded_wire({}, static_cast<std::uint8_t>(node));
+  LoggedHead head;
+  head.name = name;
+  head.device_id = node;
+  head.scanning = true;
+  head.pings = {line};
+  return head;
 }
 
-MicronHeadConfig micron(const std::string& name, std::uint8_t node) {
-  MicronHeadConfig head;
+HeadConfig micron(const std::string& name, std::uint8_t node) {
+  HeadConfig head = micron_kind().make_default();
   head.name = name;
-  head.device.node = node;
+  auto config = std::make_shared<MicronConfig>(micron_config(head));
+  config->device.node = node;
+  config->device.waits_for_permission = true;
+  head.device = config;
   return head;
 }
 
 TEST_F(ReplayConfigTest, microns_find_their_recording_by_name_and_else_by_node) {
   config.heads = {micron("a", 2), micron("b", 2), micron("c", 9), micron("d", 3)};
-  const std::vector<RecordedScan> scans{scanned("b", 2), scanned("a", 2), scanned("elsewhere", 9)};
-  const ReplayConfig replay = replay_config(config, {}, scans, LogFile(path));
+  const std::vector<LoggedHead> logged{scan("b", 2), scan("a", 2), scan("elsewhere", 9)};
+  const ReplayConfig replay = this->replay(logged);
   ASSERT_EQ(replay.played.size(), 3U);
-  EXPECT_EQ(std::get<const RecordedScan*>(replay.played[0].recorded), &scans[1]);
-  EXPECT_EQ(std::get<const RecordedScan*>(replay.played[1].recorded), &scans[0]);
-  EXPECT_EQ(std::get<const RecordedScan*>(replay.played[2].recorded), &scans[2]);
-  EXPECT_TRUE(std::get<MicronHeadConfig>(replay.daemon.heads[2]).device.plays_back);
+  EXPECT_EQ(replay.played[0].logged, &logged[1]);
+  EXPECT_EQ(replay.played[1].logged, &logged[0]);
+  EXPECT_EQ(replay.played[2].logged, &logged[2]);
+  EXPECT_TRUE(micron_config(replay.daemon.heads[2]).device.plays_back);
+  EXPECT_FALSE(micron_config(replay.daemon.heads[2]).device.waits_for_permission);
 }
 
 TEST_F(ReplayConfigTest, one_of_each_kind_play_one_of_each_kind) {
-  config.heads = {configured("a", 600), micron("mast", 7)};
-  const std::vector<RecordedHead> heads{recorded(513)};
-  const std::vector<RecordedScan> scans{scanned("stern", 2)};
-  const ReplayConfig replay = replay_config(config, heads, scans, LogFile(path));
+  config.heads = {gemini("a", 600), micron("mast", 7)};
+  const std::vector<LoggedHead> logged{scan("stern", 2), fan(513)};
+  const ReplayConfig replay = this->replay(logged);
   ASSERT_EQ(replay.played.size(), 2U);
-  EXPECT_EQ(std::get<const RecordedHead*>(replay.played[0].recorded), &heads[0]);
-  EXPECT_EQ(std::get<const RecordedScan*>(replay.played[1].recorded), &scans[0]);
+  EXPECT_EQ(replay.played[0].logged, &logged[1]);
+  EXPECT_EQ(replay.played[1].logged, &logged[0]);
+}
+
+TEST_F(ReplayConfigTest, heads_of_two_kinds_with_one_id_each_play_their_own) {
+  config.heads = {micron("a", 2), gemini("b", 2), micron("c", 3), gemini("d", 3)};
+  const std::vector<LoggedHead> logged{fan(3), scan("", 3), fan(2), scan("", 2)};
+  const ReplayConfig replay = this->replay(logged);
+  ASSERT_EQ(replay.played.size(), 4U);
+  EXPECT_EQ(replay.played[0].logged, &logged[3]);
+  EXPECT_EQ(replay.played[1].logged, &logged[2]);
+  EXPECT_EQ(replay.played[2].logged, &logged[1]);
+  EXPECT_EQ(replay.played[3].logged, &logged[0]);
 }
 
 TEST_F(ReplayConfigTest, without_a_configuration_microns_are_behind_the_geminis_on_loopback) {
-  const std::vector<RecordedHead> heads{recorded(513)};
-  const std::vector<RecordedScan> scans{scanned("", 7)};
-  const DaemonConfig loopback = loopback_config(heads, scans);
-  ASSERT_EQ(loopback.heads.size(), 2U);
-  const auto& head = std::get<MicronHeadConfig>(loopback.heads[1]);
-  EXPECT_EQ(head.name, "micron-7");
-  EXPECT_EQ(head.device.node, 7);
-  ASSERT_EQ(head.serial.tcp.size(), 1U);
-  EXPECT_EQ(head.serial.tcp[0].bind.address, 0x7F000003U);
-  EXPECT_EQ(head.serial.tcp[0].bind.port, 4001);
+  const std::vector<LoggedHead> logged{scan("", 7), fan(513), scan("mast", 255), fan(1, "bow")};
+  const DaemonConfig loopback = this->loopback(logged);
+  ASSERT_EQ(loopback.heads.size(), 4U);
+
+  ASSERT_EQ(loopback.heads[0].kind, &gemini_kind());
+  EXPECT_EQ(loopback.heads[0].name, "gemini-513");
+  const GeminiConfig& first = gemini_config(loopback.heads[0]);
+  EXPECT_EQ(first.device.sonar_id, 513);
+  EXPECT_EQ(first.device.mac, (std::array<std::uint8_t, 6>{0x00, 0x12, 0x34, 0x00, 0x02, 0x01}));
+  EXPECT_EQ(first.device.alternate_address, 0x7F000002U);
+  EXPECT_EQ(first.device.netmask, 0xFF000000U);
+  EXPECT_EQ(first.bind_address, 0x7F000002U);
+  EXPECT_EQ(first.status.mode, StatusDestination::Mode::unicast);
+  EXPECT_THAT(first.status.hosts, ElementsAre(0x7F000001U));
+  EXPECT_THAT(first.allow, ElementsAre(Cidr{0x7F000000, 8}));
+  EXPECT_EQ(loopback.heads[1].name, "bow");
+  EXPECT_EQ(gemini_config(loopback.heads[1]).bind_address, 0x7F000003U);
+  EXPECT_EQ(gemini_config(loopback.heads[1]).device.sonar_id, 2) << "clients send nothing to 1";
+
+  ASSERT_EQ(loopback.heads[2].kind, &micron_kind());
+  EXPECT_EQ(loopback.heads[2].name, "micron-7");
+  const MicronConfig& third = micron_config(loopback.heads[2]);
+  EXPECT_EQ(third.device.node, 7);
+  ASSERT_EQ(third.serial.tcp.size(), 1U);
+  EXPECT_EQ(third.serial.tcp[0].bind.address, 0x7F000004U);
+  EXPECT_EQ(third.serial.tcp[0].bind.port, 4001);
+  EXPECT_THAT(third.serial.tcp[0].allow, ElementsAre(Cidr{0x7F000000, 8}));
+  EXPECT_EQ(loopback.heads[3].name, "mast");
+  EXPECT_EQ(micron_config(loopback.heads[3]).device.node, micron::DeviceConfig{}.node) << "255 is the host";
 }
 
 TEST_F(ReplayConfigTest, lines_that_do_not_say_how_they_travelled_are_an_error) {
   config.heads = {micron("a", 2)};
-  std::vector<RecordedScan> scans{scanned("a", 2)};
-  scans[0].lines[0].wire_line.reset();
-  EXPECT_THROW(replay_config(config, {}, scans, LogFile(path)), LogError);
+  std::vector<LoggedHead> logged{scan("a", 2)};
+  const std::string why = "scan lines of node 2 do not say how they travelled (expected wire_line)";
+  logged[0].pings.push_back(logged[0].pings[0]);
+  logged[0].pings[1].wire.clear();
+  EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
+  EXPECT_EQ(complaint(logged), why);
+  logged[0].pings[1].wire = {1, 2, 3};
+  EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why) << "that is no line";
 }
 
-TEST(LineDifferences, the_same_is_no_difference_and_each_kind_is_told) {
-  micron::RecordedLine recorded;
-  recorded.bins = 400;
-  recorded.sound_speed_mps = 1500.0;
-  recorded.line.control = 0x2307;
-  recorded.line.ad_interval = 53;
-  recorded.line.gain = 105;
-  recorded.line.step = 32;
-  const micron::MicronJob sent = micron::make_line_job(recorded);
-  micron::HeadCommand asked;
-  EXPECT_TRUE(differences(asked, sent, recorded.line).empty());
-  asked.control = 0x2324;  // 4 bits, a sector, listening only
-  asked.ad_interval = 106;
-  asked.bins = 800;
-  asked.gain[0] = 210;
-  asked.step = 8;
-  EXPECT_EQ(texts(differences(asked, sent, recorded.line)),
-            (std::vector<std::string>{"range 40.70 m asked for, 10.18 m sent", "800 bins asked for, 400 sent",
-                                      "gain 80.0 dB asked for, 40.0 dB sent", "4 bits asked for, 8 bits sent",
-                                      "sector -45.0 to 44.9 degrees asked for, all round sent",
-                                      "step 8 asked for, 32 sent (1/16 gradian)",
-                                      "listening only asked for, a line with its echoes sent"}));
+TEST_F(ReplayConfigTest, lines_that_are_too_long_are_an_error) {
+  config.heads = {micron("a", 2)};
+  std::vector<LoggedHead> logged{scan("a", 2)};
+  logged[0].pings[0].settings.bins = 1500;
+  EXPECT_EQ(configured_complaint(logged), "it is played");
+  logged[0].pings[0].settings.bins = 1501;
+  const std::string why = "scan lines of node 2 have more than the 1500 bins that a Micron sends";
+  EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
+  EXPECT_EQ(complaint(logged), why);
+}
+
+// ---- Logs that say which device it was
+
+TEST_F(ReplayConfigTest, a_log_says_of_which_kind_its_heads_are) {
+  std::vector<LoggedHead> logged{fan(513), scan("", 7)};
+  logged[0].device = "gemini_720i";
+  logged[1].device = "micron";
+  const DaemonConfig loopback = this->loopback(logged);
+  ASSERT_EQ(loopback.heads.size(), 2U);
+  EXPECT_EQ(loopback.heads[0].kind, &gemini_kind());
+  EXPECT_EQ(loopback.heads[1].kind, &micron_kind());
+  EXPECT_EQ(complaint(logged), "it is played");
+}
+
+TEST_F(ReplayConfigTest, a_kind_that_a_log_names_is_asked_whether_it_can_play_it) {
+  std::vector<LoggedHead> logged{fan(513)};
+  logged[0].device = "gemini_720i";
+  logged[0].pings[0].settings.beams = 512;
+  EXPECT_THAT(complaint(logged), AllOf(StartsWith("head 'gemini-513' cannot play it: sonar 513 has an image"),
+                                       HasSubstr("(expected 256 beams)")));
+}
+
+TEST_F(ReplayConfigTest, heads_of_a_device_that_nobody_knows_are_an_error) {
+  for (LoggedHead head : {fan(513, "bow"), scan("bow", 7)}) {
+    head.device = "other_900";
+    EXPECT_THAT(complaint({head}), HasSubstr("unknown kind"));
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Frames into a stream that takes as many bytes as the test says.
-#include "server/devices/serial/frame_writer.hpp"
+#include "server/net/frame_writer.hpp"
 
 #include <algorithm>
 #include <functional>

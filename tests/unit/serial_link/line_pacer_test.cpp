@@ -1,5 +1,5 @@
 // The line as a pure queue: ten bits to a byte, one byte after the other.
-#include "server/devices/serial/line_pacer.hpp"
+#include "server/net/line_pacer.hpp"
 
 #include <string>
 

@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 #include <boost/asio/io_context.hpp>
 
-#include "server/config/addresses.hpp"
-#include "server/devices/serial/serial_link.hpp"
-#include "server/devices/udp_endpoint.hpp"
+#include "server/net/addresses.hpp"
+#include "server/net/serial_link.hpp"
+#include "server/net/udp_endpoint.hpp"
 #include "tests/support/serial_client.hpp"
 
 namespace sonard::server {

@@ -1,4 +1,4 @@
-#include "server/daemon.hpp"
+#include "server/daemon/daemon.hpp"
 
 #include <atomic>
 #include <csignal>
@@ -14,9 +14,13 @@
 #include <boost/asio/io_context.hpp>
 
 #include "protocol/micron/host.hpp"
-#include "server/clock.hpp"
-#include "server/devices/udp_endpoint.hpp"
-#include "server/exit_codes.hpp"
+#include "server/clock/clock.hpp"
+#include "server/daemon/exit_codes.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "server/net/udp_endpoint.hpp"
 #include "tests/support/fake_renderer.hpp"
 #include "tests/support/loopback.hpp"
 #include "tests/support/serial_client.hpp"
@@ -62,16 +66,18 @@ struct DaemonTest : testing::Test {
   }
   ~DaemonTest() override { spdlog::set_level(spdlog::level::info); }
 
-  GeminiHeadConfig head(const std::string& name, std::uint16_t id, Ipv4 address) const {
-    GeminiHeadConfig result;
+  HeadConfig head(const std::string& name, std::uint16_t id, Ipv4 address) const {
+    auto device = std::make_shared<GeminiConfig>();
+    device->device.sonar_id = id;
+    device->device.alternate_address = address;
+    device->device.netmask = 0xFF000000;
+    device->device.min_ping_period = std::chrono::milliseconds{1};
+    device->bind_address = address;
+    device->status = {StatusDestination::Mode::unicast, {surface_address}};
+    device->allow = {{surface_address, 32}};
+    HeadConfig result = gemini_kind().make_default();
     result.name = name;
-    result.device.sonar_id = id;
-    result.device.alternate_address = address;
-    result.device.netmask = 0xFF000000;
-    result.device.min_ping_period = std::chrono::milliseconds{1};
-    result.bind_address = address;
-    result.status = {StatusDestination::Mode::unicast, {surface_address}};
-    result.allow = {{surface_address, 32}};
+    result.device = std::move(device);
     return result;
   }
 
@@ -117,7 +123,7 @@ TEST_F(DaemonTest, EndsCleanlyOnASignal) {
 
 // With the settings of a usual ping, where the vehicle and the mount are, and before anything is served.
 TEST_F(DaemonTest, RendersAPingOfEachHeadThatNobodyGetsBeforeItIsReady) {
-  GeminiHeadConfig mounted = head("mounted", 602, test::own_loopback_address(3));
+  HeadConfig mounted = head("mounted", 602, test::own_loopback_address(3));
   mounted.T_vehicle_sonar.position_m = {1, 2, 3};
   config.heads.push_back(mounted);
   config.poses.T_world_vehicle_initial = render::Pose{{10, 20, 30}, {1, 0, 0, 0}};
@@ -156,10 +162,12 @@ TEST_F(DaemonTest, ServesSeveralHeads) {
 
 // Lines of a Micron take their 24 ms while the renderer is busy for seconds with one fan.
 TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
-  MicronHeadConfig micron;
-  micron.name = "micron";
-  micron.serial.tcp = {{{head_address, 4001}, {{0x7F000000, 8}}}};
-  config.heads.emplace_back(micron);
+  auto serial = std::make_shared<MicronConfig>();
+  serial->serial.tcp = {{{head_address, 4001}, {{0x7F000000, 8}}}};
+  HeadConfig scanning = micron_kind().make_default();
+  scanning.name = "micron";
+  scanning.device = std::move(serial);
+  config.heads.push_back(scanning);
   std::atomic<bool> fan_is_busy{false}, lines_are_here{false};
   renderer->before_ping = [&](const render::PingRequest& request, int) {
     if (request.settings.aperture.beam_count() > 1) {
@@ -188,7 +196,7 @@ TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
   });
   const int code = serve_until([&](UdpEndpoint& surface, const Datagram& datagram) {
     if (is(datagram, 0x40) && !fan_is_busy) {
-      surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(continuous_config())}});
+      surface.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
     }
     return lines_are_here.load() && is(datagram, 0x43);
   });
@@ -202,7 +210,7 @@ TEST_F(DaemonTest, RendererThatFailsWhileServingEndsItWithItsOwnCode) {
   };
   const int code = serve_until(
       [this](UdpEndpoint& surface, const Datagram&) {
-        surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(continuous_config())}});
+        surface.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
         return true;
       },
       /*send_signal=*/false);
@@ -236,7 +244,7 @@ TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
     const auto started = std::chrono::steady_clock::now();
     const int code = serve_until([&](UdpEndpoint& surface, const Datagram& datagram) {
       if (is(datagram, 0x40)) {
-        surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(continuous_config())}});
+        surface.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
       }
       heads += is(datagram, 0x41) ? 1 : 0;
       return heads > life % 3;

@@ -1,4 +1,4 @@
-#include "server/devices/faulty_link.hpp"
+#include "server/net/faulty_link.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ using std::chrono::milliseconds;
 
 Datagram numbered(int number) {
   Datagram datagram;
-  datagram.bytes = gemini::SharedBytes(std::vector<std::uint8_t>{static_cast<std::uint8_t>(number & 0xFF),
-                                                                 static_cast<std::uint8_t>(number >> 8)});
+  datagram.bytes = SharedBytes(std::vector<std::uint8_t>{static_cast<std::uint8_t>(number & 0xFF),
+                                                         static_cast<std::uint8_t>(number >> 8)});
   return datagram;
 }
 

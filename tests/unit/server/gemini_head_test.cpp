@@ -1,4 +1,4 @@
-#include "server/devices/gemini_head.hpp"
+#include "server/devices/head.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -13,10 +13,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 
-#include "server/devices/udp_endpoint.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 #include "tests/support/fake_renderer.hpp"
+#include "tests/support/head_counts.hpp"
 #include "tests/support/loopback.hpp"
 
 namespace sonard::server {
@@ -55,25 +58,26 @@ struct GeminiHeadTest : testing::Test {
   SteadyClock clock;
   std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
   PoseConfig pose_config;
-  GeminiHeadConfig config;
+  HeadConfig config = gemini_kind().make_default();
+  GeminiConfig gemini_config;
   std::optional<double> water_surface_z_m;
   std::string vehicle_model;
 
   std::unique_ptr<PoseHistory> poses;
   std::unique_ptr<RenderService> service;
-  std::unique_ptr<GeminiHead> head;
+  std::unique_ptr<Head> head;
   UdpEndpoint surface{io, {surface_address, 52900}};
   std::vector<Datagram> received;
 
   GeminiHeadTest() {
     pose_config.T_world_vehicle_initial = render::Pose{};
     config.name = "head";
-    config.device.sonar_id = 601;
-    config.device.alternate_address = head_address;
-    config.device.netmask = 0xFF000000;
-    config.bind_address = head_address;
-    config.status = {StatusDestination::Mode::unicast, {surface_address}};
-    config.allow = {{surface_address, 32}};
+    gemini_config.device.sonar_id = 601;
+    gemini_config.device.alternate_address = head_address;
+    gemini_config.device.netmask = 0xFF000000;
+    gemini_config.bind_address = head_address;
+    gemini_config.status = {StatusDestination::Mode::unicast, {surface_address}};
+    gemini_config.allow = {{surface_address, 32}};
     surface.start([this](const Datagram& datagram) { received.push_back(datagram); });
   }
 
@@ -94,11 +98,12 @@ struct GeminiHeadTest : testing::Test {
     service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
     HeadServices services{io, clock, *service, *poses, water_surface_z_m};
     services.vehicle_model = vehicle_model;
-    head = std::make_unique<GeminiHead>(config, 0, services);
+    config.device = std::make_shared<GeminiConfig>(gemini_config);
+    head = std::make_unique<Head>(config, 0, services);
     head->start();
   }
 
-  void command(const Bytes& bytes) { surface.send({{{head_address, 52901}, 0, gemini::SharedBytes(bytes)}}); }
+  void command(const Bytes& bytes) { surface.send({{{head_address, 52901}, 0, SharedBytes(bytes)}}); }
 
   std::vector<Bytes> of_type(std::uint8_t type) const {
     std::vector<Bytes> found;
@@ -135,17 +140,17 @@ TEST_F(GeminiHeadTest, SendsStatusFromItsCommandPort) {
 TEST_F(GeminiHeadTest, AnswersToPort52900WhateverTheSourcePort) {
   start();
   UdpEndpoint elsewhere(io, {surface_address, 0});
-  elsewhere.send({{{head_address, 52901}, 0, gemini::SharedBytes(status_request)}});
+  elsewhere.send({{{head_address, 52901}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until_received(0x49, 1));
 }
 
 TEST_F(GeminiHeadTest, BoundToAllAddressesItAnswersFromTheOneAddressed) {
-  config.bind_address = 0;
-  config.command_port =
+  gemini_config.bind_address = 0;
+  gemini_config.command_port =
       static_cast<std::uint16_t>(20000 + getpid() % 20000);  // all addresses: 52901 may be taken
   start();
   const Ipv4 other = test::own_loopback_address(77);
-  surface.send({{{other, config.command_port}, 0, gemini::SharedBytes(status_request)}});
+  surface.send({{{other, gemini_config.command_port}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until_received(0x49, 1));
   for (const Datagram& datagram : received) {
     EXPECT_EQ(datagram.remote.address, datagram.bytes[0] == 0x49 ? other : head_address);
@@ -255,8 +260,8 @@ TEST_F(GeminiHeadTest, DropsAndCountsStrangers) {
   UdpEndpoint stranger(io, {stranger_address, 52900});
   std::size_t answers = 0;
   stranger.start([&](const Datagram&) { ++answers; });
-  stranger.send({{{head_address, 52901}, 0, gemini::SharedBytes(status_request)}});
-  ASSERT_TRUE(run_until([&] { return head->counters().not_allowed == 1; }));
+  stranger.send({{{head_address, 52901}, 0, SharedBytes(status_request)}});
+  ASSERT_TRUE(run_until([&] { return test::transport_count(*head, "not_allowed") == 1; }));
   // An answer to somebody allowed, sent afterwards, arrives; none to the stranger has.
   command(status_request);
   ASSERT_TRUE(run_until_received(0x49, 1));
@@ -267,7 +272,7 @@ TEST_F(GeminiHeadTest, WithoutAPoseItAnswersButDoesNotPing) {
   pose_config.T_world_vehicle_initial.reset();
   start();
   command(ping_config);
-  ASSERT_TRUE(run_until([&] { return head->counters().pings_without_pose == 1; }));
+  ASSERT_TRUE(run_until([&] { return head->render_counters().pings_without_pose == 1; }));
   command(status_request);
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_TRUE(of_type(0x41).empty());
@@ -277,7 +282,7 @@ TEST_F(GeminiHeadTest, WithoutAPoseItAnswersButDoesNotPing) {
 // Rendering further ahead than a ping period, the next ping is due at once when one could not be made.
 TEST_F(GeminiHeadTest, RenderingAheadItKeepsTryingWithoutAPose) {
   pose_config.T_world_vehicle_initial.reset();
-  config.device.render_lead = std::chrono::milliseconds{35};
+  gemini_config.device.render_lead = std::chrono::milliseconds{35};
   start();
   Bytes continuous = ping_config;
   continuous[16] = 0x01;
@@ -286,15 +291,15 @@ TEST_F(GeminiHeadTest, RenderingAheadItKeepsTryingWithoutAPose) {
   continuous[26] = 0x00;
   command(continuous);
   // 20 periods are 0.67 s: less than a status period, whose timer would otherwise move things on.
-  EXPECT_TRUE(
-      run_until([&] { return head->counters().pings_without_pose >= 20; }, std::chrono::milliseconds{950}));
+  EXPECT_TRUE(run_until([&] { return head->render_counters().pings_without_pose >= 20; },
+                        std::chrono::milliseconds{950}));
 }
 
 TEST_F(GeminiHeadTest, PingsAgainWhenAPoseHasArrived) {
   pose_config.T_world_vehicle_initial.reset();
   start();
   command(ping_config);
-  ASSERT_TRUE(run_until([&] { return head->counters().pings_without_pose == 1; }));
+  ASSERT_TRUE(run_until([&] { return head->render_counters().pings_without_pose == 1; }));
   pose::PoseSample sample;
   sample.time_ns = 1;
   poses->insert(sample, clock.now());
@@ -306,15 +311,15 @@ TEST_F(GeminiHeadTest, OutOfTheWaterItDoesNotPingUnlessToldTo) {
   water_surface_z_m = -1.0;  // the sonar is at z = 0
   start();
   command(not_out_of_water(ping_config));
-  ASSERT_TRUE(run_until([&] { return head->counters().device.pings_suppressed > 0; }));
+  ASSERT_TRUE(run_until([&] { return test::device_count(*head, "pings_suppressed") > 0; }));
   EXPECT_TRUE(of_type(0x41).empty());
   command(ping_config);
   ASSERT_TRUE(run_until_received(0x43, 1));
 }
 
 TEST_F(GeminiHeadTest, FaultsOfTheLinkApplyInBothDirections) {
-  config.link.to_surface.duplicate = 1.0;
-  config.link.from_surface.delay = std::chrono::milliseconds{80};
+  gemini_config.link.to_client.duplicate = 1.0;
+  gemini_config.link.from_client.delay = std::chrono::milliseconds{80};
   start();
   const auto sent = std::chrono::steady_clock::now();
   command(status_request);
@@ -324,20 +329,20 @@ TEST_F(GeminiHeadTest, FaultsOfTheLinkApplyInBothDirections) {
 }
 
 TEST_F(GeminiHeadTest, DatagramAtTheTriggerSocketIsOneEdge) {
-  config.trigger = Endpoint{head_address, 14700};
+  gemini_config.trigger = Endpoint{head_address, 14700};
   start();
   command(externally_triggered(ping_config));
   command(status_request);
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_EQ(renderer->pings, 0);
-  surface.send({{*config.trigger, 0, gemini::SharedBytes(Bytes{1})}});
+  surface.send({{*gemini_config.trigger, 0, SharedBytes(Bytes{1})}});
   ASSERT_TRUE(run_until_received(0x43, 1));
   EXPECT_EQ(renderer->pings, 1);
 }
 
 // docs/protocols/gemini.md 3.7 and 3.9: bank 2 holds address and mask, a reboot applies them.
 TEST_F(GeminiHeadTest, MovesToTheAddressThatAClientHasProgrammed) {
-  config.device.reboot_time = std::chrono::milliseconds{50};
+  gemini_config.device.reboot_time = std::chrono::milliseconds{50};
   start();
   const Ipv4 new_address = test::own_loopback_address(44);
   Bytes write_bank_2(152);
@@ -355,7 +360,7 @@ TEST_F(GeminiHeadTest, MovesToTheAddressThatAClientHasProgrammed) {
            received.back().remote.address == new_address;
   };
   ASSERT_TRUE(run_until(is_from_new_address));
-  surface.send({{{new_address, 52901}, 0, gemini::SharedBytes(status_request)}});
+  surface.send({{{new_address, 52901}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_EQ(received.back().remote.address, new_address);
 }

@@ -1,19 +1,25 @@
-#include "server/devices/gemini_settings.hpp"
+#include "server/devices/gemini/settings.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "server/devices/gemini/kind.hpp"
 
 namespace sonard::server {
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-gemini::PingJob job_at_20_m() {
-  gemini::PingJob job;
-  job.ping_number = 300;
-  job.native_lines = 2411;  // round(20 / (1500 / 2 / 90422)) (docs/protocols/gemini.md 5)
-  job.line_step_m = 1500.0 / (2 * 90422.0);
+HeadConfig plain_head() {
+  return gemini_kind().make_default();
+}
+
+PingJob job_at_20_m() {
+  PingJob job;
+  job.number = 300;
+  job.native_bins = 2411;  // round(20 / (1500 / 2 / 90422)) (docs/protocols/gemini.md 5)
+  job.native_bin_m = 1500.0 / (2 * 90422.0);
   job.compression_log2 = 1;
   job.gain_db = -4.5;
   job.sound_speed_mps = 1500.0;
@@ -21,7 +27,7 @@ gemini::PingJob job_at_20_m() {
 }
 
 TEST(GeminiSettings, BeamsFallFromPortToStarboardOverTheSector) {
-  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
+  const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), plain_head());
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   ASSERT_EQ(edges.size(), 257u);
   EXPECT_NEAR(edges.front(), 60 * degree, 1e-12);
@@ -33,7 +39,7 @@ TEST(GeminiSettings, BeamsFallFromPortToStarboardOverTheSector) {
 // Bearings printed in docs/protocols/gemini.md 6.5, positive to starboard: each lies inside its beam, in the
 // middle of it in the sine.
 TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
-  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
+  const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), plain_head());
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   const struct {
     std::size_t beam;
@@ -46,7 +52,7 @@ TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
 }
 
 TEST(GeminiSettings, RangeLinesAreThoseOfTheJob) {
-  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), {});
+  const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), plain_head());
   EXPECT_EQ(settings.range.count, 2411);
   EXPECT_EQ(settings.range.output_count(), 1205);
   EXPECT_NEAR(settings.range.step_m, 0.008294, 1e-6);
@@ -56,27 +62,27 @@ TEST(GeminiSettings, RangeLinesAreThoseOfTheJob) {
 }
 
 TEST(GeminiSettings, SampleSizeFollowsTheJob) {
-  gemini::PingJob job = job_at_20_m();
+  PingJob job = job_at_20_m();
   job.sixteen_bit = true;
-  EXPECT_TRUE(to_sonar_settings(job, {}).sixteen_bit);
+  EXPECT_TRUE(gemini_sonar_settings(job, plain_head()).sixteen_bit);
 }
 
 TEST(GeminiSettings, HeadThatOnlyListensTransmitsNothing) {
-  gemini::PingJob job = job_at_20_m();
-  EXPECT_TRUE(to_sonar_settings(job, {}).transmit);
+  PingJob job = job_at_20_m();
+  EXPECT_TRUE(gemini_sonar_settings(job, plain_head()).transmit);
   job.transmit = false;
-  EXPECT_FALSE(to_sonar_settings(job, {}).transmit);
+  EXPECT_FALSE(gemini_sonar_settings(job, plain_head()).transmit);
 }
 
 TEST(GeminiSettings, GainIsAddedAndTheRestComesFromTheHead) {
-  GeminiHeadConfig head;
+  HeadConfig head = plain_head();
   render::SonarSettings& acoustics = head.acoustics;
   acoustics.model = render::Model::physical;
   acoustics.physical.gain_db = 50.0;
   acoustics.physical.absorption_db_per_m = 0.123;
   acoustics.aperture.vertical_beamwidth_rad = 0.2;
   acoustics.sampling.rows = 77;
-  const render::SonarSettings settings = to_sonar_settings(job_at_20_m(), head);
+  const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), head);
   EXPECT_DOUBLE_EQ(settings.physical.gain_db, 45.5);
   EXPECT_DOUBLE_EQ(settings.physical.absorption_db_per_m, 0.123);
   EXPECT_DOUBLE_EQ(settings.aperture.vertical_beamwidth_rad, 0.2);

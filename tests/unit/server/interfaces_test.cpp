@@ -1,4 +1,4 @@
-#include "server/devices/interfaces.hpp"
+#include "server/net/interfaces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/devices/micron_head.hpp"
+#include "server/devices/head.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -15,9 +15,13 @@
 #include <boost/asio/post.hpp>
 
 #include "protocol/micron/host.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "server/net/serial_transport.hpp"
 #include "server/pose/pose_history.hpp"
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 #include "tests/support/fake_renderer.hpp"
+#include "tests/support/head_counts.hpp"
 #include "tests/support/serial_client.hpp"
 
 namespace sonard::server {
@@ -41,11 +45,12 @@ struct MicronHeadTest : testing::Test {
   SteadyClock clock;
   std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
   PoseConfig pose_config;
-  MicronHeadConfig config;
+  HeadConfig config = micron_kind().make_default();
+  MicronConfig micron_config;
 
   std::unique_ptr<PoseHistory> poses;
   std::unique_ptr<RenderService> service;
-  std::unique_ptr<MicronHead> head;
+  std::unique_ptr<Head> head;
   std::optional<test::Client> client;
   std::optional<micron::Host> host;
   std::vector<micron::ReceivedLine> lines;
@@ -54,11 +59,11 @@ struct MicronHeadTest : testing::Test {
     spdlog::set_level(spdlog::level::off);
     pose_config.T_world_vehicle_initial = render::Pose{};
     config.name = "head";
-    config.serial.tcp = {{{0x7F000001, 0}, {{0x7F000000, 8}}}};
+    micron_config.serial.tcp = {{{0x7F000001, 0}, {{0x7F000000, 8}}}};
     // As quick as a head may be.
-    config.device.boot_time = 10ms;
-    config.device.alive_period = 100ms;
-    config.device.reconfiguration_time = 10ms;
+    micron_config.device.boot_time = 10ms;
+    micron_config.device.alive_period = 100ms;
+    micron_config.device.reconfiguration_time = 10ms;
   }
 
   ~MicronHeadTest() override {
@@ -77,12 +82,17 @@ struct MicronHeadTest : testing::Test {
     hooks.post = [this](std::function<void()> task) { asio::post(io, std::move(task)); };
     hooks.on_failure = [](const std::string& what) { FAIL() << what; };
     service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
-    head = std::make_unique<MicronHead>(config, 0, HeadServices{io, clock, *service, *poses, std::nullopt});
+    config.device = std::make_shared<MicronConfig>(micron_config);
+    head = std::make_unique<Head>(config, 0, HeadServices{io, clock, *service, *poses, std::nullopt});
     head->start();
   }
 
+  SerialAddresses addresses() const {
+    return dynamic_cast<SerialTransport&>(head->connected().transport()).addresses();
+  }
+
   void connect() {
-    client.emplace(test::Client::tcp(head->addresses().tcp.at(0)));
+    client.emplace(test::Client::tcp(addresses().tcp.at(0)));
     consumed_ = 0;
     host.emplace(micron::HostConfig{}, clock.now());
   }
@@ -133,7 +143,7 @@ TEST_F(MicronHeadTest, SendsWhatTheRendererHandedOver) {
       EXPECT_EQ(lines[i].bins[static_cast<std::size_t>(bin)], test::fake_sample(i, bin, 0)) << i;
     }
   }
-  EXPECT_GE(head->counters().pings_rendered, 12u);
+  EXPECT_GE(head->render_counters().pings_rendered, 12u);
 }
 
 TEST_F(MicronHeadTest, RendersOneBeamWhereTheVehicleTheMountAndTheHeadPoint) {
@@ -189,7 +199,7 @@ TEST_F(MicronHeadTest, TheClientsGainMovesTheLevel) {
   host->start(clock.now(), loud, 2);
   ASSERT_TRUE(run_until_lines(2));
   EXPECT_NEAR(renderer->recorded().at(0).settings.physical.gain_db,
-              config.acoustics.physical.gain_db + 80 - config.nominal_gain_db, 1e-9);
+              config.acoustics.physical.gain_db + 80 - micron_config.nominal_gain_db, 1e-9);
 }
 
 TEST_F(MicronHeadTest, AClientThatVanishesInTheMiddleOfALineLeavesTheNextOneAClearLine) {
@@ -201,20 +211,20 @@ TEST_F(MicronHeadTest, AClientThatVanishesInTheMiddleOfALineLeavesTheNextOneACle
   client->write(half_a_command);
   client->reset();
   host.reset();
-  ASSERT_TRUE(run_until([&] { return head->counters().link.ports.connections == 1 && service; }, 200ms));
+  ASSERT_TRUE(run_until([&] { return test::transport_count(*head, "connections") == 1 && service; }, 200ms));
   lines.clear();
   connect();
   // The head has its parameters and has turned on meanwhile: it scans again at once, without a new power-up.
   host->start(clock.now(), quick_scan(), 5);
   ASSERT_TRUE(run_until_lines(5));
-  EXPECT_EQ(head->counters().device.bad_frames, 0u);
-  EXPECT_EQ(head->counters().device.boots, 0u);
+  EXPECT_EQ(test::device_count(*head, "bad_frames"), 0u);
+  EXPECT_EQ(test::device_count(*head, "boots"), 0u);
 }
 
 TEST_F(MicronHeadTest, IsASerialDeviceTooAndAllClientsHearIt) {
-  config.serial.pty = {{}};
+  micron_config.serial.pty = {{}};
   start();
-  test::Client listener = test::Client::tty(head->addresses().pty.at(0));
+  test::Client listener = test::Client::tty(addresses().pty.at(0));
   connect();
   host->start(clock.now(), quick_scan(), 4);
   ASSERT_TRUE(run_until_lines(4));
@@ -234,9 +244,9 @@ TEST_F(MicronHeadTest, WithoutAPoseItTurnsOnAndSendsNoLine) {
   start();
   connect();
   host->start(clock.now(), quick_scan(), 2);
-  ASSERT_TRUE(run_until([&] { return head->counters().pings_without_pose >= 2; }));
+  ASSERT_TRUE(run_until([&] { return head->render_counters().pings_without_pose >= 2; }));
   EXPECT_TRUE(lines.empty());
-  EXPECT_EQ(head->counters().pings_rendered, 0u);
+  EXPECT_EQ(head->render_counters().pings_rendered, 0u);
 }
 
 TEST_F(MicronHeadTest, APingThatCannotBeRenderedFailsAlone) {
@@ -249,7 +259,7 @@ TEST_F(MicronHeadTest, APingThatCannotBeRenderedFailsAlone) {
   connect();
   host->start(clock.now(), quick_scan(), 4);
   ASSERT_TRUE(run_until_lines(4));
-  EXPECT_EQ(head->counters().device.pings_failed, 1u);
+  EXPECT_EQ(test::device_count(*head, "pings_failed"), 1u);
 }
 
 TEST_F(MicronHeadTest, StopsInTheMiddleOfAPing) {
@@ -267,10 +277,12 @@ TEST_F(MicronHeadTest, StopsInTheMiddleOfAPing) {
 
 TEST_F(MicronHeadTest, AnAddressInUseIsNamed) {
   start();
-  MicronHeadConfig other = config;
-  other.serial.tcp[0].bind = head->addresses().tcp.at(0);
+  MicronConfig taken = micron_config;
+  taken.serial.tcp[0].bind = addresses().tcp.at(0);
+  HeadConfig other = config;
+  other.device = std::make_shared<MicronConfig>(taken);
   try {
-    const MicronHead second(other, 0, HeadServices{io, clock, *service, *poses, std::nullopt});
+    const Head second(other, 0, HeadServices{io, clock, *service, *poses, std::nullopt});
     FAIL();
   } catch (const std::exception& error) {
     EXPECT_NE(std::string(error.what()).find("127.0.0.1:"), std::string::npos) << error.what();

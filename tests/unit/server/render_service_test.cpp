@@ -1,4 +1,4 @@
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 
 #include <atomic>
 #include <deque>

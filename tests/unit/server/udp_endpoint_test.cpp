@@ -1,4 +1,4 @@
-#include "server/devices/udp_endpoint.hpp"
+#include "server/net/udp_endpoint.hpp"
 
 #include <memory>
 
@@ -16,7 +16,7 @@ constexpr Ipv4 loopback_5 = 0x7F000005;
 using Bytes = std::vector<std::uint8_t>;
 
 Datagram to(const Endpoint& remote, Bytes bytes, Ipv4 local = 0) {
-  return {remote, local, gemini::SharedBytes(std::move(bytes))};
+  return {remote, local, SharedBytes(std::move(bytes))};
 }
 
 Bytes bytes_of(const Datagram& datagram) {
@@ -54,6 +54,23 @@ TEST_F(UdpEndpointTest, TellsOnWhichAddressItWasAddressed) {
   EXPECT_EQ(received[0].remote, sender.local_endpoint());
   EXPECT_EQ(bytes_of(received[0]), (Bytes{1, 2, 3}));
   EXPECT_EQ(received[1].local, loopback_1);
+}
+
+TEST_F(UdpEndpointTest, SharesItsPortOnlyWhereAllSaySo) {
+  using Sharing = UdpEndpoint::Sharing;
+  const UdpEndpoint first(io, {loopback_5, 0}, Sharing::with_others);
+  const Endpoint same = first.local_endpoint();
+  EXPECT_NO_THROW(UdpEndpoint(io, same, Sharing::with_others));
+  EXPECT_THROW(UdpEndpoint(io, same), SocketError);
+}
+
+TEST_F(UdpEndpointTest, TakesADatagramWithoutBytes) {
+  UdpEndpoint everywhere(io, {0, 0});
+  everywhere.start(collect());
+  UdpEndpoint sender(io, {loopback_1, 0});
+  sender.send({to({loopback_1, everywhere.local_endpoint().port}, {})});
+  ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
+  EXPECT_TRUE(bytes_of(received[0]).empty());
 }
 
 TEST_F(UdpEndpointTest, SendsFromTheAddressAskedFor) {

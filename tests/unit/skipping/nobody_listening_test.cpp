@@ -12,10 +12,15 @@
 #include <boost/asio/post.hpp>
 
 #include "protocol/gemini/codec.hpp"
-#include "server/devices/gemini_head.hpp"
-#include "server/devices/udp_endpoint.hpp"
+#include "protocol/gemini/device.hpp"
+#include "server/devices/device_kind.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/head.hpp"
+#include "server/devices/head_rendering.hpp"
+#include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 #include "tests/support/fake_renderer.hpp"
 #include "tests/support/loopback.hpp"
 
@@ -39,18 +44,28 @@ Bytes reboot_command() {
   return gemini::encode(gemini::Command{reboot});
 }
 
+const gemini::DeviceCounters& device_counters(Head& head) {
+  return dynamic_cast<const gemini::Device&>(head.connected().device()).counters();
+}
+std::uint64_t started(Head& head) {
+  return device_counters(head).pings_started;
+}
+std::uint64_t cancelled(Head& head) {
+  return device_counters(head).pings_cancelled;
+}
+
 /// A head on stream 0, and the render thread held up by a ping of another head until release().
 class NobodyListening : public testing::Test {
  protected:
   NobodyListening() {
     config_.name = "head";
-    config_.device.sonar_id = 601;
-    config_.device.alternate_address = head_address_;
-    config_.device.netmask = 0xFF000000;
-    config_.device.reboot_time = std::chrono::milliseconds{1};
-    config_.bind_address = head_address_;
-    config_.status = {StatusDestination::Mode::unicast, {surface_address_}};
-    config_.allow = {{surface_address_, 32}};
+    gemini_.device.sonar_id = 601;
+    gemini_.device.alternate_address = head_address_;
+    gemini_.device.netmask = 0xFF000000;
+    gemini_.device.reboot_time = std::chrono::milliseconds{1};
+    gemini_.bind_address = head_address_;
+    gemini_.status = {StatusDestination::Mode::unicast, {surface_address_}};
+    gemini_.allow = {{surface_address_, 32}};
     surface_.start([this](const Datagram& datagram) { received_.push_back(datagram); });
   }
 
@@ -76,7 +91,8 @@ class NobodyListening : public testing::Test {
     hooks.on_failure = [](const std::string& what) { FAIL() << what; };
     service_ = std::make_unique<RenderService>(test::fake_renderer_factory(renderer_), 2, hooks);
     const HeadServices services{io_, clock_, *service_, poses_, std::nullopt, skip};
-    head_ = std::make_unique<GeminiHead>(config_, 0, services);
+    config_.device = std::make_shared<GeminiConfig>(gemini_);
+    head_ = std::make_unique<Head>(config_, 0, services);
     head_->start();
     RenderJob job;
     job.stream = other_stream;
@@ -91,9 +107,7 @@ class NobodyListening : public testing::Test {
     }
   }
 
-  void command(const Bytes& bytes) {
-    surface_.send({{{head_address_, 52901}, 0, gemini::SharedBytes(bytes)}});
-  }
+  void command(const Bytes& bytes) { surface_.send({{{head_address_, 52901}, 0, SharedBytes(bytes)}}); }
 
   std::vector<Bytes> datagrams_of_pings() const {
     std::vector<Bytes> found;
@@ -118,9 +132,9 @@ class NobodyListening : public testing::Test {
   void call_off_a_ping() {
     ASSERT_TRUE(run_until([&] { return renderer_->attempts == 1; }));
     command(ping_config);
-    ASSERT_TRUE(run_until([&] { return head_->counters().device.pings_started == 1; }));
+    ASSERT_TRUE(run_until([&] { return started(*head_) == 1; }));
     command(reboot_command());
-    ASSERT_TRUE(run_until([&] { return head_->counters().device.pings_cancelled == 1; }));
+    ASSERT_TRUE(run_until([&] { return cancelled(*head_) == 1; }));
     release();
     ASSERT_TRUE(run_until([&] { return other_done_; }));
   }
@@ -132,7 +146,7 @@ class NobodyListening : public testing::Test {
       const std::vector<Bytes> all = datagrams_of_pings();
       return !all.empty() && all.back()[0] == tail_type;
     };
-    std::this_thread::sleep_for(2 * config_.device.reboot_time);
+    std::this_thread::sleep_for(2 * gemini_.device.reboot_time);
     command(ping_config);
     EXPECT_TRUE(run_until(complete));
     for (Bytes& bytes : datagrams_of_pings()) {
@@ -156,7 +170,9 @@ class NobodyListening : public testing::Test {
     return service_->withdraw(other_stream);
   }
 
-  std::uint64_t skipped() const { return head_->counters().skipped.of(render::SkipRule::nobody_listening); }
+  std::uint64_t skipped() const {
+    return head_->render_counters().skipped.of(render::SkipRule::nobody_listening);
+  }
   std::size_t pings_rendered_for_the_head() const { return renderer_->recorded().size() - 1; }
 
  private:
@@ -171,12 +187,13 @@ class NobodyListening : public testing::Test {
     return poses;
   }();
   PoseHistory poses_{pose_config_};
-  GeminiHeadConfig config_;
+  HeadConfig config_ = gemini_kind().make_default();
+  GeminiConfig gemini_;
   std::promise<void> release_;
   bool released_ = false;
   bool other_done_ = false;
   std::unique_ptr<RenderService> service_;
-  std::unique_ptr<GeminiHead> head_;
+  std::unique_ptr<Head> head_;
   UdpEndpoint surface_{io_, {surface_address_, 52900}};
   std::vector<Datagram> received_;
 };

@@ -4,9 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "clients/sonarview/compare/options.hpp"
+#include "clients/sonarview/gemini/options.hpp"
+#include "clients/sonarview/micron/options.hpp"
 
 namespace sonard::client {
 namespace {
@@ -15,7 +20,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 struct Parsed {
-  std::optional<CommandLine> command_line;
+  std::optional<Run> command_line;
   ExitStatus status = ExitStatus::ok;
   std::string out;
   std::string err;
@@ -32,11 +37,23 @@ Parsed parse(std::vector<const char*> words) {
   return parsed;
 }
 
-MicronOptions micron(std::vector<const char*> words) {
-  words.insert(words.begin(), "micron");
+/// What the words after a subcommand mean to its arguments; the program takes them, too.
+template <class Arguments>
+auto options_of(const char* subcommand, std::vector<const char*> words) {
+  CLI::App app;
+  const Arguments arguments(app);
+  std::vector<const char*> all{"sonarview"};
+  all.insert(all.end(), words.begin(), words.end());
+  app.parse(static_cast<int>(all.size()), all.data());
+  words.insert(words.begin(), subcommand);
   const Parsed parsed = parse(std::move(words));
   EXPECT_EQ(parsed.err, "");
-  return std::get<MicronOptions>(parsed.command_line.value());
+  EXPECT_TRUE(parsed.command_line);
+  return arguments.options();
+}
+
+MicronOptions micron(std::vector<const char*> words) {
+  return options_of<MicronArguments>("micron", std::move(words));
 }
 
 void expect_refused(const std::vector<const char*>& words, const std::string& message) {
@@ -47,8 +64,8 @@ void expect_refused(const std::vector<const char*>& words, const std::string& me
 }
 
 TEST(CommandLine, TwoImagesToCompare) {
-  const auto options = std::get<CompareOptions>(
-      parse({"compare", "a.png", "dump/b.csv#3", "--json", "c.json"}).command_line.value());
+  const CompareOptions options =
+      options_of<CompareArguments>("compare", {"a.png", "dump/b.csv#3", "--json", "c.json"});
   EXPECT_EQ(options.a, "a.png");
   EXPECT_EQ(options.b, "dump/b.csv#3");
   EXPECT_EQ(options.json, "c.json");
@@ -56,9 +73,10 @@ TEST(CommandLine, TwoImagesToCompare) {
 }
 
 TEST(CommandLine, WithoutASubcommandItIsAGemini) {
-  const auto options = std::get<GeminiOptions>(
-      parse({"--range", "20", "--compression", "1", "--pings", "7", "--continuous", "100"})
-          .command_line.value());
+  const std::vector<const char*> words{"--range", "20", "--compression", "1",
+                                       "--pings", "7",  "--continuous",  "100"};
+  EXPECT_TRUE(parse(words).command_line);
+  const GeminiOptions options = options_of<GeminiArguments>("gemini", words);
   EXPECT_EQ(options.settings.range_m, 20.0);
   EXPECT_EQ(options.settings.compression_log2, 1);
   EXPECT_EQ(options.settings.interval, std::chrono::microseconds{100'000});

@@ -13,12 +13,13 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "server/pose/pose_history.hpp"
-#include "server/render_service.hpp"
+#include "server/rendering/render_service.hpp"
 #include "tests/unit/config/config_text.hpp"
 #include "tests/unit/gemini_device/bench.hpp"
 
@@ -27,13 +28,11 @@ namespace {
 
 using namespace std::chrono_literals;
 using gemini::Bench;
-using gemini::PingImage;
-using gemini::PingJob;
 
 PingImage blank_image(const PingJob& job) {
   PingImage image;
-  image.ping_number = job.ping_number;
-  image.u8.assign(static_cast<std::size_t>(job.lines()) * gemini::beam_count, 0);
+  image.number = job.number;
+  image.u8.assign(static_cast<std::size_t>(job.bins()) * gemini::beam_count, 0);
   return image;
 }
 
@@ -59,7 +58,7 @@ TEST(LongRun, S11_PingNumbersWrapOnTheWireOnly) {
   while (jobs < pings && bench.now < 10min) {
     bench.run_connected(1s);
     for (const PingJob& job : bench.jobs) {
-      ASSERT_EQ(job.ping_number, jobs);
+      ASSERT_EQ(job.number, jobs);
       ++jobs;
     }
     bench.jobs.clear();
@@ -143,8 +142,7 @@ TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
     const LoadedConfig loaded = load(minimal_config + second_head + "water: {" + water + "}\n");
     ASSERT_EQ(loaded.warnings.size(), 1U) << water;
     EXPECT_NE(loaded.warnings[0].find("water"), std::string::npos) << loaded.warnings[0];
-    for (const AnyHeadConfig& any : loaded.config.heads) {
-      const HeadConfig& head = common(any);
+    for (const HeadConfig& head : loaded.config.heads) {
       const double absorption = head.acoustics.physical.absorption_db_per_m;
       EXPECT_TRUE(std::isfinite(absorption) && absorption > 0 && absorption < 1) << water;
     }
@@ -213,7 +211,7 @@ class ScriptedRenderer final : public PingRenderer {
   Script script_;
 };
 
-/// A device, a pose history and a render service in virtual time, joined as GeminiHead joins them.
+/// A device, a pose history and a render service in virtual time, joined as Head joins them.
 class VirtualDaemon {
  public:
   static constexpr auto render_time = 1s;  // ten times what the head would like
@@ -225,6 +223,7 @@ class VirtualDaemon {
     hooks.on_failure = std::move(on_failure);
     service_ =
         std::make_unique<RenderService>([&] { return std::make_unique<ScriptedRenderer>(script); }, 1, hooks);
+    move_vehicle();
     command(gemini::ping_of(32, gemini::RunMode::continuous, 100ms));
   }
 
@@ -232,10 +231,7 @@ class VirtualDaemon {
   void run_until(TimePoint end) {
     while (now_ < end && !failed) {
       now_ += 100ms;
-      pose::PoseSample sample;
-      sample.time_ns = now_.count();
-      sample.T_world_vehicle.position_m.x = std::chrono::duration<double>(now_).count();
-      poses_.insert(sample, now_);
+      move_vehicle();
       if (now_ % 1s == 0s) {
         command(gemini::to_head<gemini::StatusRequest>());
       }
@@ -258,26 +254,38 @@ class VirtualDaemon {
     return config;
   }
 
+  void move_vehicle() {
+    pose::PoseSample sample;
+    sample.time_ns = now_.count();
+    sample.T_world_vehicle.position_m.x = std::chrono::duration<double>(now_).count();
+    poses_.insert(sample, now_);
+  }
+
   void command(const gemini::Command& message) {
-    device_.on_datagram(now_, gemini::surface_address, gemini::head_address, gemini::encode(message));
+    happen(BytesReceived{{0, {gemini::surface_address, gemini::surface_port}, gemini::head_address},
+                         SharedBytes(gemini::encode(message))});
   }
 
   void step() {
-    if (answer_ && answer_->first <= now_) {
-      const RenderResult& result = answer_->second.second;
-      if (result.error.empty()) {
-        device_.on_image(now_, {answer_->second.first, result.samples.u8, result.samples.u16});
-        ++pings;
-      } else {
-        device_.on_image_failed(now_, answer_->second.first);
-        ++dropped;
-      }
-      answer_.reset();
+    if (!answer_ || answer_->first > now_) {
+      happen(TimePassed{});
+      return;
     }
-    device_.advance(now_);
-    datagrams += device_.take_outgoing().size();
-    if (const std::optional<PingJob> job = device_.take_job()) {
-      submit(*job);
+    const auto [number, result] = std::exchange(answer_, std::nullopt)->second;
+    if (result.error.empty()) {
+      ++pings;
+      happen(PingRendered{{number, result.samples.u8, result.samples.u16}});
+    } else {
+      ++dropped;
+      happen(PingNotRendered{number});
+    }
+  }
+
+  void happen(const Event& event) {
+    const Actions actions = device_.step(now_, event);
+    datagrams += actions.send.size();
+    if (actions.render) {
+      submit(*actions.render);
     }
   }
 
@@ -286,16 +294,16 @@ class VirtualDaemon {
     ASSERT_TRUE(pose);
     RenderJob render;
     render.request.T_world_sonar = pose->T_world_vehicle;
-    render.request.ping_number = job.ping_number;
+    render.request.ping_number = job.number;
     render.request.settings.aperture.beam_edges_rad = render::equal_sine_edges(gemini::beam_count, 1.0);
-    render.request.settings.range = {job.native_lines, job.line_step_m, 0, false};
+    render.request.settings.range = {job.native_bins, job.native_bin_m, 0, false};
     oldest_pose_s = std::max(oldest_pose_s, std::chrono::duration<double>(job.transmit_time).count() -
                                                 pose->T_world_vehicle.position_m.x);
     std::optional<RenderResult> result;
     service_->submit(std::move(render), [&](RenderResult r) { result = std::move(r); });
     failed = !inbox_.run_until([&] { return result.has_value() || failed; }) || failed;
     if (result) {
-      answer_.emplace(now_ + render_time, std::pair{job.ping_number, std::move(*result)});
+      answer_.emplace(now_ + render_time, std::pair{job.number, std::move(*result)});
     }
   }
 

@@ -1,0 +1,10 @@
+// `sonarview compare`.
+#pragma once
+
+#include "clients/sonarview/subcommand.hpp"
+
+namespace sonard::client {
+
+const Subcommand& compare_subcommand();
+
+}  // namespace sonard::client

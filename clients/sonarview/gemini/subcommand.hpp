@@ -1,0 +1,10 @@
+// `sonarview gemini`.
+#pragma once
+
+#include "clients/sonarview/subcommand.hpp"
+
+namespace sonard::client {
+
+const Subcommand& gemini_subcommand();
+
+}  // namespace sonard::client

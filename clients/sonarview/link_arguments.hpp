@@ -1,0 +1,32 @@
+// The options that say how a head on a serial line, or beside it, is reached.
+#pragma once
+
+#include <string>
+
+#include "clients/sonarview/serial_line.hpp"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
+class App;
+}
+
+namespace sonard::client {
+
+/// --tcp, --udp, --tty and --baud.
+class LinkArguments {
+ public:
+  static constexpr const char* group = "Link (one of --tcp, --udp, --tty)";
+
+  /// Declares them; `app` and this object then live until it has parsed.
+  void declare(CLI::App& app);
+  /// @throws CLI::ValidationError
+  LineAddress address() const;
+
+ private:
+  // As they are typed.
+  std::string tcp_;
+  std::string udp_;
+  std::string tty_;
+  unsigned baud_ = 115'200;
+};
+
+}  // namespace sonard::client

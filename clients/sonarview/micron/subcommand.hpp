@@ -1,0 +1,10 @@
+// `sonarview micron`.
+#pragma once
+
+#include "clients/sonarview/subcommand.hpp"
+
+namespace sonard::client {
+
+const Subcommand& micron_subcommand();
+
+}  // namespace sonard::client

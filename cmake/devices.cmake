@@ -1,0 +1,9 @@
+# The kinds of device, one line each: the only place that names them all. A kind NAME has
+#   protocol/NAME             library sonard_NAME: its bytes and its state machine
+#   server/devices/NAME       library sonard_device_NAME with `const DeviceKind& NAME_kind()` in kind.hpp
+#   clients/sonarview/NAME    library sonard_view_NAME with `const Subcommand& NAME_subcommand()` in subcommand.hpp
+# docs/adding-a-device.md tells the way.
+set(SONARD_DEVICES
+  gemini
+  micron
+)

@@ -1,0 +1,138 @@
+// What every emulated head is: a state machine that takes events at points in time and says what to do.
+// It knows no sockets, clocks or threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "protocol/common/endpoint.hpp"
+#include "protocol/common/ping_job.hpp"
+#include "protocol/common/ping_record.hpp"
+#include "protocol/common/shared_bytes.hpp"
+
+namespace sonard {
+
+/// The other end of a message. On a line that all clients share, as a serial one, it is the default.
+struct Peer {
+  int channel = 0;  ///< which of the device's sockets or lines, as its kind numbers them
+  Endpoint remote;  ///< where it came from or goes to
+  Ipv4 local = 0;   ///< the address of ours that it came to, or is to come from; 0: any
+
+  bool operator==(const Peer&) const = default;
+};
+
+// ---- What happens to a device
+
+/// A datagram, or any piece of a stream.
+struct BytesReceived {
+  Peer from;
+  SharedBytes bytes;
+};
+/// A client has gone: what it had begun to say will not be finished.
+struct ClientGone {
+  Peer who;
+};
+/// The image of the job that is out. It is counted and dropped where that ping was cancelled meanwhile.
+struct PingRendered {
+  PingImage image;
+};
+/// The job that is out cannot be rendered, or was withdrawn: the head goes on without this ping.
+struct PingNotRendered {
+  std::uint64_t number = 0;
+};
+/// One edge at the external trigger input.
+struct TriggerEdge {};
+/// The head has left the water, or is back in it.
+struct WaterChanged {
+  bool out_of_water = false;
+};
+/// For a device that plays back: the ping to send when a client next wants one, in place of the one fed
+/// before. It is gone when its job is out; without one no ping begins.
+struct PingFed {
+  std::optional<RecordedPing> ping;
+};
+/// For a device that waits for grants: Actions::next_ping begins now. It is not sent before NextPing::from.
+struct PingGranted {};
+/// Nothing but time: Actions::wake_at has come.
+struct TimePassed {};
+
+using Event = std::variant<TimePassed, BytesReceived, ClientGone, PingRendered, PingNotRendered, TriggerEdge,
+                           WaterChanged, PingFed, PingGranted>;
+
+// ---- What a device wants done
+
+/// A message to send now.
+struct Outgoing {
+  enum class To : std::uint8_t {
+    peer,      ///< to the one below
+    everybody  ///< to all who listen: the clients of a shared line, or a broadcast
+  };
+  To to = To::peer;
+  Peer peer;
+  SharedBytes bytes;
+};
+
+/// A line for the log, in words: "surface 192.168.2.5 connected".
+struct Notice {
+  enum class Level : std::uint8_t { info, warning };
+  Level level = Level::info;
+  std::string text;
+};
+
+/// The answer to one event. The lists belong to that event; the rest is how things stand after it.
+struct Actions {
+  std::vector<Outgoing> send;  ///< in order
+  /// A ping to render. Each is answered once, by PingRendered or PingNotRendered: the next waits for that, so
+  /// at most one is out.
+  std::optional<PingJob> render;
+  std::optional<PingRecord> record;  ///< a ping goes onto the wire
+  std::vector<Notice> notices;
+
+  /// The job that is out though nobody wants its image any more. It must still be answered; PingNotRendered
+  /// without rendering it will do.
+  std::optional<std::uint64_t> cancelled;
+  std::optional<NextPing> next_ping;  ///< for a device that waits for grants
+  bool nobody_there = false;          ///< a client has just gone, or none is known: nobody wants pings
+  /// When to step next without another event; later than this step. nullopt: only after an event.
+  std::optional<TimePoint> wake_at;
+};
+
+/// Something that a device or its transport counts, for the log. It only grows.
+struct Counter {
+  enum class Shown : std::uint8_t {
+    at_end,  ///< in the totals
+    often,   ///< in the lines about rates, too, where it has grown
+    warns,   ///< in the totals, and as a warning with the text below where it has grown
+  };
+  std::string name;  ///< "lines_resent"; empty: it is not among the totals
+  std::uint64_t value = 0;
+  Shown shown = Shown::at_end;
+  std::string warning = {};  ///< "{} commands were for another node"
+};
+
+/// What a head has done with its pings. They only grow.
+struct PingProgress {
+  std::uint64_t sent = 0;      ///< pings that went out to their end
+  std::uint64_t ended = 0;     ///< those, and those that failed or were cancelled
+  std::uint64_t messages = 0;  ///< that carried them, repeated ones too, and requests for such
+};
+
+/// One head. Not thread-safe. `now` never goes backwards over all calls.
+class Device {
+ public:
+  Device() = default;
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  /// Takes an event and runs everything that is due. A call that comes late is made up for as the device can.
+  virtual Actions step(TimePoint now, const Event& event) = 0;
+
+  virtual PingProgress progress() const = 0;
+  virtual std::vector<Counter> counts() const = 0;
+};
+
+}  // namespace sonard

@@ -1,0 +1,25 @@
+// Addresses of the Internet protocol, as plain values.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace sonard {
+
+/// IPv4 address, first octet most significant (127.0.0.1 = 0x7F000001).
+using Ipv4 = std::uint32_t;
+
+/// Where a datagram goes to, or what a socket is bound to.
+struct Endpoint {
+  Ipv4 address = 0;        ///< 0 binds all addresses
+  std::uint16_t port = 0;  ///< 0 lets the kernel choose (bind only)
+
+  bool operator==(const Endpoint&) const = default;
+};
+
+/// "127.0.0.1"
+std::string address_text(Ipv4 address);
+/// "127.0.0.1:14600"
+std::string endpoint_text(const Endpoint& endpoint);
+
+}  // namespace sonard

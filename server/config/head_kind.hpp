@@ -1,0 +1,60 @@
+// What the configuration needs to know of a kind of device.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/config/config.hpp"
+#include "server/config/head_section.hpp"
+#include "server/config/yaml_section.hpp"
+#include "server/net/serial_port.hpp"
+
+namespace sonard::server {
+
+/// A socket that the configuration asks for.
+struct PlannedSocket {
+  enum class Transport : std::uint8_t { udp, tcp };
+  Transport transport = Transport::udp;
+  Endpoint endpoint;
+  std::string key;  ///< "heads[0].network.bind", or of a head "network.bind"
+};
+
+/// A value that no two heads of a kind may share.
+struct Identity {
+  std::string key;    ///< of the head: "sonar_id"
+  std::string value;  ///< as text: "513"
+};
+
+/// One for each kind of device, without state. A head of the configuration names its kind, and its `device`
+/// are the settings that this kind has read.
+class HeadKind {
+ public:
+  HeadKind() = default;
+  virtual ~HeadKind() = default;
+  HeadKind(const HeadKind&) = delete;
+  HeadKind& operator=(const HeadKind&) = delete;
+
+  virtual std::string_view type() const = 0;   ///< as in the configuration: "example_100"
+  virtual std::string_view title() const = 0;  ///< for people: "Example 100"
+
+  /// A head with the defaults of this kind.
+  virtual HeadConfig make_default() const = 0;
+  /// Reads a section of `heads`, but for its type.
+  virtual HeadConfig read(YamlSection& section, const HeadContext& context,
+                          std::vector<ConfigWarning>& warnings) const = 0;
+
+  virtual std::uint16_t device_id(const HeadConfig& head) const = 0;  ///< on the wire
+  virtual std::vector<PlannedSocket> sockets(const HeadConfig& head) const = 0;
+  virtual std::vector<Identity> identities(const HeadConfig& head) const = 0;
+  /// For `sonard check`: "ID 513, commands to 127.0.0.2:52901, status to 127.0.0.1".
+  virtual std::string summary(const HeadConfig& head) const = 0;
+  /// What of this head a client would stumble over on this machine; keys are those of the head.
+  virtual std::vector<ConfigWarning> network_warnings(const HeadConfig& /*head*/) const { return {}; }
+};
+
+/// Of a serial link under a key of a head.
+std::vector<PlannedSocket> serial_sockets(const SerialLinkConfig& link, const std::string& key);
+
+}  // namespace sonard::server

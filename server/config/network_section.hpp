@@ -1,0 +1,27 @@
+// The parts of the loader that read how clients reach a head.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "server/config/yaml_section.hpp"
+#include "server/net/faulty_link.hpp"
+#include "server/net/serial_port.hpp"
+
+namespace sonard::server {
+
+inline constexpr std::string_view expected_endpoint = "an address and port such as 127.0.0.1:14600";
+
+/// "allow" beside a bind address: a list of address blocks. Left out, loopback peers are served if the socket
+/// is bound to loopback; for any other address it has to be given.
+void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow);
+
+/// The keys `tcp`, `udp`, `pty` (lists) and `baud`. Reports a link without any transport, and transports of
+/// one link that would get in each other's way.
+/// @param folder of the configuration file, which links to ptys are relative to
+SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder);
+
+/// The keys `seed`, `to_surface` and `from_surface`.
+void read_link_faults(YamlSection& section, LinkConfig& link);
+
+}  // namespace sonard::server

@@ -1,0 +1,419 @@
+#include "server/daemon/daemon.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "protocol/pose/trajectory.hpp"
+#include "renderer/sonar_renderer.hpp"
+#include "server/clock/clock.hpp"
+#include "server/daemon/exit_codes.hpp"
+#include "server/daemon/process.hpp"
+#include "server/daemon/resolve_mounts.hpp"
+#include "server/devices/device_kind.hpp"
+#include "server/devices/head.hpp"
+#include "server/devices/ping_dump.hpp"
+#include "server/devices/playback.hpp"
+#include "server/net/udp_endpoint.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/pose/pose_inputs.hpp"
+#include "server/pose/pose_intake.hpp"
+#include "server/recording/recorder.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+class WorldRenderer final : public PingRenderer {
+ public:
+  WorldRenderer(const render::World& world, const render::RendererOptions& options)
+      : renderer_(world, options) {}
+
+  std::string description() const override { return renderer_.backend_description(); }
+  bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
+    return renderer_.set_body_pose(body, T_world_body);
+  }
+  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
+    render::PingSamples samples = renderer_.render_ping(request, stream);
+    tell_where_grids_are_binned();
+    return samples;
+  }
+  void warm_up(const render::PingRequest& request, int stream) override {
+    renderer_.render_echo(request,
+                          stream);  // the receiver, which keeps speckle from ping to ping, needs no warming
+  }
+  render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
+
+ private:
+  void tell_where_grids_are_binned() {
+    const std::string& obstacle = renderer_.last_statistics().gpu_binning_obstacle;
+    if (obstacle != gpu_binning_obstacle_ && !obstacle.empty()) {
+      spdlog::warn("binning on the CPU: {}", obstacle);
+    }
+    gpu_binning_obstacle_ = obstacle;
+  }
+
+  render::SonarRenderer renderer_;
+  std::string gpu_binning_obstacle_;  // of the last ping
+};
+
+// Runs on the render thread. The self-test comes first: a backend that draws nothing must not get as far as a
+// socket.
+std::unique_ptr<PingRenderer> make_world_renderer(const render::World& world,
+                                                  const render::RendererOptions& options) {
+  const double error = render::run_self_test(options);
+  auto renderer = std::make_unique<WorldRenderer>(world, options);
+  spdlog::info("renderer self-test passed: error={:.2f}% backend=\"{}\"", 100.0 * error,
+               renderer->description());
+  return renderer;
+}
+
+std::string head_key(std::size_t index, const std::string& rest) {
+  return fmt::format("heads[{}].{}", index, rest);
+}
+
+std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig& config, const Clock& clock,
+                                        const PoseSink& sink, const PoseHold& hold) {
+  try {
+    return std::make_unique<PoseInputs>(io, config.poses, clock, sink, hold);
+  } catch (const pose::TrajectoryError& error) {
+    throw StartError("poses.trajectory.file", exit_config, error.what());
+  } catch (const PoseSourceError& error) {
+    throw StartError("poses.ignition", exit_config, error.what());
+  }
+}
+
+// By stream; null for a head that keeps nothing.
+std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>& heads) {
+  std::vector<std::unique_ptr<PingDump>> dumps(heads.size());
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    const HeadConfig& head = heads[i];
+    if (head.dump_directory) {
+      try {
+        dumps[i] = std::make_unique<PingDump>(*head.dump_directory, head.name);
+      } catch (const std::exception& error) {
+        throw StartError(head_key(i, "dump.directory"), exit_config, error.what());
+      }
+    }
+  }
+  return dumps;
+}
+
+// Null when nothing is recorded.
+std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
+  if (!config.recording) {
+    return nullptr;
+  }
+  try {
+    return std::make_unique<Recorder>(*config.recording, recorded_heads(config.heads));
+  } catch (const RecordingError& error) {
+    throw StartError("recording.directory", exit_config, error.what());
+  }
+}
+
+// Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
+// `io_`, and with it pose inputs, history and heads; each RenderService has a render thread. Scanning heads
+// have one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that
+// takes a hundred.
+//
+// Shutdown, in the order of run(): main is told to end by a signal or by end(). It posts stop_io(), which
+// closes every socket and cancels every timer; joins the render threads, which finish the pings they are
+// working on; then gives up the work guard, so that `io_` runs out of work, and joins the I/O thread. Only
+// then is anything destroyed, on main, in the reverse order of the members.
+class Daemon {
+ public:
+  Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+         Playback* playback);
+
+  /// Serves until it shall end. Returns the exit code.
+  int run();
+
+ private:
+  RenderServiceHooks hooks();
+  std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
+                                                  const RendererFactory& make_renderer);
+  RenderService& renderer_of(const HeadConfig& head) const {
+    return *(kind_of(head).scanning() ? beam_renderer_ : fan_renderer_);
+  }
+  void warm_up(const HeadConfig& head, int stream, RenderService& renderer) const;
+  void start_inputs();
+  void poses_changed();
+  std::optional<std::chrono::nanoseconds> spare_poses() const;
+  void wait_for_signal();
+  void end_when_played();
+  void run_io();
+  void stop_io();
+  void end(int exit_code);
+
+  SteadyClock clock_;
+  asio::io_context lifetime_;                          // of main: signals, and the wish to end
+  asio::posix::stream_descriptor signals_{lifetime_};  // see hear_signals()
+  std::uint8_t signal_ = 0;                            // read last
+  int exit_code_ = exit_clean;                         // of main
+  asio::io_context io_;
+  Playback* playback_;  // may be null
+  asio::steady_timer playback_timer_;
+  PoseHistory poses_;
+  PoseIntake intake_;
+  std::unique_ptr<PoseInputs> inputs_;
+  std::vector<std::unique_ptr<PingDump>> dumps_;
+  std::unique_ptr<Recorder> recorder_;                           // null when nothing is recorded
+  std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
+  std::vector<std::unique_ptr<Head>> heads_;
+  std::string ready_line_;
+};
+
+Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+               Playback* playback)
+    : playback_(playback),
+      playback_timer_(io_),
+      poses_(config.poses),
+      intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return spare_poses(); }}),
+      inputs_(make_inputs(
+          io_, config, clock_,
+          [this](const pose::PoseSample& sample, TimePoint arrival) { intake_.take(sample, arrival); },
+          [this] { return intake_.hold(); })),
+      dumps_(make_dumps(config.heads)),
+      recorder_(make_recorder(config)),
+      fan_renderer_(make_renderer_of(false, config, make_renderer)),
+      beam_renderer_(make_renderer_of(true, config, make_renderer)) {
+  for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    RenderService& renderer = renderer_of(config.heads[i]);
+    const HeadServices services{io_,
+                                clock_,
+                                renderer,
+                                poses_,
+                                world.water_surface_z_m,
+                                config.skip,
+                                playback_,
+                                recorder_.get(),
+                                config.vehicle_model};
+    try {
+      heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
+    } catch (const SocketError& error) {
+      throw StartError(head_key(i, kind_of(config.heads[i]).socket_key()), exit_network, error.what());
+    }
+  }
+  start_inputs();
+  for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    warm_up(config.heads[i], static_cast<int>(i), renderer_of(config.heads[i]));
+  }
+  ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
+                            world.name, world.triangle_count(),
+                            (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
+}
+
+std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const DaemonConfig& config,
+                                                        const RendererFactory& make_renderer) {
+  const auto streams =
+      std::count_if(config.heads.begin(), config.heads.end(),
+                    [scanning](const HeadConfig& head) { return kind_of(head).scanning() == scanning; });
+  return streams > 0 ? std::make_unique<RenderService>(make_renderer, static_cast<int>(streams), hooks())
+                     : nullptr;
+}
+
+// From where the vehicle is, if that is known yet.
+void Daemon::warm_up(const HeadConfig& head, int stream, RenderService& renderer) const {
+  const std::optional<PoseEstimate> vehicle = poses_.at(clock_.now());
+  const render::Pose T_world_vehicle = vehicle ? vehicle->T_world_vehicle : render::Pose{};
+  renderer.warm_up({T_world_vehicle * head.T_vehicle_sonar, usual_settings(head), 0, head.seed}, stream);
+}
+
+RenderServiceHooks Daemon::hooks() {
+  RenderServiceHooks hooks;
+  hooks.post = [this](std::function<void()> task) { asio::post(io_, std::move(task)); };
+  hooks.on_failure = [this](const std::string& what) {
+    spdlog::critical("the renderer failed: {}", what);
+    end(exit_renderer);
+  };
+  hooks.observe = [this](const RenderJob& job, const render::PingSamples& samples) {
+    if (PingDump* dump = dumps_[static_cast<std::size_t>(job.stream)].get()) {
+      dump->write(job, samples);
+    }
+  };
+  return hooks;
+}
+
+void Daemon::start_inputs() {
+  try {
+    inputs_->start();
+  } catch (const PoseSourceError& error) {
+    throw StartError("poses", exit_network, error.what());
+  }
+}
+
+void Daemon::poses_changed() {
+  for (const std::unique_ptr<Head>& head : heads_) {
+    head->poses_changed();
+  }
+}
+
+std::optional<std::chrono::nanoseconds> Daemon::spare_poses() const {
+  std::optional<std::chrono::nanoseconds> most;
+  for (const std::unique_ptr<Head>& head : heads_) {
+    const auto spare = head->spare_poses();
+    most = most ? std::max(most, spare) : spare;
+  }
+  return most;
+}
+
+int Daemon::run() {
+  signals_.assign(hear_signals(std::chrono::seconds{1}));
+  wait_for_signal();
+  auto io_work = asio::make_work_guard(io_);
+  std::thread io_thread(&Daemon::run_io, this);
+  asio::post(io_, [this] {
+    for (const std::unique_ptr<Head>& head : heads_) {
+      head->start();
+    }
+    spdlog::info(ready_line_);
+    end_when_played();
+  });
+
+  lifetime_.run();
+
+  asio::post(io_, [this] { stop_io(); });
+  for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
+    if (renderer != nullptr) {
+      renderer->stop();
+    }
+  }
+  io_work.reset();
+  io_thread.join();
+  if (recorder_) {
+    recorder_->stop();
+  }
+  return exit_code_;
+}
+
+void Daemon::wait_for_signal() {
+  signals_.async_read_some(
+      asio::buffer(&signal_, 1), [this](const boost::system::error_code& error, std::size_t) {
+        if (error) {
+          return;
+        }
+        if (signal_ == SIGHUP) {
+          spdlog::info("SIGHUP changes nothing: the configuration is read at the start only");
+          wait_for_signal();
+        } else {
+          spdlog::info("signal {}: ending", signal_);
+          lifetime_.stop();
+        }
+      });
+}
+
+// Looks now and then: nobody minds when a replay ends a little late.
+void Daemon::end_when_played() {
+  if (playback_ == nullptr) {
+    return;
+  }
+  if (playback_->finished(clock_.now())) {
+    spdlog::info("the recording is over");
+    end(exit_clean);
+    return;
+  }
+  playback_timer_.expires_after(std::chrono::milliseconds{100});
+  playback_timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      end_when_played();
+    }
+  });
+}
+
+void Daemon::run_io() {
+  try {
+    io_.run();
+  } catch (const std::exception& error) {
+    // No handler throws: bytes from outside cannot make one, so this is a defect.
+    spdlog::critical("the I/O thread failed: {}", error.what());
+    end(exit_internal);
+  }
+}
+
+void Daemon::stop_io() {
+  playback_timer_.cancel();
+  inputs_->stop();
+  intake_.stop();
+  for (const std::unique_ptr<Head>& head : heads_) {
+    head->stop();
+  }
+}
+
+// Callable from any thread.
+void Daemon::end(int exit_code) {
+  asio::post(lifetime_, [this, exit_code] {
+    exit_code_ = exit_code;
+    lifetime_.stop();
+  });
+}
+
+}  // namespace
+
+render::World load_world_of(DaemonConfig& config) {
+  try {
+    render::World world = render::load_world(config.world_file);
+    for (const std::string& warning : world.warnings) {
+      spdlog::warn("{}", warning);
+    }
+    if (world.triangle_count() == 0) {
+      throw StartError(
+          "world.file", exit_config,
+          config.world_file.string() + ": the world has no triangles (expected a surface that echoes)");
+    }
+    for (const std::string& line : world.left_out) {
+      spdlog::info("world {}: left out: {}", world.name, line);
+    }
+    for (const WorldProblem& problem : resolve_mounts(config, world)) {
+      throw StartError(problem.key, exit_config, problem.message);
+    }
+    return world;
+  } catch (const render::WorldError& error) {
+    throw StartError("world.file", exit_config, error.what());
+  }
+}
+
+render::RendererOptions renderer_options(const DaemonConfig& config) {
+  return {config.backend, 0, config.skip, config.gpu_binning,
+          config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
+}
+
+int run_daemon(DaemonConfig config) {
+  const render::World world = load_world_of(config);
+  for (const HeadConfig& head : config.heads) {
+    try {
+      check_sampling_of(head);
+    } catch (const render::RequestError& error) {
+      throw StartError("sampling", exit_config, fmt::format("head '{}': {}", head.name, error.what()));
+    }
+  }
+  const render::RendererOptions options = renderer_options(config);
+  for (const render::SkipRuleEntry& entry : render::skip_rules) {
+    if (!config.skip.on(entry.rule)) {
+      spdlog::info("skip rule {} is off", entry.name);
+    }
+  }
+  return serve(config, world, [&] { return make_world_renderer(world, options); });
+}
+
+int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+          Playback* playback) {
+  Daemon daemon(config, world, make_renderer, playback);
+  return daemon.run();
+}
+
+}  // namespace sonard::server

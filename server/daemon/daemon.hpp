@@ -1,0 +1,49 @@
+// The daemon: pose sources, heads and the render thread joined, from start to signal.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "renderer/backend.hpp"
+#include "renderer/scene/world.hpp"
+#include "server/config/config.hpp"
+#include "server/rendering/render_service.hpp"
+
+namespace sonard::server {
+
+class Playback;
+
+/// The value of a configuration key turned out to be unusable when it was used: world missing, address taken.
+/// what() is one line.
+struct StartError : std::runtime_error {
+  StartError(std::string config_key, int code, const std::string& what)
+      : std::runtime_error(what), key(std::move(config_key)), exit_code(code) {}
+
+  std::string key;  ///< "heads[0].network.bind"
+  int exit_code;    ///< of server/exit_codes.hpp
+};
+
+/// The world of a configuration, which takes from it what it leaves to its world (resolve_mounts()). Logs
+/// what is odd about it, and what is left out.
+/// @throws StartError
+render::World load_world_of(DaemonConfig& config);
+
+/// What a renderer is made with.
+render::RendererOptions renderer_options(const DaemonConfig& config);
+
+/// Loads the world, starts the renderer (self-test first), binds the sockets and serves until SIGINT or
+/// SIGTERM, which end it within the time of one ping. When all is up it logs one line that begins with
+/// "sonard ready": one ping of each head has then been rendered, which nobody gets, so that the first one for
+/// a client takes no longer than others. A signal a second after the first kills at once; SIGHUP is one line
+/// in the log.
+/// @return exit_clean; exit_renderer when the renderer fails while serving; exit_internal
+/// @throws StartError, render::RendererError, render::RequestError, std::system_error before it is ready
+int run_daemon(DaemonConfig config);
+
+/// The same with a world already loaded and any renderer; run_daemon() without rendering, for tests.
+/// @param playback what heads play back that are told to; the daemon ends when it is finished. May be null.
+int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
+          Playback* playback = nullptr);
+
+}  // namespace sonard::server

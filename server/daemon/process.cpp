@@ -1,0 +1,84 @@
+#include "server/daemon/process.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <ctime>
+#include <system_error>
+
+namespace sonard::server {
+namespace {
+
+// What the handler reads, which may do little and wait for nothing.
+std::atomic<int> write_end{-1};
+std::atomic<std::int64_t> grace_ns{0};
+std::atomic<std::int64_t> deadly_from_ns{0};  // 0: there was no order to end yet
+static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+std::int64_t monotonic_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+extern "C" void on_signal(int signal) {
+  const int error = errno;
+  bool heard = true;
+  if (signal != SIGHUP) {
+    std::int64_t deadly_from = 0;
+    const std::int64_t now = monotonic_ns();
+    heard = deadly_from_ns.compare_exchange_strong(deadly_from, now + grace_ns);
+    if (!heard && now >= deadly_from) {
+      std::signal(signal, SIG_DFL);
+      std::raise(signal);  // takes effect when this handler returns
+    }
+  }
+  const auto number = static_cast<std::uint8_t>(signal);
+  if (heard && ::write(write_end, &number, 1) != 1) {
+    // Full: there are enough bytes to read.
+  }
+  errno = error;
+}
+
+}  // namespace
+
+void open_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
+      // The lowest number that is free, and that is this one.
+      static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY));
+    }
+  }
+}
+
+void ignore_broken_pipes_and_hang_ups() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGHUP, SIG_IGN);
+}
+
+int hear_signals(std::chrono::nanoseconds grace) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
+    throw std::system_error(errno, std::generic_category(), "cannot make a pipe for signals");
+  }
+  const int before = write_end.exchange(ends[1]);
+  if (before >= 0) {
+    close(before);
+  }
+  grace_ns = grace.count();
+  deadly_from_ns = 0;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    sigaction(signal, &action, nullptr);
+  }
+  return ends[0];
+}
+
+}  // namespace sonard::server

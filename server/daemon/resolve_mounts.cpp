@@ -1,0 +1,115 @@
+#include "server/daemon/resolve_mounts.hpp"
+
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "server/config/head_kind.hpp"
+
+namespace sonard::server {
+namespace {
+
+/// By its path, or by the end of it. All of them: "".
+std::vector<const render::WorldSonar*> sonars_named(const render::World& world, const std::string& name) {
+  std::vector<const render::WorldSonar*> found;
+  for (const render::WorldSonar& sonar : world.sonars) {
+    if (name.empty() || sonar.path == name || sonar.path.ends_with("::" + name)) {
+      found.push_back(&sonar);
+    }
+  }
+  return found;
+}
+
+std::string paths(const std::vector<const render::WorldSonar*>& sonars) {
+  std::vector<std::string> names;
+  for (const render::WorldSonar* sonar : sonars) {
+    names.push_back(sonar->path);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+class MountResolver {
+ public:
+  MountResolver(DaemonConfig& config, const render::World& world) : config_(config), world_(world) {}
+
+  std::vector<WorldProblem> take() {
+    if (!config_.vehicle_model.empty() && world_.find_body(config_.vehicle_model) == nullptr) {
+      problem("world.vehicle_model", fmt::format("the world has no model '{}'", config_.vehicle_model));
+    }
+    for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+      mount(i);
+    }
+    for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+      if (config_.heads[i].hides_vehicle && config_.vehicle_model.empty()) {
+        problem(
+            fmt::format("heads[{}].hides_vehicle", i),
+            "the world has no model of the vehicle (expected world.vehicle_model, or a mount from_world)");
+      }
+    }
+    name_entity();
+    return std::move(problems_);
+  }
+
+ private:
+  void problem(std::string key, std::string message) {
+    problems_.push_back({std::move(key), std::move(message)});
+  }
+
+  void mount(std::size_t index) {
+    HeadConfig& head = config_.heads[index];
+    if (head.mount_from_world.empty()) {
+      return;
+    }
+    const std::string key = fmt::format("heads[{}].mount.from_world", index);
+    const auto found = sonars_named(world_, head.mount_from_world);
+    if (found.empty()) {
+      problem(key, fmt::format("the world has no sonar '{}' (expected {})", head.mount_from_world,
+                               world_.sonars.empty()
+                                   ? "a <sensor type=\"custom\" sonard:type=\"...\"> in it, and it has none"
+                                   : "one of " + paths(sonars_named(world_, ""))));
+    } else if (found.size() > 1) {
+      problem(key, fmt::format("'{}' is the name of several sonars of the world (expected one of {})",
+                               head.mount_from_world, paths(found)));
+    } else if (found.front()->type != head.kind->type()) {
+      problem(key, fmt::format("{} is a {} in the world (expected a {}, as this head is)",
+                               found.front()->path, found.front()->type, head.kind->type()));
+    } else {
+      head.T_vehicle_sonar = found.front()->T_body_sonar;
+      carry(key, *found.front());
+    }
+  }
+
+  void carry(const std::string& key, const render::WorldSonar& sonar) {
+    if (config_.vehicle_model.empty()) {
+      config_.vehicle_model = sonar.body;
+    } else if (config_.vehicle_model != sonar.body) {
+      problem(key, fmt::format("{} is on model '{}', and the vehicle is '{}' (expected one vehicle)",
+                               sonar.path, sonar.body, config_.vehicle_model));
+    }
+  }
+
+  void name_entity() {
+    if (!config_.poses.ignition || !config_.poses.ignition->vehicle.name.empty()) {
+      return;
+    }
+    if (config_.vehicle_model.empty()) {
+      problem(
+          "poses.ignition.vehicle",
+          "is required: the name of an entity of the simulator (without it, world.vehicle_model or a mount "
+          "from_world says which model carries the sonars)");
+    }
+    config_.poses.ignition->vehicle = {config_.vehicle_model, {}};
+  }
+
+  DaemonConfig& config_;
+  const render::World& world_;
+  std::vector<WorldProblem> problems_;
+};
+
+}  // namespace
+
+std::vector<WorldProblem> resolve_mounts(DaemonConfig& config, const render::World& world) {
+  return MountResolver(config, world).take();
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,45 @@
+#include "server/devices/device_kind.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "renderer/visibility/sample_grid.hpp"
+
+namespace sonard::server {
+
+// Bearings are positive to starboard, turns about z to port.
+render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad) {
+  return T_world_mount * render::Pose{{0.0, 0.0, 0.0}, glm::angleAxis(-bearing_rad, glm::dvec3(0, 0, 1))};
+}
+
+render::SonarSettings usual_settings(const HeadConfig& head) {
+  const DeviceKind& kind = kind_of(head);
+  return kind.sonar_settings(kind.usual_job(head), head);
+}
+
+void check_sampling_of(const HeadConfig& head) {
+  const render::SonarSettings settings = usual_settings(head);
+  if (render::needs_grid(settings)) {
+    render::make_sample_grid(settings.aperture, settings.sampling, render::grid_options(settings));
+  }
+}
+
+std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads) {
+  constexpr int most_numbered = 9;
+  std::vector<HeadToRecord> recorded;
+  int numbered = 0;
+  for (const HeadConfig& head : heads) {
+    const DeviceKind& kind = kind_of(head);
+    HeadToRecord one{head.name, std::string(kind.type()), kind.device_id(head), std::nullopt, {}};
+    if (kind.writes_glf()) {
+      one.glf_number = static_cast<std::uint8_t>(std::min(numbered++, most_numbered));
+      one.glf_status = [&kind](std::span<const std::uint8_t> message) { return kind.glf_status(message); };
+    }
+    recorded.push_back(std::move(one));
+  }
+  return recorded;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,110 @@
+// What the server needs to know of a kind of device. Each kind has a folder of its own beside this file.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/common/device.hpp"
+#include "protocol/glf/records.hpp"
+#include "renderer/pose.hpp"
+#include "renderer/sonar_settings.hpp"
+#include "server/clock/clock.hpp"
+#include "server/config/head_kind.hpp"
+#include "server/devices/survey.hpp"
+#include "server/logs/log_summary.hpp"
+#include "server/logs/recording.hpp"
+#include "server/net/transport.hpp"
+#include "server/recording/log.hpp"
+
+namespace boost::asio {
+class io_context;
+}
+
+namespace sonard::server {
+
+/// A device joined with its transport, as a Head runs it. Belongs to the I/O thread; constructor and
+/// destructor to the thread that owns the io_context while nobody runs it.
+class ConnectedDevice {
+ public:
+  ConnectedDevice() = default;
+  virtual ~ConnectedDevice() = default;
+  ConnectedDevice(const ConnectedDevice&) = delete;
+  ConnectedDevice& operator=(const ConnectedDevice&) = delete;
+
+  virtual Device& device() = 0;
+  virtual Transport& transport() = 0;
+
+  /// What reaches the device by other ways than its transport is handed to `happen` from here on.
+  virtual void start(std::function<void(Event)> /*happen*/) {}
+  virtual void stop() {}
+  /// After each step, when what it sends is on its way: follows the device where the transport has to change.
+  virtual void after_step() {}
+};
+
+class DeviceKind : public HeadKind {
+ public:
+  /// A ping is one beam, at the bearing of the job; else it is a fan.
+  virtual bool scanning() const = 0;
+
+  /// Opens the sockets. @throws SocketError
+  virtual std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
+                                                   const Clock& clock) const = 0;
+  /// The keys of the head that a SocketError is about.
+  virtual std::string socket_key() const = 0;
+
+  /// A ping of the settings that clients usually ask for, for what is done ahead of the first ping.
+  virtual PingJob usual_job(const HeadConfig& head) const = 0;
+  virtual render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const = 0;
+
+  // ---- Logs
+
+  /// The users of such heads know .glf logs.
+  virtual bool writes_glf() const { return false; }
+  /// As HeadToRecord::glf_status.
+  virtual std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> /*message*/) const {
+    return std::nullopt;
+  }
+  /// The beginning of a ping in a datagram; nullopt where it is none, or one that is sent again.
+  virtual std::optional<PingSeen> ping_in(std::span<const std::uint8_t> /*datagram*/) const {
+    return std::nullopt;
+  }
+
+  // ---- Playing logs back
+
+  /// What such a head cannot send of a log, in words; nothing when it can.
+  virtual std::optional<std::string> why_not_played(const LoggedHead& logged) const = 0;
+  /// What of it clients will see wrongly, one phrase each.
+  virtual std::vector<std::string> played_wrongly(const LoggedHead& /*logged*/) const { return {}; }
+  /// A head at an address of loopback that plays this log.
+  virtual HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const = 0;
+  /// The same head, keeping to the times of a log.
+  virtual HeadConfig held_to_recording(HeadConfig head) const = 0;
+
+  // ---- Rendering without serving
+
+  /// @throws CLI::ValidationError naming the option that such a head cannot follow
+  virtual std::unique_ptr<Survey> survey(const HeadConfig& head, const SurveyOptions& options) const = 0;
+};
+
+/// Whatever a head of this program is, it is a DeviceKind.
+inline const DeviceKind& kind_of(const HeadConfig& head) {
+  return static_cast<const DeviceKind&>(*head.kind);
+}
+
+/// The transducer of a head that looks to a bearing (PingJob::bearing_rad): the mount, turned about its z axis.
+render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad);
+
+/// What a head would ask of the renderer for DeviceKind::usual_job().
+render::SonarSettings usual_settings(const HeadConfig& head);
+/// Heads as their logs name them, by their places in the configuration.
+std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads);
+
+/// @throws render::RequestError where the sampling of the configuration cannot serve such pings
+void check_sampling_of(const HeadConfig& head);
+
+}  // namespace sonard::server

@@ -1,0 +1,113 @@
+#include "server/devices/gemini/connected.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+
+#include "protocol/gemini/device.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/net/interfaces.hpp"
+#include "server/net/udp_endpoint.hpp"
+#include "server/net/udp_transport.hpp"
+#include "server/program_log/peer_log.hpp"
+
+namespace sonard::server {
+namespace {
+
+class ConnectedGemini final : public ConnectedDevice {
+ public:
+  ConnectedGemini(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
+      : name_(head.name),
+        config_(gemini_config(head)),
+        device_(config_.device, clock.now()),
+        transport_(io, clock, {{config_.bind_address, config_.command_port}, config_.allow, config_.link}),
+        addresses_(device_.addresses()) {
+    if (config_.trigger) {
+      trigger_ = std::make_unique<UdpEndpoint>(io, *config_.trigger);
+    }
+    announce();
+  }
+
+  Device& device() override { return device_; }
+  Transport& transport() override { return transport_; }
+
+  void start(std::function<void(Event)> happen) override {
+    if (trigger_) {
+      trigger_->start([allow = config_.allow, happen = std::move(happen)](const Datagram& edge) {
+        if (allows(allow, edge.remote.address)) {
+          happen(TriggerEdge{});
+        }
+      });
+    }
+  }
+
+  void stop() override {
+    if (trigger_) {
+      trigger_->close();
+    }
+  }
+
+  // A reboot may have applied an address that the client has programmed (docs/protocols/gemini.md 3.9).
+  void after_step() override {
+    const gemini::DeviceAddresses current = device_.addresses();
+    if (current == addresses_) {
+      return;
+    }
+    const gemini::DeviceAddresses before = std::exchange(addresses_, current);
+    log_.info("head={} answers on {} mask {} from now on", name_, address_text(current.alternate),
+              address_text(current.netmask));
+    if (current.alternate != before.alternate && transport_.local_endpoint().address == before.alternate) {
+      move_from(before.alternate);
+    }
+    announce();
+  }
+
+ private:
+  void move_from(Ipv4 before) {
+    try {
+      transport_.rebind({addresses_.alternate, config_.command_port});
+    } catch (const SocketError& error) {
+      log_.error("head={} stays on {}: {}", name_, address_text(before), error.what());
+    }
+  }
+
+  /// Tells clients, by status packets, and the log what it is reached at.
+  void announce() {
+    const auto owner = owner_of(addresses_.alternate, interface_addresses());
+    std::vector<Endpoint> hosts;
+    for (const Ipv4 host : status_hosts(config_.status, addresses_.alternate, addresses_.netmask)) {
+      hosts.push_back({host, config_.device.surface_port});
+    }
+    // Where status packets come from. On a socket bound to one address the kernel knows; on one bound to all
+    // it must be told, or a limited broadcast would leave by the interface of the default route.
+    const bool bound_to_all = transport_.local_endpoint().address == 0;
+    transport_.set_everybody(std::move(hosts), bound_to_all && owner ? addresses_.alternate : 0);
+    transport_.set_own_address(addresses_.alternate);
+    if (!owner) {
+      log_.warn("head={} reports the address {}, which this machine does not have: clients will send there",
+                name_, address_text(addresses_.alternate));
+    } else if (owner->netmask != addresses_.netmask) {
+      log_.warn("head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",
+                name_, address_text(addresses_.netmask), owner->interface, address_text(owner->netmask));
+    }
+  }
+
+  const std::string name_;
+  const GeminiConfig config_;
+  gemini::Device device_;
+  UdpTransport transport_;
+  std::unique_ptr<UdpEndpoint> trigger_;
+  gemini::DeviceAddresses addresses_;
+  PeerLog log_;  // a client may program addresses and reboot as often as it likes
+};
+
+}  // namespace
+
+std::unique_ptr<ConnectedDevice> connect_gemini(const HeadConfig& head, boost::asio::io_context& io,
+                                                const Clock& clock) {
+  return std::make_unique<ConnectedGemini>(head, io, clock);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,266 @@
+#include "server/devices/gemini/kind.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "protocol/gemini/bearings.hpp"
+#include "protocol/gemini/codec.hpp"
+#include "protocol/gemini/glf_status.hpp"
+#include "protocol/gemini/recorded_form.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/connected.hpp"
+#include "server/devices/gemini/section.hpp"
+#include "server/devices/gemini/settings.hpp"
+#include "server/devices/gemini/survey.hpp"
+#include "server/net/interfaces.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr Ipv4 loopback_surface = 0x7F000001;
+constexpr double bearing_tolerance_rad = 1e-3;
+
+double worst_bearing_error_rad(const LoggedHead& head) {
+  const std::vector<double> wire = gemini::bearings_rad();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < std::min(wire.size(), head.bearings_rad.size()); ++i) {
+    worst = std::max(worst, std::abs(head.bearings_rad[i] + wire[i]));  // one to port, one to starboard
+  }
+  return worst;
+}
+
+std::string status_text(const GeminiConfig& config) {
+  using Mode = StatusDestination::Mode;
+  std::vector<std::string> hosts;
+  for (const Ipv4 host :
+       status_hosts(config.status, config.device.alternate_address, config.device.netmask)) {
+    hosts.push_back(address_text(host));
+  }
+  switch (config.status.mode) {
+    case Mode::limited_broadcast:
+      return "by limited broadcast";
+    case Mode::directed_broadcast:
+      return "by broadcast to " + hosts.front();
+    case Mode::unicast:
+      break;
+  }
+  return fmt::format("to {}", fmt::join(hosts, ", "));
+}
+
+class GeminiKind final : public DeviceKind {
+ public:
+  std::string_view type() const override { return "gemini_720i"; }
+  std::string_view title() const override { return "Gemini 720i"; }
+  bool scanning() const override { return false; }
+
+  // ---- Configuration
+
+  HeadConfig make_default() const override {
+    HeadConfig head;
+    head.kind = this;
+    head.device = std::make_shared<GeminiConfig>();
+    head.acoustics = gemini_acoustics();
+    return head;
+  }
+
+  HeadConfig read(YamlSection& section, const HeadContext& context,
+                  std::vector<ConfigWarning>& warnings) const override {
+    HeadConfig head = make_default();
+    head.device = std::make_shared<GeminiConfig>(read_gemini_head(section, context, head, warnings));
+    return head;
+  }
+
+  std::uint16_t device_id(const HeadConfig& head) const override {
+    return gemini_config(head).device.sonar_id;
+  }
+
+  std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
+    using Transport = PlannedSocket::Transport;
+    const GeminiConfig& config = gemini_config(head);
+    std::vector<PlannedSocket> sockets{
+        {Transport::udp, {config.bind_address, config.command_port}, "network.bind"}};
+    if (config.trigger) {
+      sockets.push_back({Transport::udp, *config.trigger, "trigger.bind"});
+    }
+    return sockets;
+  }
+  std::string socket_key() const override { return "network.bind"; }
+
+  std::vector<Identity> identities(const HeadConfig& head) const override {
+    const gemini::DeviceConfig& device = gemini_config(head).device;
+    return {{"sonar_id", std::to_string(device.sonar_id)},
+            {"network.alternate_address", address_text(device.alternate_address)}};
+  }
+
+  std::string summary(const HeadConfig& head) const override {
+    const GeminiConfig& config = gemini_config(head);
+    return fmt::format("ID {}, commands to {}, status {}", config.device.sonar_id,
+                       endpoint_text({config.bind_address, config.command_port}), status_text(config));
+  }
+
+  // Later clients stay silent towards a head whose mask is not that of their own interface.
+  std::vector<ConfigWarning> network_warnings(const HeadConfig& head) const override {
+    const GeminiConfig& config = gemini_config(head);
+    const gemini::DeviceConfig& device = config.device;
+    const auto owner = owner_of(device.alternate_address, interface_addresses());
+    if (owner && owner->netmask != device.netmask) {
+      return {{"network.netmask",
+               fmt::format("{} is reported, but interface {} has {}: clients that compare them send nothing",
+                           address_text(device.netmask), owner->interface, address_text(owner->netmask))}};
+    }
+    // Where the head is bound to it, trying the socket has already told.
+    if (!owner && config.bind_address != device.alternate_address) {
+      return {{"network.alternate_address",
+               fmt::format("{} is not an address of this machine, but clients will send there",
+                           address_text(device.alternate_address))}};
+    }
+    return {};
+  }
+
+  // ---- Serving
+
+  std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
+                                           const Clock& clock) const override {
+    return connect_gemini(head, io, clock);
+  }
+
+  PingJob usual_job(const HeadConfig& head) const override {
+    gemini::PingConfig config;
+    config.end_range = 2411;  // 20 m at 1500 m/s
+    config.range_compression = 1;
+    return gemini::plan_ping(config, gemini_config(head).device)->job;
+  }
+
+  render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {
+    return gemini_sonar_settings(job, head);
+  }
+
+  // ---- Logs
+
+  bool writes_glf() const override { return true; }
+
+  std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> message) const override {
+    const auto report = gemini::decode_report(message);
+    const auto* const status = report ? std::get_if<gemini::Status>(&*report) : nullptr;
+    return status != nullptr ? std::optional(gemini::glf_status(*status)) : std::nullopt;
+  }
+
+  std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram) const override {
+    constexpr std::uint16_t resent_head_bit = 0x0100;  // of PingHead::ping_id
+    const auto report = gemini::decode_report(datagram);
+    const auto* const head = report ? std::get_if<gemini::PingHead>(&*report) : nullptr;
+    if (head == nullptr || (head->ping_id & resent_head_bit) != 0) {
+      return std::nullopt;
+    }
+    PingSeen seen{std::string(type()), head->header.sonar_id, gemini::settings_of(*head)};
+    seen.settings.frequency_hz = 0.0;  // it does not say
+    return seen;
+  }
+
+  // ---- Playing logs back
+
+  std::optional<std::string> why_not_played(const LoggedHead& logged) const override {
+    for (const LoggedPing& ping : logged.pings) {
+      if (!gemini::recorded_form(ping.settings)) {
+        return fmt::format(
+            "sonar {} has an image of {} lines of {} beams, which a Gemini 720i cannot send (expected {} "
+            "beams)",
+            logged.device_id, ping.settings.bins, ping.settings.beams, gemini::beam_count);
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::vector<std::string> played_wrongly(const LoggedHead& logged) const override {
+    std::vector<std::string> problems;
+    const auto inexact = std::ranges::count_if(
+        logged.pings, [](const LoggedPing& ping) { return !gemini::recorded_form(ping.settings)->exact; });
+    if (inexact > 0) {
+      problems.push_back(fmt::format(
+          "{} of {} images have lines of a length that a 720i does not have: clients will show wrong ranges",
+          inexact, logged.pings.size()));
+    }
+    if (const double worst_rad = worst_bearing_error_rad(logged); worst_rad > bearing_tolerance_rad) {
+      problems.push_back(
+          fmt::format("bearings of the recording are up to {:.1f} degrees from those of a 720i: clients will "
+                      "show wrong bearings",
+                      worst_rad * 180.0 / std::numbers::pi));
+    }
+    return problems;
+  }
+
+  HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const override {
+    HeadConfig head = make_default();
+    auto config = std::make_shared<GeminiConfig>();
+    const std::uint16_t id = std::max(logged.device_id, gemini::min_sonar_id);
+    config->device.sonar_id = id;
+    config->device.mac = {
+        0x00, 0x12, 0x34, 0x00, static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 0xFF)};
+    config->device.alternate_address = address;
+    config->device.netmask = 0xFF000000;
+    config->bind_address = address;
+    config->status = {StatusDestination::Mode::unicast, {loopback_surface}};
+    config->allow = {{0x7F000000, 8}};
+    head.device = std::move(config);
+    head.name = logged.name.empty() ? fmt::format("gemini-{}", logged.device_id) : logged.name;
+    return head;
+  }
+
+  HeadConfig held_to_recording(HeadConfig head) const override {
+    auto config = std::make_shared<GeminiConfig>(gemini_config(head));
+    config->device.plays_back = true;
+    config->device.waits_for_permission = false;
+    config->device.min_ping_period = std::chrono::milliseconds{1};
+    config->device.render_lead = {};
+    head.device = std::move(config);
+    return head;
+  }
+
+  std::unique_ptr<Survey> survey(const HeadConfig& head, const SurveyOptions& options) const override {
+    return survey_of_gemini(head, options);
+  }
+};
+
+}  // namespace
+
+const DeviceKind& gemini_kind() {
+  static const GeminiKind kind;
+  return kind;
+}
+
+// The errors of the elements stand for all that a real head has: they let as much leak as recordings show
+// (docs/physics.md 2.16).
+render::SonarSettings gemini_acoustics() {
+  constexpr double degree = std::numbers::pi / 180.0;
+  render::SonarSettings acoustics;
+  acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
+  acoustics.aperture.element_amplitude_sd = 0.35;
+  acoustics.aperture.element_phase_sd_rad = 20 * degree;
+  acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
+  // About one cell in a hundred is saturated where a bed fills the fan, as in recordings (the same).
+  acoustics.physical.gain_db = 54.0;
+  // Whether what sends and what hears share their height is not published: the pattern is taken once
+  // (docs/physics.md 2.5).
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
+  return acoustics;
+}
+
+std::vector<Ipv4> status_hosts(const StatusDestination& status, Ipv4 address, Ipv4 netmask) {
+  using Mode = StatusDestination::Mode;
+  constexpr Ipv4 limited_broadcast = 0xFFFFFFFF;
+  switch (status.mode) {
+    case Mode::limited_broadcast:
+      return {limited_broadcast};
+    case Mode::directed_broadcast:
+      return {address | ~netmask};
+    case Mode::unicast:
+      break;
+  }
+  return status.hosts;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,13 @@
+// The part of the loader that reads a head of type `gemini_720i`.
+#pragma once
+
+#include "server/config/head_section.hpp"
+#include "server/devices/gemini/config.hpp"
+
+namespace sonard::server {
+
+/// @param head has the defaults, and gets what the section says, but for `head.device`
+GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
+                              std::vector<ConfigWarning>& warnings);
+
+}  // namespace sonard::server

@@ -1,0 +1,49 @@
+#include "server/devices/gemini/settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "protocol/gemini/bearings.hpp"
+
+namespace sonard::server {
+namespace {
+
+// No beam is steered further than this: c / c_d up to 1.15 is followed, more is not found in water.
+constexpr double widest_sin = 0.9962;  // of 85 degrees
+
+// Device bearings are positive to starboard, azimuths of the renderer to port.
+// `steering`: the ratio c / c_d of the true sound speed to that which delays are reckoned with. A beam meant
+// for the bearing b hears sin b * c / c_d (docs/physics.md 2.12).
+std::vector<double> beam_edges_rad(double steering) {
+  std::vector<double> edges = gemini::beam_edges_sin();
+  const double ratio = std::min(steering, widest_sin / std::abs(edges.front()));
+  for (double& edge : edges) {
+    edge = -std::asin(ratio * edge);
+  }
+  return edges;
+}
+
+double steering(const PingJob& job, const HeadConfig& head) {
+  return gemini_config(head).steering_error && job.assumed_sound_speed_mps > 0.0
+             ? job.sound_speed_mps / job.assumed_sound_speed_mps
+             : 1.0;
+}
+
+}  // namespace
+
+render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig& head) {
+  render::SonarSettings settings = head.acoustics;
+  settings.aperture.beam_edges_rad = beam_edges_rad(steering(job, head));
+  settings.range = {.count = job.native_bins,
+                    .step_m = job.native_bin_m,
+                    .compression_log2 = job.compression_log2,
+                    .compression_peak = false};  // a 720i averages, whatever it is asked (5)
+  settings.sixteen_bit = job.sixteen_bit;
+  settings.transmit = job.transmit;
+  settings.physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
+  settings.physical.gain_db += job.gain_db;
+  return settings;
+}
+
+}  // namespace sonard::server

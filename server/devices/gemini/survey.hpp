@@ -1,0 +1,16 @@
+// The pings of a Gemini along a trajectory.
+#pragma once
+
+#include <memory>
+
+#include "server/config/config.hpp"
+#include "server/devices/survey.hpp"
+
+namespace sonard::server {
+
+/// The settings of the user go the way of a client's: through a ping configuration, and the head's plan of
+/// it. A frame is a ping, and has its number.
+/// @throws CLI::ValidationError
+std::unique_ptr<Survey> survey_of_gemini(const HeadConfig& head, const SurveyOptions& options);
+
+}  // namespace sonard::server

@@ -1,0 +1,365 @@
+#include "server/devices/head.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/devices/device_kind.hpp"
+#include "server/devices/head_log.hpp"
+#include "server/devices/head_rendering.hpp"
+#include "server/devices/playback.hpp"
+#include "server/net/deadline_timer.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/recording/head_recording.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr std::chrono::seconds report_period{10};
+constexpr std::size_t most_waiting_events = 4096;  // while a transport is blocked; then messages are dropped
+
+/// What a recording keeps of the job that is out: a ping goes onto the wire before the next job comes.
+struct PosesToRecord {
+  std::uint64_t number = 0;
+  std::shared_ptr<const PosesUsed> poses;
+};
+
+}  // namespace
+
+struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
+  Impl(const HeadConfig& head_config, int stream_number, const HeadServices& head_services);
+
+  const HeadConfig config;
+  const HeadServices services;
+  const int stream;
+  const DeviceKind& kind;
+
+  std::unique_ptr<ConnectedDevice> connected;
+  HeadRendering rendering;
+  DeadlineTimer timer;
+  asio::steady_timer report_timer;
+  HeadLog log;
+  HeadRecording recording;
+  PosesToRecord poses_to_record;
+
+  std::deque<Event> events;  ///< that are not taken yet
+  std::optional<TimePoint> wake_at;
+  std::optional<NextPing> next_ping;
+  bool out_of_water = false;
+  bool running = false;
+  bool pumping = false;
+
+  void start();
+  void stop();
+  TransportEvents transport_events();
+  HeadCounts counts() const;
+
+  void happen(Event event);
+  void pump();
+  void take(TimePoint now, const Event& event);
+  void step(TimePoint now, const Event& event);
+  std::optional<std::uint64_t> carry_out(TimePoint now, Actions actions);
+  void send(std::vector<Outgoing> messages);
+  void record(PingRecord ping);
+  void note_water(TimePoint now);
+  void feed(TimePoint now);
+  bool grant(TimePoint now);
+  bool render(const PingJob& job);
+  void schedule(TimePoint now);
+  void report_every_period();
+};
+
+Head::Head(const HeadConfig& config, int stream, const HeadServices& services)
+    : impl_(std::make_shared<Impl>(config, stream, services)) {}
+
+Head::~Head() {
+  impl_->stop();
+}
+
+void Head::start() {
+  impl_->start();
+}
+void Head::stop() {
+  impl_->stop();
+}
+void Head::poses_changed() {
+  if (impl_->services.poses.ping_clock() != PingClock::wall) {
+    impl_->happen(TimePassed{});
+  }
+}
+std::optional<std::chrono::nanoseconds> Head::spare_poses() const {
+  return impl_->rendering.spare_poses();
+}
+ConnectedDevice& Head::connected() {
+  return *impl_->connected;
+}
+const RenderCounters& Head::render_counters() const {
+  return impl_->rendering.counters();
+}
+
+Head::Impl::Impl(const HeadConfig& head_config, int stream_number, const HeadServices& head_services)
+    : config(head_config),
+      services(head_services),
+      stream(stream_number),
+      kind(kind_of(config)),
+      connected(kind.connect(config, services.io, services.clock)),
+      rendering(config, stream, services),
+      timer(services.io),
+      report_timer(services.io),
+      log(config.name),
+      recording(services.recorder, stream, services.clock) {}
+
+// ---- Life
+
+void Head::Impl::start() {
+  running = true;
+  connected->transport().start(transport_events());
+  for (const std::string& way : connected->transport().descriptions()) {
+    spdlog::info("head={} serves {}", config.name, way);
+  }
+  connected->start([weak = weak_from_this()](Event event) {
+    if (const auto self = weak.lock()) {
+      self->happen(std::move(event));
+    }
+  });
+  report_every_period();
+  happen(TimePassed{});
+}
+
+void Head::Impl::stop() {
+  if (!std::exchange(running, false)) {
+    return;
+  }
+  timer.cancel();
+  report_timer.cancel();
+  connected->stop();
+  connected->transport().stop();
+  log.totals(counts());
+}
+
+// Handlers hold the head weakly: one that is still queued when the head is gone does nothing.
+TransportEvents Head::Impl::transport_events() {
+  const std::weak_ptr<Impl> weak = weak_from_this();
+  const auto happens = [weak](auto event) {
+    if (const auto self = weak.lock()) {
+      self->happen(std::move(event));
+    }
+  };
+  TransportEvents hooks{.received = happens,
+                        .gone = happens,
+                        .writable = [happens] { happens(TimePassed{}); },
+                        .notice =
+                            [weak](const Notice& notice) {
+                              if (const auto self = weak.lock()) {
+                                self->log.notice(notice);
+                              }
+                            },
+                        .passed = {},
+                        .ended = {}};
+  if (recording.on()) {  // copies: they hold no reference to the head
+    hooks.passed = [to = recording](WirePassed passed) { to.wire(std::move(passed)); };
+    hooks.ended = [to = recording](const WireEnds& ends) { to.stream_ended(ends); };
+  }
+  return hooks;
+}
+
+HeadCounts Head::Impl::counts() const {
+  return {rendering.counters(), connected->device().progress(), connected->device().counts(),
+          connected->transport().counts()};
+}
+
+// ---- Events
+
+void Head::Impl::happen(Event event) {
+  if (events.size() >= most_waiting_events && std::holds_alternative<BytesReceived>(event)) {
+    log.notice({Notice::Level::warning, "drops what clients send: nothing can be sent to them"});
+    return;
+  }
+  events.push_back(std::move(event));
+  pump();
+}
+
+// Takes all events that there are and sleeps until the next thing is due. What happens meanwhile is taken,
+// too.
+void Head::Impl::pump() {
+  if (!running || std::exchange(pumping, true)) {
+    return;
+  }
+  while (running && !events.empty() && !connected->transport().blocked()) {
+    const Event event = std::move(events.front());
+    events.pop_front();
+    take(services.clock.now(), event);
+  }
+  pumping = false;
+  if (running) {
+    schedule(services.clock.now());
+  }
+}
+
+void Head::Impl::take(TimePoint now, const Event& event) {
+  note_water(now);
+  feed(now);
+  step(now, event);
+  while (grant(now)) {
+    step(now, PingGranted{});
+  }
+}
+
+// A ping that cannot be made, or that nobody wants any more, is answered at once; rendering ahead, the device
+// may ask for the next one at once. Each turn moves on by a ping period or takes one of the pings that are
+// owed, so this ends.
+void Head::Impl::step(TimePoint now, const Event& event) {
+  std::optional<std::uint64_t> not_rendered = carry_out(now, connected->device().step(now, event));
+  while (not_rendered && running) {
+    not_rendered = carry_out(now, connected->device().step(now, PingNotRendered{*not_rendered}));
+  }
+  connected->after_step();
+}
+
+// The number of a job that will get no image.
+std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions actions) {
+  for (const Notice& notice : actions.notices) {
+    log.notice(notice);
+  }
+  if (actions.record) {
+    record(std::move(*actions.record));
+  }
+  send(std::move(actions.send));
+  wake_at = actions.wake_at;
+  next_ping = actions.next_ping;
+  if (actions.nobody_there) {
+    rendering.rest();
+  }
+  if (services.playback != nullptr) {
+    services.playback->progress(stream, now, connected->device().progress());
+  }
+  if (actions.cancelled && rendering.withdraw()) {
+    return actions.cancelled;
+  }
+  if (actions.render && !render(*actions.render)) {
+    return actions.render->number;
+  }
+  return std::nullopt;
+}
+
+void Head::Impl::send(std::vector<Outgoing> messages) {
+  if (messages.empty()) {
+    return;
+  }
+  for (const Outgoing& message : messages) {
+    if (kind.writes_glf() && message.to == Outgoing::To::everybody) {
+      recording.status(message.bytes);
+    }
+  }
+  connected->transport().send(std::move(messages));
+}
+
+void Head::Impl::record(PingRecord ping) {
+  if (recording.on() && poses_to_record.poses && poses_to_record.number == ping.number) {
+    recording.ping({std::move(ping), poses_to_record.poses});
+  }
+}
+
+void Head::Impl::note_water(TimePoint now) {
+  if (!services.water_surface_z_m) {
+    return;
+  }
+  const auto T_world_mount = rendering.T_world_mount(services.poses.present(now));
+  const bool out = T_world_mount && T_world_mount->position_m.z > *services.water_surface_z_m;
+  if (out != out_of_water) {
+    out_of_water = out;
+    step(now, WaterChanged{out});
+  }
+}
+
+void Head::Impl::feed(TimePoint now) {
+  if (services.playback != nullptr) {
+    step(now, PingFed{services.playback->next_ping(stream, now)});
+  }
+}
+
+// By the clock of the source. True when a ping begins with the next step.
+bool Head::Impl::grant(TimePoint now) {
+  return services.poses.ping_clock() != PingClock::wall && rendering.begin_ping(now, next_ping);
+}
+
+void Head::Impl::schedule(TimePoint now) {
+  if (connected->transport().blocked()) {
+    timer.cancel();  // it says when it is writable again
+    return;
+  }
+  std::optional<TimePoint> deadline = wake_at;
+  // A ping that is due already waits for poses, which wake the head themselves.
+  if (services.poses.ping_clock() != PingClock::wall && next_ping && next_ping->from > now) {
+    deadline = deadline ? std::min(*deadline, next_ping->from) : next_ping->from;
+  }
+  timer.set(deadline, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) {
+      self->timer.passed();
+      self->happen(TimePassed{});
+    }
+  });
+}
+
+// ---- Rendering
+
+// False when this ping cannot be made.
+bool Head::Impl::render(const PingJob& job) {
+  if (job.record) {
+    services.playback->started(stream, job);
+  }
+  const TimePoint pose_time = rendering.pose_time(job.transmit_time);
+  const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);
+  if (!T_world_mount) {
+    rendering.count_missing_pose();
+    return false;
+  }
+  if (recording.on()) {
+    poses_to_record = {job.number, rendering.poses_used(job.transmit_time)};
+    recording.posed(poses_to_record.poses);
+  }
+  std::optional<render::Pose> T_world_at_end = rendering.T_world_mount(pose_time + job.listening_time);
+  if (T_world_at_end) {  // a motor rests meanwhile
+    T_world_at_end = T_world_transducer(*T_world_at_end, job.bearing_rad);
+  }
+  const render::Pose T_world_sonar = T_world_transducer(*T_world_mount, job.bearing_rad);
+  log.ping(job, kind.scanning(), T_world_sonar);
+  // A recorded ping goes to the recording under the number that it has there.
+  rendering.submit(
+      {job.record.value_or(job.number), pose_time, job.transmit_us, T_world_sonar, T_world_at_end,
+       kind.sonar_settings(job, config)},
+      [weak = weak_from_this(), number = job.number](RenderResult result) {
+        const auto self = weak.lock();
+        if (!self) {
+          return;
+        }
+        if (self->rendering.take(result)) {
+          self->happen(PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16)}});
+        } else {
+          self->happen(PingNotRendered{number});
+        }
+      });
+  return true;
+}
+
+// ---- Log
+
+void Head::Impl::report_every_period() {
+  report_timer.expires_after(report_period);
+  report_timer.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error && self->running) {
+      self->log.rates(self->counts(), report_period);
+      self->report_every_period();
+    }
+  });
+}
+
+}  // namespace sonard::server

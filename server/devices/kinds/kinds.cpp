@@ -1,0 +1,28 @@
+#include "server/devices/kinds/kinds.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace sonard::server {
+
+std::span<const HeadKind* const> head_kinds() {
+  static const std::vector<const HeadKind*> kinds(device_kinds().begin(), device_kinds().end());
+  return kinds;
+}
+
+const DeviceKind* kind_of_type(std::string_view type) {
+  const auto kinds = device_kinds();
+  const auto found = std::ranges::find(kinds, type, [](const DeviceKind* kind) { return kind->type(); });
+  return found == kinds.end() ? nullptr : *found;
+}
+
+std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram) {
+  for (const DeviceKind* kind : device_kinds()) {
+    if (const std::optional<PingSeen> seen = kind->ping_in(datagram)) {
+      return seen;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace sonard::server

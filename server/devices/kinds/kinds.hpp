@@ -1,0 +1,22 @@
+// Every kind of device that this program is built with.
+#pragma once
+
+#include <span>
+
+#include "server/devices/device_kind.hpp"
+
+namespace sonard::server {
+
+/// In the order of cmake/devices.cmake, from which the build writes this function.
+std::span<const DeviceKind* const> device_kinds();
+
+/// The same, as the loader of configurations knows them.
+std::span<const HeadKind* const> head_kinds();
+
+/// The kind of a type of head; null where there is none.
+const DeviceKind* kind_of_type(std::string_view type);
+
+/// The first ping in a datagram of any kind of device.
+std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram);
+
+}  // namespace sonard::server

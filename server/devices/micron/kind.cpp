@@ -1,0 +1,168 @@
+#include "server/devices/micron/kind.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+
+#include "protocol/micron/device.hpp"
+#include "protocol/micron/line_job.hpp"
+#include "protocol/micron/recorded_form.hpp"
+#include "protocol/micron/units.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/section.hpp"
+#include "server/devices/micron/settings.hpp"
+#include "server/devices/micron/survey.hpp"
+#include "server/net/serial_transport.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr std::uint16_t loopback_port = 4001;  // that of serial device servers
+
+class ConnectedMicron final : public ConnectedDevice {
+ public:
+  ConnectedMicron(const MicronConfig& config, boost::asio::io_context& io, const Clock& clock)
+      : device_(config.device, clock.now()), transport_(io, clock, config.serial) {}
+
+  Device& device() override { return device_; }
+  Transport& transport() override { return transport_; }
+
+ private:
+  micron::Device device_;
+  SerialTransport transport_;
+};
+
+class MicronKind final : public DeviceKind {
+ public:
+  std::string_view type() const override { return "micron"; }
+  std::string_view title() const override { return "Micron"; }
+  bool scanning() const override { return true; }
+
+  // ---- Configuration
+
+  HeadConfig make_default() const override {
+    HeadConfig head;
+    head.kind = this;
+    head.device = std::make_shared<MicronConfig>();
+    head.acoustics = micron_acoustics();
+    return head;
+  }
+
+  HeadConfig read(YamlSection& section, const HeadContext& context,
+                  std::vector<ConfigWarning>& warnings) const override {
+    HeadConfig head = make_default();
+    head.device = std::make_shared<MicronConfig>(read_micron_head(section, context, head, warnings));
+    return head;
+  }
+
+  std::uint16_t device_id(const HeadConfig& head) const override { return micron_config(head).device.node; }
+
+  std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
+    return serial_sockets(micron_config(head).serial, "serial");
+  }
+  std::string socket_key() const override { return "serial"; }
+
+  std::vector<Identity> identities(const HeadConfig& head) const override {
+    std::vector<Identity> identities;
+    for (const SerialPtyConfig& pty : micron_config(head).serial.pty) {
+      if (!pty.link.empty()) {
+        identities.push_back({"serial.pty", "'" + pty.link.string() + "'"});
+      }
+    }
+    return identities;
+  }
+
+  std::string summary(const HeadConfig& head) const override {
+    const MicronConfig& config = micron_config(head);
+    return fmt::format("node {}, {} duplex, line by {}", config.device.node,
+                       config.device.half_duplex ? "half" : "full", serial_text(config.serial));
+  }
+
+  // ---- Serving
+
+  std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
+                                           const Clock& clock) const override {
+    return std::make_unique<ConnectedMicron>(micron_config(head), io, clock);
+  }
+
+  PingJob usual_job(const HeadConfig& head) const override {
+    return micron::make_line_job(micron::HeadCommand{}, micron_config(head).device, micron::bearing_ahead);
+  }
+
+  render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {
+    return micron_sonar_settings(job, head);
+  }
+
+  // ---- Playing logs back
+
+  std::optional<std::string> why_not_played(const LoggedHead& logged) const override {
+    const auto told = [](const LoggedPing& ping) { return micron::recorded_line(ping.wire).has_value(); };
+    if (!std::ranges::all_of(logged.pings, told)) {
+      return fmt::format("scan lines of node {} do not say how they travelled (expected wire_line)",
+                         logged.device_id);
+    }
+    const auto short_enough = [](const LoggedPing& ping) { return ping.settings.bins <= micron::max_bins; };
+    if (!std::ranges::all_of(logged.pings, short_enough)) {
+      return fmt::format("scan lines of node {} have more than the {} bins that a Micron sends",
+                         logged.device_id, micron::max_bins);
+    }
+    return std::nullopt;
+  }
+
+  HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const override {
+    HeadConfig head = make_default();
+    auto config = std::make_shared<MicronConfig>();
+    if (logged.device_id >= 1 && logged.device_id < micron::host_node) {
+      config->device.node = static_cast<std::uint8_t>(logged.device_id);
+    }
+    config->serial.tcp.push_back({{address, loopback_port}, {{0x7F000000, 8}}});
+    head.device = std::move(config);
+    head.name = logged.name.empty() ? fmt::format("micron-{}", logged.device_id) : logged.name;
+    return head;
+  }
+
+  HeadConfig held_to_recording(HeadConfig head) const override {
+    auto config = std::make_shared<MicronConfig>(micron_config(head));
+    config->device.plays_back = true;
+    config->device.waits_for_permission = false;
+    head.device = std::move(config);
+    return head;
+  }
+
+  std::unique_ptr<Survey> survey(const HeadConfig& head, const SurveyOptions& options) const override {
+    return survey_of_micron(head, options);
+  }
+};
+
+}  // namespace
+
+const DeviceKind& micron_kind() {
+  static const MicronKind kind;
+  return kind;
+}
+
+// Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
+// 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 60 dB, and one ping of fourteen is hit
+// by interference, as recordings show (docs/physics.md 2.16).
+render::SonarSettings micron_acoustics() {
+  constexpr double degree = std::numbers::pi / 180.0;
+  render::SonarSettings acoustics;
+  acoustics.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
+  acoustics.aperture.receive_beamwidth_rad = 3 * degree;
+  acoustics.aperture.vertical_beamwidth_rad = 35 * degree;
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // one transducer sends and hears
+  acoustics.output_scale = render::OutputScale::half_decibels;
+  acoustics.physical.pulse = render::PhysicalModel::Pulse::chirp;
+  acoustics.physical.gain_db = -9.0;
+  acoustics.physical.tvg_max_db = 75.0;
+  acoustics.physical.noise_level_db = -141.0;
+  acoustics.physical.near_field_blank_m = 0.1;
+  acoustics.physical.ring_down.on = true;
+  acoustics.physical.interference.probability = 0.07;
+  acoustics.physical.broadside_stripe_db = 0.0;
+  return acoustics;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,16 @@
+// The sweeps of a Micron along a trajectory.
+#pragma once
+
+#include <memory>
+
+#include "server/config/config.hpp"
+#include "server/devices/survey.hpp"
+
+namespace sonard::server {
+
+/// The settings of the user go the way of a host's: through a head command, and the head's job for a line. A
+/// frame is a turn, or a sweep of the sector from one limit to the other, and of whole ones only.
+/// @throws CLI::ValidationError
+std::unique_ptr<Survey> survey_of_micron(const HeadConfig& head, const SurveyOptions& options);
+
+}  // namespace sonard::server

@@ -1,0 +1,118 @@
+#include "server/net/addresses.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+
+#include <fmt/core.h>
+
+namespace sonard::server {
+namespace {
+
+/// A whole decimal number without sign or leading zeros, up to `max`.
+std::optional<std::uint32_t> parse_decimal(std::string_view text, std::uint32_t max) {
+  if (text.empty() || (text.size() > 1 && text.front() == '0')) {
+    return std::nullopt;
+  }
+  std::uint32_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || value > max) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+/// What stands before the first `mark`; `text` keeps what follows it. Everything when there is none.
+std::string_view take_until(std::string_view& text, char mark) {
+  const std::size_t at = text.find(mark);
+  const std::string_view head = text.substr(0, at);
+  text = at == std::string_view::npos ? std::string_view{} : text.substr(at + 1);
+  return head;
+}
+
+}  // namespace
+
+std::optional<Ipv4> parse_ipv4(std::string_view text) {
+  if (std::count(text.begin(), text.end(), '.') != 3) {
+    return std::nullopt;
+  }
+  Ipv4 address = 0;
+  for (int octet = 0; octet < 4; ++octet) {
+    const std::optional<std::uint32_t> value = parse_decimal(take_until(text, '.'), 255);
+    if (!value) {
+      return std::nullopt;
+    }
+    address = address << 8 | *value;
+  }
+  return address;
+}
+
+std::optional<Cidr> parse_cidr(std::string_view text) {
+  const bool has_length = text.find('/') != std::string_view::npos;
+  const std::optional<Ipv4> network = parse_ipv4(take_until(text, '/'));
+  const std::optional<std::uint32_t> length = has_length ? parse_decimal(text, 32) : 32;
+  if (!network || !length) {
+    return std::nullopt;
+  }
+  const Cidr block{*network, static_cast<int>(*length)};
+  if ((block.network & ~netmask_of(block.prefix_length)) != 0) {
+    return std::nullopt;
+  }
+  return block;
+}
+
+std::optional<Endpoint> parse_endpoint(std::string_view text) {
+  if (text.find(':') == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const std::optional<Ipv4> address = parse_ipv4(take_until(text, ':'));
+  const std::optional<std::uint32_t> port = parse_decimal(text, 65535);
+  if (!address || !port) {
+    return std::nullopt;
+  }
+  return Endpoint{*address, static_cast<std::uint16_t>(*port)};
+}
+
+std::optional<std::array<std::uint8_t, 6>> parse_mac(std::string_view text) {
+  std::array<std::uint8_t, 6> mac{};
+  if (std::count(text.begin(), text.end(), ':') != 5) {
+    return std::nullopt;
+  }
+  for (std::uint8_t& octet : mac) {
+    const std::string_view digits = take_until(text, ':');
+    const char* end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, octet, 16);
+    if (digits.size() != 2 || error != std::errc{} || stop != end) {
+      return std::nullopt;
+    }
+  }
+  return mac;
+}
+
+std::string cidr_text(const Cidr& block) {
+  return fmt::format("{}/{}", address_text(block.network), block.prefix_length);
+}
+
+Ipv4 netmask_of(int prefix_length) {
+  return prefix_length == 0 ? 0 : ~Ipv4{0} << (32 - prefix_length);
+}
+
+std::optional<int> prefix_length_of(Ipv4 netmask) {
+  const int length = std::countl_one(netmask);
+  if (netmask != netmask_of(length)) {
+    return std::nullopt;
+  }
+  return length;
+}
+
+bool Cidr::contains(Ipv4 address) const {
+  return (address & netmask_of(prefix_length)) == network;
+}
+
+bool allows(const AllowList& list, Ipv4 address) {
+  return std::any_of(list.begin(), list.end(),
+                     [address](const Cidr& block) { return block.contains(address); });
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,49 @@
+// One timer that always waits for the next thing that is due.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/clock/clock.hpp"
+
+namespace sonard::server {
+
+/// Belongs to the I/O thread. `due` is called there when the deadline has come; it must bear that its owner
+/// is gone (a weak pointer), for a call may already be queued when the timer is cancelled or destroyed.
+class DeadlineTimer {
+ public:
+  explicit DeadlineTimer(boost::asio::io_context& io) : timer_(io) {}
+
+  /// Set again before anything is waited for, and once `due` has been called. nullopt: nothing is due.
+  void set(const std::optional<TimePoint>& deadline, std::function<void()> due) {
+    if (deadline == deadline_) {
+      return;
+    }
+    cancel();
+    deadline_ = deadline;
+    if (deadline) {
+      timer_.expires_at(to_steady(*deadline));
+      timer_.async_wait([due = std::move(due)](const boost::system::error_code& error) {
+        if (!error) {
+          due();
+        }
+      });
+    }
+  }
+  /// To be called first by what `due` calls: the deadline has passed.
+  void passed() { deadline_.reset(); }
+  void cancel() {
+    deadline_.reset();
+    timer_.cancel();
+  }
+
+ private:
+  boost::asio::steady_timer timer_;
+  std::optional<TimePoint> deadline_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,25 @@
+// The IPv4 addresses of this machine, to tell a user about a head that no client could talk to.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/common/endpoint.hpp"
+
+namespace sonard::server {
+
+struct InterfaceAddress {
+  std::string interface;
+  Ipv4 address = 0;
+  Ipv4 netmask = 0;
+};
+
+/// Of all interfaces that are up. Empty when the OS does not tell.
+std::vector<InterfaceAddress> interface_addresses();
+
+/// The entry this address belongs to: the one that is this address, or, as all of 127.0.0.0/8 is local, the
+/// loopback entry whose network it is in. nullopt: not an address of this machine.
+std::optional<InterfaceAddress> owner_of(Ipv4 address, const std::vector<InterfaceAddress>& interfaces);
+
+}  // namespace sonard::server

@@ -1,0 +1,31 @@
+// A head that is reached in several ways at once.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "server/net/transport.hpp"
+
+namespace sonard::server {
+
+/// Channel i of the device (Peer::channel) is the i-th transport. What goes to everybody goes out on all of
+/// them.
+class SeveralTransports final : public Transport {
+ public:
+  explicit SeveralTransports(std::vector<std::unique_ptr<Transport>> transports)
+      : transports_(std::move(transports)) {}
+
+  void start(TransportEvents events) override;
+  void stop() override;
+  void send(std::vector<Outgoing> messages) override;
+  bool blocked() const override;
+  std::vector<std::string> descriptions() const override;
+  /// Sums, over the channels, of what has one name.
+  std::vector<Counter> counts() const override;
+
+ private:
+  std::vector<std::unique_ptr<Transport>> transports_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,43 @@
+// A serial line as raw bytes over TCP, the way serial device servers give it.
+#pragma once
+
+#include <memory>
+
+#include "server/net/serial_port.hpp"
+
+namespace boost::asio {
+class io_context;
+}
+
+namespace sonard::server {
+
+/// Bytes pass both ways unchanged; there are no RFC 2217 or telnet escapes.
+/// Segments mean nothing: a command may come in any pieces. A client that ends its sending direction has
+/// left. One that vanished without a word gives its place back within a minute (keepalive).
+///
+/// Shutdown: stop() closes acceptor and connections. Handlers that are still queued find them closed; they
+/// share ownership of the inner state, so the port may be destroyed before they run.
+class TcpPort final : public SerialPort {
+ public:
+  /// Further clients are closed at once, and counted as refused.
+  static constexpr std::size_t most_clients = 16;
+
+  /// @throws SocketError
+  TcpPort(boost::asio::io_context& io, const SerialTcpConfig& config);
+  ~TcpPort() override;
+
+  void start(SerialPortEvents events) override;
+  void stop() override;
+  void send(std::span<const std::uint8_t> frame) override;
+  bool connected() const override;
+  std::string description() const override;
+  SerialPortCounters counters() const override;
+
+  Endpoint local_endpoint() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::server

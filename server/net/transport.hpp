@@ -1,0 +1,47 @@
+// How a head reaches its clients, whatever lies between: sockets, a serial line.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "protocol/common/device.hpp"
+#include "server/net/wire.hpp"
+
+namespace sonard::server {
+
+/// What a transport tells the head that it belongs to. All are called on the I/O thread, none after stop().
+struct TransportEvents {
+  std::function<void(BytesReceived)> received;
+  std::function<void(ClientGone)> gone;
+  std::function<void()> writable;  ///< blocked() is false again
+  std::function<void(Notice)> notice;
+
+  // For a recording; empty: nobody is told.
+  std::function<void(WirePassed)> passed;      ///< as it passed the sockets
+  std::function<void(const WireEnds&)> ended;  ///< a stream is over
+};
+
+/// Belongs to the I/O thread, as every handler of its does; constructor and destructor to the thread that
+/// owns the io_context while nobody runs it. The constructors open what they serve and throw SocketError.
+/// Nothing here waits.
+class Transport {
+ public:
+  Transport() = default;
+  virtual ~Transport() = default;
+  Transport(const Transport&) = delete;
+  Transport& operator=(const Transport&) = delete;
+
+  /// Clients are heard from here on.
+  virtual void start(TransportEvents events) = 0;
+  virtual void stop() = 0;
+  virtual void send(std::vector<Outgoing> messages) = 0;
+  /// True while something that was to be sent waits for the OS: a head that goes on talking would pile it up.
+  virtual bool blocked() const { return false; }
+
+  /// One for each way by which clients come, for the log: "tcp 127.0.0.1:4001".
+  virtual std::vector<std::string> descriptions() const = 0;
+  virtual std::vector<Counter> counts() const = 0;
+};
+
+}  // namespace sonard::server

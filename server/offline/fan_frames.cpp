@@ -1,0 +1,139 @@
+#include "server/offline/fan_frames.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "server/devices/device_kind.hpp"
+#include "server/npy/npy_file.hpp"
+#include "server/offline/json_text.hpp"
+#include "server/offline/sidecar.hpp"
+#include "server/offline/vehicle_body.hpp"
+#include "server/recording/glf_records.hpp"
+
+namespace sonard::server {
+namespace {
+
+std::vector<std::uint8_t> high_bytes(const std::vector<std::uint16_t>& samples) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(samples.size());
+  std::ranges::transform(samples, std::back_inserter(bytes),
+                         [](std::uint16_t sample) { return static_cast<std::uint8_t>(sample >> 8); });
+  return bytes;
+}
+
+/// Lays the pings out. @return how many frames they make
+int count_of(Survey& survey, int pings) {
+  return static_cast<int>(survey.frames(pings).size()) - 1;
+}
+
+}  // namespace
+
+FanFrames::FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
+                     const Voyage& voyage, const OfflineOptions& options, BodyTruth* truth)
+    : head_(head),
+      place_(place),
+      voyage_(voyage),
+      survey_(std::move(survey)),
+      times_{voyage.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
+                                                : static_cast<double>(survey_->natural_period().count())},
+      count_(count_of(*survey_, times_.count_until(voyage.end_ns()))),
+      job_(survey_->job(0)),
+      bearings_rad_(survey_->bearings_rad()),
+      truth_(truth),
+      fan_({bearings_rad_, job_.bins(), survey_->client_bin_m()}, {.radius_px = options.radius_px}) {}
+
+std::string FanFrames::name(int frame) const {
+  return fmt::format("ping_{:06}", frame);
+}
+
+render::Pose FanFrames::T_world_sonar(std::int64_t time_ns) const {
+  return voyage_.T_world_vehicle(time_ns) * head_.T_vehicle_sonar;
+}
+
+render::PingRequest FanFrames::request(int frame) const {
+  const std::int64_t time_ns = times_.at(frame);
+  return {T_world_sonar(time_ns), kind_of(head_).sonar_settings(job_, head_),
+          static_cast<std::uint64_t>(frame), head_.seed,
+          T_world_sonar(time_ns + job_.listening_time.count())};
+}
+
+void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
+  const render::PingRequest ping = request(frame);
+  place_vehicle(voyage_, times_.at(frame), renderer, nullptr);
+  if (!renderer.pass_ping(ping, place_.stream)) {
+    renderer.render_ping(ping, place_.stream);
+  }
+}
+
+Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
+  const render::PingRequest ping = request(frame);
+  place_vehicle(voyage_, times_.at(frame), renderer, truth_);
+  render::PingSamples rendered = renderer.render_ping(ping, place_.stream);
+  auto samples = std::make_shared<const NpyTable>(
+      NpyTable{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
+  Frame made;
+  made.npy = npy_bytes(*samples);
+  if (truth_ != nullptr) {
+    made.bodies_npy = npy_bytes(truth_->table(samples->rows, samples->columns, truth_->bodies_in(ping)));
+  }
+  made.sidecar = sidecar(frame, ping);
+  made.draw = [this, samples, frame] { return fan_.draw(eight_bit_matrix(*samples), caption(frame)); };
+  return made;
+}
+
+std::string FanFrames::caption(int frame) const {
+  return fmt::format("{}   ping {}   {:.3f} s   {:.1f} m", head_.name, frame,
+                     1e-9 * static_cast<double>(times_.at(frame)), fan_.geometry().range_m());
+}
+
+bool FanFrames::makes_glf() const {
+  return kind_of(head_).writes_glf();
+}
+
+std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view npy) const {
+  std::optional<NpyTable> samples =
+      parse_npy(npy, job_.bins(), static_cast<int>(bearings_rad_.size()), job_.sixteen_bit);
+  if (!samples) {
+    return std::nullopt;
+  }
+  std::optional<PingRecord> ping =
+      survey_->record(frame, job_.sixteen_bit ? high_bytes(samples->u16) : std::move(samples->u8));
+  if (!ping) {
+    return std::nullopt;
+  }
+  return glf_image(std::move(*ping), unix_ns(frame),
+                   {0, static_cast<std::uint8_t>(place_.glf_number), kind_of(head_).device_id(head_)});
+}
+
+std::string FanFrames::settings_json() const {
+  return fmt::format("{}, \"period_s\": {}", survey_->settings_json(), 1e-9 * times_.period_ns);
+}
+
+std::string FanFrames::sidecar(int frame, const render::PingRequest& request) const {
+  const int beams = static_cast<int>(bearings_rad_.size());
+  SidecarText text;
+  text.add_frame({frame, head_.name, std::string(head_.kind->type()), times_.at(frame), unix_ns(frame)});
+  text.add("device_id", std::to_string(head_.kind->device_id(head_)));
+  text.add("ping_number", std::to_string(frame));
+  text.add("stream", std::to_string(place_.stream));
+  text.add("seed", std::to_string(head_.seed));
+  text.add_samples(name(frame), job_.sixteen_bit, {"line", job_.bins()}, {"beam", beams});
+  text.add("geometry", fmt::format("{{\"line_step_m\": {}, \"range_m\": {}, \"sound_speed_mps\": {}, "
+                                   "\"bearings_rad\": {}}}",
+                                   job_.bin_m(), job_.bin_m() * job_.bins(), job_.sound_speed_mps,
+                                   json_list(bearings_rad_)));
+  text.add("settings", "{" + settings_json() + "}");
+  text.add("T_world_vehicle", json_pose(voyage_.T_world_vehicle(times_.at(frame))));
+  text.add("T_world_sonar", json_pose(request.T_world_sonar));
+  text.add("T_world_sonar_at_end", json_pose(*request.T_world_sonar_at_end));
+  text.add_truth(name(frame), truth_);
+  return text.finish();
+}
+
+}  // namespace sonard::server

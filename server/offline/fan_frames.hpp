@@ -1,0 +1,55 @@
+// The pings of a multibeam head along a voyage.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/picture/fan_image.hpp"
+#include "server/config/config.hpp"
+#include "server/devices/survey.hpp"
+#include "server/offline/body_truth.hpp"
+#include "server/offline/frame_source.hpp"
+#include "server/offline/options.hpp"
+#include "server/offline/voyage.hpp"
+
+namespace sonard::server {
+
+/// A frame is a ping, and has its number.
+class FanFrames final : public FrameSource {
+ public:
+  /// All arguments but the survey and the options outlive this. @param truth null: not asked for
+  FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
+            const Voyage& voyage, const OfflineOptions& options, BodyTruth* truth);
+
+  int count() const override { return count_; }
+  std::string name(int frame) const override;
+  Frame render(render::SonarRenderer& renderer, int frame) override;
+  void pass(render::SonarRenderer& renderer, int frame) override;
+  std::string settings_json() const override;
+  bool makes_glf() const override;
+  std::optional<glf::ImageRecord> record(int frame, std::string_view npy) const override;
+  std::int64_t unix_ns(int frame) const override { return voyage_.unix_ns(times_.at(frame)); }
+
+  /// What the renderer is asked for.
+  render::PingRequest request(int frame) const;
+
+ private:
+  render::Pose T_world_sonar(std::int64_t time_ns) const;
+  std::string sidecar(int frame, const render::PingRequest& request) const;
+  std::string caption(int frame) const;
+
+  const HeadConfig& head_;
+  HeadPlace place_;
+  const Voyage& voyage_;
+  std::unique_ptr<Survey> survey_;
+  PingTimes times_;
+  int count_;
+  PingJob job_;  ///< but for its number that of all pings
+  std::vector<double> bearings_rad_;
+  BodyTruth* truth_;
+  picture::FanImage fan_;
+};
+
+}  // namespace sonard::server

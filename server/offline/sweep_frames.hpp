@@ -1,0 +1,53 @@
+// The sweeps of a scanning head along a voyage.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/picture/turn_image.hpp"
+#include "server/config/config.hpp"
+#include "server/devices/survey.hpp"
+#include "server/offline/body_truth.hpp"
+#include "server/offline/frame_source.hpp"
+#include "server/offline/options.hpp"
+#include "server/offline/voyage.hpp"
+
+namespace sonard::server {
+
+/// A frame is a turn, or a sweep of the sector from one limit to the other, and of whole ones only; each of
+/// its lines is a ping with a number and a pose of its own.
+class SweepFrames final : public FrameSource {
+ public:
+  /// All arguments but the survey and the options outlive this. @param truth null: not asked for
+  SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey, const Voyage& voyage,
+              const OfflineOptions& options, BodyTruth* truth);
+
+  /// 0 where the voyage is over before the first sweep is.
+  int count() const override { return static_cast<int>(first_lines_.size()) - 1; }
+  std::string name(int frame) const override;
+  Frame render(render::SonarRenderer& renderer, int frame) override;
+  void pass(render::SonarRenderer& renderer, int frame) override;
+  std::string settings_json() const override;
+  std::int64_t unix_ns(int frame) const override { return voyage_.unix_ns(times_.at(first_line(frame))); }
+
+  /// What the renderer is asked for, by the number of the line since the beginning.
+  render::PingRequest request(int line) const;
+  /// Lines of a frame: from its first to the first of the next.
+  int first_line(int frame) const { return first_lines_[static_cast<std::size_t>(frame)]; }
+
+ private:
+  std::string sidecar(int frame) const;
+
+  const HeadConfig& head_;
+  int stream_;
+  const Voyage& voyage_;
+  std::unique_ptr<Survey> survey_;
+  PingTimes times_;
+  std::vector<int> first_lines_;  ///< of every frame, and the end of the last
+  int bins_;
+  BodyTruth* truth_;
+  picture::TurnImage picture_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,216 @@
+#include "server/rendering/render_service.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr std::size_t most_unknown_bodies = 16;
+
+}  // namespace
+
+struct RenderService::Impl {
+  struct Entry {
+    RenderJob job;
+    Done done;
+    std::optional<std::promise<void>> warmed_up{};  ///< somebody waits: this is no ping, and has no `done`
+  };
+
+  // Constant once the constructor has returned.
+  RenderServiceHooks hooks;
+  std::size_t capacity = 0;
+  std::string description;
+
+  // Shared, under the mutex.
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::deque<Entry> queue;
+  bool stopping = false;
+
+  // Of the render thread.
+  std::set<std::string> unknown_bodies;
+
+  std::thread thread;
+
+  void run(const RendererFactory& make_renderer, std::promise<void> ready);
+  std::optional<Entry> next();
+  void serve(PingRenderer& renderer);
+  static void warm_up(PingRenderer& renderer, Entry& entry);
+  void move_bodies(PingRenderer& renderer, const RenderJob& job);
+  RenderResult render(PingRenderer& renderer, const RenderJob& job);
+  void close_queue();
+};
+
+RenderService::RenderService(const RendererFactory& make_renderer, int stream_count, RenderServiceHooks hooks)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->hooks = std::move(hooks);
+  impl_->capacity = static_cast<std::size_t>(stream_count);
+  std::promise<void> ready;
+  std::future<void> made = ready.get_future();
+  impl_->thread = std::thread(&Impl::run, impl_.get(), std::cref(make_renderer), std::move(ready));
+  try {
+    made.get();
+  } catch (...) {
+    impl_->thread.join();
+    throw;
+  }
+}
+
+RenderService::~RenderService() {
+  stop();
+}
+
+void RenderService::submit(RenderJob job, Done done) {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->stopping) {
+      return;
+    }
+    if (impl_->queue.size() >= impl_->capacity) {
+      throw std::logic_error("render queue is full: a stream has more than one job outstanding");
+    }
+    impl_->queue.push_back({std::move(job), std::move(done), std::nullopt});
+  }
+  impl_->wake.notify_one();
+}
+
+void RenderService::warm_up(const render::PingRequest& request, int stream) {
+  RenderJob job;
+  job.stream = stream;
+  job.request = request;
+  std::promise<void> warmed_up;
+  std::future<void> done = warmed_up.get_future();
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->queue.push_back({std::move(job), {}, std::move(warmed_up)});
+  }
+  impl_->wake.notify_one();
+  done.get();
+}
+
+bool RenderService::withdraw(int stream) {
+  std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: the callback owns things of others
+  const std::lock_guard lock(impl_->mutex);
+  const auto entry =
+      std::find_if(impl_->queue.begin(), impl_->queue.end(),
+                   [stream](const Impl::Entry& waiting) { return waiting.job.stream == stream; });
+  if (entry == impl_->queue.end()) {
+    return false;
+  }
+  forgotten = std::move(*entry);
+  impl_->queue.erase(entry);
+  return true;
+}
+
+void RenderService::stop() {
+  impl_->close_queue();
+  if (impl_->thread.joinable()) {
+    impl_->thread.join();
+  }
+}
+
+const std::string& RenderService::renderer_description() const {
+  return impl_->description;
+}
+
+void RenderService::Impl::close_queue() {
+  std::deque<Entry> forgotten;  // destroyed outside the lock: the callbacks own things of others
+  {
+    const std::lock_guard lock(mutex);
+    stopping = true;
+    forgotten.swap(queue);
+  }
+  wake.notify_one();
+}
+
+// The renderer lives and dies inside this function: its GL context belongs to this thread.
+void RenderService::Impl::run(const RendererFactory& make_renderer, std::promise<void> ready) {
+  std::unique_ptr<PingRenderer> renderer;
+  try {
+    renderer = make_renderer();
+    description = renderer->description();
+  } catch (...) {
+    ready.set_exception(std::current_exception());
+    return;
+  }
+  ready.set_value();  // from here on make_renderer may be gone
+
+  try {
+    serve(*renderer);
+  } catch (const std::exception& error) {
+    close_queue();
+    hooks.post([on_failure = hooks.on_failure, what = std::string(error.what())] { on_failure(what); });
+  }
+}
+
+std::optional<RenderService::Impl::Entry> RenderService::Impl::next() {
+  std::unique_lock lock(mutex);
+  wake.wait(lock, [this] { return stopping || !queue.empty(); });
+  if (stopping) {
+    return std::nullopt;
+  }
+  Entry entry = std::move(queue.front());
+  queue.pop_front();
+  return entry;
+}
+
+void RenderService::Impl::serve(PingRenderer& renderer) {
+  while (std::optional<Entry> entry = next()) {
+    if (entry->warmed_up) {
+      warm_up(renderer, *entry);
+      continue;
+    }
+    RenderResult result = render(renderer, entry->job);
+    if (result.error.empty() && hooks.observe) {
+      hooks.observe(entry->job, result.samples);
+    }
+    // std::function wants copyable captures, so the samples travel behind a pointer.
+    auto shared = std::make_shared<RenderResult>(std::move(result));
+    hooks.post([done = std::move(entry->done), shared] { done(std::move(*shared)); });
+  }
+}
+
+void RenderService::Impl::warm_up(PingRenderer& renderer, Entry& entry) {
+  try {
+    renderer.warm_up(entry.job.request, entry.job.stream);
+    entry.warmed_up->set_value();
+  } catch (...) {
+    entry.warmed_up->set_exception(std::current_exception());
+  }
+}
+
+RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job) {
+  RenderResult result;
+  try {
+    move_bodies(renderer, job);
+    result.samples = renderer.render_ping(job.request, job.stream);
+    result.statistics = renderer.last_statistics();
+  } catch (const render::RequestError& error) {
+    result.error = error.what();
+  }
+  return result;
+}
+
+void RenderService::Impl::move_bodies(PingRenderer& renderer, const RenderJob& job) {
+  for (const PosedBody& body : job.bodies) {
+    // Names come from the network: a publisher that invents new ones for ever fills neither memory nor log.
+    if (!renderer.set_body_pose(body.name, body.T_world_body) &&
+        unknown_bodies.size() < most_unknown_bodies && unknown_bodies.insert(body.name).second) {
+      spdlog::warn("the pose stream moves body '{}', which the world does not have", body.name);
+    }
+  }
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,370 @@
+// What a head wants done beside its frames: log lines, a renderer left in peace, figures.
+#include <algorithm>
+#include <string_view>
+
+#include "bench.hpp"
+
+namespace sonard::micron {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+Texts texts(const std::vector<Notice>& notices, Notice::Level level) {
+  Texts texts;
+  for (const Notice& notice : notices) {
+    if (notice.level == level) {
+      texts.push_back(notice.text);
+    }
+  }
+  return texts;
+}
+
+Texts states(const Bench& bench) {
+  return texts(bench.notices, Notice::Level::info);
+}
+Texts warnings(const Bench& bench) {
+  return texts(bench.notices, Notice::Level::warning);
+}
+
+TEST(Notices, tell_of_the_states_from_power_to_a_scan) {
+  Bench bench;
+  EXPECT_EQ(states(bench), Texts{"without_parameters"});
+  bench.run_until(5s);
+  EXPECT_EQ(states(bench).size(), 1U) << "once";
+  bench.command(all_round());
+  EXPECT_EQ(states(bench), (Texts{"without_parameters", "ready"})) << "at once";
+  bench.run_for(2s);
+  bench.command(SendData{});
+  EXPECT_EQ(states(bench), (Texts{"without_parameters", "ready", "scanning"}));
+}
+
+TEST(Notices, tell_of_a_reboot) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.notices.clear();
+  const TimePoint reboot = bench.now;
+  bench.command(Reboot{});
+  EXPECT_EQ(states(bench), Texts{"booting"});
+  bench.run_until(reboot + 699ms);
+  EXPECT_EQ(states(bench), Texts{"booting"});
+  bench.run_until(reboot + 700ms);
+  EXPECT_EQ(states(bench), (Texts{"booting", "centring"}));
+  bench.run_until(reboot + 10s);
+  EXPECT_EQ(states(bench), (Texts{"booting", "centring", "without_parameters"}));
+}
+
+TEST(Notices, tell_of_power_that_fails) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.notices.clear();
+  bench.power_cycle();
+  EXPECT_EQ(states(bench), Texts{"booting"});
+}
+
+TEST(Notices, say_ready_when_nothing_has_been_asked_for_in_two_seconds) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.scan(10);
+  bench.run_for(1s);  // what is still owed
+  const TimePoint last_line = bench.all<HeadData>().back().first;
+  ASSERT_EQ(bench.device.state(bench.now), HeadState::ready);
+  EXPECT_EQ(states(bench).back(), "scanning");
+  bench.run_until(last_line + 2s - 1ms);
+  EXPECT_EQ(states(bench).back(), "scanning");
+  bench.run_until(last_line + 3s);  // the next alive tells
+  EXPECT_EQ(states(bench).back(), "ready");
+  bench.run_for(20s);
+  EXPECT_EQ(states(bench), (Texts{"without_parameters", "ready", "scanning", "ready"}));
+}
+
+TEST(Notices, say_nothing_of_a_client_that_lets_the_head_be_ready_between_two_lines) {
+  DeviceConfig config;
+  config.half_duplex = true;
+  Bench bench(config);
+  bench.make_ready(all_round());
+  bench.notices.clear();
+  for (int line = 0; line < 20; ++line) {
+    bench.command(SendData{});
+    bench.run_for(1900ms);
+    EXPECT_EQ(bench.device.state(bench.now), HeadState::ready);
+  }
+  EXPECT_EQ(bench.all<HeadData>().size(), 20U);
+  EXPECT_EQ(states(bench), Texts{"scanning"});
+}
+
+TEST(Notices, of_another_state_do_not_wait_for_two_seconds) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.scan(2);
+  bench.run_for(1s);
+  ASSERT_EQ(bench.device.state(bench.now), HeadState::ready);
+  EXPECT_EQ(states(bench).back(), "scanning");
+  bench.command(Reboot{});
+  EXPECT_EQ(states(bench).back(), "booting");
+}
+
+TEST(Warnings, of_a_gain_beyond_the_most_there_is_come_once) {
+  Bench bench;
+  HeadCommand command = all_round();
+  command.gain[0] = 210;
+  bench.command(command);
+  EXPECT_EQ(warnings(bench), Texts{});
+  command.gain[0] = 211;
+  bench.command(command);
+  EXPECT_EQ(texts(bench.last.notices, Notice::Level::warning),
+            Texts{"the client's gain byte 211 is beyond 210, the most there is: taken as 80 dB"});
+  command.gain[0] = 255;
+  bench.command(command);
+  bench.command(Reboot{});
+  bench.run_for(5s);
+  bench.command(command);
+  EXPECT_EQ(warnings(bench).size(), 1U);
+}
+
+TEST(Warnings, of_equal_limits_come_once) {
+  Bench bench;
+  bench.command(sector(1600, 1600));
+  EXPECT_EQ(
+      warnings(bench),
+      Texts{"the client's sector has equal limits (1600): the head stares there; 0 to 6400 is a whole turn"});
+  bench.command(sector(1600, 1600));
+  bench.command(sector(800, 800));
+  EXPECT_EQ(warnings(bench).size(), 1U);
+}
+
+TEST(Warnings, of_equal_limits_are_not_for_a_host_that_means_them) {
+  for (const std::uint16_t control : {0x3305, 0x2315, 0x2307}) {  // stare, motor off, continuous
+    Bench bench;
+    HeadCommand command = sector(1600, 1600);
+    command.control = control;
+    bench.command(command);
+    EXPECT_EQ(warnings(bench), Texts{}) << control;
+  }
+  Bench whole_turn;
+  whole_turn.command(sector(0, 6400));
+  EXPECT_EQ(warnings(whole_turn), Texts{});
+}
+
+TEST(Warnings, of_sides_that_are_swapped_come_once) {
+  for (const bool inverted : {false, true}) {
+    DeviceConfig config;
+    config.mounted_inverted = inverted;
+    Bench bench(config);
+    HeadCommand command = all_round();
+    command.control = static_cast<std::uint16_t>(inverted ? command.control | control_bits::invert
+                                                          : command.control & ~control_bits::invert);
+    bench.command(command);
+    EXPECT_EQ(warnings(bench), Texts{}) << "both agree";
+    command.control ^= control_bits::invert;
+    bench.command(command);
+    bench.command(command);
+    EXPECT_EQ(
+        warnings(bench),
+        Texts{inverted ? "left and right are swapped: the client says that the head is mounted boot up, "
+                         "`device.mounted_inverted` says boot down"
+                       : "left and right are swapped: the client says that the head is mounted boot "
+                         "down, `device.mounted_inverted` says boot up"});
+  }
+}
+
+TEST(Warnings, come_together_and_each_for_itself) {
+  Bench bench;
+  HeadCommand command = sector(1600, 1600);
+  command.control |= control_bits::invert;
+  command.gain[0] = 255;
+  bench.command(command);
+  EXPECT_EQ(warnings(bench).size(), 3U);
+}
+
+TEST(Warnings, are_not_for_a_head_that_plays_back) {
+  DeviceConfig config;
+  config.plays_back = true;
+  Bench bench(config);
+  HeadCommand command = sector(1600, 1600);
+  command.control |= control_bits::invert;
+  command.gain[0] = 255;
+  bench.command(command);
+  EXPECT_EQ(warnings(bench), Texts{}) << "it does not heed them";
+}
+
+TEST(NobodyThere, is_what_the_end_of_the_line_says) {
+  Bench bench;
+  bench.make_ready(all_round());
+  EXPECT_FALSE(bench.last.nobody_there);
+  bench.step(ClientGone{});
+  EXPECT_TRUE(bench.last.nobody_there);
+  bench.command(SendData{});
+  EXPECT_FALSE(bench.last.nobody_there);
+}
+
+TEST(Cancelled, names_the_job_that_nobody_wants_until_it_is_answered) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.renderer_answers = false;
+  bench.command(SendData{});
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  EXPECT_EQ(bench.last.cancelled, std::nullopt);
+  bench.command(all_round(64));
+  EXPECT_EQ(bench.last.cancelled, 0U);
+  bench.run_for(5s);
+  EXPECT_EQ(bench.last.cancelled, 0U);
+  EXPECT_EQ(bench.jobs.size(), 1U) << "at most one job is out";
+  bench.step(PingNotRendered{0});
+  EXPECT_EQ(bench.last.cancelled, std::nullopt);
+  ASSERT_EQ(bench.jobs.size(), 2U) << "both lines are still owed";
+  EXPECT_EQ(bench.jobs[1].number, 1U);
+  EXPECT_EQ(bench.device.counters().pings_cancelled, 1U);
+  EXPECT_EQ(bench.device.counters().pings_failed, 0U);
+}
+
+TEST(Frames, are_for_everybody_on_the_line) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.command(SendData{});
+  for (std::size_t frames = 0; frames < 5;) {
+    bench.run_once();
+    frames += bench.last.send.size();
+    for (const Outgoing& frame : bench.last.send) {
+      EXPECT_EQ(frame.to, Outgoing::To::everybody);
+    }
+  }
+}
+
+TEST(Jobs, say_what_the_host_has_set) {
+  Bench bench;
+  HeadCommand command = sector(2400, 4000, 16);
+  command.ad_low = 40;
+  command.ad_span = 77;
+  command.gain[0] = 84;
+  command.bins = 400;
+  bench.make_ready(command);
+  bench.command(SendData{});
+  EXPECT_EQ(bench.jobs.at(0).settings, (std::vector<Setting>{{"range", "10.18m"},
+                                                             {"bins", "400"},
+                                                             {"bin", "25.4mm"},
+                                                             {"gain", "32.0dB"},
+                                                             {"window", "12.5+24.2dB"},
+                                                             {"bits", "8"},
+                                                             {"scan", "sector"},
+                                                             {"from", "-45.00deg"},
+                                                             {"to", "45.00deg"},
+                                                             {"step", "0.90deg"},
+                                                             {"direction", "right"},
+                                                             {"inverted", "no"}}));
+}
+
+PingJob job_of(const HeadCommand& command, const DeviceConfig& config = {}) {
+  Bench bench(config);
+  bench.make_ready(command);
+  bench.command(SendData{});
+  return bench.jobs.at(0);
+}
+
+TEST(Jobs, say_how_the_head_scans) {
+  const PingJob round = job_of(all_round(0, false));
+  EXPECT_EQ(setting(round, "scan"), "all_round");
+  EXPECT_EQ(setting(round, "from"), "");
+  EXPECT_EQ(setting(round, "step"), "0.90deg") << "0 acts as 16";
+  EXPECT_EQ(setting(round, "direction"), "left");
+  EXPECT_EQ(setting(job_of(sector(0, 6400)), "scan"), "sector_all_round");
+
+  const PingJob stares = job_of(sector(4000, 4000));
+  EXPECT_EQ(setting(stares, "scan"), "stares");
+  EXPECT_EQ(setting(stares, "at"), "45.00deg");
+  EXPECT_EQ(setting(stares, "direction"), "");
+
+  HeadCommand command = all_round();
+  command.control |= control_bits::motor_off;
+  EXPECT_EQ(setting(job_of(command), "scan"), "motor_off");
+}
+
+TEST(Jobs, say_where_the_head_scans_by_the_order_of_limits) {
+  DeviceConfig config;
+  EXPECT_EQ(setting(job_of(sector(4800, 1600), config), "from"), "90.00deg") << "through astern";
+  config.limits_order = LimitsOrder::swapped;
+  EXPECT_EQ(setting(job_of(sector(4800, 1600), config), "from"), "-90.00deg");
+}
+
+TEST(Jobs, say_what_is_unusual_about_a_ping) {
+  HeadCommand command = all_round();
+  EXPECT_EQ(setting(job_of(command), "transmit"), "");
+  command.control = 0x2306 | control_bits::invert | control_bits::transmit_off;
+  const PingJob job = job_of(command);
+  EXPECT_EQ(setting(job, "transmit"), "off");
+  EXPECT_EQ(setting(job, "bits"), "4");
+  EXPECT_EQ(setting(job, "inverted"), "yes");
+}
+
+TEST(Jobs, have_the_time_since_power_came) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.command(SendData{61'891'786});  // the clock of alives follows the host, this one does not
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  EXPECT_EQ(bench.jobs[0].transmit_time, bench.now);
+  EXPECT_EQ(bench.jobs[0].transmit_us, static_cast<std::uint64_t>(bench.now / 1us));
+}
+
+std::optional<Counter> counter(const Device& device, std::string_view name) {
+  const std::vector<Counter> counts = device.counts();
+  const auto found = std::ranges::find(counts, name, &Counter::name);
+  return found == counts.end() ? std::nullopt : std::optional(*found);
+}
+
+TEST(Counts, are_those_of_the_head) {
+  Bench bench;
+  bench.command(SendData{});  // before any parameters
+  bench.make_ready(all_round());
+  bench.scan(10);
+  bench.run_for(1s);
+  Bytes other = fixture("send_version");
+  other[8] = 3;
+  bench.raw(other);
+  bench.raw(Bytes{1, 2, 3});
+  EXPECT_EQ(counter(bench.device, "lines_sent").value().value, bench.all<HeadData>().size());
+  EXPECT_EQ(counter(bench.device, "commands").value().value, bench.device.counters().commands);
+  EXPECT_EQ(counter(bench.device, "not_ready").value().value, 1U);
+  EXPECT_EQ(counter(bench.device, "not_ready").value().warning, "{} requests came before any parameters");
+  EXPECT_EQ(counter(bench.device, "wrong_node").value().value, 1U);
+  EXPECT_EQ(counter(bench.device, "wrong_node").value().shown, Counter::Shown::warns);
+  EXPECT_EQ(counter(bench.device, "wrong_node").value().warning, "{} commands were for another node");
+  EXPECT_EQ(counter(bench.device, "dropped_bytes").value().value, 3U);
+  EXPECT_EQ(counter(bench.device, "dropped_bytes").value().shown, Counter::Shown::warns);
+  EXPECT_EQ(counter(bench.device, "boots").value().shown, Counter::Shown::at_end);
+}
+
+TEST(Counts, come_in_one_order_with_one_warning_for_each_that_warns) {
+  Bench bench;
+  const std::vector<Counter> before = bench.device.counts();
+  bench.make_ready(all_round());
+  bench.scan(10);
+  const std::vector<Counter> after = bench.device.counts();
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_EQ(before[i].name, after[i].name);
+    EXPECT_GE(after[i].value, before[i].value);
+    EXPECT_EQ(after[i].warning.starts_with("{} "), after[i].shown == Counter::Shown::warns) << after[i].name;
+    EXPECT_EQ(std::ranges::count(after, after[i].name, &Counter::name), 1) << after[i].name;
+  }
+}
+
+TEST(Progress, grows_with_lines_and_with_pings_that_come_to_nothing) {
+  Bench bench;
+  bench.make_ready(all_round());
+  bench.command(SendData{});
+  bench.run_for(1s);
+  EXPECT_EQ(bench.device.progress().sent, 2U);
+  EXPECT_EQ(bench.device.progress().ended, 2U);
+  EXPECT_EQ(bench.device.progress().messages, 2U);
+  bench.renderer_fails = true;
+  bench.command(SendData{});
+  bench.run_for(1s);
+  EXPECT_EQ(bench.device.progress().sent, 2U);
+  EXPECT_EQ(bench.device.progress().ended, 4U);
+  bench.renderer_answers = false;
+  bench.command(SendData{});
+  bench.command(Reboot{});
+  EXPECT_EQ(bench.device.progress().ended, 5U) << "one was out, the other not begun";
+}
+
+}  // namespace
+}  // namespace sonard::micron

@@ -1,0 +1,190 @@
+// What each kind of device makes of the options of a survey, and what it refuses.
+#include <chrono>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <type_traits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <CLI/Error.hpp>
+
+#include "protocol/gemini/bearings.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/micron/config.hpp"
+#include "server/devices/micron/kind.hpp"
+
+namespace sonard::server {
+namespace {
+
+using testing::ElementsAre;
+
+std::unique_ptr<Survey> survey(const DeviceKind& kind, const SurveyOptions& options = {}) {
+  return kind.survey(kind.make_default(), options);
+}
+
+/// One option, and no other.
+template <class Value>
+SurveyOptions with(Value SurveyOptions::*option, const std::type_identity_t<Value>& value) {
+  SurveyOptions options;
+  options.*option = value;
+  return options;
+}
+
+/// "--option: what is wrong with it"
+std::string complaint(const DeviceKind& kind, const SurveyOptions& options) {
+  try {
+    survey(kind, options);
+    return "";
+  } catch (const CLI::ValidationError& error) {
+    return error.what();
+  }
+}
+
+TEST(Survey, every_kind_makes_pings_with_what_its_clients_have_at_first) {
+  for (const DeviceKind* kind : device_kinds()) {
+    SCOPED_TRACE(kind->type());
+    const std::unique_ptr<Survey> survey = server::survey(*kind);
+    EXPECT_GT(survey->natural_period(), std::chrono::nanoseconds{0});
+    const std::vector<int> frames = survey->frames(500);
+    ASSERT_GE(frames.size(), 2U);
+    EXPECT_EQ(frames.front(), 0);
+    EXPECT_LE(frames.back(), 500);
+    const PingJob job = survey->job(7);
+    EXPECT_EQ(job.number, 7U);
+    EXPECT_GT(job.bins(), 0);
+    EXPECT_GT(job.bin_m(), 0.0);
+    EXPECT_GT(job.listening_time, std::chrono::nanoseconds{0});
+    EXPECT_TRUE(job.transmit);
+    EXPECT_NEAR(survey->client_bin_m(), job.bin_m(), 1e-3 * job.bin_m())
+        << "of water as clients take it to be";
+    EXPECT_EQ(survey->bearings_rad().empty(), kind->scanning());
+  }
+}
+
+// ---- Gemini
+
+TEST(GeminiSurvey, does_what_a_client_would_ask_for) {
+  const std::unique_ptr<Survey> plain = survey(gemini_kind());
+  EXPECT_EQ(plain->job(0).bins(), 2411);  // 20 m
+  EXPECT_FALSE(plain->job(0).sixteen_bit);
+  EXPECT_EQ(plain->bearings_rad(), gemini::bearings_rad());
+  EXPECT_THAT(plain->frames(3), ElementsAre(0, 1, 2, 3));
+
+  SurveyOptions options;
+  options.range_m = 4.0;
+  options.gain_percent = 80.0;
+  options.sound_speed_mps = 1480.0;
+  options.compression_log2 = 3;
+  options.bits = 16;
+  const std::unique_ptr<Survey> asked = survey(gemini_kind(), options);
+  const PingJob job = asked->job(5);
+  EXPECT_EQ(job.compression_log2, 3);
+  EXPECT_NEAR(job.range_m(), 4.0, 0.02);
+  EXPECT_NEAR(job.gain_percent, 80.0, 1.0);
+  EXPECT_TRUE(job.sixteen_bit);
+  EXPECT_DOUBLE_EQ(asked->client_bin_m(), 8 * 1480.0 / (2 * 90422.0));
+}
+
+TEST(GeminiSurvey, makes_records_of_its_pings) {
+  SurveyOptions options;
+  options.range_m = 1.0;
+  options.gain_percent = 30.0;
+  const std::unique_ptr<Survey> survey = server::survey(gemini_kind(), options);
+  const std::vector<std::uint8_t> samples(121U * 256U, 9);
+  const std::optional<PingRecord> record = survey->record(6, samples);
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->number, 6U);
+  EXPECT_EQ(record->samples, samples);
+  EXPECT_EQ(record->settings.bins, 121);
+  EXPECT_EQ(record->settings.beams, 256);
+  EXPECT_DOUBLE_EQ(record->settings.bin_m, 1500.0 / (2 * 90422.0));
+  EXPECT_NEAR(record->settings.gain_percent, 30.0, 0.5);
+  EXPECT_EQ(record->bearings_rad, gemini::bearings_rad());
+}
+
+TEST(GeminiSurvey, refuses_what_it_does_not_know_or_cannot_do) {
+  const DeviceKind& kind = gemini_kind();
+  EXPECT_EQ(complaint(kind, {}), "");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 400)), "--bins: means nothing to a Gemini");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.8)), "--step: means nothing to a Gemini");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {0.0, 90.0})),
+            "--sector: means nothing to a Gemini");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 190.0)),
+            "--range: 190 is out of range for a Gemini (expected 0.3 to 150)");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 0.2)),
+            "--range: 0.2 is out of range for a Gemini (expected 0.3 to 150)");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sound_speed_mps, 1600.0)),
+            "--sound-speed: 1600 is out of range for a Gemini (expected 1400 to 1588)");
+}
+
+// ---- Micron
+
+TEST(MicronSurvey, does_what_a_host_would_ask_for) {
+  const std::unique_ptr<Survey> plain = survey(micron_kind());
+  EXPECT_THAT(plain->frames(401), ElementsAre(0, 200, 400));
+  EXPECT_EQ(plain->job(0).bins(), 400);
+  EXPECT_NEAR(plain->job(0).range_m(), 10.0, 0.1);
+  EXPECT_NEAR(plain->job(50).bearing_rad, std::numbers::pi / 2, 1e-12) << "ahead first, then clockwise";
+  const Survey::Sector all_round = plain->sector();
+  EXPECT_DOUBLE_EQ(all_round.width_rad, 2 * std::numbers::pi);
+  EXPECT_NEAR(all_round.step_rad, 1.8 * std::numbers::pi / 180, 1e-12);
+
+  SurveyOptions options;
+  options.range_m = 5.0;
+  options.gain_percent = 25.0;
+  options.bins = 200;
+  options.step_deg = 0.9;
+  options.sector_deg = {90.0, -90.0};
+  const std::unique_ptr<Survey> asked = survey(micron_kind(), options);
+  EXPECT_THAT(asked->frames(450), ElementsAre(0, 201, 401)) << "astern, 200 steps";
+  EXPECT_EQ(asked->job(0).bins(), 200);
+  EXPECT_NEAR(asked->job(0).gain_percent, 25.0, 0.5);
+  EXPECT_NEAR(asked->job(0).bearing_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(asked->job(200).bearing_rad, -std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(asked->job(400).bearing_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(asked->sector().left_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(asked->sector().width_rad, std::numbers::pi, 1e-12);
+  EXPECT_FALSE(asked->record(0, {})) << "no log of fans";
+}
+
+TEST(MicronSurvey, a_head_that_is_mounted_boot_down_looks_to_the_other_side) {
+  HeadConfig head = micron_kind().make_default();
+  auto config = std::make_shared<MicronConfig>(micron_config(head));
+  config->device.mounted_inverted = true;
+  head.device = config;
+  const std::unique_ptr<Survey> survey =
+      micron_kind().survey(head, with(&SurveyOptions::sector_deg, {-45.0, 90.0}));
+  const std::vector<int> frames = survey->frames(100);
+  ASSERT_GE(frames.size(), 2U);
+  constexpr double eighth = std::numbers::pi / 4;
+  EXPECT_NEAR(survey->job(0).bearing_rad, eighth, 1e-12);
+  EXPECT_NEAR(survey->job(frames[1] - 1).bearing_rad, -2 * eighth, 1e-12);
+  EXPECT_NEAR(survey->sector().left_rad, -2 * eighth, 1e-12);
+  EXPECT_NEAR(survey->sector().width_rad, 3 * eighth, 1e-12);
+}
+
+TEST(MicronSurvey, refuses_what_it_does_not_know_or_cannot_do) {
+  const DeviceKind& kind = micron_kind();
+  EXPECT_EQ(complaint(kind, {}), "");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::compression_log2, 1)),
+            "--compression: means nothing to a Micron");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bits, 8)), "--bits: means nothing to a Micron");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 201.0)),
+            "--range: 201 is out of range for a Micron (expected 0.1 to 200)");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sound_speed_mps, 1200.0)),
+            "--sound-speed: 1200 is out of range for a Micron (expected 1300 to 1700)");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 1501)),
+            "--bins: 1501 is out of range for a Micron (expected 1 to 1500)");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.0)),
+            "--step: expected a multiple of 0.05625 degrees, 14.34375 at most, found 1");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {30.0, 30.0})),
+            "--sector: FROM and TO are one bearing; leave it away to scan all round");
+  SurveyOptions too_fine = with(&SurveyOptions::range_m, 0.1);
+  too_fine.bins = 1500;
+  EXPECT_EQ(complaint(kind, too_fine), "--bins: 1500 bins over 0.1 m are too fine for a head");
+}
+
+}  // namespace
+}  // namespace sonard::server

@@ -1,0 +1,107 @@
+// What a configuration takes from its world, and what it says when the world does not have it.
+#include "server/daemon/resolve_mounts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/micron/kind.hpp"
+
+namespace sonard::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+auto is_problem(const std::string& key, const std::string& part) {
+  return testing::AllOf(Field(&WorldProblem::key, key), Field(&WorldProblem::message, HasSubstr(part)));
+}
+
+class ResolveMounts : public testing::Test {
+ protected:
+  ResolveMounts() {
+    for (const char* name : {"rov", "crab"}) {
+      world_.bodies.push_back({name, {}, {}});
+    }
+    world_.sonars = {{"rov::bow::gemini", "gemini_720i", "rov", {{1, 2, 3}, {1, 0, 0, 0}}},
+                     {"rov::bow::micron", "micron", "rov", {{0, 0, 1}, {1, 0, 0, 0}}},
+                     {"crab::left::eye", "gemini_720i", "crab", {}},
+                     {"crab::right::eye", "gemini_720i", "crab", {}}};
+  }
+
+  void add_gemini(const std::string& mount) {
+    HeadConfig head = gemini_kind().make_default();
+    head.mount_from_world = mount;
+    config_.heads.push_back(head);
+  }
+  std::vector<WorldProblem> take() { return resolve_mounts(config_, world_); }
+
+  render::World world_;
+  DaemonConfig config_;
+};
+
+TEST_F(ResolveMounts, ChangesNothingThatIsNotAskedOfIt) {
+  add_gemini("");
+  config_.poses.ignition.emplace().vehicle = {"boat", {"harbour"}};
+  EXPECT_THAT(take(), IsEmpty());
+  EXPECT_EQ(config_.heads[0].T_vehicle_sonar, render::Pose{});
+  EXPECT_EQ(config_.vehicle_model, "");
+  EXPECT_EQ(config_.poses.ignition->vehicle.name, "boat");
+  EXPECT_THAT(config_.poses.ignition->vehicle.parents, ElementsAre("harbour"));
+}
+
+TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
+  add_gemini("gemini");
+  HeadConfig micron = micron_kind().make_default();
+  micron.mount_from_world = "rov::bow::micron";
+  config_.heads.push_back(micron);
+  config_.poses.ignition.emplace();
+  EXPECT_THAT(take(), IsEmpty());
+  EXPECT_EQ(config_.heads[0].T_vehicle_sonar.position_m, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(config_.heads[1].T_vehicle_sonar.position_m, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(config_.vehicle_model, "rov");
+  EXPECT_EQ(config_.poses.ignition->vehicle.name, "rov");
+}
+
+TEST_F(ResolveMounts, NamesWhatTheWorldHas) {
+  add_gemini("oculus");
+  EXPECT_THAT(take(),
+              ElementsAre(is_problem("heads[0].mount.from_world",
+                                     "the world has no sonar 'oculus' (expected one of rov::bow::gemini, ")));
+  world_.sonars.clear();
+  EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].mount.from_world", "and it has none")));
+}
+
+TEST_F(ResolveMounts, WantsOneSonarOfTheRightTypeOnOneVehicle) {
+  add_gemini("eye");
+  add_gemini("micron");
+  EXPECT_THAT(
+      take(),
+      ElementsAre(
+          is_problem("heads[0].mount.from_world", "(expected one of crab::left::eye, crab::right::eye)"),
+          is_problem("heads[1].mount.from_world", "is a micron in the world (expected a gemini_720i")));
+  config_ = {};
+  add_gemini("gemini");
+  add_gemini("left::eye");
+  EXPECT_THAT(take(), ElementsAre(is_problem("heads[1].mount.from_world",
+                                             "on model 'crab', and the vehicle is 'rov'")));
+}
+
+TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {
+  config_.vehicle_model = "boat";
+  EXPECT_THAT(take(), ElementsAre(is_problem("world.vehicle_model", "no model 'boat'")));
+  config_ = {};
+  add_gemini("");
+  config_.heads[0].hides_vehicle = true;
+  config_.poses.ignition.emplace();
+  EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].hides_vehicle", "expected world.vehicle_model"),
+                                  is_problem("poses.ignition.vehicle", "is required")));
+  config_.vehicle_model = "rov";
+  EXPECT_THAT(take(), IsEmpty());
+  EXPECT_EQ(config_.poses.ignition->vehicle.name, "rov");
+}
+
+}  // namespace
+}  // namespace sonard::server
