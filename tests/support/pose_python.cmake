@@ -9,7 +9,3 @@ add_custom_command(
   DEPENDS ${PROJECT_SOURCE_DIR}/protocol/pose/pose.proto
   VERBATIM)
 add_custom_target(sonard_pose_python DEPENDS ${SONARD_POSE_PYTHON}/pose_pb2.py)
-
-# Debian's interpreter, which sees python3-protobuf; the first in the path may be another one.
-find_program(SONARD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-find_program(SONARD_PYTHON python3)
