@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # How every test of this project is registered. A label (unit, gl, system, logs, simulators) is a part of ./test; the target
 # LABEL_tests builds all that the tests of one label start.
 find_package(GTest REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Configurations against their JSON Schema, by a validator that is not ours."""
 
 import json

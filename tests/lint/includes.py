@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What includes of the product say of its folders: no circles, and arrows that point one way."""
 
 import collections

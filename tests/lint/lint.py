@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks that need no build. `./test lint` runs them all; names of checks run those alone.
 
 Debian's interpreter is named above because it sees the packages of docker/packages.txt.

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """What the checks of lint find, and what they let pass, in small trees made for it."""
 
 import os

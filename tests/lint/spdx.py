@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The line that names the licence, in every source file."""
 
 from tree import CPP, DATA, matches

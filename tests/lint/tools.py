@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks that are programs of others: clang-format, shellcheck, codespell, clang-tidy."""
 
 import concurrent.futures

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files that are checked: those of the working tree that git does not ignore, and those that differ from a commit."""
 
 import fnmatch

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words that gave way to better ones (words.yaml)."""
 
 import re

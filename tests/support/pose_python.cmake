@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 find_package(Protobuf REQUIRED)
 
 # The example publisher runs as a user would run it: message module by protoc, sockets of Python's own.

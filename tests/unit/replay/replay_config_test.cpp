@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which recorded head is served as which, what a 720i can send, and what is told about requests that differ.
 #include "server/replay/replay_config.hpp"
 
