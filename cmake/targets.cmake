@@ -2,6 +2,7 @@
 # How every target of this project is compiled. Third-party headers are included as SYSTEM.
 add_library(sonard_flags INTERFACE)
 target_include_directories(sonard_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+target_include_directories(sonard_flags SYSTEM INTERFACE ${PROJECT_SOURCE_DIR}/cmake/compile_once)
 target_compile_options(sonard_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
   # A multiply-add where the machine has one would make images depend on the machine (renderer/simd.hpp).
