@@ -1,6 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
 # How every target of this project is compiled. Third-party headers are included as SYSTEM.
 add_library(sonard_flags INTERFACE)
 target_include_directories(sonard_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+target_include_directories(sonard_flags SYSTEM INTERFACE ${PROJECT_SOURCE_DIR}/cmake/compile_once)
 target_compile_options(sonard_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
   # A multiply-add where the machine has one would make images depend on the machine (renderer/simd.hpp).
@@ -20,7 +22,8 @@ endif()
 # sonard_library(NAME SOURCES...) and sonard_program(NAME SOURCES...)
 function(sonard_library name)
   add_library(${name} STATIC ${ARGN})
-  target_link_libraries(${name} PUBLIC sonard_flags)
+  # Who links an installed library has warnings of their own.
+  target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:sonard_flags>)
 endfunction()
 
 function(sonard_program name)
@@ -41,7 +44,8 @@ function(sonard_proto_library name proto)
     DEPENDS ${PROJECT_SOURCE_DIR}/${proto}.proto
     VERBATIM)
   add_library(${name} STATIC ${generated}/${proto}.pb.cc ${generated}/${proto}.pb.h)
-  target_include_directories(${name} SYSTEM PUBLIC ${generated})
+  target_include_directories(${name} SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
+  set_target_properties(${name} PROPERTIES GENERATED_HEADER ${generated}/${proto}.pb.h)
   target_link_libraries(${name} PUBLIC protobuf::libprotobuf ${ARGN})
   if(SONARD_SANITIZE)
     target_compile_options(${name} PRIVATE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer)

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs sections of docker/packages.txt: install_packages.sh build runtime test. Does nothing, and needs no
 # rights, when all is there. "run", "test" and the Dockerfile call this, so the list is the only one.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Carries out docker/Dockerfile without a container engine, and runs what comes out.
 
   sudo docker/prove_in_chroot.py --work DIR [--keep]

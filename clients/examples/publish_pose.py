@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Publishes a vehicle that drives a circle, as any simulator can (docs/poses.md).
 
 Needs python3-protobuf and, once, the message module beside this file:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the flat list that sonard_bench writes."""
 
 import collections

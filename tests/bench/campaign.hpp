@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A series of scenes measured on every backend there is.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far an echo image is from the truth (docs/physics.md 3.3, docs/benchmark.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sonard_bench: run time against error, on the scenes of tests/scenes (docs/benchmark.md).
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the benchmark found, as the flat list that other tools read.
 #pragma once
 

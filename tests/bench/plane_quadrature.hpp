@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed form of a plane, integrated over the width of a beam fast and to a part in a million.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the benchmark measures: the plan of each of its two modes.
 #pragma once
 

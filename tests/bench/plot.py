@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Draws error against time, and time against size, from what sonard_bench wrote.
 
   tests/bench/plot.py out/bench.json docs/images/benchmark

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Named ways to sample a scene: the points of the run-time against error plane.
 #pragma once
 

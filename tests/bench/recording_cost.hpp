@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What recording takes of a ping, on the thread that serves and on the recorder's.
 #pragma once
 

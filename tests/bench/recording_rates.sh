@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # What recording costs: pings per second of one configuration without it and with it, in turns, on loopback.
 #   recording_rates.sh PROGRAMS CONFIG [SECONDS] [ROUNDS] [SONARVIEW OPTIONS...]
 # CONFIG has a section `recording`, as configs/recording.yaml has; without recording it is run with that section left out.

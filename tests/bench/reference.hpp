@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reference images: closed forms where there is one, else what the oracle has stored.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One scene in one renderer, measured at points.
 #pragma once
 

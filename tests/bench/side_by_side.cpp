@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sonard_side_by_side SCENE FILE.png: one scene by both backends and the oracle, and what they differ by.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

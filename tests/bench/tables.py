@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Prints what sonard_bench wrote as the Markdown tables of docs/benchmark.md.
 
   tests/bench/tables.py out/bench.json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repeated timing: what a run takes, and how sure that is.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as one Gemini datagram, in both directions, and as run-length coded data.
 // Promises: no datagram is read beyond its end; what decodes is stable under encode and decode; every error
 // names a field inside the datagram; run-length decoding stays inside the line.

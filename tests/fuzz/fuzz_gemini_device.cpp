@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any sequence of datagrams, images, triggers and pauses against a Gemini head.
 // Promises: every datagram that leaves is a message of a head, from this head, small enough not to fragment;
 // the next deadline lies in the future; time goes on whatever comes in.

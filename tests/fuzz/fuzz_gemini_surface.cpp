@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any sequence of datagrams and pauses against the surface's side of the protocol.
 // Promises: every datagram that leaves is a command; an image that is delivered has the size that its head
 // announced; time goes on whatever comes in.

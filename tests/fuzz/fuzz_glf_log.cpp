@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as a log. Promises: what is indexed lies in order inside the .dat, and nothing of it is lost; a
 // log that was cut can be closed and then holds the same; records that decode are stable under encode and
 // decode; every error lies inside the file.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as an MCAP file.
 // Promises: errors and messages lie inside the file; log times never go back; a file that was recovered is
 // whole and has as many messages as its summary says.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes, lines, faults and pauses against a Micron head.
 // Promises: every frame that leaves is a whole message of a head, from this head; the next deadline lies in
 // the future; no more lines than were asked for; time goes on whatever comes in.

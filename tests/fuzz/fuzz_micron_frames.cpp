@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as a stream of Micron frames, and as one frame in both directions.
 // Promises: the framing function keeps its contract; how a stream is cut changes nothing about its frames;
 // what decodes is stable under encode and decode; every error names a field inside the frame.

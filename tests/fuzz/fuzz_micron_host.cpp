@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes and pauses against the host's side of a Micron.
 // Promises: every frame that leaves is a command; a line that is delivered has the bins that were asked for;
 // the next deadline lies in the future.

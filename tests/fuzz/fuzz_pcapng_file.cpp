@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as a pcapng file.
 // Promises: what is kept was there, is kept again, and holds as many packets as recover() says.
 #include <cstdint>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the fuzzing seeds in corpus/ from the byte examples in tests/data/gemini and tests/data/micron, and logs made here.
 
 gemini/datagrams/  one example each, as it is

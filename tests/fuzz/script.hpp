@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fuzz input read as a sequence of events on a time line, for programs that drive a state machine.
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Prints a checksum of every image that `sonard render` makes of the scenes of configs/, on both backends.
 
 A change that means to leave images alone prints the same before and after, on one machine:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Beams are independent: each is computed whole by one thread, so the result does not depend on their number.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The oracle's own ray tracer over triangles, double precision, rays from the sonar only.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the oracle integrates: the echo of a surface seen from the origin of the sonar frame, per steradian.
 // docs/physics.md 2.1 equation (1), 2.4 Lambert and facets, 2.5 elevation pattern, 1.1 mode `paper`. Written
 // from the formulas; no code is shared with the renderer, only its plain data types are read.

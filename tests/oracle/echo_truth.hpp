@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an integrator of the oracle hands back: an image and how far it may be off.
 #pragma once
 

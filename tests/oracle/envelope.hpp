@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which of many line segments in a half-plane is seen from its origin, exactly.
 #pragma once
 

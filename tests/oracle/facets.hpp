@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world as the sonar sees it: triangles in the sonar's frame, in double precision.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sonard_oracle: renders the references of tests/data/oracle.
 #include <algorithm>
 #include <chrono>

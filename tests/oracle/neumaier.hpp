@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compensated summation (Neumaier 1974): the error of a sum does not grow with the number of terms.
 #pragma once
 

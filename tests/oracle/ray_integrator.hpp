@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The second reference renderer: rays on a spherical grid, footprints, refinement. For analytic shapes, and
 // to hold the slices against something that has no code in common with them but the echo law.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reference images on disk: NAME.npy and NAME.json in tests/data/oracle.
 #pragma once
 

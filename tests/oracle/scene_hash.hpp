@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fingerprint of everything that goes into a reference image.
 #pragma once
 

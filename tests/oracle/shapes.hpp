@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surfaces with a formula, placed in the sonar frame. Metres.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The echo of one vertical half-plane through the sonar: visibility exact, elevation integrated piece by
 // piece.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reference renderer for meshes: exact in elevation and range, adaptive quadrature in azimuth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A view as a person would see it on a display.
 #pragma once
 

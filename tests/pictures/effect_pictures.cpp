@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // effect_pictures [NAME...]: draws the pictures of docs/acoustics.md, each effect without and with it.
 #include <algorithm>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // gallery_pictures [NAME...]: draws the pictures of docs/gallery.md, each scene with effects off and on.
 #include <algorithm>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two views of one thing, side by side.
 #pragma once
 

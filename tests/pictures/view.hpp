@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a picture is of: a world, a sonar in it, and what is asked of the renderer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sea beds: heights over the plane, and the triangles that follow them. Metres, world frame, z up.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A subsea manifold: frame, headers, branches, valves. Scales to any number of triangles.
 #pragma once
 

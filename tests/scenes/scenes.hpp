@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenes that run time and error are measured on (docs/benchmark.md).
 //
 // Seabed scenes: a bed of 0.18 m facets and, but for `plane`, a box, a sphere, a pipeline and a pole on it;

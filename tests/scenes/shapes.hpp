@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes with a chosen number of flat facets, in metres. Vertices lie on the true surface; there are no
 // normals.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ground with relief of all lengths, as surveys find it, and heightmaps of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A daemon in the world of two walls and a floor, and what its image says about where the vehicle is."""
 
 import math

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fixture for tests of the image: each runs on every backend. On `raster` they skip with a reason where there
 // is no OpenGL; with SONARD_REQUIRE_GL set, as in CI, they fail instead, so that coverage is never lost
 // silently. On `ray` they always run.

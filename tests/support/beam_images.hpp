@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images whose every bin follows from a formula.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Echoes that can be written down: the truth for tests of the renderer. Independent of renderer/: double
 // precision, no code shared. Formulas: docs/physics.md 3.2.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A renderer without GL: the samples of a ping are a simple function of its number, so a test knows them.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads Tritech .glf and .dat logs, written from docs/logs.md without our C++ code: a second opinion on every byte.
 
     log = glf_reader.read(path)    # a .glf, or the .dat of one

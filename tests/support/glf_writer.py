@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes Tritech .glf and .dat logs, from docs/logs.md without our C++ code, for tests that read or play logs.
 
     images = glf_writer.noise(count=20, lines=482, device_id=513)

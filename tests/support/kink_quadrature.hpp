@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrals of functions that are smooth but for kinks at known places.
 #pragma once
 

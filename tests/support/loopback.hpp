@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Addresses for tests that need the device's fixed ports, and a surface made of one socket.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MAVLink frames as the guide describes them, made without our codec: a second opinion on every byte.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Images as NumPy files, read without NumPy and without our C++ code."""
 
 import ast

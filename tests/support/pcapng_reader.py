@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads captures of IPv4 packets, written from draft-ietf-opsawg-pcapng and RFC 791, 768, 9293: a second opinion.
 
     for packet in pcapng_reader.read(path): packet.interface, packet.time_ns, packet.payload ...

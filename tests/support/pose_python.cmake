@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 find_package(Protobuf REQUIRED)
 
 # The example publisher runs as a user would run it: message module by protoc, sockets of Python's own.
@@ -9,7 +10,3 @@ add_custom_command(
   DEPENDS ${PROJECT_SOURCE_DIR}/protocol/pose/pose.proto
   VERBATIM)
 add_custom_target(sonard_pose_python DEPENDS ${SONARD_POSE_PYTHON}/pose_pb2.py)
-
-# Debian's interpreter, which sees python3-protobuf; the first in the path may be another one.
-find_program(SONARD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-find_program(SONARD_PYTHON python3)

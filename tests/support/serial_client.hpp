@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other end of a serial line, with nothing between it and the system calls.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Waiting with a deadline: a test that would hang fails instead.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The state of a HoloOcean agent as a message for sonard (docs/simulators/unreal.md).
 
 The agent needs a PoseSensor, and had better have a VelocitySensor and an IMUSensor; all in one socket, whose pose it is.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """nav_msgs/Odometry of ROS 2 as a message for sonard (docs/simulators/ros2.md).
 
 Needs python3-protobuf and, once, the message module beside this file:

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A node of ROS 2 that passes a topic of nav_msgs/Odometry on to sonard.
 
     python3 sonard_bridge.py --ros-args -p topic:=/rov/odometry -p world_frame:=world

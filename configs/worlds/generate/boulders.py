@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Boulders: a sphere of triangles, dented by noise and flattened a little."""
 
 import math

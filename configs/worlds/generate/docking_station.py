@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A docking station for a torpedo-shaped vehicle: 4 x 3 x 2.5 m, entered from -x through a funnel.
 
 Own coordinates: origin on the seabed under the middle of the base frame, x along the docking tunnel, z up.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the worlds, their meshes and the trajectories below configs/. Needs Python 3 and nothing else.
 
   generate.py                 writes into this checkout's configs/

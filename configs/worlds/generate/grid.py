@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A cage of bars that stands on the bed around the vehicle: an upright bar and a rail every metre, and a gate.
 
 Own coordinates: origin at the middle of the cage, x towards the gate, z up.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A manifold under a protective cover: open towards the front, closed at the roof, the back and the ends.
 
 Own coordinates: origin on the seabed under its middle, x along the flowlines, front at -y, z up.

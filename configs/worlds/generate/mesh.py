@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Triangle meshes built from a few solid shapes, and their PLY files.
 
 Every shape is closed or meant to be seen from outside only; triangles run counter-clockwise seen from outside.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Smooth, repeatable noise without any library: integer hashing, so the same everywhere."""
 
 import math

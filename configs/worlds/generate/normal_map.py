@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tangent-space normal maps as PNG files that repeat at their edges: sand, and concrete as it comes out of its formwork."""
 
 import math

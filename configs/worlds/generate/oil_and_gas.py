@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A jacket with risers, a manifold and a wellhead tree, and the spools between them.
 
 Meshes with their own coordinates have their origin on the bed, z up; the others are in world coordinates.

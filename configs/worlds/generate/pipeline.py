@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A concrete-coated pipeline on the seabed: field joints, anodes, and concrete mattresses laid over it."""
 
 import math

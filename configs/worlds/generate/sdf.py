@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the SDF text of a world: models with one link, one visual for each mesh."""
 
 _HEAD = """<?xml version="1.0"?>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A sandy seabed: long undulation, ripples in patches, and what objects do to it (flats, scour, berms)."""
 
 import bisect

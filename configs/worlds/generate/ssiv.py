@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A subsea isolation valve (SSIV) in its protective frame, tied in to a pipeline at both ends.
 
 Own coordinates: origin on the seabed under the valve, x along the pipeline, z up.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A concrete test tank filled to the brim of its working depth, and what stands in it.
 
 World coordinates: x east, y north, z up from the water surface; the tank's middle is at x = y = 0.

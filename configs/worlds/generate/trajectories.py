@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trajectories, all closed loops: surveys on an arc around a target with the sonar's fan held on it, and for a head that turns
 step by step rests and slow moves between them.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The worlds: where everything lies. Each function returns {path below configs/worlds: bytes}."""
 
 import math

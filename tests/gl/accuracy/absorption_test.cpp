@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T14: absorption, and nothing else, beyond the spreading of T2.
 #include <cmath>
 

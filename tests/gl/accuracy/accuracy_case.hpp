@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every preset promises (docs/accuracy.md) and how an image is held to it.
 #pragma once
 

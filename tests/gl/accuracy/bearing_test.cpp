@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T11: every beam looks where its table says.
 #include <algorithm>
 #include <cmath>

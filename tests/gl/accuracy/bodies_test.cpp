@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T4 and T5: round bodies.
 #include <cmath>
 #include <numbers>

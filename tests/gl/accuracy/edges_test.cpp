@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T6, T7 and T8: edges, shadows and corners.
 #include <algorithm>
 #include <cmath>

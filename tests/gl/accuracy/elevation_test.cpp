@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elevation patterns (docs/physics.md 2.5) on a wall across the axis, where each elevation has a range of its
 // own.
 #include <cmath>

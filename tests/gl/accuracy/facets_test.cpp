@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facets (docs/physics.md 2.4): their echo lies within a few degrees of normal incidence.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Targets that are not met yet, and what is held instead.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T1, T2 and T3: planes.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes without a closed form, against the stored images of the oracle (tests/oracle/README.md).
 #include "tests/bench/reference.hpp"
 #include "tests/gl/accuracy/accuracy_case.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pipe of 5 cm at 30 m is found wherever it stands or lies between two samples.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Beams that closed forms say a sonar must hear (docs/physics.md 3.2), for mu = 1 and no absorption.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast the error falls with the number of rows (docs/physics.md 3.5), against closed forms. Fixed grids:
 // what an error preset samples is its own choice. The finest error of each case may not grow by more than a
 // tenth over what was reached before.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/gl/gpu_binning/double_binning.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binning of a grid of samples in double precision, straight from docs/physics.md 2.3: the truth for both
 // ways to bin. Of renderer/ it takes the cells of the grid, nothing else.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binning on the GPU against binning on the CPU of the same samples: both renderers draw with the same
 // OpenGL, so every sample is the same to the bit, and what differs is binning.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Glints of corners (docs/physics.md 2.11; 3.2, T8).
 #include <cmath>
 #include <complex>

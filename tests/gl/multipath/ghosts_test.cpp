@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ghosts by way of one mirror: ranges, bearings and levels against sums made here.
 #include <cmath>
 #include <glm/geometric.hpp>

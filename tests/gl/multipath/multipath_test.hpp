@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds and sums for tests of multipath. Truth is worked out in each test from docs/physics.md 2.11.
 #pragma once
 

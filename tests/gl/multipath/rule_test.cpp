@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SkipRule::multipath: when nothing mirrors, nothing is traced; what is left out is no more than its bound.
 #include <algorithm>
 #include <cmath>

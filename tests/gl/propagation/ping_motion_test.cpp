@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion within a ping (docs/physics.md 2.14): what returns from range r is heard as the sonar is turned
 // 2 r / c after the ping was sent, and from halfway between there and where it was sent.
 #include <algorithm>

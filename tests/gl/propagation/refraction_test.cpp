@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays that bend (docs/physics.md 2.12), against the parabola z = x tan(theta) - k x^2, k = g / 2c, solved
 // here: where it meets a flat bed, what its echo is, and how long the shadow of a wall gets.
 #include <algorithm>

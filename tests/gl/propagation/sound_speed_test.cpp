@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Water of another sound speed than the client reckons with (docs/physics.md 2.12): a range r is displayed as
 // r c_d / c. From the client's settings by way of the head's job to the image.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two ways to the same samples (docs/physics.md 4.3, S21): rasterised and traced images agree bin by bin.
 // What may differ are samples within 1/512 of a pixel of an edge: GL moves vertices to a raster of 1/256
 // pixel, so such a sample can see the other side of the edge.

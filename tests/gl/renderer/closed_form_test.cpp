@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Echo energy against closed forms (docs/physics.md 3.2) at the lines the demo runs with: what accuracy_test
 // does not hold `raster` to, and fixed grids.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What must hold for any image: repeatability, frames, moving bodies, bad input.
 #include <cmath>
 #include <numbers>

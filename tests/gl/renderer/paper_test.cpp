@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mode `paper` against its closed form and its documented readings (docs/physics.md 1, 3.2).
 #include <cmath>
 #include <numbers>

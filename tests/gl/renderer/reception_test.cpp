@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What array, pulse and TVG make of simple targets, against closed forms, on all backends.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volume reverberation: closed forms, and what stands in the water's way (docs/physics.md 2.10).
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the three scenes of figure 7 must show. Places and sizes are those of configs/worlds/generate and of
 // the trajectories, worked out by hand; nothing is measured in the images themselves.
 #include <gtest/gtest.h>

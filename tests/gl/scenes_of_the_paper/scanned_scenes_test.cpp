@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the three scenes of figure 8 must show: docs/worlds.md has their geometry in closed form.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/gl/scenes_of_the_paper/scene_echo.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mean echoes of the scenes of docs/gallery.md, effects off, and where in them something is.
 #pragma once
 

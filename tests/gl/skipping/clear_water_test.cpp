@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SkipRule::clear_water: on against off, over a bed as dark as sand, through the whole receiver.
 #include <algorithm>
 #include <cmath>

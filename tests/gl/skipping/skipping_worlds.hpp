@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small world and a small fan for the tests of the ledger.
 #pragma once
 

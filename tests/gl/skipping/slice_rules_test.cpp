@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of exact slices and their binning: each on against off, in worlds where it has much to skip and in
 // worlds where it has nothing.
 #include <algorithm>

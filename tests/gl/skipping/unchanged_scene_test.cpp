@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SkipRule::unchanged_scene: an echo is used again for exactly as long as it would come out the same.
 #include <functional>
 #include <string>

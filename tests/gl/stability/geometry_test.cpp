@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S4, S5, S14 and S19 of docs/physics.md 4.3: broken meshes, soup, thin things, ties, a full bin.
 #include <array>
 #include <cstdint>

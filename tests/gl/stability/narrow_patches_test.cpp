@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of binning and slices that the stress list has found: patches
 // narrower than their neighbours' distance, or than float resolves at their
 // range; edges that lie along a slice; surfaces that hold the sonar.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S1 to S3 of docs/physics.md 4.3: range of depths, large coordinates, grazing incidence.
 #include "tests/gl/stability/stability_test.hpp"
 

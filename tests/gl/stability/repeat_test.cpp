@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S12, S18 and S21 of docs/physics.md 4.3: the same image every time, after every change, on every backend.
 #include <atomic>
 #include <thread>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S6 to S10 and S15 to S17 of docs/physics.md 4.3: poses, ranges, sizes, apertures, water, materials, gain.
 #include <functional>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fixture for the stress list of docs/physics.md 4.3: every test that concerns an image runs on every way to
 // one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds in UTM coordinates: seven digits before the point, and the echo of a millimetre behind it.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A heightmap of 4096 x 4096 pixels from its file to an image.
 #include <algorithm>
 #include <filesystem>

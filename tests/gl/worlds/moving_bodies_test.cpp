@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies that move from ping to ping, and their shadows.
 #include <cmath>
 #include <string>

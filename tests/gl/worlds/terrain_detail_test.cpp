@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SkipRule::terrain_detail: tiles as coarse as the sonar can bear against every pixel of the map.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads what write_mcap_example writes with both readers of @mcap/core, and decodes its messages by the descriptors
 // in the file alone.   node check_mcap.js WRITER finished|recovered|growing
 // The expectations are written here a second time, from what the messages are meant to hold.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes an MCAP file to standard output: twenty pings of two heads with their wire bytes and poses, in
 // chunks. "recovered" cuts it in the middle of a chunk first and finishes what is left. check_mcap.js knows
 // what is in it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/logs/wireshark/captures.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Captures for tshark, and what it makes of them.
 #pragma once
 

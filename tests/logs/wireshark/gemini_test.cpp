@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Byte examples of the Gemini through the dissector. What each field holds is read off
 // docs/protocols/gemini.md (sections 5, 6, 10) and tests/data/gemini/notes.md by hand.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Examples with wrong bytes and cut ends: a dissector may complain, but not fail. Wireshark shows what fails
 // in Lua as an expert info of its own.
 #include <gtest/gtest.h>

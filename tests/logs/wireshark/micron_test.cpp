@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Byte examples of the Micron through the dissector, over TCP and UDP. What each field holds is read off
 // docs/protocols/micron.md (sections 5, 6, 10) by hand.
 #include <gmock/gmock.h>

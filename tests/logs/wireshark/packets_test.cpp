@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packets and times of a capture, as tshark reads them.
 #include <gtest/gtest.h>
 

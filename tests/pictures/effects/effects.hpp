@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pictures of docs/acoustics.md: one view without and with each effect. An effect is added to the table
 // of its family.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/pictures/effects/effects.hpp"
 #include "tests/scenes/scenes.hpp"
 #include "tests/support/backend_test.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The six scenes of Cerqueira et al. 2017 (figures 7 and 8) as docs/gallery.md shows them.
 #pragma once
 

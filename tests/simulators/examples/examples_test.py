@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Poses in the axes of other simulators, through the examples of clients/examples, up to ranges in the image.
 
     examples_test.py --programs DIR --modules DIR [--unity FILE] [Examples.test_name ...]

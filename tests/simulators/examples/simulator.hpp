@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every stand-in for a simulator here does: it says where the vehicle is, 50 times a second, or once.
 //   PROGRAM PORT COUNT X Y Z A B C VX VY VZ WX WY WZ [X Y Z A B C]      COUNT 0: until it is ended
 // Position, three angles in degrees, velocity and turn rate, all in the simulator's own axes, units and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stands in for Stonefish: metres, north, east, down; angles roll, pitch, yaw; velocities on board, as its
 // odometry sensor measures them.
 #include "clients/examples/stonefish/sonard_publisher.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stands in for Unity: metres, x right, y up, z forward; angles of Quaternion.Euler, applied in the order z, x, y; velocities
 // in the world's axes. The few types of the engine that SonardPublisher.cs takes, and a scene with one vehicle.
 //   mono unity.exe PORT COUNT X Y Z EX EY EZ VX VY VZ WX WY WZ [X Y Z EX EY EZ]      COUNT 0: until it is ended

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stands in for Unreal: centimetres, x forward, y right, z up; angles pitch (up), yaw (clockwise), roll
 // (clockwise as seen from behind), applied to the vehicle in the order roll, pitch, yaw. Velocities are in
 // the world's axes, as the engine gives them, and turn rates have the sign of its quaternions ("left-handed",

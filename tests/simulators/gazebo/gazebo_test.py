@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The image of the daemon follows what Ignition Transport carries: ranges of walls whose places are known. The
 publishers are a program on the stock library, and its command line tool.
 

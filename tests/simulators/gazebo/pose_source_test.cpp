@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses from programs of others that speak Ignition Transport: one with the stock library, and its command
 // line tool. They meet in a network of this test process alone, with multicast on its loopback.
 #include "server/pose/ignition_pose_source.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A simulator's share of a pose topic, by the stock library: entities at rest, for some seconds, 50 times a
 // second. The stamp runs at a rate of simulated time. gazebo_publisher TOPIC SECONDS TIME_RATE TYPE NAME X Y
 // Z ROLL PITCH YAW [NAME X ...] Metres, and degrees about the fixed axes x, y and z, in this order.

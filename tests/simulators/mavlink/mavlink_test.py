@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The image of the daemon follows what node-mavlink publishes: ranges of walls whose places are known.
 
     mavlink_test.py --programs DIR --publisher DIR [TestCase.test_name ...]

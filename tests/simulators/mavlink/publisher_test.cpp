@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pose source hears node-mavlink over loopback: numbers of the poses themselves, which mavlink_test.py
 // then sees in the image.
 #include <gmock/gmock.h>

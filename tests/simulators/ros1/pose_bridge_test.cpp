@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the bridge makes of messages: frames, stamps, trees. Poses are followed up to the image by
 // ros1_test.py.
 #include "clients/ros1/pose_bridge.hpp"

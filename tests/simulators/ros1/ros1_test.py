@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """roscast between ROS's own tools and the daemon: the image follows, and what is wrong is said.
 
     ros1_test.py --programs DIR --modules DIR [Ros1.test_name ...]

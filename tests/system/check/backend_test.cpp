@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which backend the real program takes, with OpenGL and without, and how it says so.
 #include <unistd.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real program on configurations that are broken in one way each, and on those that ship.
 // Each broken file in tests/data/configs/broken/ says in its first line what is wrong with it.
 #include <arpa/inet.h>

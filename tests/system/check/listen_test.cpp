@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonard check --listen`, with the Python example of docs/poses.md as the publisher, and without any.
 #include <unistd.h>
 

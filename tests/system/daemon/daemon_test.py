@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The daemon as a process: its log, signals, descriptors, and what clients of a Micron meet right after the start.
 
     daemon_test.py --programs DIR [TestCase.test_name ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two machines on one wire, made of network namespaces, and the programs that run on them.
 
 Every wait has a deadline; whatever was started is ended and whatever was made is removed when the test ends.

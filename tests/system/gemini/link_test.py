@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The daemon and its clients as separate processes on separate machines (network namespaces on one wire).
 
     link_test.py --programs DIR [--replay] [TestCase.test_name ...]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`sonard replay` and a client as processes on one machine (a network namespace), with logs that are written here.
 
     replay_test.py --programs DIR [TestCase.test_name ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The few messages these tests send and read themselves, written from docs/protocols/gemini.md and
 protocol/pose/pose.proto, without our C++ code: a second opinion on every byte."""
 

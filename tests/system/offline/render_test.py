@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`sonard render` as a user runs it: what it leaves, read without our C++ code.
 
     render_test.py --programs DIR [TestCase.test_name ...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads MCAP files with @mcap/core, decodes their messages by the descriptors in the files alone, and prints what
 // recording_test.py compares, as JSON.   node read_mcap.js FILE...
 import { readFileSync } from "node:fs";

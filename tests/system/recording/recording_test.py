@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What the daemon records, against what its clients received, by readers that share no code with it.
 
     recording_test.py --programs DIR --npm DIR [--kills N] [--seconds N] [TestCase.test_name ...]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A simulator for tests: a vehicle that moves evenly along x by its own clock, told by TCP or UDP.
 
     publish_stamps.py --modules DIR --to HOST:PORT [--udp] STEP ...

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Pings by the clock of a simulator that is slow, fast, paused, reset or set: the same stamps give the same images.
 
     simulated_time_test.py --programs DIR --modules DIR [TestCase.test_name ...]

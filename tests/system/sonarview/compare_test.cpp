@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonarview compare` as a user meets it: what it prints, what it refuses, how it ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

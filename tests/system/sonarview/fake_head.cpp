@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/system/sonarview/fake_head.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Micron on a real serial line, whose echoes the test makes up.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonarview micron` as a process, against a head on real lines. The echoes are a formula of bearing and bin,
 // so every sample of every file that it writes has a known value.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the array makes of fine beams, against the sum over its elements.
 #include "renderer/acoustics/azimuth_pattern.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images do not depend on the machine: the versions of the receiver's loops for different instruction sets
 // give the same bits (renderer/simd.hpp).
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The receive array against the table of docs/physics.md 2.5, and sums of its elements written out here.
 #include "renderer/acoustics/line_array.hpp"
 

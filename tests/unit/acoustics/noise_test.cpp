@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The level of noise, interference and the ring-down (docs/physics.md 2.9, 2.16).
 #include "renderer/acoustics/noise.hpp"
 

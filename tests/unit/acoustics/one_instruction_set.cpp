@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The receiver once more, compiled for one instruction set alone and in a namespace of its own. The build
 // compiles this file several times, with
 //   SONARD_SIMD_CLONES  the attribute that picks the instruction set (renderer/simd.hpp)

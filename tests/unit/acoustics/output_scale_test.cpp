@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples in half decibels, as a DST head puts them out: v = floor(k 255 / 160) with k = round(2 L / dB), and
 // nothing above k = 120 (docs/physics.md 2.16). Full scale is 80 dB.
 #include <cmath>

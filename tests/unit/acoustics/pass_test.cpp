@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ping that is passed leaves the receiver as one that is received.
 #include <algorithm>
 #include <functional>

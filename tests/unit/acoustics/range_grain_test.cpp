@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Correlation along the range where lines are shorter than the pulse (docs/physics.md 2.8).
 #include "renderer/acoustics/range_grain.hpp"
 

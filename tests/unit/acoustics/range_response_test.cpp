@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The response of a chirp in range against its integral in double precision.
 #include "renderer/acoustics/range_response.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A receiver without gain, blanking or noise, and what its samples say.
 #pragma once
 

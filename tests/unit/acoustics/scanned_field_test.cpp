@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speckle of a scanning head belongs to the bearings of the world (docs/physics.md 2.8, 2.16).
 #include "renderer/acoustics/scanned_field.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One set of pings, whichever version of array, pulse and receiver makes them.
 #pragma once
 

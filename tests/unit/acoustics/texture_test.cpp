@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // K distribution: gamma distributed texture under the speckle (docs/physics.md 2.8).
 #include "renderer/acoustics/texture.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The benchmark run on a small fan over the plane, whose echo is known.
 #include "tests/bench/campaign.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files that can be compared, written byte by byte as their formats say, and those that are refused.
 #include "clients/sonarview/compare/frame.hpp"
 

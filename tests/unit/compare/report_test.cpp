@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `sonarview compare` prints and writes, and how it fails.
 #include "clients/sonarview/compare/report.hpp"
 

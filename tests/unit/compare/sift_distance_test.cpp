@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What SIFT promises: the same things are found again, also turned and shifted, and other things are not.
 #include <gtest/gtest.h>
 

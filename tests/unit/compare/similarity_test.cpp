@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MSE, PSNR, SSIM and MS-SSIM against numbers worked out by hand and against the formulas of Wang et al.,
 // summed pixel by pixel.
 #include "clients/sonarview/compare/similarity.hpp"

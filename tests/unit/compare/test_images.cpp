@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/compare/test_images.hpp"
 
 #include <opencv2/core.hpp>

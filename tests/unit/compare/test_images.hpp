@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images whose measures are known.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loading a configuration that a test writes down as text.
 #pragma once
 

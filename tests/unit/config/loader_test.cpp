@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the loader makes of good configurations, and what it says about bad ones.
 #include "server/config/loader.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How clients reach a serial device: what is read, what is refused, and that the schema says the same.
 #include "server/config/network_section.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loader, docs/configuration.md and the JSON Schema know the same keys, and loader and schema the same
 // values.
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What ships in configs/ loads without a warning, and the two that scripts rely on say what they promise.
 #include <cmath>
 #include <filesystem>

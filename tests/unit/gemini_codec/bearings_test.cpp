@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Against the values printed in docs/protocols/gemini.md 6.5.
 #include "protocol/gemini/bearings.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every fixture beside the values that its source says it holds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The byte examples, both ways: what the bytes mean, and which bytes the values become.
 #include "tests/unit/gemini_codec/examples.hpp"
 

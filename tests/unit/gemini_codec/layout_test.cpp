@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each field at its documented offset. The examples leave most fields zero or equal to a neighbour, so that a
 // swapped pair would pass them; here every byte of the datagram holds its own offset and no two fields agree.
 #include <gtest/gtest.h>

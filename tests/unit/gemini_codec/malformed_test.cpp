@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a socket may bring: cut, padded, foreign and contradictory datagrams.
 #include <gtest/gtest.h>
 

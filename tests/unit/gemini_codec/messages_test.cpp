@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the raw integers of the messages mean.
 #include "protocol/gemini/messages.hpp"
 

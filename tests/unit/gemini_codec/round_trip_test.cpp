@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // decode(encode(x)) == x for values nobody thought of, and encode(decode(bytes)) == bytes for bytes nobody
 // thought of.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A head on a bench: virtual time, a renderer that takes a set time, everything sent written down.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The head's flash memory (docs/protocols/gemini.md 3.7).
 #include "protocol/gemini/flash_store.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gain fields to dB (docs/protocols/gemini.md 5).
 #include "protocol/gemini/gain_law.hpp"
 

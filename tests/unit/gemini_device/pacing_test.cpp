@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When the datagrams of a ping leave (docs/protocols/gemini.md 8.5, 3.6).
 #include <algorithm>
 #include <random>

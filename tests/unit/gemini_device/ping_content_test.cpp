@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is in the datagrams of a ping, and what its job says (docs/protocols/gemini.md 5, 6, 10).
 #include <algorithm>
 #include <string_view>

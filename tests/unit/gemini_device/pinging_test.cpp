@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When the head pings: run modes, rate limits, what ends or delays a ping (docs/protocols/gemini.md 1.5, 8).
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The head against models of both generations of receiver libraries (docs/protocols/gemini.md 7.1, 7.2) over
 // a link that loses datagrams both ways: every ping whose head arrives must end complete and intact.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Retry requests: what is served, when, and what is not (docs/protocols/gemini.md 7.3).
 #include "protocol/gemini/retry_queue.hpp"
 

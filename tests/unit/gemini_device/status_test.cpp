@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Status packets: discovery, contents, cadence (docs/protocols/gemini.md 1.3, 3.3, 8.3).
 #include "bench.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surface and head at the two ends of a link that loses, doubles, delays and reorders datagrams, in virtual
 // time: every image asked for must arrive complete and as it was given to the head.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truths are the worked example of docs/protocols/gemini.md 10 and the values seen from a later library
 // (tests/data/gemini/notes.md).
 #include "protocol/gemini/ping_settings.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface against a head that says exactly what the test wants, in virtual time.
 #include "protocol/gemini/surface.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A .dat whose writer went away at any byte, and what is left of it (docs/logs.md 1.7).
 #include <algorithm>
 

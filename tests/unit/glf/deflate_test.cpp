@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What logs need of zlib, and no more memory for it than the bytes can ask for.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small records and logs for the tests of logs, and values read out of bytes without the code under test.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glf_tool write DIR    writes the log of the test to DIR: log.glf, log.dat, log.json (what was meant),
 // log.pixels glf_tool read FILE    says as JSON what the library reads in a log
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Logs of other programs, damaged ones and ones made to hurt.
 #include <algorithm>
 #include <random>

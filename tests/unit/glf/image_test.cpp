@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images: every byte where the tables of docs/logs.md 1.3 and 1.4 put it, written out here by hand; the rules
 // for packing; what is refused.
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The .cfg of a log (docs/logs.md 1.2).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The clock of logs against dates worked out by `date -u -d @...` (docs/logs.md 1.6).
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The archive around a .dat: its bytes written out by hand, its sizes by the formulas of docs/logs.md 1.2.
 #include <random>
 #include <stdexcept>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Two readers that share no code, on logs of two writers that share none.
 
     readers_test.py --tool GLF_TOOL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statuses: each field at its offset of docs/logs.md 1.5, behind the 21 bytes of the header; 218 bytes, no
 // end tag.
 #include <gtest/gtest.h>

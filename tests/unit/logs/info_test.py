@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`sonard info` on logs written here, whole, cut and broken.
 
     info_test.py --sonard PROGRAM

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images of sonard's own log, and what a summary says of one.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns of a recorded scan, by hand.
 #include "server/info/recorded_turns.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log of bytes that a test has made, as a file that goes with the object.
 #pragma once
 

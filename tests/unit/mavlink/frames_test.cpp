@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes worked out by hand from the guide's description of frames, and by a second implementation of the
 // checksum (tests/support/mavlink_bytes.hpp).
 #include "protocol/mavlink/frames.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of a vehicle become poses. Expected values are geometry worked out by hand: where a wall is from
 // where the vehicle is.
 #include "server/pose/mavlink_poses.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages against bytes laid out by hand after common.xml, and against two frames that another library made.
 #include "protocol/mavlink/messages.hpp"
 

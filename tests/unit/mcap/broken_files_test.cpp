@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that are wrong in one place, and in any.
 #include <gtest/gtest.h>
 

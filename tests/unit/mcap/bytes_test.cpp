@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole file byte by byte, written out by hand from the MCAP specification (mcap.dev/spec). Its three CRCs
 // were worked out with Python's zlib.crc32 from the bytes of this listing.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small MCAP files for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of log files: their description goes with them, and images that do not add up are told.
 #include "protocol/log/log_messages.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of overlapping chunks in the order of their times, by channel, and by either way to the summary.
 #include <gtest/gtest.h>
 

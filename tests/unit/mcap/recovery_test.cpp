@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files whose writer was killed after any byte.
 #include <gtest/gtest.h>
 

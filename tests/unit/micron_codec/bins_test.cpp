@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two bins to a byte (docs/protocols/micron.md 6.3, 10).
 #include "protocol/micron/bins.hpp"
 

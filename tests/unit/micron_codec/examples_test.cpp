@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The byte examples, both ways: what the bytes mean, and which bytes the values become
 // (docs/protocols/micron.md 10; tests/data/micron/notes.md).
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames in a stream: any chunks, noise, lengths that lie, frames that were cut (docs/protocols/micron.md 2).
 #include "protocol/micron/frame.hpp"
 

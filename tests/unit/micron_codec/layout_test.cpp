@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each field at its documented offset. The examples leave most fields zero or equal to a neighbour, so that a
 // swapped pair would pass them; here every data byte holds its own offset, low 8 bits, and no two fields
 // agree (docs/protocols/micron.md 5, 6).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that mean nothing are refused, with the place; nothing is read beyond its end.
 #include <gtest/gtest.h>
 

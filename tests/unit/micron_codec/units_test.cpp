@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wire units (docs/protocols/micron.md 4).
 #include "protocol/micron/units.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each command is answered with, byte for byte (docs/protocols/micron.md 3, 5, 6, 7.2).
 #include "bench.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way in of each family of drivers, with its own bytes, its own conditions and its own patience
 // (docs/protocols/micron.md 9), over clean and over poor lines.
 #include "driver.hpp"

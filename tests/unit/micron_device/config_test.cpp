@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the head refuses to be.
 #include <functional>
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver's end of the line, in the style of a program that blocks, in virtual time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a line says and holds, and what the renderer is asked for (docs/protocols/micron.md 4, 6.3).
 #include <tuple>
 

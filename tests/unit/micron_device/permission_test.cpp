@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pings that begin when somebody else says so: a simulated time rules.
 #include "bench.hpp"
 #include "protocol/micron/line_timing.hpp"

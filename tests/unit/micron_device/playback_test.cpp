@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A head that plays back: it sends what it is fed, when that is due, whatever the host asks for.
 #include "bench.hpp"
 #include "protocol/micron/recorded_form.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From power to a scan, as the alives tell it (docs/protocols/micron.md 6.2, 7).
 #include "bench.hpp"
 

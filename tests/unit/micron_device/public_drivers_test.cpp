@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops of public drivers as they run: when each gives up, what it looks at first, what it repeats. Which
 // drivers they are, and where to find them: docs/your-micron-driver.md. The names of the tests are those of
 // the defects that they have shown.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many lines a request brings, and when (docs/protocols/micron.md 8.1, 8.2).
 #include "bench.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nothing that a peer sends makes the head grow, stall or talk for ever; nobody's absence stops it.
 #include <memory>
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bearings, their order, and where a scan turns round (docs/protocols/micron.md 5.4, 8.3).
 #include <set>
 #include <tuple>

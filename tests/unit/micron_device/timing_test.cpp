@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pace of lines (docs/protocols/micron.md 8.4).
 #include <cmath>
 #include <deque>

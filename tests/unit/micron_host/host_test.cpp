@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A host drives a head: the way in, scans, and what it does when things go wrong
 // (docs/protocols/micron.md 7, 8, 9).
 #include "session.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A host and a head on a line that splits, spoils and loses.
 #include <random>
 

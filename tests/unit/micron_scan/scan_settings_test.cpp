@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scan becomes on the wire (docs/protocols/micron.md 4, 5.3, 5.4).
 #include "protocol/micron/scan_settings.hpp"
 

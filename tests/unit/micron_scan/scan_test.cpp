@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Micron in the tank (docs/worlds.md), from the command of a host to the bins it reads, in virtual time:
 // the head, the mapping of its pings and the renderer, without sockets. Truth: the four planes of the walls.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The survey must never miss a facet that mirrors; facet by facet it is worked out here.
 #include "renderer/multipath/mirror_survey.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two blocks before a wall, by geometry: which body lies in which bin.
 #include "server/offline/body_truth.hpp"
 

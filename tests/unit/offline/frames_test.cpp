@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What heads are asked for along a voyage.
 #include <algorithm>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes as the documentation of numpy.lib.format gives them for version 1.0, written out by hand.
 #include "server/npy/npy_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two integrators share the echo law and nothing else. On a bed that shadows itself, with things on it,
 // they must tell the same, and each must know how far it may be off.
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Both integrators against what can be written down (docs/physics.md 3.2): the truth that makes them a
 // reference.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stored images: what they are made of, and that they still belong to the scenes as built today.
 #include "tests/oracle/reference.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds and pings that are small enough to be rendered to the last digit in a test.
 #pragma once
 

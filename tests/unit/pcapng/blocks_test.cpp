@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole file byte by byte, written out by hand from draft-ietf-opsawg-pcapng 3 and 4, and files cut
 // anywhere.
 #include "protocol/pcapng/blocks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packets byte by byte. The checksums were worked out by hand: sums of 16-bit words in one's complement.
 #include "protocol/pcapng/packets.hpp"
 

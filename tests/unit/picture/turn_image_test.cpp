@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the lines of a turn lie in its pictures, against closed forms: a bearing of u units looks to
 // (u - 3200) * 360 / 6400 degrees from ahead, which is up; bin k is at (k + 0.5) bin lengths.
 #include "renderer/picture/turn_image.hpp"

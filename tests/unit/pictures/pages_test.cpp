@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // docs/acoustics.md and docs/gallery.md, their pictures and the tables that pictures are drawn from name the
 // same things.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What write_png() writes, read by OpenCV.
 #include "tests/pictures/png_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pose stream against bytes that this project's encoder did not make: written by hand after the protobuf
 // wire format, and made or read by protoc.
 #include "protocol/pose/pose_codec.hpp"

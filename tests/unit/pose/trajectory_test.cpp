@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trajectory files: what is read, how it is played, and the line each mistake is reported at.
 #include "protocol/pose/trajectory.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rigid motion against closed forms.
 #include "protocol/pose/transform.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Entities of a simulator as vehicle and bodies; the expected poses follow from the geometry by hand.
 #include "server/pose/entity_poses.hpp"
 

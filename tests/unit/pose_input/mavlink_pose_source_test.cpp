@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MAVLink by UDP over loopback, as frames made by tests/support/mavlink_bytes.hpp.
 #include "server/pose/mavlink_pose_source.hpp"
 

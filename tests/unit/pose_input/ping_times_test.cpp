@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which pings there are by the clock of a source, worked out by hand from the stamps.
 #include "server/pose/ping_times.hpp"
 

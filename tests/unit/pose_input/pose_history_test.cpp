@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pose of a ping against closed forms of motion.
 #include "server/pose/pose_history.hpp"
 

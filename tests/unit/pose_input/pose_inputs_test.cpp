@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the log says of pose inputs, as it comes to be read.
 #include "server/pose/pose_inputs.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What waits for pings in lock-step, and what does not.
 #include "server/pose/pose_intake.hpp"
 

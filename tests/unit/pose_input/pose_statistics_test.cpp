@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How well poses come, with times that are stepped by hand.
 #include "server/pose/pose_statistics.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The publisher's time as told from its messages.
 #include "server/pose/publisher_clock.hpp"
 

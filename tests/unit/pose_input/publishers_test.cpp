@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that publish poses, as processes of their own: posecast and the Python example of docs/poses.md.
 #include <gmock/gmock.h>
 

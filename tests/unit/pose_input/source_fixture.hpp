@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tests of pose sources share: the I/O thread (which is the test's), a clock and a sink.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses by TCP over loopback: good publishers, slow ones and garbage.
 #include "server/pose/tcp_pose_source.hpp"
 

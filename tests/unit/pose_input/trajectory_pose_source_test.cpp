@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trajectory file as a source of poses.
 #include "server/pose/trajectory_pose_source.hpp"
 

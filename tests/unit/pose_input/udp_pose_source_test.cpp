@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses by UDP over loopback.
 #include "server/pose/udp_pose_source.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines that clients cause: as many as a person can read, and none that goes missing without a word.
 #include "server/program_log/peer_log.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log whose reader stops: nobody waits for it, and it is told what it missed.
 #include "server/program_log/stderr_sink.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statistics of speckle and noise on the 8-bit image as a client has it: the head's job makes the settings,
 // the receiver the samples, the head sends them, and a surface puts the image together (T12 of
 // docs/physics.md 3.2). Expected values are those of 2.8 and 2.16.

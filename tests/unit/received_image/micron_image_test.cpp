@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a client of a Micron finds in its lines, through the settings of a job, the receiver and the codec
 // (docs/physics.md 2.16).
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events, folders and limits for the tests of recordings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples of RaySampler against the closed form of a plane, sample by sample; how they do not depend on
 // packets and threads; and surfaces that are hard to hit.
 #include "renderer/visibility/ray_sampler.hpp"

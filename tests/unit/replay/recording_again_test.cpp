@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log played back and recorded again is the same log: what a head sends for a recorded image, put together
 // as a surface does or as the head itself tells a recorder, and written down as the recorder writes it, is
 // that image.

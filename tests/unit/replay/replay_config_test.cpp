@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which recorded head is served as which, and what a head cannot play.
 #include "server/replay/replay_config.hpp"
 

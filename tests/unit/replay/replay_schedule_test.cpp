@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When pings of a recording are due, by hand.
 #include "server/replay/replay_schedule.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the judge says of images whose error can be written down.
 #include "renderer/visibility/beam_judge.hpp"
 

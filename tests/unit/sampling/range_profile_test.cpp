@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One beam's echo over range, against sums over many azimuths.
 #include "renderer/binning/range_profile.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What worlds written for Gazebo have beside shapes: places of sonars, and much that no sonar hears.
 #include <cmath>
 

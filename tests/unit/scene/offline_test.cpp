@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh may refer to files on servers. Loading it must not open a connection.
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a user gets to read when a world is wrong: always the file, the line and the element.
 #include <filesystem>
 

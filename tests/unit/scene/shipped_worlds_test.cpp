@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What ships in configs/worlds loads whole: nothing to warn of, nothing repaired or dropped.
 #include <filesystem>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The benchmark's worlds are what docs/benchmark.md says they are, by hand computation and plain ray casting.
 #include "tests/scenes/scenes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames into a stream that takes as many bytes as the test says.
 #include "server/net/frame_writer.hpp"
 

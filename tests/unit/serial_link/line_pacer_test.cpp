@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The line as a pure queue: ten bits to a byte, one byte after the other.
 #include "server/net/line_pacer.hpp"
 

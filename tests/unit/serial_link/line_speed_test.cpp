@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes take their time on the line, on a clock that the test moves.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial link whose I/O thread is the test's, and what it has said.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial line as a pseudo terminal: clients that open and close a tty, and its link.
 #include <termios.h>
 

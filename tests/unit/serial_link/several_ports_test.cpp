@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All ports of a link together, and its end in the middle of everything.
 #include <system_error>
 #include <thread>

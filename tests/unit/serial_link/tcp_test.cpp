@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial line over TCP, with clients that come, go and dawdle at any byte.
 #include <netinet/in.h>
 #include <netinet/tcp.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a configuration takes from its world, and what it says when the world does not have it.
 #include "server/daemon/resolve_mounts.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ledger itself: its table, its switches, and that configuration, schema and documentation know the same
 // rules.
 #include "renderer/skip_ledger.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ping that is called off while the renderer is busy with another head is not rendered at all.
 #include <chrono>
 #include <functional>

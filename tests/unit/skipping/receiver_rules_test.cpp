@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of the receiver: each on against off, same pings, same seeds. What is skipped is counted by hand from
 // the echo below.
 #include <algorithm>

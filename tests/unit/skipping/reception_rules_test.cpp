@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of array and pulse: each on against off, same echo.
 #include <algorithm>
 #include <cmath>

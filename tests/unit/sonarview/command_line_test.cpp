@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the words of a command line mean, and which are refused.
 #include "clients/sonarview/command_line.hpp"
 

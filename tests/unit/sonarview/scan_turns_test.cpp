@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns and gaps of scans whose bearings are written out by hand (docs/protocols/micron.md 8.3).
 #include "clients/sonarview/micron/scan_turns.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S11, S15, S18 and S20 of docs/physics.md 4.3: what wears out, runs late or gets lost in a daemon that
 // serves for months.
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S13 and S17 of docs/physics.md 4.3: random numbers and gain at the ends of their ranges.
 #include "renderer/acoustics/receiver.hpp"
 

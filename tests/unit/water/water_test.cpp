@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Absorption and speed of sound against the check tables of docs/physics.md 2.2 and published check values.
 #include "renderer/acoustics/water.hpp"
 

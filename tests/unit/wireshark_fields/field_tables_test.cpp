@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tables that Wireshark's dissectors load are those of the codecs. What they mean on the wire is held to
 // byte examples by tests/logs/wireshark.
 #include "clients/wireshark/field_tables.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The committed worlds: remade byte for byte, sound as geometry, and seen from their trajectories."""
 
 import csv

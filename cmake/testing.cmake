@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+# How every test of this project is registered. A label (unit, gl, system, deep, logs, simulators) is a part of ./test; the target
+# LABEL_tests builds all that the tests of one label start.
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+foreach(label unit gl system deep logs simulators)
+  add_custom_target(${label}_tests)
+endforeach()
+
+# Debian's interpreter, which sees the Python packages of docker/packages.txt; the first in the path may be another one.
+find_program(SONARD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(SONARD_PYTHON python3 REQUIRED)
+
+# Quicker to compile by a quarter, sanitized by half, and hardly slower to run: what takes its time lies in the
+# libraries.
+set(SONARD_TEST_OPTIMISATION -O1)
+if(SONARD_SANITIZE)
+  set(SONARD_TEST_OPTIMISATION -O0)
+endif()
+
+# What all test programs include is compiled once for all of them. Sources name their headers all the same: the preset
+# checked builds without.
+if(SONARD_PCH)
+  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp CONTENT "")
+  add_library(sonard_test_pch OBJECT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp)
+  target_link_libraries(sonard_test_pch PRIVATE sonard_flags GTest::gmock)
+  target_compile_options(sonard_test_pch PRIVATE $<$<CONFIG:RelWithDebInfo>:${SONARD_TEST_OPTIMISATION}>)
+  target_precompile_headers(sonard_test_pch PRIVATE
+    <gmock/gmock.h> <gtest/gtest.h>
+    <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numeric> <optional> <span>
+    <string> <utility> <variant> <vector>)
+endif()
+
+# sonard_test(NAME LABEL SOURCES... LIBS libs...): one test program. Its cases are registered one by one; sanitized,
+# where a start takes long, the program is one case.
+function(sonard_test name label)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBS")
+  sonard_program(${name} ${arg_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE SONARD_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:${SONARD_TEST_OPTIMISATION}>)
+  if(SONARD_PCH)
+    target_precompile_headers(${name} REUSE_FROM sonard_test_pch)
+  endif()
+  add_dependencies(${label}_tests ${name})
+  if(SONARD_SANITIZE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 1200)
+  else()
+    gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 120)
+  endif()
+endfunction()
+
+# sonard_python_cases(OUT SCRIPT): the cases of a script of unittest, each as Class.test_method, read from its text. A
+# case that is inherited from a class of another file is not seen.
+function(sonard_python_cases out script)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
+  file(STRINGS ${script} lines REGEX "^(class [A-Za-z0-9_]+|    def test_[A-Za-z0-9_]+)")
+  set(cases)
+  foreach(line IN LISTS lines)
+    if(line MATCHES "^class ([A-Za-z0-9_]+)")
+      set(class ${CMAKE_MATCH_1})
+    elseif(line MATCHES "def (test_[A-Za-z0-9_]+)")
+      list(APPEND cases ${class}.${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  set(${out} ${cases} PARENT_SCOPE)
+endfunction()
+
+# sonard_python_test(PREFIX LABEL SCRIPT [WHOLE] [ARGUMENTS args...] [CASES | EXCEPT cases...] [DEPENDS targets...]
+#                    [PROPERTIES properties...])
+# A test in Python. Each of its cases, all or CASES or all EXCEPT some, is one case of CTest, so that a failure has a
+# name: PREFIX.Class.test_method, without the class where the script has but one. WHOLE makes it one case, PREFIX, where
+# starting it costs more than its cases. DEPENDS is what it starts.
+function(sonard_python_test prefix label script)
+  cmake_parse_arguments(PARSE_ARGV 3 arg "WHOLE" "" "ARGUMENTS;CASES;EXCEPT;DEPENDS;PROPERTIES")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "sonard_python_test(${prefix}) does not know: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  set(script ${CMAKE_CURRENT_SOURCE_DIR}/${script})
+  set(command ${SONARD_PYTHON} -B ${script} ${arg_ARGUMENTS})
+  if(arg_DEPENDS)
+    add_dependencies(${label}_tests ${arg_DEPENDS})
+  endif()
+  if(arg_WHOLE)
+    add_test(NAME ${prefix} COMMAND ${command})
+    set_tests_properties(${prefix} PROPERTIES LABELS ${label} TIMEOUT 120 ${arg_PROPERTIES})
+    return()
+  endif()
+
+  sonard_python_cases(all ${script})
+  foreach(case IN LISTS arg_CASES arg_EXCEPT)
+    if(NOT case IN_LIST all)
+      message(FATAL_ERROR "${script} has no case ${case}")
+    endif()
+  endforeach()
+  set(cases ${all})
+  if(arg_CASES)
+    set(cases ${arg_CASES})
+  endif()
+  list(REMOVE_ITEM cases ${arg_EXCEPT})
+  list(TRANSFORM all REPLACE "\\..*" "" OUTPUT_VARIABLE classes)
+  list(REMOVE_DUPLICATES classes)
+  list(LENGTH classes class_count)
+  foreach(case IN LISTS cases)
+    set(name ${prefix}.${case})
+    if(class_count EQUAL 1)
+      string(REPLACE "${prefix}.${classes}." "${prefix}." name ${name})
+    endif()
+    add_test(NAME ${name} COMMAND ${command} ${case})
+    set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 120 ${arg_PROPERTIES})
+  endforeach()
+endfunction()
+
+# sonard_npm(NAME LABEL FOLDER FILES... [OPTIONS options...]): copies FILES into FOLDER of the build tree, where the test
+# NAME_npm_install installs the packages that their package-lock.json pins, from whatever registry npm is set up for.
+# Tests that need them say FIXTURES_REQUIRED NAME_node_modules.
+function(sonard_npm name label folder)
+  cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "OPTIONS")
+  foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
+    configure_file(${file} ${folder}/${file} COPYONLY)
+  endforeach()
+  add_test(NAME ${name}_npm_install
+    COMMAND npm ci --ignore-scripts --no-audit --no-fund ${arg_OPTIONS}
+    WORKING_DIRECTORY ${folder})
+  set_tests_properties(${name}_npm_install PROPERTIES LABELS ${label} TIMEOUT 120 FIXTURES_SETUP ${name}_node_modules)
+endfunction()

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What includes of the product say of its folders: no circles, and arrows that point one way."""
+
+import collections
+import os
+import re
+
+from tree import CPP, ROOMS
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)')
+
+# Which folders the files of a folder may include. The longest prefix that fits decides; a folder may include itself and
+# what lies in it.
+MAY_INCLUDE = {
+    "protocol": ("protocol",),
+    # Devices do not know each other.
+    "protocol/gemini": ("protocol/common",),
+    "protocol/micron": ("protocol/common",),
+    "renderer": ("renderer",),
+    # Clients draw pictures, too, and nothing else of the renderer.
+    "renderer/picture": (),
+    "server": ("server", "renderer", "protocol"),
+    "clients": ("clients", "protocol", "renderer/picture"),
+}
+
+# Libraries of others that a folder keeps out of.
+MAY_NOT_INCLUDE = {
+    "protocol": ("boost/", "spdlog/", "yaml-cpp/", "osg", "opencv", "GL/", "EGL/", "embree", "sys/socket.h"),
+    "renderer": ("boost/", "spdlog/", "yaml-cpp/", "google/protobuf/", "sys/socket.h"),
+    "server": ("osg", "embree", "GL/", "EGL/"),
+    "clients": ("osg", "embree", "GL/", "EGL/"),
+}
+
+
+def within(folder, parent):
+    return folder == parent or folder.startswith(parent + "/")
+
+
+def rule(table, folder):
+    """The entry of the longest prefix that fits, and that prefix."""
+    prefix = max((prefix for prefix in table if within(folder, prefix)), key=len, default=None)
+    return prefix, table.get(prefix, ())
+
+
+def read_includes(tree):
+    """(file, line, folder or None, header) of each include of the product; a folder for headers of our own."""
+    for path in tree.files:
+        if not path.endswith(CPP) or path.split("/")[0] not in ROOMS:
+            continue
+        for number, line in enumerate(tree.text(path).splitlines(), 1):
+            found = INCLUDE.match(line)
+            if not found:
+                continue
+            if found[2]:
+                yield path, number, None, found[2]
+                continue
+            header = found[1]
+            beside = os.path.normpath(os.path.join(os.path.dirname(path), header))
+            if not (tree.root / header).is_file() and (tree.root / beside).is_file():
+                header = beside
+            if header.split("/")[0] in ROOMS:
+                yield path, number, os.path.dirname(header), header
+
+
+def layer_complaints(tree):
+    for path, number, folder, header in read_includes(tree):
+        own = os.path.dirname(path)
+        if folder is None:
+            _, refused = rule(MAY_NOT_INCLUDE, own)
+            if header.startswith(refused):
+                yield f"{path}:{number}: {own} keeps out of <{header}>"
+            continue
+        prefix, allowed = rule(MAY_INCLUDE, own)
+        if prefix and not any(within(folder, place) for place in (prefix, *allowed)):
+            yield f"{path}:{number}: {own} may not include {header}"
+
+
+def arrows(tree):
+    """{(from, to): ['file:line includes header', ...]} between different folders."""
+    found = collections.defaultdict(list)
+    for path, number, folder, header in read_includes(tree):
+        own = os.path.dirname(path)
+        if folder is not None and folder != own:
+            found[own, folder].append(f"{path}:{number} includes {header}")
+    return dict(found)
+
+
+def shortest_circle(pairs):
+    """A shortest circle of arrows as a list of (from, to), or None."""
+    following = collections.defaultdict(list)
+    for start, end in sorted(pairs):
+        following[start].append(end)
+    best = None
+    for first in sorted(following):
+        came_from = {}
+        queue = collections.deque([first])
+        while queue and first not in came_from:
+            here = queue.popleft()
+            for there in following[here]:
+                if there not in came_from:
+                    came_from[there] = here
+                    queue.append(there)
+        if first not in came_from:
+            continue
+        circle = []
+        end = first
+        while not circle or end != first:
+            circle.insert(0, (came_from[end], end))
+            end = came_from[end]
+        if best is None or len(circle) < len(best):
+            best = circle
+    return best
+
+
+def read_known(text):
+    """{(from, to): line} of known_cycles.txt."""
+    known = {}
+    for number, line in enumerate(text.splitlines(), 1):
+        line = line.split("#")[0].strip()
+        if line:
+            start, _, end = line.partition("->")
+            known[start.strip(), end.strip()] = number
+    return known
+
+
+def cycle_complaints(found, known, name="tests/lint/known_cycles.txt"):
+    """Circles that are left without the known arrows, and known arrows that close no circle any more."""
+    left = {pair: where for pair, where in found.items() if pair not in known}
+    for pair, line in known.items():
+        if pair not in found or shortest_circle([*left, pair]) is None:
+            yield f"{name}:{line}: {pair[0]} -> {pair[1]} closes no circle any more; take the line out"
+    while circle := shortest_circle(left):
+        text = "these folders include each other in a circle:"
+        for pair in circle:
+            text += f"\n  {pair[0]} -> {pair[1]} ({len(left[pair])})"
+            text += "".join(f"\n    {where}" for where in left[pair][:3])
+        thinnest = min(circle, key=lambda pair: len(left[pair]))
+        yield text + f"\n  the thinnest arrow is {thinnest[0]} -> {thinnest[1]}"
+        del left[thinnest]

@@ -1,0 +1,241 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""What the checks of lint find, and what they let pass, in small trees made for it."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import commits  # noqa: E402
+import configurations  # noqa: E402
+import includes  # noqa: E402
+import spdx  # noqa: E402
+import tools  # noqa: E402
+import words  # noqa: E402
+from tree import Tree  # noqa: E402
+
+IDENTITY = ("-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "core.hooksPath=/dev/null")
+
+
+class LintTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="sonard_lint_")
+        self.addCleanup(self.folder.cleanup)
+        self.root = pathlib.Path(self.folder.name)
+        self.git("init", "-q")
+
+    def git(self, *arguments):
+        subprocess.run(["git", *IDENTITY, *arguments], cwd=self.root, check=True, capture_output=True)
+
+    def write(self, texts):
+        """The tree with these files, {path: text}, in it."""
+        for name, text in texts.items():
+            path = self.root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        return Tree(self.root)
+
+
+class Cycles(LintTest):
+    CIRCLE = {"server/a/one.hpp": '#include "server/b/two.hpp"\n',
+              "server/b/two.hpp": '#include <vector>\n#include "server/c/three.hpp"\n',
+              "server/c/three.hpp": '#include "server/a/one.hpp"\n'}
+
+    def complaints(self, tree, known=""):
+        return list(includes.cycle_complaints(includes.arrows(tree), includes.read_known(known), "known"))
+
+    def test_a_circle_of_three_is_shown_with_its_includes(self):
+        complaints = self.complaints(self.write(self.CIRCLE))
+        self.assertEqual(len(complaints), 1)
+        for text in ("server/a -> server/b", "server/b -> server/c", "server/c -> server/a",
+                     "server/b/two.hpp:2 includes server/c/three.hpp"):
+            self.assertIn(text, complaints[0])
+
+    def test_no_circle_no_complaint(self):
+        tree = self.write({**self.CIRCLE, "server/c/three.hpp": '#include "server/c/other.hpp"\n'})
+        self.assertEqual(self.complaints(tree), [])
+
+    def test_a_known_arrow_is_let_pass(self):
+        self.assertEqual(self.complaints(self.write(self.CIRCLE), "# why\nserver/c -> server/a\n"), [])
+
+    def test_known_arrows_that_close_no_circle_are_complained_about(self):
+        known = "server/c -> server/a\nserver/a -> server/b\nserver/a -> server/nowhere\n"
+        complaints = self.complaints(self.write(self.CIRCLE), known)
+        # Either of the first two would do, so neither is needed beside the other.
+        self.assertEqual([complaint.split(":")[1] for complaint in complaints], ["1", "2", "3"])
+
+    def test_headers_beside_the_file_are_of_its_folder(self):
+        tree = self.write({"server/a/one.hpp": '#include "two.hpp"\n', "server/a/two.hpp": '#include "../b/three.hpp"\n',
+                          "server/b/three.hpp": '#include "../a/one.hpp"\n'})
+        self.assertEqual(set(includes.arrows(tree)), {("server/a", "server/b"), ("server/b", "server/a")})
+
+    def test_generated_headers_belong_to_the_folder_of_their_path(self):
+        tree = self.write({"server/a/one.cpp": '#include "protocol/pose/pose.pb.h"\n'})
+        self.assertEqual(set(includes.arrows(tree)), {("server/a", "protocol/pose")})
+
+
+class Layers(LintTest):
+    def refused(self, includes_of):
+        """Which of the pairs (path, include) are refused."""
+        found = []
+        for path, include in includes_of:
+            tree = self.write({path: f"#include {include}\n"})
+            found += [(path, include)] * len(list(includes.layer_complaints(tree)))
+            (self.root / path).unlink()
+        return found
+
+    def test_arrows_up_are_refused(self):
+        up = [("protocol/gemini/a.cpp", '"server/clock.hpp"'),
+              ("protocol/pose/a.cpp", '"renderer/pose.hpp"'),
+              ("protocol/gemini/a.cpp", '"protocol/micron/frame.hpp"'),
+              ("renderer/a.hpp", '"protocol/common/result.hpp"'),
+              ("renderer/picture/a.hpp", '"renderer/pose.hpp"'),
+              ("clients/x/a.hpp", '"server/clock.hpp"'),
+              ("clients/x/a.hpp", '"renderer/pose.hpp"'),
+              ("server/a.hpp", '"clients/x/a.hpp"'),
+              ("protocol/gemini/a.cpp", "<boost/asio.hpp>"),
+              ("renderer/a.cpp", "<yaml-cpp/yaml.h>"),
+              ("server/a.cpp", "<osg/Node>")]
+        self.assertEqual(self.refused(up), up)
+
+    def test_arrows_down_pass(self):
+        self.assertEqual(self.refused([("protocol/gemini/a.cpp", '"protocol/common/result.hpp"'),
+                                       ("server/a/a.cpp", '"renderer/pose.hpp"'),
+                                       ("server/b/a.cpp", '"protocol/micron/frame.hpp"'),
+                                       ("clients/x/a.cpp", '"renderer/picture/fan_image.hpp"'),
+                                       ("renderer/a.cpp", "<osg/Node>"),
+                                       ("server/c/a.cpp", "<boost/asio.hpp>"),
+                                       ("tests/a.cpp", '"server/clock.hpp"')]), [])
+
+
+class Words(LintTest):
+    ROWS = "- word: '[Gg]izmo'\n  use: trajectory\n"
+
+    def complaints(self, tree, rows):
+        return list(words.word_complaints(tree, words.read_rows(rows), "words.yaml"))
+
+    def test_a_word_that_is_gone_is_found_in_text_and_paths(self):
+        tree = self.write({"docs/a.md": "One\nlong Gizmo\n", "server/gizmo.cpp": "\n", "CHANGELOG.md": "gizmo"})
+        complaints = self.complaints(tree, self.ROWS)
+        self.assertEqual([complaint.splitlines()[0] for complaint in complaints],
+                         ["docs/a.md:2: long Gizmo", "server/gizmo.cpp: its name"])
+        self.assertIn("trajectory", complaints[0])
+
+    def test_where_it_is_a_term_of_the_wire_it_passes(self):
+        tree = self.write({"protocol/x/a.cpp": "gizmo\n"})
+        self.assertEqual(self.complaints(tree, self.ROWS + "  allowed: [protocol/x/*]\n"), [])
+
+    def test_what_is_left_may_become_less_only_if_it_is_said(self):
+        tree = self.write({"docs/a.md": "gizmo\ngizmo\n"})
+        self.assertEqual(self.complaints(tree, self.ROWS + "  left: 2\n"), [])
+        self.assertIn("1 were left", self.complaints(tree, self.ROWS + "  left: 1\n")[0])
+        self.assertIn("says 3", self.complaints(tree, self.ROWS + "  left: 3\n")[0])
+
+    def test_fix_writes_down_what_is_left(self):
+        rows = '- word: "one"\n  use: 1\n  left: 9\n- word: "two"\n  use: 2\n  left: 9\n- word: "six"\n  use: 6\n  left: 1\n'
+        tree = self.write({"words.yaml": rows, "docs/a.md": "one\nsix\nsix\n"})
+        list(words.lower_counts(tree, words.read_rows(rows), "words.yaml"))
+        self.assertEqual((self.root / "words.yaml").read_text(),
+                         '- word: "one"\n  use: 1\n  left: 1\n- word: "two"\n  use: 2\n- word: "six"\n  use: 6\n  left: 1\n')
+
+    def test_a_row_with_an_unknown_key_is_refused(self):
+        with self.assertRaises(ValueError):
+            words.read_rows("- {word: a, use: b, laft: 1}")
+
+
+class Spdx(LintTest):
+    def test_each_kind_of_source_gets_it_after_its_first_line_if_that_names_an_interpreter(self):
+        tree = self.write({"a.cpp": "int a;\n", "b.py": "#!/usr/bin/python3\npass\n", "c/CMakeLists.txt": "",
+                          "run": "#!/bin/bash\ntrue\n", "notes.md": "# Notes\n", "later.hpp": "int b;\n"})
+        self.assertEqual(len(list(spdx.spdx_complaints(tree, ["later*"]))), 4)
+        self.assertEqual(list(spdx.add_lines(tree, ["later*"])), ["a.cpp", "b.py", "c/CMakeLists.txt", "run"])
+        self.assertEqual((self.root / "a.cpp").read_text(), "// SPDX-License-Identifier: Apache-2.0\nint a;\n")
+        self.assertEqual((self.root / "run").read_text(), "#!/bin/bash\n# SPDX-License-Identifier: Apache-2.0\ntrue\n")
+        self.assertEqual((self.root / "later.hpp").read_text(), "int b;\n")
+        self.assertEqual(list(spdx.spdx_complaints(Tree(self.root), ["later*"])), [])
+
+
+class Configurations(LintTest):
+    SCHEMA = '{"type": "object", "additionalProperties": false, "properties": {"gpu": {"enum": ["on", "off"]}}}'
+
+    def complaints(self, text):
+        return list(configurations.configuration_complaints(
+            self.write({"configs/a.yaml": text, "configs/schema/sonard.schema.json": self.SCHEMA})))
+
+    def test_on_is_a_word_as_it_is_to_the_daemon(self):
+        self.assertEqual(self.complaints("gpu: on\n"), [])
+
+    def test_unknown_keys_and_values_are_found_with_their_place(self):
+        self.assertIn("configs/a.yaml: $.gpu", self.complaints("gpu: true\n")[0])
+        self.assertIn("gqu", self.complaints("gqu: on\n")[0])
+
+
+class Commits(LintTest):
+    def test_subjects(self):
+        for subject in ("docs: say so", "protocol/micron: test it", "server, renderer/scene: move it", "build: " + 65 * "x"):
+            self.assertIsNone(commits.subject_complaint(subject), subject)
+        for subject in ("Say so", "docs:say so", "docs: ", "build: " + 66 * "x", "Docs: say so"):
+            self.assertIsNotNone(commits.subject_complaint(subject), subject)
+
+    def test_counted_from_a_base_from_the_last_tag_or_from_the_commit_that_brought_the_check(self):
+        for number, subject in enumerate(("Old one", "tests: bring it", "Bad one", "docs: good one", "Worse one")):
+            path = "tests/lint/commits.py" if number == 1 else f"file{number}"
+            self.write({path: str(number)})
+            self.git("add", "-A")
+            self.git("commit", "-q", "-m", subject)
+        tree = Tree(self.root)
+        subjects = [line.split("'")[1] for line in commits.commit_complaints(tree, None)]
+        self.assertEqual(subjects, ["Worse one", "Bad one"])
+        self.assertEqual(len(list(commits.commit_complaints(tree, "HEAD~4"))), 2)
+        self.git("tag", "v1", "HEAD~1")
+        self.assertEqual(len(list(commits.commit_complaints(tree, None))), 1)
+
+
+class Tools(LintTest):
+    def test_format(self):
+        tree = self.write({"good.cpp": "int a;\n", "bad.cpp": "int   a ;\n"})
+        self.assertEqual(list(tools.format_complaints(tree, ["good.cpp"])), [])
+        self.assertIn("bad.cpp:1", "".join(tools.format_complaints(tree, tree.files)))
+
+    def test_shell(self):
+        tree = self.write({"good": "#!/bin/bash\necho\n", "bad": "#!/bin/bash\ncd $1 || exit\n"})
+        self.assertIn("In bad line 2", "".join(tools.shell_complaints(tree)))
+        (self.root / "bad").unlink()
+        self.assertEqual(list(tools.shell_complaints(Tree(self.root))), [])
+
+    def test_spelling(self):
+        misspelt = "rec" + "ieve"
+        tree = self.write({"none": "", "ignored": misspelt + "\n", "docs/a.md": f"To {misspelt}.\n"})
+        self.assertIn("docs/a.md:1", "".join(tools.spelling_complaints(tree, str(self.root / "none"))))
+        self.assertEqual(list(tools.spelling_complaints(tree, str(self.root / "ignored"))), [])
+
+    def test_tidy_without_the_precompiled_header_of_another_compiler(self):
+        command = f"g++ -Winvalid-pch -include {self.root}/x/cmake_pch.hxx -c {self.root}/bad.cpp"
+        tree = self.write({"bad.cpp": "int* a = 0;\n", "good.cpp": "int* a = nullptr;\n",
+                          "build/release/compile_commands.json": f'''[
+            {{"directory": "{self.root}", "file": "{self.root}/bad.cpp", "command": "{command}"}},
+            {{"directory": "{self.root}", "file": "{self.root}/good.cpp", "command": "g++ -c {self.root}/good.cpp"}}]'''})
+        (self.root / ".clang-tidy").write_text("Checks: '-*,modernize-use-nullptr'\n", encoding="utf-8")
+        self.assertEqual(list(tools.tidy_complaints(tree, ["good.cpp", "not_compiled.hpp"])), [])
+        complaints = list(tools.tidy_complaints(tree, ["bad.cpp", "good.cpp"]))
+        self.assertEqual(len(complaints), 1)
+        self.assertIn("modernize-use-nullptr", complaints[0])
+
+
+class Trees(LintTest):
+    def test_what_changed_since_a_base_is_what_this_branch_did(self):
+        self.write({"a": "1", "b": "1"})
+        self.git("add", "-A")
+        self.git("commit", "-q", "-m", "x: first")
+        self.git("branch", "base")
+        tree = self.write({"b": "2", "c": "1"})
+        self.assertEqual(tree.changed_since("base"), ["b", "c"])
+        self.assertEqual(tree.changed_since("HEAD"), ["b", "c"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The line that names the licence, in every source file."""
+
+from tree import CPP, DATA, matches
+
+MARK = "SPDX-License-Identifier:"
+LICENCE = "Apache-2.0"
+SLASHES = (*CPP, ".proto", ".cs", ".js")
+
+# Written by clients/wireshark's program, whose output a test compares.
+GENERATED = ("clients/wireshark/*_fields.lua",)
+
+
+def comment(tree, path):
+    """What begins a comment in a source file; empty for what is no source."""
+    if matches(path, (*DATA, *GENERATED)):
+        return ""
+    if path.endswith(SLASHES):
+        return "//"
+    if path.endswith(".lua"):
+        return "--"
+    if path.endswith(("CMakeLists.txt", ".cmake")) or tree.interpreter(path):
+        return "#"
+    return ""
+
+
+def missing(tree, later):
+    """(path, line to add) of each source without it; `later` are patterns of files that get it later."""
+    for path in tree.files:
+        mark = comment(tree, path)
+        if not mark or matches(path, later):
+            continue
+        line = f"{mark} {MARK} {LICENCE}"
+        if line not in tree.text(path).splitlines()[:3]:
+            yield path, line
+
+
+def spdx_complaints(tree, later):
+    for path, line in missing(tree, later):
+        yield f"{path}: wants the line '{line}' at its top; tests/lint/lint.py --fix spdx adds it"
+
+
+def add_lines(tree, later):
+    for path, line in list(missing(tree, later)):
+        lines = tree.text(path).splitlines(keepends=True)
+        lines.insert(1 if lines and lines[0].startswith("#!") else 0, line + "\n")
+        (tree.root / path).write_text("".join(lines), encoding="utf-8")
+        yield path

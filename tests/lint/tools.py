@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that are programs of others: clang-format, shellcheck, codespell, clang-tidy."""
+
+import concurrent.futures
+import json
+import os
+import re
+import subprocess
+import tempfile
+
+from tree import CPP
+
+SPELLED = (*CPP, ".md", ".py", ".txt", ".cmake", ".yaml", ".yml", ".lua", ".cs", ".js", ".proto", "schema.json")
+
+
+def run(tree, command, files, batch=40):
+    """Runs the command on the files, some at a time, on all cores; its complaints are its output where it fails."""
+    groups = [files[start:start + batch] for start in range(0, len(files), batch)]
+
+    def one(group):
+        return subprocess.run([*command, *group], cwd=tree.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for result in pool.map(one, groups):
+            if result.returncode:
+                yield result.stdout.strip() or f"{command[0]} ended with {result.returncode}"
+
+
+def format_complaints(tree, paths):
+    yield from run(tree, ["clang-format", "--dry-run", "-Werror"], [path for path in paths if path.endswith(CPP)])
+
+
+def shell_complaints(tree):
+    scripts = [path for path in tree.files if tree.interpreter(path) in ("bash", "sh")]
+    yield from run(tree, ["shellcheck"], scripts)
+
+
+def spelling_complaints(tree, ignored):
+    texts = [path for path in tree.texts() if path.endswith(SPELLED) or tree.interpreter(path)]
+    # Pieces of words make up its patterns.
+    texts = [path for path in texts if path != "tests/lint/words.yaml"]
+    yield from run(tree, ["codespell", "--ignore-words", ignored], texts, batch=1000)
+
+
+def compile_commands(tree):
+    """The commands of the clang build, if there is one, or of the release build, without precompiled headers: those of
+    one compiler are nothing to the other. Empty where nothing is built."""
+    for preset in ("checked", "release", "dev"):
+        path = tree.root / "build" / preset / "compile_commands.json"
+        if path.is_file():
+            entries = json.loads(path.read_text(encoding="utf-8"))
+            for entry in entries:
+                entry["command"] = re.sub(r" -Winvalid-pch| (-Xclang )?-include(-pch)? (-Xclang )?\S*cmake_pch\S*", "",
+                                          entry["command"])
+            return entries
+    return []
+
+
+def tidy_complaints(tree, paths):
+    entries = compile_commands(tree)
+    compiled = {os.path.relpath(entry["file"], tree.root) for entry in entries}
+    sources = [path for path in paths if path in compiled]
+    if not sources:
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "compile_commands.json"), "w", encoding="utf-8") as file:
+            json.dump(entries, file)
+        yield from run(tree, ["clang-tidy", "--quiet", "--warnings-as-errors=*", "-p", folder], sources, batch=1)
