@@ -55,10 +55,9 @@ struct SkipRuleEntry {
 
 /// In the order of SkipRule.
 inline constexpr std::array skip_rules{
-    SkipRuleEntry{
-        SkipRule::nobody_listening, "nobody_listening",
-        "the ping was called off before its turn to be rendered: surface gone, reboot, new settings", "pings",
-        0},
+    SkipRuleEntry{SkipRule::nobody_listening, "nobody_listening",
+                  "the ping was cancelled before its turn to be rendered: surface gone, reboot, new settings",
+                  "pings", 0},
     SkipRuleEntry{SkipRule::unchanged_scene, "unchanged_scene",
                   "sonar, bodies and all settings that enter the echo are those of the stream's last ping",
                   "pings", 0},

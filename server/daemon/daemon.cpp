@@ -153,7 +153,7 @@ class Daemon {
   void warm_up(const HeadConfig& head, int stream, RenderService& renderer) const;
   void start_inputs();
   void poses_changed();
-  std::optional<std::chrono::nanoseconds> spare_poses() const;
+  std::optional<std::chrono::nanoseconds> pose_lead() const;
   void wait_for_signal();
   void end_when_played();
   void run_io();
@@ -183,7 +183,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     : playback_(playback),
       playback_timer_(io_),
       poses_(config.poses),
-      intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return spare_poses(); }}),
+      intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return pose_lead(); }}),
       inputs_(make_inputs(
           io_, config, clock_,
           [this](const pose::PoseSample& sample, TimePoint arrival) { intake_.take(sample, arrival); },
@@ -263,11 +263,11 @@ void Daemon::poses_changed() {
   }
 }
 
-std::optional<std::chrono::nanoseconds> Daemon::spare_poses() const {
+std::optional<std::chrono::nanoseconds> Daemon::pose_lead() const {
   std::optional<std::chrono::nanoseconds> most;
   for (const std::unique_ptr<Head>& head : heads_) {
-    const auto spare = head->spare_poses();
-    most = most ? std::max(most, spare) : spare;
+    const auto lead = head->pose_lead();
+    most = most ? std::max(most, lead) : lead;
   }
   return most;
 }

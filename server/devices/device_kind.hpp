@@ -96,7 +96,8 @@ inline const DeviceKind& kind_of(const HeadConfig& head) {
   return static_cast<const DeviceKind&>(*head.kind);
 }
 
-/// The transducer of a head that looks to a bearing (PingJob::bearing_rad): the mount, turned about its z axis.
+/// The transducer of a head that looks to a bearing (PingJob::bearing_rad): the mount, turned about its z
+/// axis.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad);
 
 /// What a head would ask of the renderer for DeviceKind::usual_job().

@@ -94,8 +94,8 @@ void Head::poses_changed() {
     impl_->happen(TimePassed{});
   }
 }
-std::optional<std::chrono::nanoseconds> Head::spare_poses() const {
-  return impl_->rendering.spare_poses();
+std::optional<std::chrono::nanoseconds> Head::pose_lead() const {
+  return impl_->rendering.pose_lead();
 }
 ConnectedDevice& Head::connected() {
   return *impl_->connected;

@@ -57,8 +57,8 @@ class Head {
 
   /// PoseHistory has one more: a ping by the clock of the source may have waited for it.
   void poses_changed();
-  /// See PingTimes::spare().
-  std::optional<std::chrono::nanoseconds> spare_poses() const;
+  /// See PingTimes::lead().
+  std::optional<std::chrono::nanoseconds> pose_lead() const;
 
   ConnectedDevice& connected();
   const RenderCounters& render_counters() const;

@@ -51,8 +51,8 @@ void HeadRendering::rest_when_idle(TimePoint now) {
   }
 }
 
-std::optional<std::chrono::nanoseconds> HeadRendering::spare_poses() const {
-  return ping_times_ ? ping_times_->spare() : std::nullopt;
+std::optional<std::chrono::nanoseconds> HeadRendering::pose_lead() const {
+  return ping_times_ ? ping_times_->lead() : std::nullopt;
 }
 
 std::optional<render::Pose> HeadRendering::T_world_mount(TimePoint time) const {

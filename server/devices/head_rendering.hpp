@@ -56,8 +56,8 @@ class HeadRendering {
   /// A client that asks for one ping after the other may take so long between two; after that nobody wants
   /// any.
   static constexpr std::chrono::seconds longest_pause{3};
-  /// See PingTimes::spare().
-  std::optional<std::chrono::nanoseconds> spare_poses() const;
+  /// See PingTimes::lead().
+  std::optional<std::chrono::nanoseconds> pose_lead() const;
 
   /// Where the mount of the head is; of a time to come, as far as the twist of the newest pose says. nullopt:
   /// there is no pose, or only a stale one that is not to be used.

@@ -84,7 +84,7 @@ void PingTimes::rest() {
   next_.reset();
 }
 
-std::optional<nanoseconds> PingTimes::spare() const {
+std::optional<nanoseconds> PingTimes::lead() const {
   const auto newest = poses_.newest();
   const bool of_this_clock = restarts_ == poses_.counters().clock_restarts;
   if (!newest || !of_this_clock || !(next_ || last_)) {

@@ -36,7 +36,7 @@ class PingTimes {
 
   /// By how much the poses there are exceed what the next ping needs, if it is like the last one that was
   /// wanted; negative: it has to wait for poses. nullopt: nobody wants pings.
-  std::optional<std::chrono::nanoseconds> spare() const;
+  std::optional<std::chrono::nanoseconds> lead() const;
 
   const PingTimesCounters& counters() const { return counters_; }
 

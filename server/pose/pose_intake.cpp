@@ -32,16 +32,16 @@ bool PoseIntake::hold() const {
   if (poses_.ping_clock() != PingClock::lock_step) {
     return false;
   }
-  const auto spare = hooks_.spare();
-  return !waiting_.empty() || (spare && *spare > most_ahead);
+  const auto lead = hooks_.lead();
+  return !waiting_.empty() || (lead && *lead > most_ahead);
 }
 
 bool PoseIntake::pings_to_come() const {
   if (poses_.ping_clock() != PingClock::lock_step) {
     return false;
   }
-  const auto spare = hooks_.spare();
-  return spare && spare->count() >= 0;
+  const auto lead = hooks_.lead();
+  return lead && lead->count() >= 0;
 }
 
 void PoseIntake::insert(const pose::PoseSample& sample, TimePoint arrival) {

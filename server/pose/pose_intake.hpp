@@ -25,7 +25,7 @@ class PoseIntake {
     std::function<void()> changed;  ///< the history has one more
     /// By how much the poses there are exceed what the head needs that is furthest behind, for its next ping;
     /// negative: all heads wait for poses. nullopt: nobody wants pings.
-    std::function<std::optional<std::chrono::nanoseconds>()> spare;
+    std::function<std::optional<std::chrono::nanoseconds>()> lead;
   };
   /// `poses` outlives it.
   PoseIntake(boost::asio::io_context& io, PoseHistory& poses, Hooks hooks);

@@ -9,13 +9,21 @@ from tree import CPP, ROOMS
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)')
 
+def devices():
+    """Those of cmake/devices.cmake."""
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cmake", "devices.cmake")
+    with open(path, encoding="utf-8") as file:
+        return re.search(r"set\(SONARD_DEVICES([^)]*)\)", file.read()).group(1).split()
+
+
+DEVICES = devices()
+
 # Which folders the files of a folder may include. The longest prefix that fits decides; a folder may include itself and
 # what lies in it.
 MAY_INCLUDE = {
     "protocol": ("protocol",),
-    # Devices do not know each other.
-    "protocol/gemini": ("protocol/common",),
-    "protocol/micron": ("protocol/common",),
+    # Devices do not know each other; a log format of their users they may know.
+    **{f"protocol/{device}": ("protocol/common", "protocol/glf") for device in DEVICES},
     "renderer": ("renderer",),
     # Clients draw pictures, too, and nothing else of the renderer.
     "renderer/picture": (),

@@ -144,20 +144,20 @@ TEST_F(PingTimesTest, WhoRestsAndWantsAgainBeginsNow) {
 }
 
 TEST_F(PingTimesTest, TellsWhatPosesThereAreToSpare) {
-  EXPECT_FALSE(times.spare());
+  EXPECT_FALSE(times.lead());
   pose(1000);
-  EXPECT_FALSE(times.spare()) << "nobody has asked";
+  EXPECT_FALSE(times.lead()) << "nobody has asked";
   begun();
-  EXPECT_EQ(times.spare(), -listening);
+  EXPECT_EQ(times.lead(), -listening);
   poses_every(10, 1010, 1500);
-  EXPECT_EQ(times.spare(), milliseconds{470}) << "the ping at 1000 listens to 1030";
+  EXPECT_EQ(times.lead(), milliseconds{470}) << "the ping at 1000 listens to 1030";
   ASSERT_TRUE(times.begin(period, listening));
   ASSERT_TRUE(times.begin(period, listening));
-  EXPECT_EQ(times.spare(), milliseconds{270}) << "the next one is at 1200";
+  EXPECT_EQ(times.lead(), milliseconds{270}) << "the next one is at 1200";
   pose(0);
-  EXPECT_FALSE(times.spare()) << "that ping will not be";
+  EXPECT_FALSE(times.lead()) << "that ping will not be";
   times.rest();
-  EXPECT_FALSE(times.spare());
+  EXPECT_FALSE(times.lead());
 }
 
 TEST_F(PingTimesTest, PosesThatAreNoLongerKeptAreSaid) {

@@ -22,9 +22,9 @@ PoseConfig by(PingClock clock) {
 struct PoseIntakeTest : testing::Test {
   boost::asio::io_context io;
   PoseHistory poses{by(PingClock::lock_step)};
-  std::optional<nanoseconds> spare;
+  std::optional<nanoseconds> lead;
   int changes = 0;
-  PoseIntake intake{io, poses, {[this] { ++changes; }, [this] { return spare; }}};
+  PoseIntake intake{io, poses, {[this] { ++changes; }, [this] { return lead; }}};
 
   PoseIntakeTest() { spdlog::set_level(spdlog::level::off); }
   ~PoseIntakeTest() override { spdlog::set_level(spdlog::level::info); }
@@ -39,7 +39,7 @@ struct PoseIntakeTest : testing::Test {
 };
 
 TEST_F(PoseIntakeTest, PosesPassAtOnce) {
-  spare = milliseconds{100};
+  lead = milliseconds{100};
   pose(1000);
   pose(1010);
   EXPECT_EQ(newest_ms(), 1010);
@@ -49,9 +49,9 @@ TEST_F(PoseIntakeTest, PosesPassAtOnce) {
 TEST_F(PoseIntakeTest, PublishersWaitWhenPosesAreFarAhead) {
   pose(1000);
   EXPECT_FALSE(intake.hold()) << "nobody wants pings";
-  spare = PoseIntake::most_ahead;
+  lead = PoseIntake::most_ahead;
   EXPECT_FALSE(intake.hold());
-  spare = PoseIntake::most_ahead + nanoseconds{1};
+  lead = PoseIntake::most_ahead + nanoseconds{1};
   EXPECT_TRUE(intake.hold());
   poses = PoseHistory{by(PingClock::source)};
   EXPECT_FALSE(intake.hold()) << "only in lock-step";
@@ -60,13 +60,13 @@ TEST_F(PoseIntakeTest, PublishersWaitWhenPosesAreFarAhead) {
 TEST_F(PoseIntakeTest, AClockThatIsSetBackWaitsForThePingsOfBefore) {
   pose(1000);
   pose(2000);
-  spare = nanoseconds{0};  // one ping could begin
+  lead = nanoseconds{0};  // one ping could begin
   pose(0);
   pose(10);
   run_a_little();
   EXPECT_EQ(newest_ms(), 2000);
   EXPECT_TRUE(intake.hold());
-  spare = nanoseconds{-1};
+  lead = nanoseconds{-1};
   run_a_little();
   EXPECT_EQ(newest_ms(), 10);
   EXPECT_EQ(changes, 4);
@@ -75,11 +75,11 @@ TEST_F(PoseIntakeTest, AClockThatIsSetBackWaitsForThePingsOfBefore) {
 
 TEST_F(PoseIntakeTest, AndSoDoesTheOneAfterThat) {
   pose(2000);
-  spare = nanoseconds{0};
+  lead = nanoseconds{0};
   pose(0);
   pose(1000);
   pose(0);  // once more
-  spare.reset();
+  lead.reset();
   run_a_little();
   EXPECT_EQ(newest_ms(), 0);
   EXPECT_EQ(poses.counters().clock_restarts, 2U);
@@ -87,7 +87,7 @@ TEST_F(PoseIntakeTest, AndSoDoesTheOneAfterThat) {
 
 TEST_F(PoseIntakeTest, OutsideLockStepNothingWaits) {
   poses = PoseHistory{by(PingClock::source)};
-  spare = milliseconds{100};
+  lead = milliseconds{100};
   pose(2000);
   pose(0);
   EXPECT_EQ(newest_ms(), 0);
@@ -95,10 +95,10 @@ TEST_F(PoseIntakeTest, OutsideLockStepNothingWaits) {
 
 TEST_F(PoseIntakeTest, StoppedItLeavesNothingBehind) {
   pose(2000);
-  spare = nanoseconds{0};
+  lead = nanoseconds{0};
   pose(0);
   intake.stop();
-  spare.reset();
+  lead.reset();
   run_a_little();
   EXPECT_EQ(newest_ms(), 2000);
 }

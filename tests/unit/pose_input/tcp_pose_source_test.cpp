@@ -208,8 +208,8 @@ TEST_F(TcpPoseSourceTest, RefusesOneTooMany) {
 
 TEST_F(TcpPoseSourceTest, ListensOnlyToWhomItIsAllowed) {
   const auto source = started({{localhost, 0}, {{localhost, 32}}, 8});
-  tcp::socket stranger = connect(*source, 0x7F000009);
-  EXPECT_TRUE(closed_by_source(stranger));
+  tcp::socket unauthorised = connect(*source, 0x7F000009);
+  EXPECT_TRUE(closed_by_source(unauthorised));
   EXPECT_EQ(source->counters().refused, 1U);
   EXPECT_EQ(source->client_count(), 0U);
 }

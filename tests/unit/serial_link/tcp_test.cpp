@@ -280,8 +280,8 @@ TEST_F(TcpLink, listens_again_at_once_after_a_stop_with_clients) {
 
 TEST_F(LinkTest, tcp_serves_only_whom_it_is_allowed_to) {
   open({{{{localhost, 0}, {{localhost, 32}}}}, {}, {}, 0});
-  Client stranger = tcp_client(0x7F000009);
-  EXPECT_TRUE(run_until([&] { return stranger.closed_by_peer(); }));
+  Client unauthorised = tcp_client(0x7F000009);
+  EXPECT_TRUE(run_until([&] { return unauthorised.closed_by_peer(); }));
   EXPECT_EQ(link_->counters().ports.refused, 1U);
   EXPECT_EQ(link_->counters().ports.connections, 0U);
   Client friendly = tcp_client();

@@ -81,8 +81,8 @@ TEST_F(LinkTest, udp_answers_from_the_address_that_was_asked) {
 
 TEST_F(LinkTest, udp_serves_only_whom_it_is_allowed_to) {
   open({{}, {{{localhost, 0}, {{localhost, 32}}}}, {}, 0});
-  Client stranger = udp_client(0x7F000009);
-  stranger.write(send_version);
+  Client unauthorised = udp_client(0x7F000009);
+  unauthorised.write(send_version);
   ASSERT_TRUE(run_until([&] { return link_->counters().ports.refused == 1; }));
   EXPECT_FALSE(link_->connected());
   EXPECT_THAT(heard_, IsEmpty());

@@ -53,7 +53,7 @@ Bytes externally_triggered(Bytes config) {
 struct GeminiHeadTest : testing::Test {
   const Ipv4 head_address = test::own_loopback_address(2);
   const Ipv4 surface_address = test::own_loopback_address(1);
-  const Ipv4 stranger_address = test::own_loopback_address(99);
+  const Ipv4 unauthorised_address = test::own_loopback_address(99);
 
   asio::io_context io;
   SteadyClock clock;
@@ -256,14 +256,14 @@ TEST_F(GeminiHeadTest, PutsAHiddenVehicleOutOfReach) {
   EXPECT_GT(glm::length(renderer->pose_of_body("rov").position_m), 1e5);
 }
 
-TEST_F(GeminiHeadTest, DropsAndCountsStrangers) {
+TEST_F(GeminiHeadTest, DropsAndCountsUnauthorisedPeers) {
   start();
-  UdpEndpoint stranger(io, {stranger_address, 52900});
+  UdpEndpoint unauthorised(io, {unauthorised_address, 52900});
   std::size_t answers = 0;
-  stranger.start([&](const Datagram&) { ++answers; });
-  stranger.send({{{head_address, 52901}, 0, SharedBytes(status_request)}});
+  unauthorised.start([&](const Datagram&) { ++answers; });
+  unauthorised.send({{{head_address, 52901}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until([&] { return test::transport_count(*head, "not_allowed") == 1; }));
-  // An answer to somebody allowed, sent afterwards, arrives; none to the stranger has.
+  // An answer to somebody allowed, sent afterwards, arrives; none to the unauthorised peer has.
   command(status_request);
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_EQ(answers, 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ping that is called off while the renderer is busy with another head is not rendered at all.
+// A ping that is cancelled while the renderer is busy with another head is not rendered at all.
 #include <chrono>
 #include <functional>
 #include <future>
@@ -129,8 +129,8 @@ class NobodyListening : public testing::Test {
     return done();
   }
 
-  /// A ping is asked for and called off by a reboot before its turn; then the renderer is free again.
-  void call_off_a_ping() {
+  /// A ping is asked for and cancelled by a reboot before its turn; then the renderer is free again.
+  void cancel_a_ping() {
     ASSERT_TRUE(run_until([&] { return renderer_->attempts == 1; }));
     command(ping_config);
     ASSERT_TRUE(run_until([&] { return started(*head_) == 1; }));
@@ -158,7 +158,7 @@ class NobodyListening : public testing::Test {
     return lines;
   }
 
-  /// With the rule on or off a surface sees the same: the ping that was not called off, number 1 from 0.
+  /// With the rule on or off a surface sees the same: the ping that was not cancelled, number 1 from 0.
   static void expect_second_ping(const std::vector<Bytes>& lines) {
     ASSERT_EQ(lines.size(), 483u);
     for (int line = 0; line < 483; ++line) {
@@ -201,7 +201,7 @@ class NobodyListening : public testing::Test {
 
 TEST_F(NobodyListening, PingCalledOffBeforeItsTurnIsNotRendered) {
   start({});
-  call_off_a_ping();
+  cancel_a_ping();
   EXPECT_EQ(skipped(), 1u);
   const std::vector<Bytes> lines = lines_of_next_ping();
   expect_second_ping(lines);
@@ -211,7 +211,7 @@ TEST_F(NobodyListening, PingCalledOffBeforeItsTurnIsNotRendered) {
 
 TEST_F(NobodyListening, SwitchedOffItIsRenderedAndThrownAway) {
   start(render::SkipSwitches{}.turn_off(render::SkipRule::nobody_listening));
-  call_off_a_ping();
+  cancel_a_ping();
   EXPECT_EQ(skipped(), 0u);
   const std::vector<Bytes> lines = lines_of_next_ping();
   expect_second_ping(lines);
