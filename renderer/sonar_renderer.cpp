@@ -29,7 +29,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int most_native_lines = 65535;  // a Gemini's line count is 16 bits wide
+constexpr int most_native_lines = 65535;  // multibeam heads count them in 16 bits
 constexpr int most_beams = 4096;
 constexpr double shortest_line_m = 1e-6;
 constexpr double longest_range_m = 1e5;

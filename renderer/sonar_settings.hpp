@@ -54,7 +54,7 @@ void check_aperture(const Aperture& aperture);
 
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.
 std::vector<double> equal_angle_edges(int beam_count, double width_rad);
-/// beam_count beams of equal sine over +-half_width_rad, as a Gemini forms them.
+/// beam_count beams of equal sine over +-half_width_rad, as a multibeam head forms them.
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
 /// Native range lines: line i holds echoes from [i, i+1) * step_m. The output lines are averages (or peaks)
@@ -171,7 +171,7 @@ struct PhysicalModel {
   /// scale of OutputScale::half_decibels is 80 dB.
   double gain_db = 60.0;
   MultipathSettings multipath;
-  // What recordings of Gemini-class heads show (docs/physics.md 2.16).
+  // What recordings of multibeam heads show (docs/physics.md 2.16).
   double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   RingDown ring_down;
@@ -209,7 +209,7 @@ struct Sampling {
 /// What a sample says of the amplitude at the output.
 enum class OutputScale {
   linear,         ///< in proportion, full scale at the highest code
-  half_decibels,  ///< of a DST head: 255 codes for 80 dB in steps of half a decibel, none above 191
+  half_decibels,  ///< of a scanning head: 255 codes for 80 dB in steps of half a decibel, none above 191
 };
 
 struct SonarSettings {

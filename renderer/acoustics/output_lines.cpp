@@ -37,7 +37,7 @@ void quantise_row(const float* __restrict codes, int count, std::uint16_t* __res
   }
 }
 
-/// Codes of a DST head: v = floor(k 255 / 160) with k half decibels, at most 120 (docs/physics.md 2.16).
+/// Codes of a scanning head: v = floor(k 255 / 160) with k half decibels, at most 120 (docs/physics.md 2.16).
 void quantise_decibels(const float* amplitude, int count, std::uint8_t* out) {
   constexpr float full_scale_db = 80.0F;
   constexpr int highest = 120;

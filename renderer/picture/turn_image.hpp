@@ -11,8 +11,7 @@
 
 namespace sonard::picture {
 
-/// Bearings are 1/16 gradian as on a Micron's wire: 6400 to the turn, 3200 ahead, rising clockwise
-/// (docs/protocols/micron.md 4).
+/// Bearings are 1/16 gradian, as scanning heads count them: 6400 to the turn, 3200 ahead, rising clockwise.
 struct TurnShape {
   int left = 0;        ///< where the sector begins, 0..6399
   int width = 6400;    ///< from there clockwise to its last bearing, > 0; 6400: all round
