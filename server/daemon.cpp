@@ -19,7 +19,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/clock.hpp"
 #include "server/devices/heads.hpp"
 #include "server/devices/ping_dump.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "renderer/acoustics/random.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

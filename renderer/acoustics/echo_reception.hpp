@@ -6,8 +6,8 @@
 
 #include "renderer/acoustics/azimuth_pattern.hpp"
 #include "renderer/acoustics/range_response.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

@@ -7,8 +7,8 @@
 
 #include "renderer/acoustics/echo_block.hpp"
 #include "renderer/acoustics/output_lines.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

@@ -5,8 +5,8 @@
 
 #include "renderer/acoustics/receiver_tables.hpp"
 #include "renderer/acoustics/stream_fields.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

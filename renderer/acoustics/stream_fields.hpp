@@ -7,8 +7,8 @@
 #include "renderer/acoustics/receiver_tables.hpp"
 #include "renderer/acoustics/scanned_field.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
-#include "renderer/sonar_renderer.hpp"
 
 namespace sonard::render {
 

@@ -20,7 +20,7 @@
 #include "protocol/glf/log_time.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/clock.hpp"
 #include "server/daemon.hpp"
 #include "server/devices/heads.hpp"

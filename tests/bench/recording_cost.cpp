@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "protocol/gemini/encoded_ping.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/recording/head_recording.hpp"
 #include "server/recording/log_set.hpp"
 #include "server/recording/recorder.hpp"

@@ -1,4 +1,4 @@
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -13,9 +13,9 @@
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/binning/echo_binner.hpp"
 #include "renderer/binning/gpu_binner.hpp"
-#include "renderer/known_echo.hpp"
 #include "renderer/multipath/multipath.hpp"
-#include "renderer/ping_motion.hpp"
+#include "renderer/pipeline/echo_cache.hpp"
+#include "renderer/pipeline/ping_motion.hpp"
 #include "renderer/visibility/beam_refinement.hpp"
 #include "renderer/visibility/bent_world.hpp"
 #include "renderer/visibility/ray_bend.hpp"
@@ -184,7 +184,7 @@ struct SonarRenderer::Impl {
   std::vector<Pose> T_world_body;
   std::unordered_map<std::string, std::size_t> body_number;
   std::uint64_t world_revision = 1;         // counts the moves of bodies
-  std::map<int, KnownEcho> known_echoes;    // by stream
+  std::map<int, CachedEcho> cached_echoes;  // by stream
   std::map<int, EchoReception> receptions;  // by stream
   EchoImage fine_echo;                      // memory
 
@@ -519,18 +519,18 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   check(request.settings);
   impl_->statistics = {};
   const SonarMotion motion = impl_->motion_of(request);
-  KnownEcho& known = impl_->known_echoes[stream];
-  if (impl_->skip.on(SkipRule::unchanged_scene) && known.fits(request, motion, impl_->world_revision)) {
+  CachedEcho& cached = impl_->cached_echoes[stream];
+  if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);
-    return known.image;
+    return cached.image;
   }
-  known.world_revision = 0;  // until all of it is there
-  impl_->render_echo(request, stream, motion, known.image);
-  known.settings = request.settings;
-  known.seed = request.seed;
-  known.motion = motion;
-  known.world_revision = impl_->world_revision;
-  return known.image;
+  cached.world_revision = 0;  // until all of it is there
+  impl_->render_echo(request, stream, motion, cached.image);
+  cached.settings = request.settings;
+  cached.seed = request.seed;
+  cached.motion = motion;
+  cached.world_revision = impl_->world_revision;
+  return cached.image;
 }
 
 PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {

@@ -1,4 +1,4 @@
-#include "renderer/known_echo.hpp"
+#include "renderer/pipeline/echo_cache.hpp"
 
 namespace sonard::render {
 
@@ -46,8 +46,8 @@ bool has_random_array(const SonarSettings& settings) {
 
 }  // namespace
 
-bool KnownEcho::fits(const PingRequest& wanted, const SonarMotion& motion_wanted,
-                     std::uint64_t revision) const {
+bool CachedEcho::fits(const PingRequest& wanted, const SonarMotion& motion_wanted,
+                      std::uint64_t revision) const {
   return world_revision == revision && motion == motion_wanted && same_echo(settings, wanted.settings) &&
          (seed == wanted.seed || !has_random_array(wanted.settings));
 }

@@ -1,4 +1,4 @@
-#include "renderer/ping_motion.hpp"
+#include "renderer/pipeline/ping_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

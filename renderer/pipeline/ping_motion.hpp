@@ -1,11 +1,19 @@
 // Motion of the sonar between sending a ping and hearing the last of it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "renderer/pose.hpp"
 
 namespace sonard::render {
+
+/// Where the sonar is while it pings.
+struct SonarMotion {
+  Pose T_world_sonar;          ///< when the ping is sent
+  std::optional<Pose> at_end;  ///< when its last line is heard; nullopt: as if at rest
+  bool operator==(const SonarMotion&) const = default;
+};
 
 /// Range lines [first_line, end_line) of a ping, and the pose that stands for them: it is turned as in the
 /// middle of the time at which they are heard, and lies halfway between there and where the ping was sent, so

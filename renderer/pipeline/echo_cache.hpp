@@ -2,21 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
+#include "renderer/pipeline/ping_motion.hpp"
 
 namespace sonard::render {
 
-/// Where the sonar is while it pings.
-struct SonarMotion {
-  Pose T_world_sonar;          ///< when the ping is sent
-  std::optional<Pose> at_end;  ///< when its last line is heard; nullopt: as if at rest
-  bool operator==(const SonarMotion&) const = default;
-};
-
 /// The last mean echo of a stream, and what it was made of (SkipRule::unchanged_scene).
-struct KnownEcho {
+struct CachedEcho {
   EchoImage image;
   SonarSettings settings;
   std::uint64_t seed = 0;
