@@ -6,6 +6,9 @@
 
 namespace sonard::render {
 
+/// Surfaces nearer than this along the axis of their view are not seen.
+inline constexpr float nearest_depth_m = 0.02F;
+
 /// The fan of a sonar in its own frame (docs/frames-and-units.md).
 struct Aperture {
   /// Edges of the beams: beam_count + 1 azimuths psi, strictly falling from port (psi > 0) to starboard,

@@ -171,7 +171,10 @@ std::unique_ptr<GpuBinner> make_gpu_binner(GpuBinning wanted, ChosenSampler& cho
 struct SonarRenderer::Impl {
   const SkipSwitches skip;
   const float largest_response;
-  WorkerPool workers;  // outlives the sampler, which uses it
+  WorkerPool workers;  // outlives whoever uses it
+  SpatialIndex index;  // where the world is moved
+  std::unique_ptr<SpatialIndex>
+      bendable_index;  // of the same world in facets that bend; null: rays are straight
   ChosenSampler chosen;
   std::unique_ptr<GpuBinner> gpu_binner;  // null: all binning is the CPU's
   std::unique_ptr<SliceSampler> slices;   // of the backend `ray`
@@ -181,35 +184,40 @@ struct SonarRenderer::Impl {
   Receiver receiver;
   PingStatistics statistics;
   const double ray_curvature_per_m;
-  std::vector<Pose> T_world_body;
   std::unordered_map<std::string, std::size_t> body_number;
   std::uint64_t world_revision = 1;         // counts the moves of bodies
   std::map<int, CachedEcho> cached_echoes;  // by stream
   std::map<int, EchoReception> receptions;  // by stream
   EchoImage fine_echo;                      // memory
 
-  /// @param surfaces the same world, for whatever finds its surfaces along rays that may bend.
-  Impl(const World& world, const World& surfaces, const RendererOptions& options)
+  Impl(const World& world, const RendererOptions& options)
       : skip(options.skip),
         largest_response(render::largest_response(world)),
         workers(options.threads),
-        chosen(choose_sampler(surfaces, options.backend, workers)),
+        index(world, workers),
+        bendable_index(
+            options.ray_curvature_per_m == 0.0
+                ? nullptr
+                : std::make_unique<SpatialIndex>(bendable(world, options.ray_curvature_per_m), workers)),
+        chosen(choose_sampler(visible(), options.backend, workers)),
         gpu_binner(make_gpu_binner(options.gpu_binning, chosen)),
         refinement(*chosen.sampler, workers),
-        multipath(world, workers, options.skip),
+        multipath(index, workers, options.skip),
         terrain(
             world, options.skip,
             options.ray_curvature_per_m == 0.0 ? 0.0F : bendable_edge_m(world, options.ray_curvature_per_m)),
         receiver(options.skip),
         ray_curvature_per_m(options.ray_curvature_per_m) {
-    for (const Body& body : world.bodies) {
-      body_number[body.name] = T_world_body.size();
-      T_world_body.push_back(body.T_world_body);
+    for (std::size_t body = 0; body < world.bodies.size(); ++body) {
+      body_number[world.bodies[body].name] = body;
     }
     if (chosen.backend == Backend::ray) {
-      slices = std::make_unique<SliceSampler>(surfaces, workers, slice_switches(options));
+      slices = std::make_unique<SliceSampler>(visible().world(), workers, slice_switches(options));
     }
   }
+
+  /// Of the surfaces that may bend with the rays.
+  SpatialIndex& visible() { return bendable_index ? *bendable_index : index; }
 
   /// Facets that were divided so that they bend with the rays are not to be merged again.
   static SkipSwitches slice_switches(const RendererOptions& options) {
@@ -311,14 +319,17 @@ struct SonarRenderer::Impl {
     const glm::dvec3& start_m = motion.T_world_sonar.position_m;
     const double way_m = motion.at_end ? glm::length(motion.at_end->position_m - start_m) : 0.0;
     const std::vector<PartMesh> changes =
-        terrain.look({start_m, sampled_range_m(settings) + way_m, settings.range.step_m}, T_world_body,
+        terrain.look({start_m, sampled_range_m(settings) + way_m, settings.range.step_m}, index.world(),
                      workers, statistics.skipped);
     if (!changes.empty()) {
       chosen.sampler->set_part_meshes(changes);
       if (slices) {
         slices->set_part_meshes(changes);
       }
-      multipath.set_part_meshes(changes);
+      index.set_part_meshes(changes);
+      if (bendable_index) {
+        bendable_index->set_part_meshes(changes);
+      }
     }
     statistics.visibility_s += watch.lap();
   }
@@ -482,9 +493,7 @@ struct SonarRenderer::Impl {
 };
 
 SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
-    : impl_(options.ray_curvature_per_m == 0.0
-                ? std::make_unique<Impl>(world, world, options)
-                : std::make_unique<Impl>(world, bendable(world, options.ray_curvature_per_m), options)) {}
+    : impl_(std::make_unique<Impl>(world, options)) {}
 SonarRenderer::~SonarRenderer() = default;
 
 Backend SonarRenderer::backend() const {
@@ -502,15 +511,17 @@ bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_wo
     return false;
   }
   const std::size_t body = known->second;
-  if (impl_->T_world_body[body] == pose) {
+  if (impl_->index.world().bodies[body].T_world_body == pose) {
     return true;  // publishers repeat the poses of bodies that rest
   }
-  impl_->T_world_body[body] = pose;
   ++impl_->world_revision;
   if (impl_->slices) {
     impl_->slices->set_body_pose(body, pose);
   }
-  impl_->multipath.set_body_pose(body, pose);
+  impl_->index.set_body_pose(body, pose);
+  if (impl_->bendable_index) {
+    impl_->bendable_index->set_body_pose(body, pose);
+  }
   impl_->chosen.sampler->set_body_pose(body, pose);
   return true;
 }

@@ -1,4 +1,4 @@
-// Sixteen rays at a time: what goes into a trace and what comes out, lane by lane.
+// Sixteen rays at a time: what goes into a search and what comes out, lane by lane.
 #pragma once
 
 #include <array>
@@ -24,26 +24,16 @@ struct alignas(64) RayPacket {
   glm::vec3 step_x{0.0F}, step_y{0.0F};
 };
 
-/// What the rays of a packet meet. The surface point of a lane is depth * q. Where depth is 0 the rest is
-/// without meaning.
-struct alignas(64) SurfacePacket {
-  Lanes<float> depth;  ///< 0: nothing up to the depth asked for
-  /// Geometric normal in world axes, neither of unit length nor turned towards the sonar.
-  Lanes<float> normal_x, normal_y, normal_z;
-  Lanes<float> response;          ///< as SurfaceSample::response; may be not a number
-  Lanes<std::uint32_t> part;      ///< counts the parts of all bodies in the order of the world
-  Lanes<std::uint32_t> triangle;  ///< of the part's mesh
-};
-
 inline constexpr std::uint32_t no_part = ~std::uint32_t{0};
 
-/// The hits of a packet before shading.
+/// The first hits of a packet: the point of a lane is depth * q.
 struct alignas(64) RayHits {
   Lanes<float> depth;
   Lanes<float> normal_x, normal_y, normal_z;  ///< geometric, in the frame of the part, not of unit length
   Lanes<float> u, v;                          ///< of the triangle's second and third corner
   Lanes<std::uint32_t> triangle;
-  Lanes<std::uint32_t> part;  ///< no_part: nothing was hit
+  /// Counts the parts of all bodies in the order of the world; no_part: nothing was hit.
+  Lanes<std::uint32_t> part;
 };
 
 }  // namespace sonard::render

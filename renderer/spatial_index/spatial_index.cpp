@@ -1,18 +1,19 @@
-#include "renderer/visibility/embree_scene.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <map>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include "renderer/errors.hpp"
+#include "renderer/scene/mesh_cache.hpp"
 #include "renderer/simd.hpp"
-#include "renderer/visibility/mesh_cache.hpp"
-#include "renderer/visibility/ray_shading.hpp"
+#include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 
@@ -110,7 +111,7 @@ void pass_back_faces(const RTCFilterFunctionNArguments* arguments) {
 
 static_assert(no_part == RTC_INVALID_GEOMETRY_ID);
 
-struct EmbreeScene::Impl {
+struct SpatialIndex::Impl {
   struct Mesh {
     std::shared_ptr<const TriangleMesh> triangles;  // Embree reads the indices in place
     Handle<RTCScene> scene;
@@ -120,29 +121,28 @@ struct EmbreeScene::Impl {
     std::shared_ptr<const Mesh> mesh;
     std::size_t body = 0;
     Pose T_body_part;
-    SurfaceShader shader;
+    std::array<glm::vec3, 3> axes{};
   };
 
+  World world;
+  WorkerPool& workers;
   Handle<RTCDevice> device;
   IntersectPacket intersect = nullptr;
   std::string description;
   std::vector<Part> parts;
   MeshCache<std::shared_ptr<const Mesh>> replacements;
   std::map<std::size_t, std::shared_ptr<const TriangleMesh>> awaited;  // by part
-  WorkerPool& workers;
-  std::vector<Pose> T_world_body;
-  Handle<RTCScene> scene;
+  Handle<RTCScene> scene;                                              // null: not yet built
   glm::dvec3 sonar_position_m{0.0};
   bool placed = false;
 
-  Impl(const World& world, WorkerPool& pool, const std::string& settings) : workers(pool) {
+  Impl(World the_world, WorkerPool& pool, const std::string& settings)
+      : world(std::move(the_world)), workers(pool) {
     // Meshes are built side by side, each by one thread: the tree, and with it which of two triangles that
     // share an edge a ray on it meets, is then the same every time.
     device.reset(rtcNewDevice(("threads=1,ignore_config_files=1," + settings).c_str()));
     check("set up");
     choose_packets();
-    build(add_world(world));
-    add_instances();
   }
 
   /// @throws RendererError when Embree has met an error since the last call.
@@ -177,33 +177,32 @@ struct EmbreeScene::Impl {
     return std::make_shared<const Mesh>(Mesh{triangles, Handle<RTCScene>(rtcNewScene(device.get()))});
   }
 
+  void build() {
+    parts.clear();
+    build(add_parts());
+    add_instances();
+  }
+
   /// @return the meshes, each of which is yet to be built.
-  std::vector<std::shared_ptr<const Mesh>> add_world(const World& world) {
+  std::vector<std::shared_ptr<const Mesh>> add_parts() {
     std::vector<std::shared_ptr<const Mesh>> meshes;
     std::map<const TriangleMesh*, std::size_t> mesh_index;
-    std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
-    for (const Body& body : world.bodies) {
-      for (const BodyPart& part : body.parts) {
+    for (std::size_t body = 0; body < world.bodies.size(); ++body) {
+      for (const BodyPart& part : world.bodies[body].parts) {
         const auto [entry, is_new] = mesh_index.try_emplace(part.mesh.get(), meshes.size());
         if (is_new) {
           meshes.push_back(new_mesh(part.mesh));
         }
-        std::shared_ptr<const NormalPyramid>& pyramid = pyramids[part.normal_map.get()];
-        if (part.normal_map && !pyramid) {
-          pyramid = std::make_shared<const NormalPyramid>(*part.normal_map);
-        }
         Handle<RTCGeometry> instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
         rtcSetGeometryInstancedScene(instance.get(), meshes[entry->second]->scene.get());
-        parts.push_back({std::move(instance), meshes[entry->second], T_world_body.size(), part.T_body_part,
-                         SurfaceShader(part, pyramid)});
+        parts.push_back({std::move(instance), meshes[entry->second], body, part.T_body_part});
       }
-      T_world_body.push_back(body.T_world_body);
     }
     return meshes;
   }
 
   /// Those that set_part_meshes() was told of.
-  void replace_meshes() {
+  void replace_awaited() {
     std::vector<std::shared_ptr<const Mesh>> unknown;
     for (const auto& [number, triangles] : awaited) {
       const auto* known = replacements.find(triangles.get());
@@ -213,7 +212,6 @@ struct EmbreeScene::Impl {
       Part& part = parts[number];
       part.mesh = known != nullptr ? *known : unknown.back();
       rtcSetGeometryInstancedScene(part.instance.get(), part.mesh->scene.get());
-      part.shader.set_mesh(triangles);
     }
     awaited.clear();
     build(unknown);
@@ -261,29 +259,47 @@ struct EmbreeScene::Impl {
   }
 };
 
-EmbreeScene::EmbreeScene(const World& world, WorkerPool& workers, const std::string& embree_settings)
-    : impl_(std::make_unique<Impl>(world, workers, embree_settings)) {}
-EmbreeScene::~EmbreeScene() = default;
+SpatialIndex::SpatialIndex(World world, WorkerPool& workers, const std::string& embree_settings)
+    : impl_(std::make_unique<Impl>(std::move(world), workers, embree_settings)) {}
+SpatialIndex::~SpatialIndex() = default;
 
-void EmbreeScene::set_body_pose(std::size_t body, const Pose& T_world_body) {
-  Pose& pose = impl_->T_world_body[body];
+const World& SpatialIndex::world() const {
+  return impl_->world;
+}
+
+bool SpatialIndex::is_built() const {
+  return impl_->scene != nullptr;
+}
+
+const std::array<glm::vec3, 3>& SpatialIndex::axes(std::size_t part) const {
+  return impl_->parts[part].axes;
+}
+
+void SpatialIndex::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  Pose& pose = impl_->world.bodies[body].T_world_body;
   impl_->placed = impl_->placed && pose == T_world_body;
   pose = T_world_body;
 }
 
-void EmbreeScene::set_part_meshes(std::span<const PartMesh> changes) {
-  for (const PartMesh& change : changes) {
-    impl_->awaited[change.part] = change.mesh;
-  }
+void SpatialIndex::set_part_meshes(std::span<const PartMesh> changes) {
+  replace_meshes(impl_->world, changes);
   impl_->placed = impl_->placed && changes.empty();
+  if (is_built()) {
+    for (const PartMesh& change : changes) {
+      impl_->awaited[change.part] = change.mesh;
+    }
+  }
 }
 
-void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
+void SpatialIndex::place(const glm::dvec3& sonar_position_m) {
   if (impl_->placed && sonar_position_m == impl_->sonar_position_m) {
     return;
   }
   impl_->placed = false;
-  impl_->replace_meshes();
+  if (!is_built()) {
+    impl_->build();
+  }
+  impl_->replace_awaited();
   for (Impl::Part& part : impl_->parts) {
     if (part.mesh->triangles->indices.empty()) {
       rtcDisableGeometry(part.instance.get());
@@ -291,10 +307,13 @@ void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
     }
     rtcEnableGeometry(part.instance.get());
     const Pose T_sonar_part =
-        relative({sonar_position_m, {1, 0, 0, 0}}, impl_->T_world_body[part.body]) * part.T_body_part;
-    part.shader.turn(T_sonar_part.orientation);
-    const auto& [x, y, z] = part.shader.axes();
-    const std::array<glm::vec3, 4> columns{x, y, z, glm::vec3(T_sonar_part.position_m)};
+        relative({sonar_position_m, {1, 0, 0, 0}}, impl_->world.bodies[part.body].T_world_body) *
+        part.T_body_part;
+    const glm::dquat& turn = T_sonar_part.orientation;
+    part.axes = {glm::vec3(turn * glm::dvec3(1, 0, 0)), glm::vec3(turn * glm::dvec3(0, 1, 0)),
+                 glm::vec3(turn * glm::dvec3(0, 0, 1))};
+    const std::array<glm::vec3, 4> columns{part.axes[0], part.axes[1], part.axes[2],
+                                           glm::vec3(T_sonar_part.position_m)};
     static_assert(sizeof(columns) == 12 * sizeof(float));
     rtcSetGeometryTransform(part.instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
     rtcCommitGeometry(part.instance.get());
@@ -305,38 +324,30 @@ void EmbreeScene::place(const glm::dvec3& sonar_position_m) {
   impl_->placed = true;
 }
 
-SONARD_SIMD_CLONES void EmbreeScene::trace(const RayPacket& rays, const SurfaceModel& model, float max_depth,
-                                           SurfacePacket& surfaces) const {
+void SpatialIndex::trace(const RayPacket& rays, float max_depth, bool back_faces, RayHits& hits) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  context.filter = model.two_sided ? nullptr : &pass_back_faces;
-  RayHits hits;
+  context.filter = back_faces ? nullptr : &pass_back_faces;
   impl_->intersect(rays, impl_->scene.get(), context, max_depth, hits);
+}
+
+void SpatialIndex::trace(const RayPacket& rays, float farthest_m,
+                         std::array<SurfaceHit, packet_size>& hits) const {
+  RayHits found;
+  trace(rays, farthest_m, true, found);
   for (std::size_t i = 0; i < packet_size; ++i) {
-    surfaces.depth[i] = hits.part[i] != no_part ? hits.depth[i] : 0.0F;
-  }
-  surfaces.part = hits.part;
-  surfaces.triangle = hits.triangle;
-  // Neighbours mostly meet the same part: one round shades them all.
-  Lanes<std::uint32_t> waiting = hits.part;
-  while (true) {
-    std::uint32_t part = no_part;  // the greatest number, so what is left of the smallest is a part
-    for (std::size_t i = 0; i < packet_size; ++i) {
-      part = std::min(part, waiting[i]);
-    }
-    if (part == no_part) {
-      return;
-    }
-    impl_->parts[part].shader.shade(rays, hits, part, model, surfaces);
-    for (std::size_t i = 0; i < packet_size; ++i) {
-      waiting[i] = waiting[i] == part ? no_part : waiting[i];
+    hits[i] = {};
+    if (found.part[i] != no_part) {
+      const auto& [x, y, z] = impl_->parts[found.part[i]].axes;
+      hits[i] = {found.depth[i], x * found.normal_x[i] + y * found.normal_y[i] + z * found.normal_z[i],
+                 found.part[i], found.triangle[i]};
     }
   }
 }
 
-bool EmbreeScene::trace_one(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m,
-                            SurfaceHit& hit) const {
+bool SpatialIndex::trace_one(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m,
+                             SurfaceHit& hit) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};
@@ -346,7 +357,7 @@ bool EmbreeScene::trace_one(const glm::vec3& origin_m, const glm::vec3& directio
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
     return false;
   }
-  const auto& [x, y, z] = impl_->parts[query.hit.instID[0]].shader.axes();
+  const auto& [x, y, z] = impl_->parts[query.hit.instID[0]].axes;
   hit.distance_m = query.ray.tfar;
   hit.normal = x * query.hit.Ng_x + y * query.hit.Ng_y + z * query.hit.Ng_z;
   hit.part = query.hit.instID[0];
@@ -354,24 +365,7 @@ bool EmbreeScene::trace_one(const glm::vec3& origin_m, const glm::vec3& directio
   return true;
 }
 
-void EmbreeScene::trace_plainly(const RayPacket& rays, float farthest_m,
-                                std::array<SurfaceHit, packet_size>& hits) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  RayHits found;
-  impl_->intersect(rays, impl_->scene.get(), context, farthest_m, found);
-  for (std::size_t i = 0; i < packet_size; ++i) {
-    hits[i] = {};
-    if (found.part[i] != no_part) {
-      const auto& [x, y, z] = impl_->parts[found.part[i]].shader.axes();
-      hits[i] = {found.depth[i], x * found.normal_x[i] + y * found.normal_y[i] + z * found.normal_z[i],
-                 found.part[i], found.triangle[i]};
-    }
-  }
-}
-
-bool EmbreeScene::is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const {
+bool SpatialIndex::is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray = ray_of(origin_m, direction, distance_m);
@@ -379,7 +373,7 @@ bool EmbreeScene::is_free(const glm::vec3& origin_m, const glm::vec3& direction,
   return ray.tfar >= 0;  // minus infinity where something was met
 }
 
-const std::string& EmbreeScene::description() const {
+const std::string& SpatialIndex::description() const {
   return impl_->description;
 }
 

@@ -15,8 +15,8 @@
 #include <osgUtil/SceneView>
 
 #include "renderer/errors.hpp"
+#include "renderer/scene/mesh_cache.hpp"
 #include "renderer/visibility/egl_context.hpp"
-#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/raster_part.hpp"
 #include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/surface_shader.hpp"

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "renderer/simd.hpp"
@@ -68,21 +69,18 @@ void RaySampler::View::turn(const glm::dquat& R_world_sonar) {
   }
 }
 
-RaySampler::RaySampler(const World& world, WorkerPool& workers, const std::string& embree_settings)
-    : workers_(workers),
-      embree_settings_(embree_settings),
-      world_(world),
-      scene_(world, workers, embree_settings),
-      description_("ray, " + scene_.description()) {}
-
-void RaySampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
-  world_.bodies[body].T_world_body = T_world_body;
-  scene_.set_body_pose(body, T_world_body);
-}
-
-void RaySampler::set_part_meshes(std::span<const PartMesh> changes) {
-  replace_meshes(world_, changes);
-  scene_.set_part_meshes(changes);
+RaySampler::RaySampler(SpatialIndex& index, WorkerPool& workers)
+    : index_(index), workers_(workers), description_("ray, " + index.description()) {
+  std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
+  for (const Body& body : index.world().bodies) {
+    for (const BodyPart& part : body.parts) {
+      std::shared_ptr<const NormalPyramid>& pyramid = pyramids[part.normal_map.get()];
+      if (part.normal_map && !pyramid) {
+        pyramid = std::make_shared<const NormalPyramid>(*part.normal_map);
+      }
+      shaders_.emplace_back(part, pyramid);
+    }
+  }
 }
 
 /// Lists the tiles that hold pixels of the grid. They stay the same for as long as the grid does.
@@ -130,25 +128,17 @@ void RaySampler::prepare(const SampleGrid& grid) {
 std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                      const SurfaceModel& surface, double max_range_m) {
   prepare(grid);
-  std::optional<EmbreeScene> bent;
-  if (bend_per_m_ == 0.0) {
-    scene_.place(T_world_sonar.position_m);
-  } else {
-    bent.emplace(bent_world(world_, T_world_sonar.position_m, bend_per_m_), workers_, embree_settings_);
-    bent->place(glm::dvec3(0.0));
-  }
-  const EmbreeScene& scene = bent ? *bent : scene_;
   for (View& view : views_) {
     view.turn(T_world_sonar.orientation);
   }
-  const std::size_t jobs = (tiles_.size() + tiles_per_job - 1) / tiles_per_job;
-  workers_.run(static_cast<int>(jobs), [&](int job) {
-    const std::size_t begin = static_cast<std::size_t>(job) * tiles_per_job;
-    const std::size_t end = std::min(begin + tiles_per_job, tiles_.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      trace(scene, tiles_[i], surface, static_cast<float>(max_range_m));
-    }
-  });
+  if (bend_per_m_ == 0.0) {
+    index_.place(T_world_sonar.position_m);
+    trace_tiles(index_, surface, static_cast<float>(max_range_m));
+  } else {
+    SpatialIndex bent(bent_world(index_.world(), T_world_sonar.position_m, bend_per_m_), workers_);
+    bent.place(glm::dvec3(0.0));
+    trace_tiles(bent, surface, static_cast<float>(max_range_m));
+  }
   std::vector<const SurfaceSample*> samples;
   for (const View& view : views_) {
     samples.push_back(view.samples.data());
@@ -156,7 +146,51 @@ std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, 
   return samples;
 }
 
-SONARD_SIMD_CLONES void RaySampler::trace(const EmbreeScene& scene, const Tile& tile,
+void RaySampler::trace_tiles(const SpatialIndex& index, const SurfaceModel& surface, float max_range_m) {
+  place_shaders(index);
+  const std::size_t jobs = (tiles_.size() + tiles_per_job - 1) / tiles_per_job;
+  workers_.run(static_cast<int>(jobs), [&](int job) {
+    const std::size_t begin = static_cast<std::size_t>(job) * tiles_per_job;
+    const std::size_t end = std::min(begin + tiles_per_job, tiles_.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      trace(index, tiles_[i], surface, max_range_m);
+    }
+  });
+}
+
+void RaySampler::place_shaders(const SpatialIndex& index) {
+  std::size_t i = 0;
+  for (const Body& body : index.world().bodies) {
+    for (const BodyPart& part : body.parts) {
+      shaders_[i].place(part.mesh, index.axes(i));
+      ++i;
+    }
+  }
+}
+
+SONARD_SIMD_CLONES void RaySampler::shade(const RayPacket& rays, const RayHits& hits,
+                                          const SurfaceModel& surface, SurfacePacket& surfaces) const {
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    surfaces.depth[i] = hits.part[i] != no_part ? hits.depth[i] : 0.0F;
+  }
+  // Neighbours mostly meet the same part: one round shades them all.
+  Lanes<std::uint32_t> waiting = hits.part;
+  while (true) {
+    std::uint32_t part = no_part;  // the greatest number, so what is left of the smallest is a part
+    for (std::size_t i = 0; i < packet_size; ++i) {
+      part = std::min(part, waiting[i]);
+    }
+    if (part == no_part) {
+      return;
+    }
+    shaders_[part].shade(rays, hits, part, surface, surfaces);
+    for (std::size_t i = 0; i < packet_size; ++i) {
+      waiting[i] = waiting[i] == part ? no_part : waiting[i];
+    }
+  }
+}
+
+SONARD_SIMD_CLONES void RaySampler::trace(const SpatialIndex& index, const Tile& tile,
                                           const SurfaceModel& surface, float max_range_m) {
   View& view = views_[tile.view];
   const glm::vec3 starboard = view.starboard;
@@ -172,8 +206,10 @@ SONARD_SIMD_CLONES void RaySampler::trace(const EmbreeScene& scene, const Tile& 
     rays.z[i] += tangent_y[i] * up.z;
   }
   // No ray of a view is shorter than its axis: the depth reaches no less far than the range.
+  RayHits hits;
+  index.trace(rays, max_range_m, surface.two_sided, hits);
   SurfacePacket surfaces;
-  scene.trace(rays, surface, max_range_m, surfaces);
+  shade(rays, hits, surface, surfaces);
 
   alignas(64) Lanes<float> range, range_dx, range_dy, response;
   for (std::size_t i = 0; i < packet_size; ++i) {

@@ -7,8 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-#include "renderer/scene/world.hpp"
-#include "renderer/visibility/embree_scene.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
+#include "renderer/visibility/ray_shading.hpp"
 #include "renderer/visibility/sampler.hpp"
 #include "renderer/worker_pool.hpp"
 
@@ -17,15 +17,14 @@ namespace sonard::render {
 /// Needs no graphics of any kind. Pixels that no part of the grid uses are left as "nothing seen".
 class RaySampler final : public Sampler {
  public:
+  /// @param index where the world is moved; it outlives the sampler.
   /// @param workers outlives the sampler; nobody else uses it during a call.
-  /// @param embree_settings see EmbreeScene.
-  /// @throws RendererError when Embree cannot be set up or runs out of memory.
-  RaySampler(const World& world, WorkerPool& workers, const std::string& embree_settings = {});
+  RaySampler(SpatialIndex& index, WorkerPool& workers);
 
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m) override;
-  void set_body_pose(std::size_t body, const Pose& T_world_body) override;
-  void set_part_meshes(std::span<const PartMesh> changes) override;
+  void set_body_pose(std::size_t, const Pose&) override {}     // the index knows
+  void set_part_meshes(std::span<const PartMesh>) override {}  // the index knows
   /// The trees of the world are made anew for every ping then: several times the cost of a ping.
   void set_ray_bend(double bend_per_m) override { bend_per_m_ = bend_per_m; }
   const std::string& description() const override { return description_; }
@@ -56,13 +55,16 @@ class RaySampler final : public Sampler {
   };
 
   void prepare(const SampleGrid& grid);
-  void trace(const EmbreeScene& scene, const Tile& tile, const SurfaceModel& surface, float max_range_m);
+  void trace_tiles(const SpatialIndex& index, const SurfaceModel& surface, float max_range_m);
+  void place_shaders(const SpatialIndex& index);
+  void shade(const RayPacket& rays, const RayHits& hits, const SurfaceModel& surface,
+             SurfacePacket& surfaces) const;
+  void trace(const SpatialIndex& index, const Tile& tile, const SurfaceModel& surface, float max_range_m);
   static void store(const Lanes<SurfaceSample>& samples, const Tile& tile, View& view);
 
+  SpatialIndex& index_;
   WorkerPool& workers_;
-  std::string embree_settings_;
-  World world_;  ///< its bodies where they are now
-  EmbreeScene scene_;
+  std::vector<SurfaceShader> shaders_;  ///< of the parts of all bodies
   double bend_per_m_ = 0.0;
   std::string description_;
   std::vector<View> views_;

@@ -35,11 +35,6 @@ SurfaceShader::SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalP
   normals_ = mapped ? Normals::of_map : mesh_->normals.empty() ? Normals::of_triangles : Normals::of_vertices;
 }
 
-void SurfaceShader::turn(const glm::dquat& R_world_part) {
-  axes_ = {glm::vec3(R_world_part * glm::dvec3(1, 0, 0)), glm::vec3(R_world_part * glm::dvec3(0, 1, 0)),
-           glm::vec3(R_world_part * glm::dvec3(0, 0, 1))};
-}
-
 glm::vec3 SurfaceShader::to_part(const glm::vec3& v_world) const {
   return {glm::dot(axes_[0], v_world), glm::dot(axes_[1], v_world), glm::dot(axes_[2], v_world)};
 }

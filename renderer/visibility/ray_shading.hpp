@@ -4,17 +4,24 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <utility>
 
-#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "renderer/scene/world.hpp"
+#include "renderer/spatial_index/ray_packet.hpp"
 #include "renderer/visibility/normal_pyramid.hpp"
-#include "renderer/visibility/ray_packet.hpp"
 #include "renderer/visibility/sampler.hpp"
 
 namespace sonard::render {
+
+/// What the rays of a packet meet. The surface point of a lane is depth * q. Where depth is 0 the rest is
+/// without meaning.
+struct alignas(64) SurfacePacket {
+  Lanes<float> depth;  ///< 0: nothing up to the depth asked for
+  /// Geometric normal in world axes, neither of unit length nor turned towards the sonar.
+  Lanes<float> normal_x, normal_y, normal_z;
+  Lanes<float> response;  ///< as SurfaceSample::response; may be not a number
+};
 
 /// Shades what rays meet of one part.
 class SurfaceShader {
@@ -23,11 +30,11 @@ class SurfaceShader {
   SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalPyramid> map);
 
   /// @param mesh with the attributes of the one before.
-  void set_mesh(std::shared_ptr<const TriangleMesh> mesh) { mesh_ = std::move(mesh); }
-
-  /// Sets the part's axes in the world.
-  void turn(const glm::dquat& R_world_part);
-  const std::array<glm::vec3, 3>& axes() const { return axes_; }
+  /// @param axes of the part in the world.
+  void place(const std::shared_ptr<const TriangleMesh>& mesh, const std::array<glm::vec3, 3>& axes) {
+    mesh_ = mesh;
+    axes_ = axes;
+  }
 
   /// Fills normal and response of the lanes that hit part number `part`, this one.
   void shade(const RayPacket& rays, const RayHits& hits, std::uint32_t part, const SurfaceModel& model,

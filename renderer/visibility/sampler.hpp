@@ -28,9 +28,6 @@ struct SurfaceSample {
   bool operator==(const SurfaceSample&) const = default;
 };
 
-/// Surfaces nearer than this along the axis of their view are not seen.
-inline constexpr float nearest_depth_m = 0.02F;
-
 /// How a surface turns incidence into `SurfaceSample::response`.
 struct SurfaceModel {
   Model model = Model::physical;

@@ -48,7 +48,7 @@ bool is_software_gl(std::string_view description) {
                      [&](std::string_view name) { return lower.find(name) != std::string::npos; });
 }
 
-ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& workers) {
+ChosenSampler choose_sampler(SpatialIndex& index, Backend wanted, WorkerPool& workers) {
   std::string reason;
   if (wanted == Backend::automatic) {
     const GlProbe gl = probe_gl();
@@ -59,9 +59,9 @@ ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& wor
   ChosenSampler chosen;
   chosen.backend = wanted;
   if (wanted == Backend::ray) {
-    chosen.sampler = std::make_unique<RaySampler>(world, workers);
+    chosen.sampler = std::make_unique<RaySampler>(index, workers);
   } else {
-    auto raster = std::make_unique<RasterSampler>(world);
+    auto raster = std::make_unique<RasterSampler>(index.world());
     chosen.raster = raster.get();
     chosen.sampler = std::move(raster);
   }

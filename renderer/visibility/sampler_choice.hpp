@@ -7,6 +7,7 @@
 
 #include "renderer/backend.hpp"
 #include "renderer/scene/world.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
 #include "renderer/visibility/raster_sampler.hpp"
 #include "renderer/visibility/sampler.hpp"
 #include "renderer/worker_pool.hpp"
@@ -21,8 +22,9 @@ struct ChosenSampler {
   std::string description;
 };
 
-/// @throws RendererError when `wanted` is `raster` and there is no OpenGL 4.5, or when Embree fails.
-ChosenSampler choose_sampler(const World& world, Backend wanted, WorkerPool& workers);
+/// @param index of the world; it outlives the sampler.
+/// @throws RendererError when `wanted` is `raster` and there is no OpenGL 4.5.
+ChosenSampler choose_sampler(SpatialIndex& index, Backend wanted, WorkerPool& workers);
 
 /// Whether the renderer string of an OpenGL context ("vendor / renderer / version") names a rasteriser that
 /// runs on the CPU.

@@ -81,10 +81,10 @@ TerrainLevels::Drawn TerrainLevels::detail_of(const Ground& ground, std::size_t 
                      shared(tile + columns < ground.level.size(), tile + columns)}};
 }
 
-std::vector<PartMesh> TerrainLevels::look(const TerrainView& view, const std::vector<Pose>& T_world_body,
-                                          WorkerPool& workers, SkipCounts& skipped) {
+std::vector<PartMesh> TerrainLevels::look(const TerrainView& view, const World& world, WorkerPool& workers,
+                                          SkipCounts& skipped) {
   for (Ground& ground : grounds_) {
-    measure(ground, view, T_world_body[ground.body]);
+    measure(ground, view, world.bodies[ground.body].T_world_body);
   }
   const bool may_skip = skip_.on(SkipRule::terrain_detail);
   const std::size_t finest = choose(view, 0.0);

@@ -31,10 +31,10 @@ class TerrainLevels {
   /// @param longest_edge_m of any triangle, where rays bend; 0: as they are.
   TerrainLevels(const World& world, const SkipSwitches& skip, float longest_edge_m);
 
-  /// @param T_world_body of all bodies
+  /// @param world the one it was made of, with its bodies where they are now.
   /// @return what has changed since the last call. SkipRule::terrain_detail counts triangles.
-  std::vector<PartMesh> look(const TerrainView& view, const std::vector<Pose>& T_world_body,
-                             WorkerPool& workers, SkipCounts& skipped);
+  std::vector<PartMesh> look(const TerrainView& view, const World& world, WorkerPool& workers,
+                             SkipCounts& skipped);
 
  private:
   using Drawn = std::optional<TileDetail>;  ///< nullopt: not at all

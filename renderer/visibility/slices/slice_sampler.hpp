@@ -9,9 +9,9 @@
 
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/pose.hpp"
+#include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/visibility/mesh_cache.hpp"
 #include "renderer/visibility/ray_bend.hpp"
 #include "renderer/visibility/slices/fan_triangles.hpp"
 #include "renderer/visibility/slices/slice_patches.hpp"

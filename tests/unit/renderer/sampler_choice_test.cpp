@@ -22,14 +22,16 @@ TEST(SoftwareGl, IsToldByItsName) {
 
 TEST(SamplerChoice, KeepsWhatIsAskedForByName) {
   WorkerPool workers(1);
-  const ChosenSampler chosen = choose_sampler(World{}, Backend::ray, workers);
+  SpatialIndex index(World{}, workers);
+  const ChosenSampler chosen = choose_sampler(index, Backend::ray, workers);
   EXPECT_EQ(chosen.backend, Backend::ray);
   EXPECT_THAT(chosen.description, testing::MatchesRegex("ray, Embree 3\\.[0-9.]+, packets of [0-9]+"));
 }
 
 TEST(SamplerChoice, AutomaticEndsInARealBackendAndSaysWhy) {
   WorkerPool workers(1);
-  const ChosenSampler chosen = choose_sampler(World{}, Backend::automatic, workers);
+  SpatialIndex index(World{}, workers);
+  const ChosenSampler chosen = choose_sampler(index, Backend::automatic, workers);
   EXPECT_NE(chosen.backend, Backend::automatic);
   EXPECT_EQ(chosen.description.rfind(std::string(name_of(chosen.backend)) + ", ", 0), 0U);
   EXPECT_THAT(chosen.description, testing::HasSubstr("; auto found "));
