@@ -69,6 +69,9 @@ struct RangeLines {
   bool compression_peak = false;
 
   double max_range_m() const { return count * step_m; }
+  /// How far surfaces are looked for: a little beyond the last line, so that footprints which cross it are
+  /// complete.
+  double sampled_range_m() const { return max_range_m() * 1.05; }
   int output_count() const { return count >> compression_log2; }
 
   bool operator==(const RangeLines&) const = default;
@@ -231,6 +234,11 @@ struct SonarSettings {
 inline bool is_heard_by_array(const SonarSettings& settings) {
   return settings.model == Model::physical && settings.aperture.azimuth == Aperture::Azimuth::array &&
          settings.aperture.beam_count() > 1;
+}
+
+/// Whether the beams are cones around a straight array.
+inline bool has_conical_beams(const SonarSettings& settings) {
+  return is_heard_by_array(settings) && settings.aperture.bearing == Aperture::Bearing::conical;
 }
 
 }  // namespace sonard::render

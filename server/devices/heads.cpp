@@ -5,7 +5,7 @@
 #include "protocol/gemini/ping_plan.hpp"
 #include "protocol/micron/line_job.hpp"
 #include "protocol/micron/units.hpp"
-#include "renderer/visibility/sample_grid.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 #include "server/devices/gemini_head.hpp"
 #include "server/devices/gemini_settings.hpp"
 #include "server/devices/micron_head.hpp"

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "renderer/binning/echo_binner.hpp"
-#include "renderer/visibility/sample_grid.hpp"
-#include "renderer/visibility/sampler.hpp"
+#include "renderer/binning/binning.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
+#include "renderer/sample_grid/surface_sample.hpp"
 
 namespace sonard::test {
 

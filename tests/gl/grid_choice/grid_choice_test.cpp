@@ -1,5 +1,5 @@
 // Backend `raster` finds the grids that an error preset takes (docs/accuracy.md).
-#include "renderer/visibility/grid_choice.hpp"
+#include "renderer/engines/gpu/grid_choice.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "renderer/visibility/backscatter.hpp"
+#include "renderer/surface/backscatter.hpp"
 
 #include <cmath>
 #include <numbers>

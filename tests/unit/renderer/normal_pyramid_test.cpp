@@ -1,4 +1,4 @@
-#include "renderer/visibility/normal_pyramid.hpp"
+#include "renderer/surface/normal_pyramid.hpp"
 
 #include <cmath>
 #include <limits>

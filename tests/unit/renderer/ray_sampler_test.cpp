@@ -1,6 +1,6 @@
 // Samples of RaySampler against the closed form of a plane, sample by sample; how they do not depend on
 // packets and threads; and surfaces that are hard to hit.
-#include "renderer/visibility/ray_sampler.hpp"
+#include "renderer/engines/cpu/ray_sampler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ class Traced {
     return sampler_.sample(T_world_sonar, grid, surface, max_range_m);
   }
   void set_body_pose(std::size_t body, const Pose& pose) { index_.set_body_pose(body, pose); }
-  const std::string& description() const { return sampler_.description(); }
+  const std::string& description() const { return index_.description(); }
 
  private:
   SpatialIndex index_;

@@ -1,5 +1,5 @@
 // How the ends of visible pieces run across a wedge, by hand.
-#include "renderer/visibility/slices/piece_ends.hpp"
+#include "renderer/engines/cpu/piece_ends.hpp"
 
 #include <cmath>
 #include <vector>

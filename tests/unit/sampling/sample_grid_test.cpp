@@ -1,4 +1,4 @@
-#include "renderer/visibility/sample_grid.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,0 +1,99 @@
+#include "renderer/sample_grid/grid_binner.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "renderer/binning/beam_sums.hpp"
+#include "renderer/sample_grid/grid_patches.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                const ColumnPart& part, double lines_per_m, BeamSums& sums) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
+  for (int row = part.row_begin; row < part.row_end; ++row) {
+    const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
+    const float weight = grid.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)];
+    if (sample.range_m > 0) {
+      sums.add_point(std::floor(static_cast<double>(sample.range_m) * lines_per_m), weight * sample.response,
+                     weight);
+    }
+    sums.invalid += sample.range_m < 0 ? 1 : 0;
+  }
+}
+
+double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
+  const auto begin = static_cast<std::size_t>(grid.beam_parts[beam]);
+  const auto end = static_cast<std::size_t>(grid.beam_parts[beam + 1]);
+  const std::size_t first = begin < end ? grid.parts[begin].weights : 0;
+  const std::size_t last = end < grid.parts.size() ? grid.parts[end].weights : grid.weights.size();
+  return begin < end ? std::accumulate(grid.weights.begin() + static_cast<std::ptrdiff_t>(first),
+                                       grid.weights.begin() + static_cast<std::ptrdiff_t>(last), 0.0)
+                     : 0.0;
+}
+
+/// The part of a column, with its patches.
+PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std::vector<EchoPatch>& patches) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const double middle =
+      -view.tan_half_width + (part.column + 0.5) * view.pixel_width() + static_cast<double>(part.x_offset);
+  const double half = static_cast<double>(part.width) / 2;
+  return {view.azimuth_rad - std::atan(middle - half), view.azimuth_rad - std::atan(middle + half),
+          patches.data(), patches.data() + patches.size()};
+}
+
+BinningResult bin_grid_by_cones(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                                const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                                std::vector<float> memory) {
+  std::vector<std::vector<EchoPatch>> patches(grid.parts.size());
+  std::atomic<std::uint64_t> invalid{0};
+  workers.run(static_cast<int>(grid.parts.size()), [&](int p) {
+    const auto part = static_cast<std::size_t>(p);
+    invalid += make_grid_patches(grid, views, grid.parts[part], patches[part]);
+  });
+  std::vector<PatchColumn> columns;
+  for (std::size_t part = 0; part < grid.parts.size(); ++part) {
+    columns.push_back(column_of(grid, grid.parts[part], patches[part]));
+  }
+  BinningResult result = bin_by_cones(std::move(columns), range, options, workers, std::move(memory));
+  result.invalid_samples += invalid;
+  return result;
+}
+
+}  // namespace
+
+BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory) {
+  if (options.cone_aperture != nullptr) {
+    return bin_grid_by_cones(grid, views, range, options, workers, std::move(memory));
+  }
+  const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
+  const auto fill = [&](std::size_t beam, BeamSums& sums) {
+    for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
+      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+      if (options.footprint) {
+        thread_local std::vector<EchoPatch> patches;
+        sums.invalid += make_grid_patches(grid, views, part, patches);
+        for (const EchoPatch& patch : patches) {
+          sums.add(patch);
+        }
+      } else {
+        add_points(grid, views, part, legacy_scale / range.step_m, sums);
+      }
+    }
+  };
+  const auto content = [&](std::size_t beam) {
+    const double solid_angle = solid_angle_of(grid, beam);
+    return BeamContent{solid_angle, solid_angle * static_cast<double>(options.largest_response)};
+  };
+  return bin_beams(grid.beam_count(), range, options, workers, std::move(memory),
+                   {[](std::size_t) { return false; }, content, fill});
+}
+
+}  // namespace sonard::render
