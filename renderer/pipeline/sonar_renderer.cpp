@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "renderer/acoustics/echo_reception.hpp"
-#include "renderer/acoustics/propagation_loss.hpp"
+#include "renderer/acoustics/point_spread.hpp"
 #include "renderer/acoustics/receiver.hpp"
+#include "renderer/acoustics/transmission_loss.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/engines/make_engine.hpp"
 #include "renderer/multipath/multipath.hpp"
@@ -74,13 +74,13 @@ struct SonarRenderer::Impl {
   Multipath multipath;
   TerrainLevels terrain;
   Receiver receiver;
-  PropagationLoss loss;
+  TransmissionLoss loss;
   PingStatistics statistics;
   std::unordered_map<std::string, std::size_t> body_number;
-  std::uint64_t world_revision = 1;         // counts the moves of bodies
-  std::map<int, CachedEcho> cached_echoes;  // by stream
-  std::map<int, EchoReception> receptions;  // by stream
-  EchoImage fine_echo;                      // memory
+  std::uint64_t world_revision = 1;          // counts the moves of bodies
+  std::map<int, CachedEcho> cached_echoes;   // by stream
+  std::map<int, PointSpread> point_spreads;  // by stream
+  EchoImage fine_echo;                       // memory
 
   Impl(const World& world, const RendererOptions& options)
       : skip(options.skip),
@@ -149,18 +149,18 @@ struct SonarRenderer::Impl {
                              0.0F);
       return;
     }
-    EchoReception& reception = receptions[stream];
-    reception.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
-    if (reception.has_pattern()) {
-      sample_echo(EchoReception::sampled(settings), motion, fine_echo);
+    PointSpread& point_spread = point_spreads[stream];
+    point_spread.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
+    if (point_spread.has_pattern()) {
+      sample_echo(PointSpread::sampled(settings), motion, fine_echo);
       Stopwatch watch;
-      reception.hear(fine_echo, image, workers, skip, statistics.skipped);
+      point_spread.form_beams(fine_echo, image, workers, skip, statistics.skipped);
       statistics.azimuth_pattern_s = watch.lap();
     } else {
       sample_echo(settings, motion, image);
     }
     Stopwatch watch;
-    reception.spread(image, workers);
+    point_spread.spread(image, workers);
     statistics.pulse_s = watch.lap();
   }
 
@@ -241,11 +241,11 @@ struct SonarRenderer::Impl {
     }
   }
 
-  const PropagationLoss& loss_for(const SonarSettings& settings) {
+  const TransmissionLoss& loss_for(const SonarSettings& settings) {
     if (loss.fits(settings) && skip.on(SkipRule::unchanged_settings)) {
       statistics.skipped.add(SkipRule::unchanged_settings);
     } else {
-      loss = PropagationLoss(settings);
+      loss = TransmissionLoss(settings);
     }
     return loss;
   }

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/acoustics/noise_budget.hpp"
+#include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"
 #include "server/config/addresses.hpp"
 #include "server/config/gemini_section.hpp"

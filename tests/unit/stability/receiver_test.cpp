@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/acoustics/tvg.hpp"
+
 namespace sonard::render {
 namespace {
 

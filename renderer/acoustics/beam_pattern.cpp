@@ -1,4 +1,4 @@
-#include "renderer/acoustics/azimuth_pattern.hpp"
+#include "renderer/acoustics/beam_pattern.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -126,12 +126,12 @@ class PatternTable {
   std::vector<double> power_;
 };
 
-struct AzimuthPattern::LineSums {
+struct BeamPattern::LineSums {
   std::vector<float> sum, least, most;  ///< per line; the latter two per angle
 };
 
 /// Lines [begin, end) that are alike in being even or not.
-struct AzimuthPattern::Span {
+struct BeamPattern::Span {
   int begin = 0, end = 0;
   bool even = false;
 };
@@ -178,7 +178,7 @@ std::vector<double> fine_beam_edges(const Aperture& aperture) {
   return fine;
 }
 
-AzimuthPattern::AzimuthPattern(const Aperture& aperture, RandomKey elements)
+BeamPattern::BeamPattern(const Aperture& aperture, RandomKey elements)
     : fine_per_beam_(aperture.fine_beams), beyond_(fine_beams_beyond(aperture)) {
   const PatternTable table(aperture, elements);
   leaks_ = table.floor() > 0;
@@ -195,8 +195,8 @@ AzimuthPattern::AzimuthPattern(const Aperture& aperture, RandomKey elements)
   }
 }
 
-void AzimuthPattern::add_band(const Aperture& aperture, int beam, const std::vector<double>& sines,
-                              const PatternTable& table) {
+void BeamPattern::add_band(const Aperture& aperture, int beam, const std::vector<double>& sines,
+                           const PatternTable& table) {
   const auto b = static_cast<std::size_t>(beam);
   const double port_rad = aperture.beam_edges_rad[b];
   const double starboard_rad = aperture.beam_edges_rad[b + 1];
@@ -230,7 +230,7 @@ void AzimuthPattern::add_band(const Aperture& aperture, int beam, const std::vec
   change_ = std::max(change_, change);
 }
 
-double AzimuthPattern::share(int beam, int fine_beam) const {
+double BeamPattern::share(int beam, int fine_beam) const {
   const Band& band = bands_[static_cast<std::size_t>(beam)];
   const int at = fine_beam - band.first;
   const float in_band =
@@ -238,7 +238,7 @@ double AzimuthPattern::share(int beam, int fine_beam) const {
   return static_cast<double>(in_band) + static_cast<double>(band.leak);
 }
 
-AzimuthPattern::LineSums AzimuthPattern::sum_lines(const EchoImage& fine, WorkerPool& workers) const {
+BeamPattern::LineSums BeamPattern::sum_lines(const EchoImage& fine, WorkerPool& workers) const {
   constexpr int lines_per_job = 256;
   const auto lines = static_cast<std::size_t>(fine.lines);
   LineSums sums;
@@ -256,9 +256,8 @@ AzimuthPattern::LineSums AzimuthPattern::sum_lines(const EchoImage& fine, Worker
   return sums;
 }
 
-std::vector<AzimuthPattern::Span> AzimuthPattern::spans_of(const LineSums& sums, int lines,
-                                                           const SkipSwitches& skip,
-                                                           SkipCounts& skipped) const {
+std::vector<BeamPattern::Span> BeamPattern::spans_of(const LineSums& sums, int lines,
+                                                     const SkipSwitches& skip, SkipCounts& skipped) const {
   std::vector<Span> spans;
   for (int begin = 0; begin < lines; begin += lines_per_tile) {
     const int end = std::min(lines, begin + lines_per_tile);
@@ -278,8 +277,8 @@ std::vector<AzimuthPattern::Span> AzimuthPattern::spans_of(const LineSums& sums,
   return spans;
 }
 
-void AzimuthPattern::hear(const EchoImage& fine, int beam, const Span& span, const float* leaks,
-                          float* out) const {
+void BeamPattern::hear(const EchoImage& fine, int beam, const Span& span, const float* leaks,
+                       float* out) const {
   const auto lines = static_cast<std::size_t>(fine.lines);
   const int count = span.end - span.begin;
   const auto row = [&](int f) {
@@ -309,8 +308,8 @@ void AzimuthPattern::hear(const EchoImage& fine, int beam, const Span& span, con
   }
 }
 
-void AzimuthPattern::apply(const EchoImage& fine, EchoImage& out, WorkerPool& workers,
-                           const SkipSwitches& skip, SkipCounts& skipped) const {
+void BeamPattern::apply(const EchoImage& fine, EchoImage& out, WorkerPool& workers, const SkipSwitches& skip,
+                        SkipCounts& skipped) const {
   constexpr int beams_per_job = 8;  // neighbours read the same rows
   out.beams = static_cast<int>(bands_.size());
   out.lines = fine.lines;

@@ -1,5 +1,5 @@
 // The response of a chirp in range against its integral in double precision.
-#include "renderer/acoustics/range_response.hpp"
+#include "renderer/acoustics/pulse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,9 +41,9 @@ double integral(double step_m, int lines) {
   return total / (n * n) * step_m / cell_m;
 }
 
-TEST(RangeResponse, SharesAreTheIntegralOfTheChirp) {
+TEST(PulseResponse, SharesAreTheIntegralOfTheChirp) {
   for (const double step_m : {0.0024, 0.0075, 0.015, 0.0254}) {
-    const RangeResponse response(Pulse::chirp, cell_m, step_m);
+    const PulseResponse response(Pulse::chirp, cell_m, step_m);
     ASSERT_GT(response.taps(), 3);
     for (int lines = 0; lines < 4; ++lines) {
       // Beyond 16 cells lie 0.6 % of the energy, which are spread over what is left.
@@ -53,8 +53,8 @@ TEST(RangeResponse, SharesAreTheIntegralOfTheChirp) {
   }
 }
 
-TEST(RangeResponse, NothingIsLost) {
-  const RangeResponse response(Pulse::chirp, cell_m, 0.0024);
+TEST(PulseResponse, NothingIsLost) {
+  const PulseResponse response(Pulse::chirp, cell_m, 0.0024);
   std::vector<float> intensity(1200, 0.0F);
   intensity[300] = 2.0F;
   intensity[900] = 1.0F;
@@ -71,8 +71,8 @@ TEST(RangeResponse, NothingIsLost) {
   }
 }
 
-TEST(RangeResponse, StaysInsideItsBeamAndImage) {
-  const RangeResponse response(Pulse::chirp, cell_m, 0.0075);
+TEST(PulseResponse, StaysInsideItsBeamAndImage) {
+  const PulseResponse response(Pulse::chirp, cell_m, 0.0075);
   EchoImage out;
   WorkerPool workers(2);
   response.apply(image_of(2, {1, 0, 0, 0, 0, 0}), out, workers);
@@ -84,12 +84,12 @@ TEST(RangeResponse, StaysInsideItsBeamAndImage) {
 /// Level of a pulse `away_m` from the echo, in lines so short that they do not blur it.
 double level_db(Pulse pulse, double away_m) {
   constexpr double line_m = cell_m / 40;
-  const RangeResponse response(pulse, cell_m, line_m);
+  const PulseResponse response(pulse, cell_m, line_m);
   return 10 * std::log10(response.share(static_cast<int>(std::lround(away_m / line_m))) / response.share(0));
 }
 
 // docs/physics.md 2.6.
-TEST(RangeResponse, PulsesHaveTheWidthAndSideLobesOfTheirKind) {
+TEST(PulseResponse, PulsesHaveTheWidthAndSideLobesOfTheirKind) {
   // sinc^2 is one half at 0.443 cells; its first side lobe, at 1.43 cells, is 13.3 dB down.
   EXPECT_NEAR(level_db(Pulse::chirp, 0.443 * cell_m), -3, 0.15);
   EXPECT_NEAR(level_db(Pulse::chirp, 1.43 * cell_m), -13.26, 0.1);
@@ -104,22 +104,22 @@ TEST(RangeResponse, PulsesHaveTheWidthAndSideLobesOfTheirKind) {
   EXPECT_NEAR(highest, -31.5, 0.1);
   // A tone is heard evenly over its length, and not beyond.
   EXPECT_NEAR(level_db(Pulse::tone, 0.45 * cell_m), 0, 1e-6);
-  const RangeResponse tone(Pulse::tone, cell_m, cell_m / 40);
+  const PulseResponse tone(Pulse::tone, cell_m, cell_m / 40);
   EXPECT_EQ(tone.taps(), 21);  // the last one catches half a line
   EXPECT_NEAR(tone.share(20), tone.share(0) / 2, 1e-6);
 }
 
 // A tone of length l whose middle lies evenly in a line of length d >= l is outside of it by l / 4d.
-TEST(RangeResponse, ToldWhatIsHeardOutsideOfTheLine) {
-  EXPECT_NEAR(RangeResponse(Pulse::tone, 0.01, 0.02).share_outside(), 0.125, 1e-6);
-  EXPECT_NEAR(RangeResponse(Pulse::tone, 0.01, 0.5).share_outside(), 0.005, 1e-6);
-  EXPECT_NEAR(RangeResponse(Pulse::chirp, 0.01, 0.02).share_outside(), 1 - integral(2 * cell_m, 0), 0.01);
+TEST(PulseResponse, ToldWhatIsHeardOutsideOfTheLine) {
+  EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.02).share_outside(), 0.125, 1e-6);
+  EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.5).share_outside(), 0.005, 1e-6);
+  EXPECT_NEAR(PulseResponse(Pulse::chirp, 0.01, 0.02).share_outside(), 1 - integral(2 * cell_m, 0), 0.01);
 }
 
-TEST(RangeResponse, APulseWithoutLengthSpreadsNothing) {
-  EXPECT_EQ(RangeResponse().taps(), 0);
-  EXPECT_EQ(RangeResponse(Pulse::point, 0.01, 0.01).taps(), 0);
-  EXPECT_EQ(RangeResponse(Pulse::chirp, 0, 0.01).taps(), 0);
+TEST(PulseResponse, APulseWithoutLengthSpreadsNothing) {
+  EXPECT_EQ(PulseResponse().taps(), 0);
+  EXPECT_EQ(PulseResponse(Pulse::point, 0.01, 0.01).taps(), 0);
+  EXPECT_EQ(PulseResponse(Pulse::chirp, 0, 0.01).taps(), 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "renderer/acoustics/paper_lines.hpp"
+#include "renderer/acoustics/paper_receiver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ class PaperLines {
         random_((beams_ + 1) / 2),
         value_(static_cast<std::size_t>(beams_)) {}
 
-  void add_native_line(int native, OutputLines& output) {
+  void add_native_line(int native, Quantizer& output) {
     const PaperModel& model = ping_.model;
     if (!(model.speckle_floor > 0) && !(block_.strongest(native) > 0) &&
         ping_.skip.on(SkipRule::lines_without_echo)) {

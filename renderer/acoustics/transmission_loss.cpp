@@ -1,11 +1,11 @@
-#include "renderer/acoustics/propagation_loss.hpp"
+#include "renderer/acoustics/transmission_loss.hpp"
 
 #include <cmath>
 #include <cstddef>
 
 namespace sonard::render {
 
-PropagationLoss::PropagationLoss(const SonarSettings& settings)
+TransmissionLoss::TransmissionLoss(const SonarSettings& settings)
     : step_m(settings.range.step_m),
       absorption_db_per_m(settings.physical.absorption_db_per_m),
       of_line(static_cast<std::size_t>(settings.range.count)) {
@@ -15,7 +15,7 @@ PropagationLoss::PropagationLoss(const SonarSettings& settings)
   }
 }
 
-bool PropagationLoss::fits(const SonarSettings& settings) const {
+bool TransmissionLoss::fits(const SonarSettings& settings) const {
   return step_m == settings.range.step_m && absorption_db_per_m == settings.physical.absorption_db_per_m &&
          of_line.size() == static_cast<std::size_t>(settings.range.count);
 }

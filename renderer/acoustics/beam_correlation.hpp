@@ -1,9 +1,16 @@
-// Applies the receive pattern to rows of white numbers.
+// What neighbouring beams share of speckle and noise: the receive pattern as a filter across beams.
 #pragma once
 
 #include <vector>
 
+#include "renderer/sonar_settings.hpp"
+
 namespace sonard::render {
+
+/// Amplitude weights c_j, j = -half ... half, with sum c_j^2 = 1. A white field filtered with them is what a
+/// tapered receive array of the aperture (LineArray), without element errors, makes of independent element
+/// noise, and of many scatterers (docs/physics.md 2.8). {1} where beams are too far apart to share anything.
+std::vector<float> receive_kernel(const Aperture& aperture);
 
 /// A symmetric filter across beams.
 class BeamFilter {

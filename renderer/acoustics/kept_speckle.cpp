@@ -1,4 +1,4 @@
-#include "renderer/acoustics/stream_fields.hpp"
+#include "renderer/acoustics/kept_speckle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@ namespace sonard::render {
 
 using Speckle = PhysicalModel::Speckle;
 
-void StreamFields::advance(const PingRequest& request, const ReceiverTables& tables) {
+void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tables) {
   const PhysicalModel& model = request.settings.physical;
   const Aperture& aperture = request.settings.aperture;
-  const Maker maker{model.speckle, request.seed, tables.filter, tables.range_grain,
+  const Maker maker{model.speckle, request.seed, tables.filter, tables.pulse_correlation,
                     aperture.receive_beamwidth_rad};
   kept_ = model.speckle == Speckle::ou || model.speckle == Speckle::frozen;
   scans_ = aperture.beam_count() == 1;
@@ -23,12 +23,12 @@ void StreamFields::advance(const PingRequest& request, const ReceiverTables& tab
     texture_ = speckle_;
     T_world_sonar_ = request.T_world_sonar;
   }
-  const int lines = request.settings.range.count + 2 * tables.range_grain.reach();
+  const int lines = request.settings.range.count + 2 * tables.pulse_correlation.reach();
   const auto ensure = [&](Field& field) {
     if (!scans_) {
       field.fan.ensure_lines(lines);
     } else if (field.scanned.lines() < lines) {
-      field.scanned = ScannedField(aperture.receive_beamwidth_rad, lines);
+      field.scanned = ScannedSpeckle(aperture.receive_beamwidth_rad, lines);
     }
   };
   if (kept_) {
@@ -49,7 +49,7 @@ void StreamFields::advance(const PingRequest& request, const ReceiverTables& tab
 
 /// Correlation falls with the motion since the last ping, over half the aperture and half a beam. The turns
 /// of a scanning head about its axis are not motion: they look elsewhere.
-double StreamFields::decay(const PingRequest& request) const {
+double KeptSpeckle::decay(const PingRequest& request) const {
   const Pose& now = request.T_world_sonar;
   const double moved =
       glm::length(now.position_m - T_world_sonar_.position_m) / (request.settings.physical.aperture_m / 2);
@@ -65,20 +65,20 @@ double StreamFields::decay(const PingRequest& request) const {
   return moved * moved + turned * turned;
 }
 
-RandomFieldOfPing StreamFields::speckle(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped) {
+RandomFieldOfPing KeptSpeckle::speckle(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped) {
   return field_of(speckle_, key, skip, skipped);
 }
 
-RandomFieldOfPing StreamFields::texture(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped) {
+RandomFieldOfPing KeptSpeckle::texture(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped) {
   return textured_ ? field_of(texture_, key, skip, skipped) : RandomFieldOfPing{key};
 }
 
-RandomFieldOfPing StreamFields::field_of(Field& field, RandomKey key, const SkipSwitches& skip,
-                                         SkipCounts& skipped) {
+RandomFieldOfPing KeptSpeckle::field_of(Field& field, RandomKey key, const SkipSwitches& skip,
+                                        SkipCounts& skipped) {
   RandomFieldOfPing of_ping{key};
   if (kept_ && scans_) {
     of_ping.beam =
-        field.scanned.at(ScanPose(T_world_sonar_).bearing_rad, maker_.range_grain, key, skip, skipped);
+        field.scanned.at(ScanPose(T_world_sonar_).bearing_rad, maker_.pulse_correlation, key, skip, skipped);
   } else if (kept_) {
     of_ping.kept = &field.fan;
   }

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "renderer/acoustics/complex_row.hpp"
+#include "renderer/acoustics/pulse.hpp"
 #include "renderer/acoustics/random.hpp"
-#include "renderer/acoustics/range_grain.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/skip_ledger.hpp"
@@ -26,25 +26,25 @@ struct ScanPose {
 /// beamwidth, and a beam hears the cells around it. Two bearings apart by d are correlated by exp(-(d / half
 /// a beamwidth)^2), as SpeckleField has it for a sonar that turns; only other motion fades
 /// (docs/physics.md 2.8).
-class ScannedField {
+class ScannedSpeckle {
  public:
-  ScannedField() = default;
-  ScannedField(double beamwidth_rad, int lines);
+  ScannedSpeckle() = default;
+  ScannedSpeckle(double beamwidth_rad, int lines);
 
   int lines() const { return lines_; }
   /// All bearings lose correlation: exp(-decay) of the field is left. @param decay >= 0
   void fade(double decay);
-  /// The field at a bearing, with the grain of the pulse. @param key of what is drawn anew. @return good
-  /// until the next call.
-  Phasors at(double bearing_rad, const RangeGrain& grain, RandomKey key, const SkipSwitches& skip,
+  /// The field at a bearing, correlated along the range by the pulse. @param key of what is drawn anew.
+  /// @return good until the next call.
+  Phasors at(double bearing_rad, const PulseCorrelation& pulse, RandomKey key, const SkipSwitches& skip,
              SkipCounts& skipped);
 
  private:
   SpeckleField& cell_at(int number);
-  Phasors joined(const RangeGrain& grain);
+  Phasors joined(const PulseCorrelation& pulse);
 
   double correlation_rad_ = 1.0;  ///< bearings this far apart are correlated by 1 / e
-  int lines_ = 0;                 ///< with those beyond both ends that a grain along the range takes
+  int lines_ = 0;                 ///< with those beyond both ends that the pulse reaches
   int cell_count_ = 0;
   std::map<int, SpeckleField> cells_;  ///< those that were looked at: one row of all native lines each
   ComplexRow fresh_{0}, sum_{0}, out_{0};

@@ -1,4 +1,4 @@
-#include "renderer/acoustics/output_lines.hpp"
+#include "renderer/acoustics/quantizer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,17 +66,17 @@ float codes_per_amplitude(const SonarSettings& settings) {
   return full_scale / static_cast<float>(shares);
 }
 
-OutputLines::OutputLines(const SonarSettings& settings, PingSamples& samples)
+Quantizer::Quantizer(const SonarSettings& settings, PingSamples& samples)
     : samples_(samples),
       scale_(settings.output_scale),
       peak_(settings.range.compression_peak),
       sum_(static_cast<std::size_t>(samples.beams)) {}
 
-void OutputLines::begin() {
+void Quantizer::begin() {
   empty_ = true;
 }
 
-void OutputLines::add(const float* codes) {
+void Quantizer::add(const float* codes) {
   if (empty_) {
     std::copy_n(codes, samples_.beams, sum_.data());
     empty_ = false;
@@ -87,7 +87,7 @@ void OutputLines::add(const float* codes) {
   }
 }
 
-void OutputLines::end(int output_line) {
+void Quantizer::end(int output_line) {
   if (empty_) {
     return;  // the samples are zero from the start
   }

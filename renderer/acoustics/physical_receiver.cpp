@@ -1,4 +1,4 @@
-#include "renderer/acoustics/physical_lines.hpp"
+#include "renderer/acoustics/physical_receiver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ class PhysicalLines {
     std::fill_n(still_.real(), beams_, 1.0F);
   }
 
-  void add_native_line(int native, OutputLines& output) {
+  void add_native_line(int native, Quantizer& output) {
     const ReceiverTables& tables = ping_.tables;
     // The device puts out exactly 0 in its near field.
     const bool blanked = range_m(native) < tables.model.near_field_blank_m;
@@ -150,7 +150,7 @@ class PhysicalLines {
 /// A line's neighbours may be another thread's.
 void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, WorkerPool& workers,
                   SkipCounts& skipped) {
-  const int reach = ping.tables.range_grain.reach();
+  const int reach = ping.tables.pulse_correlation.reach();
   if (field.kept == nullptr || reach == 0) {
     return;
   }

@@ -1,4 +1,5 @@
-// Random fields of a ping, line after line, with the grain of the array and of the pulse.
+// Random fields of a ping, line after line, correlated across beams by the array and along the range by the
+// pulse.
 #pragma once
 
 #include <vector>
@@ -29,16 +30,16 @@ class FieldReader {
 
   /// The field in one line; good until the next call.
   Phasors line(int native);
-  /// Brings a kept field up to date, from -reach of the grain along the range to as much beyond the last
+  /// Brings a kept field up to date, from -reach of the pulse to as much beyond the last
   /// line.
   void evolve(int native);
 
  private:
   bool skips(SkipRule rule);
-  /// With the grain of the array alone.
+  /// Correlated across beams alone.
   Phasors row(int native);
   Phasors draw(int native, ComplexRow& row);
-  int place(int native) const { return native + tables_.range_grain.reach(); }
+  int place(int native) const { return native + tables_.pulse_correlation.reach(); }
 
   const ReceiverTables& tables_;
   const RandomFieldOfPing& field_;

@@ -1,4 +1,4 @@
-#include "renderer/acoustics/field_reader.hpp"
+#include "renderer/acoustics/correlated_field.hpp"
 
 #include <cstddef>
 #include <limits>
@@ -15,7 +15,7 @@ FieldReader::FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& 
       copies_(tables.filter.copies() && skip.on(SkipRule::narrow_aperture)),
       white_(tables.filter.row_width()),
       joined_(beams_) {
-  const std::size_t rows = 2 * static_cast<std::size_t>(tables.range_grain.reach()) + 1;
+  const std::size_t rows = 2 * static_cast<std::size_t>(tables.pulse_correlation.reach()) + 1;
   const Drawn none{ComplexRow(copies_ ? tables.filter.row_width() : beams_),
                    std::numeric_limits<int>::min(),
                    {nullptr, nullptr}};
@@ -28,7 +28,7 @@ Phasors FieldReader::line(int native) {
   if (field_.beam.real != nullptr) {
     return {field_.beam.real + native, field_.beam.imaginary + native};
   }
-  const int reach = tables_.range_grain.reach();
+  const int reach = tables_.pulse_correlation.reach();
   if (reach == 0) {
     if (field_.kept != nullptr) {
       evolve(native);
@@ -42,8 +42,8 @@ Phasors FieldReader::line(int native) {
     real_[static_cast<std::size_t>(j + reach)] = one.real;
     imaginary_[static_cast<std::size_t>(j + reach)] = one.imaginary;
   }
-  tables_.range_grain.apply(real_, beams_, joined_.real());
-  tables_.range_grain.apply(imaginary_, beams_, joined_.imaginary());
+  tables_.pulse_correlation.apply(real_, beams_, joined_.real());
+  tables_.pulse_correlation.apply(imaginary_, beams_, joined_.imaginary());
   return {joined_.real(), joined_.imaginary()};
 }
 

@@ -30,12 +30,12 @@ std::vector<double> fine_beam_edges(const Aperture& aperture);
 ///
 /// A fine beam wider than 2 / elements in sine is taken at several points: sums of a pattern over points no
 /// farther apart are its integral.
-class AzimuthPattern {
+class BeamPattern {
  public:
   /// Changes nothing.
-  AzimuthPattern() = default;
+  BeamPattern() = default;
   /// @param aperture as check_aperture() wants it, with Azimuth::array and two beams or more
-  AzimuthPattern(const Aperture& aperture, RandomKey elements);
+  BeamPattern(const Aperture& aperture, RandomKey elements);
 
   int fine_beams() const { return static_cast<int>(inverse_width_.size()); }
   /// Share of the echo of fine beam f that beam b hears.

@@ -2,7 +2,7 @@
 // (docs/physics.md 2.8, 2.9).
 #pragma once
 
-#include "renderer/acoustics/field_reader.hpp"
+#include "renderer/acoustics/correlated_field.hpp"
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/receiver_tables.hpp"
 #include "renderer/ping.hpp"

@@ -1,4 +1,4 @@
-#include "renderer/acoustics/scanned_field.hpp"
+#include "renderer/acoustics/scanned_speckle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ ScanPose::ScanPose(const Pose& T_world_sonar)
   bearing_rad = std::atan2(glm::dot(axis, glm::cross(from, ahead)), glm::dot(from, ahead));
 }
 
-ScannedField::ScannedField(double beamwidth_rad, int lines)
+ScannedSpeckle::ScannedSpeckle(double beamwidth_rad, int lines)
     : lines_(lines), fresh_(lines), sum_(lines), out_(lines) {
   const double turn = 2 * std::numbers::pi;
   cell_count_ = static_cast<int>(
@@ -45,14 +45,14 @@ ScannedField::ScannedField(double beamwidth_rad, int lines)
   correlation_rad_ = turn / cell_count_ * cells_per_correlation;
 }
 
-void ScannedField::fade(double decay) {
+void ScannedSpeckle::fade(double decay) {
   for (auto& [number, cell] : cells_) {
     cell.fade(decay);
   }
 }
 
 /// A cell that is looked at for the first time takes its first numbers whole.
-SpeckleField& ScannedField::cell_at(int number) {
+SpeckleField& ScannedSpeckle::cell_at(int number) {
   const auto [found, is_new] = cells_.try_emplace(number, lines_);
   if (is_new) {
     found->second.ensure_lines(1);
@@ -60,8 +60,8 @@ SpeckleField& ScannedField::cell_at(int number) {
   return found->second;
 }
 
-Phasors ScannedField::at(double bearing_rad, const RangeGrain& grain, RandomKey key, const SkipSwitches& skip,
-                         SkipCounts& skipped) {
+Phasors ScannedSpeckle::at(double bearing_rad, const PulseCorrelation& pulse, RandomKey key,
+                           const SkipSwitches& skip, SkipCounts& skipped) {
   const double place = bearing_rad / correlation_rad_ * cells_per_correlation;
   const int reach =
       std::min(static_cast<int>(reach_correlations * cells_per_correlation), (cell_count_ - 1) / 2);
@@ -88,11 +88,11 @@ Phasors ScannedField::at(double bearing_rad, const RangeGrain& grain, RandomKey 
     add_weighed(cell.real(0), weight, lines_, sum_.real());
     add_weighed(cell.imaginary(0), weight, lines_, sum_.imaginary());
   }
-  return joined(grain);
+  return joined(pulse);
 }
 
-Phasors ScannedField::joined(const RangeGrain& grain) {
-  const int reach = grain.reach();
+Phasors ScannedSpeckle::joined(const PulseCorrelation& pulse) {
+  const int reach = pulse.reach();
   if (reach == 0) {
     return {sum_.real(), sum_.imaginary()};
   }
@@ -101,8 +101,8 @@ Phasors ScannedField::joined(const RangeGrain& grain) {
     real.push_back(sum_.real() + j);
     imaginary.push_back(sum_.imaginary() + j);
   }
-  grain.apply(real, lines_ - 2 * reach, out_.real());
-  grain.apply(imaginary, lines_ - 2 * reach, out_.imaginary());
+  pulse.apply(real, lines_ - 2 * reach, out_.real());
+  pulse.apply(imaginary, lines_ - 2 * reach, out_.imaginary());
   return {out_.real(), out_.imaginary()};
 }
 

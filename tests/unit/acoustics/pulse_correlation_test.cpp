@@ -1,5 +1,5 @@
 // Correlation along the range where lines are shorter than the pulse (docs/physics.md 2.8).
-#include "renderer/acoustics/range_grain.hpp"
+#include "renderer/acoustics/pulse.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -68,34 +68,34 @@ void expect_grain(const PingSamples& samples, double power) {
   EXPECT_NEAR(sum / static_cast<double>(samples.u16.size()) / power, 1, 0.03);
 }
 
-TEST(RangeGrain, SquaresOfItsWeightsAddUpToOne) {
-  const RangeGrain grain(chirp, cell_m, step_m);
+TEST(PulseCorrelation, SquaresOfItsWeightsAddUpToOne) {
+  const PulseCorrelation grain(chirp, cell_m, step_m);
   EXPECT_EQ(grain.reach(), 3);
   double sum = std::pow(grain.weight(0), 2);
   for (int j = 1; j <= 3; ++j) {
     sum += 2 * std::pow(grain.weight(j), 2);
   }
   EXPECT_NEAR(sum, 1, 1e-6);
-  EXPECT_EQ(RangeGrain(chirp, step_m, step_m).reach(), 0);
-  EXPECT_EQ(RangeGrain(chirp, 0, step_m).reach(), 0);
+  EXPECT_EQ(PulseCorrelation(chirp, step_m, step_m).reach(), 0);
+  EXPECT_EQ(PulseCorrelation(chirp, 0, step_m).reach(), 0);
 }
 
 // A box three lines long: [1 1 1]. One of two and a half, in the middle of a line: [3/4 1 3/4]. Under a Hann
 // window the main lobe is twice as wide, 1/2 where a bare chirp is 0.
-TEST(RangeGrain, EveryPulseHasItsShape) {
-  const RangeGrain three(PhysicalModel::Pulse::tone, 3 * step_m, step_m);
+TEST(PulseCorrelation, EveryPulseHasItsShape) {
+  const PulseCorrelation three(PhysicalModel::Pulse::tone, 3 * step_m, step_m);
   EXPECT_EQ(three.reach(), 1);
   EXPECT_NEAR(three.weight(1), three.weight(0), 1e-6);
-  const RangeGrain two_and_a_half(PhysicalModel::Pulse::tone, 2.5 * step_m, step_m);
+  const PulseCorrelation two_and_a_half(PhysicalModel::Pulse::tone, 2.5 * step_m, step_m);
   EXPECT_NEAR(two_and_a_half.weight(1) / two_and_a_half.weight(0), 0.75, 1e-6);
-  EXPECT_EQ(RangeGrain(PhysicalModel::Pulse::tone, step_m, step_m).reach(), 0);
-  const RangeGrain windowed(PhysicalModel::Pulse::windowed_chirp, 2 * step_m, step_m);
+  EXPECT_EQ(PulseCorrelation(PhysicalModel::Pulse::tone, step_m, step_m).reach(), 0);
+  const PulseCorrelation windowed(PhysicalModel::Pulse::windowed_chirp, 2 * step_m, step_m);
   EXPECT_EQ(windowed.reach(), 3);
   EXPECT_NEAR(windowed.weight(2) / windowed.weight(0), 0.5, 1e-6);
-  EXPECT_EQ(RangeGrain(PhysicalModel::Pulse::point, 3 * step_m, step_m).reach(), 0);
+  EXPECT_EQ(PulseCorrelation(PhysicalModel::Pulse::point, 3 * step_m, step_m).reach(), 0);
 }
 
-TEST(RangeGrain, SpeckleOfShortLinesHasTheGrainOfThePulse) {
+TEST(PulseCorrelation, SpeckleOfShortLinesHasTheGrainOfThePulse) {
   WorkerPool workers;
   for (const auto kind :
        {PhysicalModel::Speckle::ou, PhysicalModel::Speckle::frozen, PhysicalModel::Speckle::per_ping}) {
@@ -105,7 +105,7 @@ TEST(RangeGrain, SpeckleOfShortLinesHasTheGrainOfThePulse) {
   }
 }
 
-TEST(RangeGrain, NoiseOfShortLinesHasTheSame) {
+TEST(PulseCorrelation, NoiseOfShortLinesHasTheSame) {
   WorkerPool workers;
   PingRequest request = fine_request(3000);
   request.settings.physical.noise = true;
@@ -113,7 +113,7 @@ TEST(RangeGrain, NoiseOfShortLinesHasTheSame) {
   expect_grain(Receiver().receive(even_echo(request, 0), request, 0, workers), 0.01);
 }
 
-TEST(RangeGrain, LinesOfACellShareNothing) {
+TEST(PulseCorrelation, LinesOfACellShareNothing) {
   WorkerPool workers;
   PingRequest request = fine_request(3000);
   request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
@@ -123,7 +123,7 @@ TEST(RangeGrain, LinesOfACellShareNothing) {
 }
 
 // A field that is kept keeps its grain while it fades, also where there was no echo for a while.
-TEST(RangeGrain, KeptSpeckleKeepsItsGrainAsItFades) {
+TEST(PulseCorrelation, KeptSpeckleKeepsItsGrainAsItFades) {
   WorkerPool workers;
   Receiver receiver;
   PingRequest request = fine_request(3000);
@@ -135,7 +135,7 @@ TEST(RangeGrain, KeptSpeckleKeepsItsGrainAsItFades) {
   expect_grain(receiver.receive(even_echo(request, 0.01), request, 0, workers), 0.01);
 }
 
-TEST(RangeGrain, IsTheSameForAnyNumberOfThreads) {
+TEST(PulseCorrelation, IsTheSameForAnyNumberOfThreads) {
   PingRequest request = fine_request(700);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -30;

@@ -1,5 +1,5 @@
 // What the array makes of fine beams, against the sum over its elements.
-#include "renderer/acoustics/azimuth_pattern.hpp"
+#include "renderer/acoustics/beam_pattern.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -47,7 +47,7 @@ EchoImage image_of(int beams, int lines, float value) {
           std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines), value)};
 }
 
-EchoImage heard(const AzimuthPattern& pattern, const EchoImage& fine, SkipSwitches skip = {},
+EchoImage heard(const BeamPattern& pattern, const EchoImage& fine, SkipSwitches skip = {},
                 unsigned threads = 2) {
   WorkerPool workers(threads);
   SkipCounts skipped;
@@ -61,10 +61,10 @@ double db(float power) {
 }
 
 // A point in the middle of a fine beam, anywhere in the fan: the array's pattern to 0.1 dB down to -30 dB.
-TEST(AzimuthPattern, APointIsHeardWithThePatternOfTheArray) {
+TEST(BeamPattern, APointIsHeardWithThePatternOfTheArray) {
   for (const int fine_beams : {1, 2, 3}) {
     const Aperture aperture = gemini(fine_beams);
-    const AzimuthPattern pattern(aperture, key);
+    const BeamPattern pattern(aperture, key);
     ASSERT_EQ(pattern.fine_beams(), 256 * fine_beams);
     for (const int beam : {20, 128, 250}) {
       const int target = beam * fine_beams;
@@ -93,7 +93,7 @@ TEST(AzimuthPattern, APointIsHeardWithThePatternOfTheArray) {
 
 // docs/physics.md 2.5: what fills the fan evenly in angle keeps its level in every beam, whatever the beams,
 // the taper and the errors.
-TEST(AzimuthPattern, AnEvenEchoKeepsItsLevel) {
+TEST(BeamPattern, AnEvenEchoKeepsItsLevel) {
   std::vector<Aperture> apertures{gemini(1), gemini(2), with_errors(gemini(2))};
   Aperture wide = gemini(2);  // each beam seven times as wide as the array's
   wide.beam_edges_rad = equal_angle_edges(17, 2.0);
@@ -102,7 +102,7 @@ TEST(AzimuthPattern, AnEvenEchoKeepsItsLevel) {
   untapered.taper = Aperture::Taper::uniform;
   apertures.push_back(untapered);
   for (const Aperture& aperture : apertures) {
-    const AzimuthPattern pattern(aperture, key);
+    const BeamPattern pattern(aperture, key);
     const std::vector<double> edges = fine_beam_edges(aperture);
     EchoImage fine = image_of(pattern.fine_beams(), 3, 0.0F);
     for (std::size_t f = 0; f + 1 < edges.size(); ++f) {
@@ -120,7 +120,7 @@ TEST(AzimuthPattern, AnEvenEchoKeepsItsLevel) {
 
 // A beam's share of what is far away is the mean power of the errors, re its own main lobe, which keeps
 // exp(-sd^2) of its power.
-TEST(AzimuthPattern, ErrorsOfTheElementsLeakIntoAllBeams) {
+TEST(BeamPattern, ErrorsOfTheElementsLeakIntoAllBeams) {
   const double floor = (1 + 0.45 * 0.45 - std::exp(-0.45 * 0.45)) * 1.3628 / 154.5;
   const double main_lobe = std::exp(-0.45 * 0.45);
   constexpr int arrays = 40;
@@ -128,7 +128,7 @@ TEST(AzimuthPattern, ErrorsOfTheElementsLeakIntoAllBeams) {
   for (int seed = 0; seed < arrays; ++seed) {
     const RandomKey elements =
         make_random_key(static_cast<std::uint64_t>(seed), 0, RandomField::array_elements, 0);
-    const AzimuthPattern pattern(with_errors(gemini(1)), elements);
+    const BeamPattern pattern(with_errors(gemini(1)), elements);
     EchoImage fine = image_of(256, 1, 0.0F);
     fine.intensity[100] = 1.0F;
     const EchoImage out = heard(pattern, fine);
@@ -151,8 +151,8 @@ EchoImage some_echo(int beams, int lines) {
   return image;
 }
 
-TEST(AzimuthPattern, IsTheWeightedSumOfFineBeamsForAnyNumberOfThreads) {
-  const AzimuthPattern pattern(with_errors(gemini(2)), key);
+TEST(BeamPattern, IsTheWeightedSumOfFineBeamsForAnyNumberOfThreads) {
+  const BeamPattern pattern(with_errors(gemini(2)), key);
   const EchoImage fine = some_echo(512, 133);
   const EchoImage out = heard(pattern, fine, SkipSwitches::none(), 1);
   EXPECT_EQ(out.intensity, heard(pattern, fine, SkipSwitches::none(), 3).intensity);
@@ -167,7 +167,7 @@ TEST(AzimuthPattern, IsTheWeightedSumOfFineBeamsForAnyNumberOfThreads) {
   }
 }
 
-TEST(AzimuthPattern, FineBeamsDivideTheirBeams) {
+TEST(BeamPattern, FineBeamsDivideTheirBeams) {
   Aperture aperture = gemini(3);
   const std::vector<double> fine = fine_beam_edges(aperture);
   ASSERT_EQ(fine.size(), 256u * 3 + 1);

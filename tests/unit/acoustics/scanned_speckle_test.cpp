@@ -1,5 +1,5 @@
 // Speckle of a scanning head belongs to the bearings of the world (docs/physics.md 2.8, 2.16).
-#include "renderer/acoustics/scanned_field.hpp"
+#include "renderer/acoustics/scanned_speckle.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -48,7 +48,7 @@ constexpr double bound = 0.08;  // five standard errors of 4000 lines
 
 // exp(-(d / 1.5 degrees)^2) of the field, its square in the intensity, at any bearing and across +-180
 // degrees.
-TEST(ScannedField, BearingsAreCorrelatedByTheLawOfTheFan) {
+TEST(ScannedSpeckle, BearingsAreCorrelatedByTheLawOfTheFan) {
   for (const double from_deg : {0.0, 33.3, 179.6, -90.1}) {
     Scan scan;
     const std::vector<double> first = scan.look(looking(from_deg * degree));
@@ -60,7 +60,7 @@ TEST(ScannedField, BearingsAreCorrelatedByTheLawOfTheFan) {
   }
 }
 
-TEST(ScannedField, ASweepLaterEchoesAreTheSame) {
+TEST(ScannedSpeckle, ASweepLaterEchoesAreTheSame) {
   Scan scan;
   const std::vector<double> first = scan.look(looking(0.3));
   for (int step = 0; step < 400; ++step) {
@@ -69,7 +69,7 @@ TEST(ScannedField, ASweepLaterEchoesAreTheSame) {
   EXPECT_EQ(scan.look(looking(0.3)), first);
 }
 
-TEST(ScannedField, AmplitudesStayRayleigh) {
+TEST(ScannedSpeckle, AmplitudesStayRayleigh) {
   Scan scan;
   double sum = 0, square = 0;
   int n = 0;
@@ -85,7 +85,7 @@ TEST(ScannedField, AmplitudesStayRayleigh) {
 }
 
 // The vehicle turns to port while the head turns to starboard: the beam looks where it looked.
-TEST(ScannedField, TurnsOfTheVehicleAboutTheAxisAreTurnsOfTheHead) {
+TEST(ScannedSpeckle, TurnsOfTheVehicleAboutTheAxisAreTurnsOfTheHead) {
   for (const glm::dvec3& axis : {glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0), glm::dvec3(0.6, 0, -0.8)}) {
     const Pose mounted{{1, 2, 3}, glm::angleAxis(0.7, axis)};
     Scan scan;
@@ -95,7 +95,7 @@ TEST(ScannedField, TurnsOfTheVehicleAboutTheAxisAreTurnsOfTheHead) {
   }
 }
 
-TEST(ScannedField, MotionOfTheVehicleFades) {
+TEST(ScannedSpeckle, MotionOfTheVehicleFades) {
   for (const auto& [dx_m, tilt_rad, expected] :
        {std::tuple{0.02, 0.0, std::exp(-2 * 0.16)}, std::tuple{0.0, 0.75 * degree, std::exp(-2 * 0.25)}}) {
     Scan scan;
@@ -105,7 +105,7 @@ TEST(ScannedField, MotionOfTheVehicleFades) {
   }
 }
 
-TEST(ScannedField, FrozenSpeckleDoesNotFade) {
+TEST(ScannedSpeckle, FrozenSpeckleDoesNotFade) {
   PingRequest request = beam_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::frozen;
   Scan scan(request);
@@ -113,8 +113,8 @@ TEST(ScannedField, FrozenSpeckleDoesNotFade) {
   EXPECT_EQ(scan.look(looking(0.4, {{5, 0, 0}, {1, 0, 0, 0}})), first);
 }
 
-// sinc(x / cell) in its main lobe, as in RangeGrain.
-TEST(ScannedField, HasTheGrainOfThePulse) {
+// sinc(x / cell) in its main lobe, as in PulseCorrelation.
+TEST(ScannedSpeckle, HasTheGrainOfThePulse) {
   PingRequest request = beam_request();
   request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
   request.settings.physical.range_cell_m = 2 * request.settings.range.step_m;
@@ -126,7 +126,7 @@ TEST(ScannedField, HasTheGrainOfThePulse) {
               expected * expected, bound);
 }
 
-TEST(ScannedField, TextureComesBackToo) {
+TEST(ScannedSpeckle, TextureComesBackToo) {
   PingRequest request = beam_request();
   request.settings.physical.texture_nu = 1;
   Scan scan(request);

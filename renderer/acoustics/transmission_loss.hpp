@@ -8,13 +8,13 @@
 namespace sonard::render {
 
 /// Spherical spreading and absorption, two ways, of every native line (docs/physics.md 2.1, equation 1).
-struct PropagationLoss {
+struct TransmissionLoss {
   double step_m = 0.0;
   double absorption_db_per_m = 0.0;
   std::vector<float> of_line;
 
-  PropagationLoss() = default;
-  explicit PropagationLoss(const SonarSettings& settings);
+  TransmissionLoss() = default;
+  explicit TransmissionLoss(const SonarSettings& settings);
   /// True: made from these settings.
   bool fits(const SonarSettings& settings) const;
 };

@@ -1,11 +1,11 @@
-#include "renderer/acoustics/echo_reception.hpp"
+#include "renderer/acoustics/point_spread.hpp"
 
 #include <utility>
 
 namespace sonard::render {
 
-void EchoReception::prepare(const SonarSettings& settings, std::uint64_t seed, int stream,
-                            const SkipSwitches& skip, SkipCounts& skipped) {
+void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int stream,
+                          const SkipSwitches& skip, SkipCounts& skipped) {
   uses_pattern_ = false;
   uses_pulse_ = false;
   if (settings.model == Model::paper) {
@@ -19,8 +19,8 @@ void EchoReception::prepare(const SonarSettings& settings, std::uint64_t seed, i
   }
 }
 
-void EchoReception::prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int stream,
-                                    const SkipSwitches& skip, SkipCounts& skipped) {
+void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int stream,
+                                  const SkipSwitches& skip, SkipCounts& skipped) {
   if (pattern_ && aperture_ == settings.aperture && seed_ == seed && skip.on(SkipRule::unchanged_settings)) {
     skipped.add(SkipRule::unchanged_settings);
   } else {
@@ -38,8 +38,8 @@ void EchoReception::prepare_pattern(const SonarSettings& settings, std::uint64_t
   }
 }
 
-void EchoReception::prepare_pulse(const SonarSettings& settings, const SkipSwitches& skip,
-                                  SkipCounts& skipped) {
+void PointSpread::prepare_pulse(const SonarSettings& settings, const SkipSwitches& skip,
+                                SkipCounts& skipped) {
   const PhysicalModel& model = settings.physical;
   const double step_m = settings.range.step_m;
   if (pulse_ && pulse_->pulse == model.pulse && pulse_->cell_m == model.range_cell_m &&
@@ -47,7 +47,7 @@ void EchoReception::prepare_pulse(const SonarSettings& settings, const SkipSwitc
     skipped.add(SkipRule::unchanged_settings);
   } else {
     pulse_ = {model.pulse, model.range_cell_m, step_m,
-              RangeResponse(model.pulse, model.range_cell_m, step_m)};
+              PulseResponse(model.pulse, model.range_cell_m, step_m)};
   }
   uses_pulse_ = true;
   // A bin loses that share at most, and gets it of the bins around it.
@@ -58,13 +58,13 @@ void EchoReception::prepare_pulse(const SonarSettings& settings, const SkipSwitc
   }
 }
 
-SonarSettings EchoReception::sampled(const SonarSettings& settings) {
+SonarSettings PointSpread::sampled(const SonarSettings& settings) {
   SonarSettings fine = settings;
   fine.aperture.beam_edges_rad = fine_beam_edges(settings.aperture);
   return fine;
 }
 
-void EchoReception::spread(EchoImage& echo, WorkerPool& workers) {
+void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {
   if (uses_pulse_) {
     pulse_->response.apply(echo, memory_, workers);
     std::swap(echo, memory_);

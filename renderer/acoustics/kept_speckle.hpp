@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "renderer/acoustics/field_reader.hpp"
+#include "renderer/acoustics/correlated_field.hpp"
 #include "renderer/acoustics/receiver_tables.hpp"
-#include "renderer/acoustics/scanned_field.hpp"
+#include "renderer/acoustics/scanned_speckle.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
@@ -14,7 +14,7 @@ namespace sonard::render {
 
 /// Speckle and texture of one stream. Kinds `ou` and `frozen` are kept: a fan's per line and beam, a single
 /// beam's by its bearing, for a scanning head comes back to it. One thread calls it.
-class StreamFields {
+class KeptSpeckle {
  public:
   /// Brings all to the settings and the pose of a ping: begun anew where they no longer fit, faded by the
   /// motion since the last ping (docs/physics.md 2.8).
@@ -29,15 +29,15 @@ class StreamFields {
   struct Maker {
     PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
     std::uint64_t seed = 0;
-    BeamFilter grain;
-    RangeGrain range_grain;
+    BeamFilter filter;
+    PulseCorrelation pulse_correlation;
     double beamwidth_rad = 0;
 
     bool operator==(const Maker&) const = default;
   };
   struct Field {
     SpeckleField fan;
-    ScannedField scanned;
+    ScannedSpeckle scanned;
   };
 
   double decay(const PingRequest& request) const;
