@@ -5,7 +5,6 @@
 
 #include "renderer/binning/binning.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sample_grid/surface_sample.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

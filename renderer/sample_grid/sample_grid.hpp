@@ -1,4 +1,5 @@
-// Where the fan is sampled: side-by-side planar views, and which part of which pixel belongs to which beam.
+// Where the fan is sampled: side-by-side planar views, what their pixels see, and which part of which pixel
+// belongs to which beam.
 #pragma once
 
 #include <numbers>
@@ -24,6 +25,18 @@ struct SubView {
 
   double pixel_width() const { return 2 * tan_half_width / columns; }
   double pixel_height() const { return 2 * tan_half_height / rows; }
+};
+
+/// What is seen along the ray of one pixel. With q the un-normalised ray of SubView, range_dx and range_dy
+/// are the signed derivatives of the range along the tangents x and y on the plane of the surface hit
+/// (docs/physics.md 2.3, equation 2); they use the geometric normal, never the shading normal.
+struct SurfaceSample {
+  float range_m = 0.0F;   ///< slant range to the first surface; 0: nothing seen
+  float response = 0.0F;  ///< echo per solid angle at unit range; see SurfaceModel
+  float range_dx = 0.0F;  ///< metres per unit tangent
+  float range_dy = 0.0F;
+
+  bool operator==(const SurfaceSample&) const = default;
 };
 
 /// The part of one pixel column that lies inside one beam, cut at the beam's edges and at the elevation

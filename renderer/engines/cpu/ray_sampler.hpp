@@ -8,7 +8,6 @@
 
 #include "renderer/engines/cpu/ray_shading.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sample_grid/surface_sample.hpp"
 #include "renderer/spatial_index/spatial_index.hpp"
 #include "renderer/surface/surface_model.hpp"
 #include "renderer/worker_pool.hpp"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sample_grid/surface_sample.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "renderer/worker_pool.hpp"
 

@@ -1,4 +1,4 @@
-// The GLSL of GpuBinner: what grid_patches and RangeProfile do, for one texture of samples, and the sums of
+// The GLSL of GpuBinner: what grid_binner and RangeProfile do, for one texture of samples, and the sums of
 // it. Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the
 // same however the work is shared out (docs/physics.md 4.2).
 #pragma once
@@ -178,7 +178,7 @@ void bin(Part part, int row) {
     if (seen.x < 0.0) atomicAdd(group_invalid, 1u);
     return;
   }
-  // What of the pixel counts: a parallelogram (Cell in grid_patches).
+  // What of the pixel counts: a parallelogram (Cell in grid_binner).
   vec2 offset = vec2(part.x_offset, 0.0);
   float height = pixel_height, slope = 0.0;
   if (row == part.row_begin) {

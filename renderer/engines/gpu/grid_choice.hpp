@@ -6,7 +6,6 @@
 #include "renderer/binning/binning.hpp"
 #include "renderer/engines/gpu/beam_judge.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sample_grid/surface_sample.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {

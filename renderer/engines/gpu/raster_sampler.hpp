@@ -9,7 +9,6 @@
 
 #include "renderer/pose.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sample_grid/surface_sample.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/surface/surface_model.hpp"
 

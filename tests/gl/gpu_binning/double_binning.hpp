@@ -6,7 +6,6 @@
 
 #include "renderer/binning/binning.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sample_grid/surface_sample.hpp"
 
 namespace sonard::test {
 
