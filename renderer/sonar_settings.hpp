@@ -6,6 +6,9 @@
 
 namespace sonard::render {
 
+/// Surfaces nearer than this along the axis of their view are not seen.
+inline constexpr float nearest_depth_m = 0.02F;
+
 /// The fan of a sonar in its own frame (docs/frames-and-units.md).
 struct Aperture {
   /// Edges of the beams: beam_count + 1 azimuths psi, strictly falling from port (psi > 0) to starboard,
@@ -54,7 +57,7 @@ void check_aperture(const Aperture& aperture);
 
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.
 std::vector<double> equal_angle_edges(int beam_count, double width_rad);
-/// beam_count beams of equal sine over +-half_width_rad, as a Gemini forms them.
+/// beam_count beams of equal sine over +-half_width_rad, as a multibeam head forms them.
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
 /// Native range lines: line i holds echoes from [i, i+1) * step_m. The output lines are averages (or peaks)
@@ -66,6 +69,9 @@ struct RangeLines {
   bool compression_peak = false;
 
   double max_range_m() const { return count * step_m; }
+  /// How far surfaces are looked for: a little beyond the last line, so that footprints which cross it are
+  /// complete.
+  double sampled_range_m() const { return max_range_m() * 1.05; }
   int output_count() const { return count >> compression_log2; }
 
   bool operator==(const RangeLines&) const = default;
@@ -171,7 +177,7 @@ struct PhysicalModel {
   /// scale of OutputScale::half_decibels is 80 dB.
   double gain_db = 60.0;
   MultipathSettings multipath;
-  // What recordings of Gemini-class heads show (docs/physics.md 2.16).
+  // What recordings of multibeam heads show (docs/physics.md 2.16).
   double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   RingDown ring_down;
@@ -209,7 +215,7 @@ struct Sampling {
 /// What a sample says of the amplitude at the output.
 enum class OutputScale {
   linear,         ///< in proportion, full scale at the highest code
-  half_decibels,  ///< of a DST head: 255 codes for 80 dB in steps of half a decibel, none above 191
+  half_decibels,  ///< of a scanning head: 255 codes for 80 dB in steps of half a decibel, none above 191
 };
 
 struct SonarSettings {
@@ -228,6 +234,11 @@ struct SonarSettings {
 inline bool is_heard_by_array(const SonarSettings& settings) {
   return settings.model == Model::physical && settings.aperture.azimuth == Aperture::Azimuth::array &&
          settings.aperture.beam_count() > 1;
+}
+
+/// Whether the beams are cones around a straight array.
+inline bool has_conical_beams(const SonarSettings& settings) {
+  return is_heard_by_array(settings) && settings.aperture.bearing == Aperture::Bearing::conical;
 }
 
 }  // namespace sonard::render

@@ -13,7 +13,7 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/check.hpp"
 #include "server/config/loader.hpp"
 #include "server/daemon/daemon.hpp"

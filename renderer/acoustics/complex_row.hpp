@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "renderer/acoustics/beam_filter.hpp"
+#include "renderer/acoustics/beam_correlation.hpp"
 #include "renderer/acoustics/random.hpp"
 #include "renderer/aligned_vector.hpp"
 

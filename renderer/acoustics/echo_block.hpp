@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/aligned_vector.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 
 namespace sonard::render {
 

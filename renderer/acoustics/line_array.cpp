@@ -13,8 +13,8 @@ using Taper = Aperture::Taper;
 
 constexpr double kaiser_beta = 2.5;
 
-/// Elements that make a beam of one degree. Those of Hamming are what the grain of recorded speckle asks for,
-/// 4 % more than its -3 dB width does (docs/physics.md 2.8).
+/// Elements that make a beam of one degree. Those of Hamming are what the correlation of recorded speckle
+/// asks for, 4 % more than its -3 dB width does (docs/physics.md 2.8).
 double elements_for_one_degree(Taper taper) {
   switch (taper) {
     case Taper::uniform:

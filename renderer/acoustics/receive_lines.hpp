@@ -6,9 +6,9 @@
 #include <mutex>
 
 #include "renderer/acoustics/echo_block.hpp"
-#include "renderer/acoustics/output_lines.hpp"
+#include "renderer/acoustics/quantizer.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -27,7 +27,7 @@ PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSe
   workers.run(std::min(blocks, static_cast<int>(workers.size())), [&](int) {
     EchoBlock block(echo);
     Lines lines(ping, block);
-    OutputLines output(settings, samples);
+    Quantizer output(settings, samples);
     for (int i = next++; i < blocks; i = next++) {
       const int begin = i * lines_per_block;
       const int end = std::min(begin + lines_per_block, samples.lines);

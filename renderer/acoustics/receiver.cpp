@@ -1,8 +1,8 @@
 #include "renderer/acoustics/receiver.hpp"
 
-#include "renderer/acoustics/output_lines.hpp"
-#include "renderer/acoustics/paper_lines.hpp"
-#include "renderer/acoustics/physical_lines.hpp"
+#include "renderer/acoustics/paper_receiver.hpp"
+#include "renderer/acoustics/physical_receiver.hpp"
+#include "renderer/acoustics/quantizer.hpp"
 #include "renderer/acoustics/random.hpp"
 
 namespace sonard::render {
@@ -69,7 +69,7 @@ bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers)
   }
   Stream& state = stream_for(settings, stream);
   const bool single_beam = settings.aperture.beam_count() == 1;
-  if (!single_beam && state.tables.range_grain.reach() == 0) {
+  if (!single_beam && state.tables.pulse_correlation.reach() == 0) {
     return false;
   }
   state.fields.advance(request, state.tables);

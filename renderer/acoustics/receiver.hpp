@@ -3,10 +3,10 @@
 
 #include <map>
 
+#include "renderer/acoustics/kept_speckle.hpp"
 #include "renderer/acoustics/receiver_tables.hpp"
-#include "renderer/acoustics/stream_fields.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -31,7 +31,7 @@ class Receiver {
  private:
   struct Stream {
     ReceiverTables tables;
-    StreamFields fields;
+    KeptSpeckle fields;
   };
 
   /// With tables for these settings.

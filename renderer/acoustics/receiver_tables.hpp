@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "renderer/acoustics/beam_filter.hpp"
-#include "renderer/acoustics/range_grain.hpp"
+#include "renderer/acoustics/beam_correlation.hpp"
+#include "renderer/acoustics/pulse.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
@@ -19,7 +19,7 @@ struct ReceiverTables {
   bool rings = false;  ///< there is a ring-down to hear
 
   BeamFilter filter;
-  RangeGrain range_grain;
+  PulseCorrelation pulse_correlation;
   std::vector<float> gain;       ///< per native line: amplitude to codes, TVG included
   std::vector<float> profile;    ///< per beam: noise amplitude relative to that away from broadside
   float noise = 0;               ///< amplitude before TVG; 0: off
@@ -31,8 +31,5 @@ struct ReceiverTables {
   /// True: made from these settings.
   bool fits(const SonarSettings& settings) const;
 };
-
-/// Time-varying gain and gain setting of mode `physical` per native line, as amplitude.
-std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range);
 
 }  // namespace sonard::render

@@ -7,9 +7,10 @@
 
 namespace sonard::render {
 
-/// Complex Gaussians CN(0, 1) per native line and beam, with the grain of the array, which fade as the sonar
-/// moves: an Ornstein-Uhlenbeck process (docs/physics.md 2.8). The kernel across beams is linear and the same
-/// for every ping, so the filtered field is kept and fades just as the white one would.
+/// Complex Gaussians CN(0, 1) per native line and beam, correlated across beams as the array makes them,
+/// which fade as the sonar moves: an Ornstein-Uhlenbeck process (docs/physics.md 2.8). The kernel across
+/// beams is linear and the same for every ping, so the filtered field is kept and fades just as the white one
+/// would.
 ///
 /// Fading is lazy. A line remembers up to which motion it was evolved; the steps missed since are made up for
 /// in one. That is exact in distribution: a * exp(-d1) and then exp(-d2) with fresh innovations each is one

@@ -7,8 +7,8 @@
 namespace sonard::render {
 
 /// sqrt(t) of t ~ Gamma(nu, 1/nu), as the rising function of a standard normal number that has this
-/// distribution. A field of normal numbers so becomes one of texture with the same grain; speckle times it
-/// has K distributed amplitudes and the scintillation index 1 + 2 / nu.
+/// distribution. A field of normal numbers so becomes one of texture with the same correlation; speckle times
+/// it has K distributed amplitudes and the scintillation index 1 + 2 / nu.
 class TextureRoot {
  public:
   /// @param nu > 0; held within [1/16, 1024].

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {

@@ -34,22 +34,13 @@ void add(const EchoPatch& patch, double step_m, RangeProfile& profile) {
 
 }  // namespace
 
-Multipath::Multipath(const World& world, WorkerPool& workers, const SkipSwitches& skip)
-    : world_(world), workers_(workers), skip_(skip), survey_(world), ghosts_(workers) {}
-
-void Multipath::set_body_pose(std::size_t body, const Pose& T_world_body) {
-  world_.bodies[body].T_world_body = T_world_body;
-  if (scene_) {
-    scene_->set_body_pose(body, T_world_body);
-  }
-}
-
-void Multipath::set_part_meshes(std::span<const PartMesh> changes) {
-  replace_meshes(world_, changes);
-  if (scene_) {
-    scene_->set_part_meshes(changes);
-  }
-}
+Multipath::Multipath(SpatialIndex& index, WorkerPool& workers, const SkipSwitches& skip)
+    : world_(index.world()),
+      workers_(workers),
+      skip_(skip),
+      survey_(world_),
+      scene_(index),
+      ghosts_(workers) {}
 
 bool Multipath::is_needed(const MultipathSettings& settings, double max_range_m,
                           const Pose& T_world_sonar) const {
@@ -73,10 +64,7 @@ void Multipath::add_to(std::vector<float>& echo, const SonarSettings& settings, 
     skipped.add(SkipRule::multipath);
     return;
   }
-  if (!scene_) {
-    scene_ = std::make_unique<PathScene>(world_, workers_);
-  }
-  scene_->place(T_world_sonar.position_m, water_surface_of(multipath));
+  scene_.place(T_world_sonar.position_m, water_surface_of(multipath));
   collect(settings, T_world_sonar,
           {multipath.wavelength_m, max_range_m, may_skip ? least_mirror_gain : 0.0,
            multipath.level == MultipathSettings::Level::full});
@@ -92,7 +80,7 @@ void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar
   for (std::vector<EchoPatch>& patches : patches_of_beam_) {
     patches.clear();
   }
-  const std::vector<GhostPaths::Result>& results = ghosts_.follow(*scene_, *fan_, T_world_sonar, limits);
+  const std::vector<GhostPaths::Result>& results = ghosts_.follow(scene_, *fan_, T_world_sonar, limits);
   for (const GhostPaths::Result& column : results) {
     for (const BeamPatch& ghost : column.patches) {
       if (is_finite(ghost.patch)) {
@@ -125,14 +113,14 @@ GhostPaths::Result Multipath::search_small_parts(const Pose& T_world_sonar, cons
       cells.push_back(around.part(i % search_rays, i / search_rays, search_rays, search_rays));
     }
   }
-  return GhostPaths::search(*scene_, *fan_, T_world_sonar, limits, cells);
+  return GhostPaths::search(scene_, *fan_, T_world_sonar, limits, cells);
 }
 
 void Multipath::collect_glints(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
                                const Pose& T_world_sonar, const PathLimits& limits) {
   std::vector<CornerGlint> glints(corners.size());
   workers_.run(static_cast<int>(corners.size()), [&](int i) {
-    glints[static_cast<std::size_t>(i)] = corner_glint(*scene_, corners[static_cast<std::size_t>(i)], limits);
+    glints[static_cast<std::size_t>(i)] = corner_glint(scene_, corners[static_cast<std::size_t>(i)], limits);
   });
   const glm::dquat R_sonar_world = glm::conjugate(T_world_sonar.orientation);
   for (const CornerGlint& glint : glints) {

@@ -17,15 +17,13 @@
 
 namespace sonard::render {
 
-/// The same on every backend. What it traces rays in is built when a ping first needs it: a world without
-/// mirrors never pays for it.
+/// The same on every backend. It traces rays only where something mirrors: a world without mirrors never pays
+/// for search trees.
 class Multipath {
  public:
-  Multipath(const World& world, WorkerPool& workers, const SkipSwitches& skip);
-
-  /// As those of Sampler.
-  void set_body_pose(std::size_t body, const Pose& T_world_body);
-  void set_part_meshes(std::span<const PartMesh> changes);
+  /// @param index where the world is moved; it outlives this object.
+  /// @param workers outlives this object.
+  Multipath(SpatialIndex& index, WorkerPool& workers, const SkipSwitches& skip);
 
   /// Adds what arrives by mirrors to an echo that is yet to be multiplied with spreading and absorption of
   /// every line (BinningResult::echo). Does nothing where the settings or SkipRule::multipath say so.
@@ -42,11 +40,11 @@ class Multipath {
                       const Pose& T_world_sonar, const PathLimits& limits);
   void sum(const RangeLines& range, std::vector<float>& echo);
 
-  World world_;  // meshes are shared; bodies are where they were last moved to
+  const World& world_;  // of the index: bodies are where they were last moved to
   WorkerPool& workers_;
   const SkipSwitches skip_;
   MirrorSurvey survey_;
-  std::unique_ptr<PathScene> scene_;
+  PathScene scene_;
   std::unique_ptr<PathFan> fan_;
   GhostPaths ghosts_;
   std::vector<std::vector<EchoPatch>> patches_of_beam_;

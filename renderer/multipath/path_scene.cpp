@@ -24,9 +24,8 @@ glm::vec3 lifted(const glm::dvec3& origin_m, const glm::dvec3& normal) {
 
 }  // namespace
 
-PathScene::PathScene(const World& world, WorkerPool& workers)
-    : meshes_(world, workers), water_surface_z_m_(world.water_surface_z_m) {
-  for (const Body& body : world.bodies) {
+PathScene::PathScene(SpatialIndex& meshes) : meshes_(meshes) {
+  for (const Body& body : meshes.world().bodies) {
     for (const BodyPart& part : body.parts) {
       surfaces_.push_back({Mirror(part.material), part.material.lambert_mu, part.mesh});
     }
@@ -45,19 +44,19 @@ bool PathScene::is_flat(const PathHit& hit) const {
   return along(0) && along(1) && along(2);
 }
 
-void PathScene::set_part_meshes(std::span<const PartMesh> changes) {
-  meshes_.set_part_meshes(changes);
-  for (const PartMesh& change : changes) {
-    surfaces_[change.part].mesh = change.mesh;
-  }
-}
-
 void PathScene::place(const glm::dvec3& sonar_position_m, const Mirror& water_surface) {
   meshes_.place(sonar_position_m);
+  const World& world = meshes_.world();
+  std::size_t i = 0;
+  for (const Body& body : world.bodies) {
+    for (const BodyPart& part : body.parts) {
+      surfaces_[i++].mesh = part.mesh;
+    }
+  }
   water_surface_ = water_surface;
   water_above_m_.reset();
-  if (water_surface_z_m_ && *water_surface_z_m_ > sonar_position_m.z) {
-    water_above_m_ = *water_surface_z_m_ - sonar_position_m.z;
+  if (world.water_surface_z_m && *world.water_surface_z_m > sonar_position_m.z) {
+    water_above_m_ = *world.water_surface_z_m - sonar_position_m.z;
   }
 }
 
@@ -78,7 +77,7 @@ void PathScene::trace_from_sonar(const Directions& directions, double farthest_m
     rays.z[i] = static_cast<float>(directions[i].z);
   }
   std::array<SurfaceHit, packet_size> met;
-  meshes_.trace_plainly(rays, static_cast<float>(farthest_m), met);
+  meshes_.trace(rays, static_cast<float>(farthest_m), met);
   for (std::size_t i = 0; i < packet_size; ++i) {
     if (!complete({}, directions[i], farthest_m, met[i], hits[i])) {
       hits[i].distance_m = 0.0;

@@ -11,8 +11,7 @@
 
 #include "renderer/multipath/mirror_law.hpp"
 #include "renderer/scene/world.hpp"
-#include "renderer/visibility/embree_scene.hpp"
-#include "renderer/worker_pool.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
 
 namespace sonard::render {
 
@@ -26,18 +25,13 @@ struct PathHit {
   std::uint32_t triangle = 0;  ///< of the part's mesh
 };
 
-/// Meshes in Embree, one copy for all paths, and above them the water surface, if the world has one and the
-/// sonar is below it. place() and all that sets come from one thread while nobody traces.
+/// The meshes of the world and above them the water surface, if the world has one and the sonar is below it.
+/// place() comes from one thread while nobody traces.
 class PathScene {
  public:
-  /// @throws RendererError when Embree cannot be set up.
-  PathScene(const World& world, WorkerPool& workers);
+  /// @param meshes outlives this object.
+  explicit PathScene(SpatialIndex& meshes);
 
-  /// As those of Sampler.
-  void set_body_pose(std::size_t body, const Pose& T_world_body) {
-    meshes_.set_body_pose(body, T_world_body);
-  }
-  void set_part_meshes(std::span<const PartMesh> changes);
   /// @param water_surface its mirror.
   /// @throws RendererError when Embree fails.
   void place(const glm::dvec3& sonar_position_m, const Mirror& water_surface);
@@ -77,9 +71,8 @@ class PathScene {
   bool complete(const glm::vec3& start_m, const glm::dvec3& direction, double farthest_m,
                 const SurfaceHit& met, PathHit& hit) const;
 
-  EmbreeScene meshes_;
-  std::vector<Surface> surfaces_;  // of the parts, counted through all bodies
-  std::optional<double> water_surface_z_m_;
+  SpatialIndex& meshes_;
+  std::vector<Surface> surfaces_;        // of the parts, counted through all bodies
   std::optional<double> water_above_m_;  ///< height of the water surface over the sonar
   Mirror water_surface_;
 };

@@ -11,7 +11,8 @@
 
 namespace sonard::picture {
 
-/// Bearings of turns are whole units of 1/16 gradian: 6400 to the turn, 3200 ahead, rising clockwise.
+/// Bearings of turns are whole units of 1/16 gradian, as scanning heads count them: 6400 to the turn, 3200
+/// ahead, rising clockwise.
 inline constexpr int units_per_turn = 6400;
 
 /// The bearing nearest to an angle of any number of turns, 0 ahead, positive to starboard: 0..6399.
@@ -19,6 +20,7 @@ int turn_bearing(double bearing_rad);
 /// An angle as units, at least 1.
 int turn_units(double angle_rad);
 
+/// What one turn covers, in units_per_turn and bins.
 struct TurnShape {
   int left = 0;        ///< where the sector begins, 0..6399
   int width = 6400;    ///< from there clockwise to its last bearing, > 0; 6400: all round

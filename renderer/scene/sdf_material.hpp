@@ -31,7 +31,7 @@ std::optional<AcousticMaterial> inherited_material(const sdf::ElementPtr& elemen
 /// @throws WorldError "file:line: ..."
 std::optional<double> water_surface_z_m(const sdf::ElementPtr& world);
 
-/// sonard:type of a <sensor type="custom">, "gemini_720i"; nullopt for any other element.
+/// sonard:type of a <sensor type="custom">, which names a device; nullopt for any other element.
 std::optional<std::string> sonar_type(const sdf::ElementPtr& element);
 
 }  // namespace sonard::render

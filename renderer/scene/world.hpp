@@ -85,7 +85,7 @@ struct Body {
 
 /// A place for a sonar in a world: <sensor type="custom" sonard:type="..."> (docs/worlds.md).
 struct WorldSonar {
-  std::string path;   ///< "rov::sonar_link::gemini"; unique
+  std::string path;   ///< "rov::sonar_link::multibeam"; unique
   std::string type;   ///< the text of sonard:type, not checked
   std::string body;   ///< that carries it
   Pose T_body_sonar;  ///< x is the acoustic axis, z up

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/acoustics/noise_budget.hpp"
+#include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"
 #include "server/config/head_kind.hpp"
 

@@ -19,7 +19,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"

@@ -5,7 +5,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-#include "renderer/visibility/sample_grid.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 
 namespace sonard::server {
 

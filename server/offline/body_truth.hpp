@@ -9,8 +9,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "server/npy/npy_file.hpp"
 
 namespace sonard::server {

@@ -10,7 +10,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "protocol/glf/records.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 
 namespace sonard::server {
 

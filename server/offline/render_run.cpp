@@ -19,7 +19,7 @@
 #include "protocol/glf/log_time.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/offline/body_truth.hpp"
 #include "server/offline/voyage.hpp"
 

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "renderer/errors.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "server/pose/posed_body.hpp"
 
 namespace sonard::server {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 
 namespace sonard::bench {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "tests/bench/campaign.hpp"
 #include "tests/bench/machine.hpp"
 #include "tests/bench/plans.hpp"

@@ -16,7 +16,7 @@
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/encoded_ping.hpp"
 #include "protocol/gemini/recorded_form.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/recording/head_recording.hpp"
 #include "server/recording/log_set.hpp"
 #include "server/recording/recorder.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 #include "tests/scenes/scenes.hpp"
 
 namespace sonard::bench {

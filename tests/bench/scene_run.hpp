@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/points.hpp"
 #include "tests/bench/reference.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "renderer/picture/fan_image.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "tests/bench/image_error.hpp"
 #include "tests/bench/reference.hpp"
 #include "tests/scenes/scenes.hpp"

@@ -7,7 +7,7 @@
 
 #include "renderer/picture/fan_image.hpp"
 #include "renderer/picture/turn_image.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 
 namespace sonard::pictures {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "tests/scenes/bed.hpp"
 #include "tests/support/closed_forms.hpp"

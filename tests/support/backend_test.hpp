@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 
 namespace sonard::test {
 

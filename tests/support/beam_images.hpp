@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 
 namespace sonard::test {
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 #include "tests/scenes/scenes.hpp"
 #include "tests/support/backend_test.hpp"
 

@@ -2,7 +2,7 @@
 // Beams that closed forms say a sonar must hear (docs/physics.md 3.2), for mu = 1 and no absorption.
 #pragma once
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 #include "tests/support/beam_images.hpp"
 #include "tests/support/closed_forms.hpp"
 

@@ -5,9 +5,8 @@
 
 #include <vector>
 
-#include "renderer/binning/echo_binner.hpp"
-#include "renderer/visibility/sample_grid.hpp"
-#include "renderer/visibility/sampler.hpp"
+#include "renderer/binning/binning.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 
 namespace sonard::test {
 

@@ -9,8 +9,9 @@
 
 #include <gmock/gmock.h>
 
-#include "renderer/binning/gpu_binner.hpp"
-#include "renderer/visibility/sampler_choice.hpp"
+#include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/gpu_binner.hpp"
+#include "renderer/sample_grid/grid_binner.hpp"
 #include "tests/gl/gpu_binning/double_binning.hpp"
 #include "tests/support/backend_test.hpp"
 

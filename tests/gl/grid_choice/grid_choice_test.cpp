@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Backend `raster` finds the grids that an error preset takes (docs/accuracy.md).
-#include "renderer/visibility/grid_choice.hpp"
+#include "renderer/engines/gpu/grid_choice.hpp"
 
 #include <cmath>
 #include <string>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/ping_motion.hpp"
+#include "renderer/pipeline/ping_motion.hpp"
 #include "tests/support/backend_test.hpp"
 
 namespace sonard::render {

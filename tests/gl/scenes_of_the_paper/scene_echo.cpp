@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "protocol/micron/units.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "tests/pictures/gallery/scenes.hpp"
 
 namespace sonard::test {

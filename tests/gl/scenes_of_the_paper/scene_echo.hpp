@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/backend.hpp"
+#include "renderer/ping.hpp"
 #include "tests/pictures/view.hpp"
 
 namespace sonard::test {

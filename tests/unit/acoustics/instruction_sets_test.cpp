@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/acoustics/echo_reception.hpp"
+#include "renderer/acoustics/point_spread.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "tests/unit/acoustics/several_pings.hpp"
 
@@ -24,7 +24,7 @@ TEST(InstructionSets, TheOnePickedAtLoadTimeGivesTheBitsOfTheBaseline) {
   const std::vector<std::uint16_t> baseline = pings_for_baseline();
   EXPECT_GT(std::set<std::uint16_t>(baseline.begin(), baseline.end()).size(),
             10000);  // there is something to see
-  EXPECT_EQ(baseline, (several_pings<Receiver, EchoReception, PingRequest, EchoImage, WorkerPool>()));
+  EXPECT_EQ(baseline, (several_pings<Receiver, PointSpread, PingRequest, EchoImage, WorkerPool>()));
 }
 
 #ifdef __x86_64__

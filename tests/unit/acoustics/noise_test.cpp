@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/acoustics/noise_budget.hpp"
 #include "renderer/acoustics/ring_down.hpp"
 #include "tests/unit/acoustics/receiver_bench.hpp"
 

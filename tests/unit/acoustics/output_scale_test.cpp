@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/acoustics/receiver.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 
 namespace sonard::render {
 namespace {

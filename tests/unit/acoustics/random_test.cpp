@@ -9,8 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/acoustics/beam_filter.hpp"
-#include "renderer/acoustics/beam_kernel.hpp"
+#include "renderer/acoustics/beam_correlation.hpp"
 
 namespace sonard::render {
 namespace {

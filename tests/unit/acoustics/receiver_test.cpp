@@ -11,8 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/acoustics/beam_kernel.hpp"
+#include "renderer/acoustics/beam_correlation.hpp"
 #include "renderer/acoustics/random.hpp"
+#include "renderer/acoustics/tvg.hpp"
 #include "tests/unit/acoustics/receiver_bench.hpp"
 
 namespace sonard::render {

@@ -9,7 +9,7 @@
 
 /// 16 bit samples of three pings of a moving sonar with all effects on, and of one in mode `paper`. Odd sizes
 /// leave remainders to every vector length.
-template <class Receiver, class EchoReception, class PingRequest, class EchoImage, class WorkerPool>
+template <class Receiver, class PointSpread, class PingRequest, class EchoImage, class WorkerPool>
 std::vector<std::uint16_t> several_pings() {
   constexpr int beams = 203;
   constexpr int lines = 331;
@@ -36,11 +36,11 @@ std::vector<std::uint16_t> several_pings() {
   request.settings.sixteen_bit = true;
   WorkerPool workers(1);
   Receiver receiver;
-  EchoReception reception;
+  PointSpread reception;
   auto skipped = receiver.skipped();  // whatever it counts
   reception.prepare(request.settings, 1, 0, {}, skipped);
   EchoImage heard;
-  reception.hear(echo, heard, workers, {}, skipped);
+  reception.form_beams(echo, heard, workers, {}, skipped);
   reception.spread(heard, workers);
   std::swap(echo, heard);
   std::vector<std::uint16_t> all;

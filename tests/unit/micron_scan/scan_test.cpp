@@ -18,8 +18,8 @@
 #include "protocol/micron/device.hpp"
 #include "protocol/micron/host.hpp"
 #include "protocol/micron/units.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
-#include "renderer/sonar_renderer.hpp"
 #include "server/devices/micron/kind.hpp"
 #include "server/devices/micron/settings.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/visibility/backscatter.hpp"
+#include "renderer/surface/backscatter.hpp"
 
 #include <cmath>
 #include <numbers>

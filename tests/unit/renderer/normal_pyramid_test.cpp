@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/visibility/normal_pyramid.hpp"
+#include "renderer/surface/normal_pyramid.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of RaySampler against the closed form of a plane, sample by sample; how they do not depend on
 // packets and threads; and surfaces that are hard to hit.
-#include "renderer/visibility/ray_sampler.hpp"
+#include "renderer/engines/cpu/ray_sampler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +26,24 @@ using test::make_world;
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double far_m = 1000;
+
+/// A world and what samples it.
+class Traced {
+ public:
+  Traced(World world, WorkerPool& workers, const std::string& embree_settings = {})
+      : index_(std::move(world), workers, embree_settings), sampler_(index_, workers) {}
+
+  auto sample(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+              double max_range_m) {
+    return sampler_.sample(T_world_sonar, grid, surface, max_range_m);
+  }
+  void set_body_pose(std::size_t body, const Pose& pose) { index_.set_body_pose(body, pose); }
+  const std::string& description() const { return index_.description(); }
+
+ private:
+  SpatialIndex index_;
+  RaySampler sampler_;
+};
 
 SampleGrid make_grid(int columns, int rows) {
   Aperture aperture;
@@ -104,7 +122,7 @@ TEST(RaySampler, SamplesOfAPlaneFollowTheClosedForm) {
   const glm::dvec3 n_sonar = glm::conjugate(T_world_sonar.orientation) * n;
   const double distance_m = glm::dot(n, foot - T_world_sonar.position_m);
   WorkerPool workers(2);
-  RaySampler sampler(world, workers);
+  Traced sampler(world, workers);
   for (const auto& [columns, rows] :
        {std::pair{64, 64}, std::pair{37, 29}, std::pair{3, 2}, std::pair{41, 130}}) {
     const SampleGrid grid = make_grid(columns, rows);
@@ -135,14 +153,14 @@ TEST(RaySampler, PacketsOfEveryWidthSeeTheSame) {
   const World world = busy_world();
   const SampleGrid grid = make_grid(128, 128);
   WorkerPool workers(2);
-  RaySampler widest(world, workers);
+  Traced widest(world, workers);
   const auto expected = widest.sample(over_the_bed(), grid, {}, far_m);
   ASSERT_GT(count_seen(grid, expected), grid.weights.size() / 2);
   for (const auto& [settings, width] : {std::pair{"isa=sse4.2", "4"}, std::pair{"isa=avx2", "8"}}) {
     if (!__builtin_cpu_supports("avx2") && std::string(width) == "8") {
       continue;
     }
-    RaySampler sampler(world, workers, settings);
+    Traced sampler(world, workers, settings);
     EXPECT_NE(sampler.description().find(std::string("packets of ") + width), std::string::npos)
         << sampler.description();
     const auto samples = sampler.sample(over_the_bed(), grid, {}, far_m);
@@ -164,11 +182,11 @@ TEST(RaySampler, AnyNumberOfThreadsGivesTheSameSamples) {
   const World world = busy_world();
   const SampleGrid grid = make_grid(100, 150);
   WorkerPool one(1);
-  RaySampler alone(world, one);
+  Traced alone(world, one);
   const auto expected = alone.sample(over_the_bed(), grid, {}, far_m);
   for (const unsigned threads : {2U, 5U}) {
     WorkerPool workers(threads);
-    RaySampler sampler(world, workers);
+    Traced sampler(world, workers);
     for (int repetition = 0; repetition < 5; ++repetition) {
       const auto samples = sampler.sample(over_the_bed(), grid, {}, far_m);
       for (std::size_t v = 0; v < grid.views.size(); ++v) {
@@ -181,7 +199,7 @@ TEST(RaySampler, AnyNumberOfThreadsGivesTheSameSamples) {
 // Inside a ball every ray hits: no holes between triangles.
 TEST(RaySampler, ClosedSurfacesHaveNoHoles) {
   WorkerPool workers(2);
-  RaySampler sampler(make_world({make_body("ball", make_sphere(5.0F, 100))}), workers);
+  Traced sampler(make_world({make_body("ball", make_sphere(5.0F, 100))}), workers);
   const SampleGrid grid = make_grid(256, 512);
   for (int i = 0; i < 4; ++i) {
     const Pose inside{{0.1 * i, 0.3, -0.2 * i}, glm::angleAxis(0.6 * i, glm::normalize(glm::dvec3(1, i, 2)))};
@@ -191,7 +209,7 @@ TEST(RaySampler, ClosedSurfacesHaveNoHoles) {
 
 TEST(RaySampler, TilesOutsideTheFanAreNotTraced) {
   WorkerPool workers(2);
-  RaySampler sampler(make_world({make_body("ball", make_sphere(5.0F, 32))}), workers);
+  Traced sampler(make_world({make_body("ball", make_sphere(5.0F, 32))}), workers);
   const SampleGrid grid = make_grid(64, 256);
   const auto samples = sampler.sample({}, grid, {}, far_m);
   std::size_t untouched = 0;
@@ -206,9 +224,9 @@ TEST(RaySampler, TilesOutsideTheFanAreNotTraced) {
 
 TEST(RaySampler, SurfacesNearerThanTheNearestDepthAreNotSeen) {
   WorkerPool workers(1);
-  RaySampler sampler(make_world({make_body("near", make_quad({0.015F, -1, -1}, {0, 2, 0}, {0, 0, 2})),
-                                 make_body("far", make_quad({4, -40, -40}, {0, 80, 0}, {0, 0, 80}))}),
-                     workers);
+  Traced sampler(make_world({make_body("near", make_quad({0.015F, -1, -1}, {0, 2, 0}, {0, 0, 2})),
+                             make_body("far", make_quad({4, -40, -40}, {0, 80, 0}, {0, 0, 80}))}),
+                 workers);
   Aperture narrow;
   narrow.beam_edges_rad = equal_angle_edges(1, 10 * degree);
   const SampleGrid grid = make_sample_grid(narrow, Sampling::of_grid(1, 16, 16));
@@ -227,7 +245,7 @@ TEST(RaySampler, OneMeshCanBeInManyPlacesAndMove) {
   world.bodies[0].T_world_body.position_m.x = 20;
   world.bodies[1].T_world_body.position_m.x = 10;
   WorkerPool workers(2);
-  RaySampler sampler(world, workers);
+  Traced sampler(world, workers);
   const SampleGrid grid = make_grid(32, 32);
   const auto nearest = [&] {
     float range_m = std::numeric_limits<float>::infinity();
@@ -249,7 +267,7 @@ TEST(RaySampler, BackFacesLetRaysPassWhenAskedTo) {
   const World world = make_world({make_body("facing_away", make_quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40})),
                                   make_body("hidden", make_quad({8, 20, -20}, {0, -40, 0}, {0, 0, 40}))});
   WorkerPool workers(1);
-  RaySampler sampler(world, workers);
+  Traced sampler(world, workers);
   Aperture narrow;
   narrow.beam_edges_rad = equal_angle_edges(1, 10 * degree);
   const SampleGrid grid = make_sample_grid(narrow, Sampling::of_grid(1, 16, 16));
@@ -269,12 +287,12 @@ TEST(RaySampler, UselessVertexNormalsAreReplacedByTheTriangles) {
   const TriangleMesh flat = make_quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
   WorkerPool workers(1);
   const SampleGrid grid = make_grid(32, 32);
-  RaySampler plain(make_world({make_body("wall", flat)}), workers);
+  Traced plain(make_world({make_body("wall", flat)}), workers);
   const auto expected = plain.sample({}, grid, {}, far_m);
   for (const float component : {0.0F, std::numeric_limits<float>::quiet_NaN()}) {
     TriangleMesh mesh = flat;
     mesh.normals.assign(4, glm::vec3(component));
-    RaySampler sampler(make_world({make_body("wall", mesh)}), workers);
+    Traced sampler(make_world({make_body("wall", mesh)}), workers);
     const auto samples = sampler.sample({}, grid, {}, far_m);
     for (std::size_t v = 0; v < grid.views.size(); ++v) {
       EXPECT_TRUE(std::equal(samples[v], samples[v] + std::ptrdiff_t{32} * 32, expected[v])) << component;
@@ -284,7 +302,7 @@ TEST(RaySampler, UselessVertexNormalsAreReplacedByTheTriangles) {
 
 TEST(RaySampler, AnEmptyWorldEchoesNothing) {
   WorkerPool workers(2);
-  RaySampler sampler(World{}, workers);
+  Traced sampler(World{}, workers);
   const SampleGrid grid = make_grid(32, 32);
   EXPECT_EQ(count_seen(grid, sampler.sample({}, grid, {}, far_m)), 0U);
 }

@@ -11,7 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "renderer/errors.hpp"
-#include "renderer/sonar_renderer.hpp"
+#include "renderer/ping.hpp"
 
 namespace sonard::server {
 namespace {

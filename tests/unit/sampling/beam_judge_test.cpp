@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the judge says of images whose error can be written down.
-#include "renderer/visibility/beam_judge.hpp"
+#include "renderer/engines/gpu/beam_judge.hpp"
 
 #include <algorithm>
 #include <cmath>

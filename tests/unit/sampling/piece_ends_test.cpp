@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the ends of visible pieces run across a wedge, by hand.
-#include "renderer/visibility/slices/piece_ends.hpp"
+#include "renderer/engines/cpu/piece_ends.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/visibility/sample_grid.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 
 #include <cmath>
 #include <numbers>

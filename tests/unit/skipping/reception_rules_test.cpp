@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/acoustics/echo_reception.hpp"
+#include "renderer/acoustics/point_spread.hpp"
 
 namespace sonard::render {
 namespace {
@@ -48,16 +48,16 @@ struct Outcome {
 /// The second of two pings.
 Outcome receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& settings) {
   WorkerPool workers(2);
-  EchoReception reception;
+  PointSpread reception;
   Outcome outcome;
   for (int ping = 0; ping < 2; ++ping) {
     SkipCounts skipped;
     reception.prepare(settings, 1, 0, skip, skipped);
     // With or without the pattern the same is seen: all of a beam in its middle.
-    const SonarSettings fine = EchoReception::sampled(settings);
+    const SonarSettings fine = PointSpread::sampled(settings);
     const EchoImage seen = echo_of(fine.aperture);
     if (reception.has_pattern()) {
-      reception.hear(seen, outcome.echo, workers, skip, skipped);
+      reception.form_beams(seen, outcome.echo, workers, skip, skipped);
     } else {
       const int parts = settings.aperture.fine_beams;
       outcome.echo = {settings.aperture.beam_count(), lines, {}};

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/acoustics/tvg.hpp"
+
 namespace sonard::render {
 namespace {
 

@@ -1,0 +1,62 @@
+// Random fields of a ping, line after line, correlated across beams by the array and along the range by the
+// pulse.
+#pragma once
+
+#include <vector>
+
+#include "renderer/acoustics/complex_row.hpp"
+#include "renderer/acoustics/random.hpp"
+#include "renderer/acoustics/receiver_tables.hpp"
+#include "renderer/acoustics/speckle_field.hpp"
+#include "renderer/skip_ledger.hpp"
+
+namespace sonard::render {
+
+/// CN(0, 1) per native line and beam.
+struct RandomFieldOfPing {
+  RandomKey key;
+  SpeckleField* kept = nullptr;  ///< keeps it from ping to ping; null: it is drawn anew
+  /// Of a single beam: the whole field is there, line by line; null: it is not.
+  Phasors beam{nullptr, nullptr};
+};
+
+/// Reads one field. Each thread has one of its own. Where lines share a pulse a kept field has to be evolved
+/// before any of its lines is read.
+class FieldReader {
+ public:
+  /// All arguments outlive the reader. @param skipped gets what is left out.
+  FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& field, const SkipSwitches& skip,
+              SkipCounts& skipped);
+
+  /// The field in one line; good until the next call.
+  Phasors line(int native);
+  /// Brings a kept field up to date, from -reach of the pulse to as much beyond the last
+  /// line.
+  void evolve(int native);
+
+ private:
+  bool skips(SkipRule rule);
+  /// Correlated across beams alone.
+  Phasors row(int native);
+  Phasors draw(int native, ComplexRow& row);
+  int place(int native) const { return native + tables_.pulse_correlation.reach(); }
+
+  const ReceiverTables& tables_;
+  const RandomFieldOfPing& field_;
+  const SkipSwitches& skip_;
+  SkipCounts& skipped_;
+  int beams_;
+  bool copies_;  ///< beams share nothing: rows are as they are drawn
+  ComplexRow white_;
+  /// A row drawn for one line serves its neighbours too.
+  struct Drawn {
+    ComplexRow row;
+    int native;
+    Phasors phasors;
+  };
+  std::vector<Drawn> drawn_;
+  std::vector<const float*> real_, imaginary_;  ///< rows that a line is joined of
+  ComplexRow joined_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,54 @@
+// The random fields that a sonar keeps from ping to ping.
+#pragma once
+
+#include <cstdint>
+
+#include "renderer/acoustics/correlated_field.hpp"
+#include "renderer/acoustics/receiver_tables.hpp"
+#include "renderer/acoustics/scanned_speckle.hpp"
+#include "renderer/acoustics/speckle_field.hpp"
+#include "renderer/ping.hpp"
+#include "renderer/pose.hpp"
+
+namespace sonard::render {
+
+/// Speckle and texture of one stream. Kinds `ou` and `frozen` are kept: a fan's per line and beam, a single
+/// beam's by its bearing, for a scanning head comes back to it. One thread calls it.
+class KeptSpeckle {
+ public:
+  /// Brings all to the settings and the pose of a ping: begun anew where they no longer fit, faded by the
+  /// motion since the last ping (docs/physics.md 2.8).
+  void advance(const PingRequest& request, const ReceiverTables& tables);
+
+  /// What the ping reads; good until the next call of anything. @param skipped gets what is left out.
+  RandomFieldOfPing speckle(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
+  RandomFieldOfPing texture(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
+
+ private:
+  /// What the fields were made for.
+  struct Maker {
+    PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
+    std::uint64_t seed = 0;
+    BeamFilter filter;
+    PulseCorrelation pulse_correlation;
+    double beamwidth_rad = 0;
+
+    bool operator==(const Maker&) const = default;
+  };
+  struct Field {
+    SpeckleField fan;
+    ScannedSpeckle scanned;
+  };
+
+  double decay(const PingRequest& request) const;
+  RandomFieldOfPing field_of(Field& field, RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
+
+  Maker maker_;
+  bool kept_ = false;
+  bool scans_ = false;  ///< a single beam
+  bool textured_ = false;
+  Field speckle_, texture_;
+  Pose T_world_sonar_;  ///< at the last ping
+};
+
+}  // namespace sonard::render

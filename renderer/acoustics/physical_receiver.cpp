@@ -1,0 +1,185 @@
+#include "renderer/acoustics/physical_receiver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "renderer/acoustics/complex_row.hpp"
+#include "renderer/acoustics/receive_lines.hpp"
+#include "renderer/acoustics/texture.hpp"
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+/// Envelope of echo, ring-down and noise.
+SONARD_SIMD_CLONES
+void envelope_row(const float* __restrict echo, const float* __restrict speckle_re,
+                  const float* __restrict speckle_im, float ring_down, float noise,
+                  const float* __restrict profile, const float* __restrict noise_re,
+                  const float* __restrict noise_im, float gain, int beams, float* __restrict out) {
+  for (int b = 0; b < beams; ++b) {
+    const float amplitude = std::sqrt(echo[b]);
+    const float n = noise * profile[b];
+    const float re = (amplitude * speckle_re[b] + ring_down) + n * noise_re[b];
+    const float im = amplitude * speckle_im[b] + n * noise_im[b];
+    out[b] = gain * std::sqrt(re * re + im * im);
+  }
+}
+
+/// Envelope of noise alone.
+SONARD_SIMD_CLONES
+void noise_envelope_row(float noise, const float* __restrict profile, const float* __restrict noise_re,
+                        const float* __restrict noise_im, float gain, int beams, float* __restrict out) {
+  const float scale = gain * noise;
+  for (int b = 0; b < beams; ++b) {
+    out[b] = scale * profile[b] * std::sqrt(noise_re[b] * noise_re[b] + noise_im[b] * noise_im[b]);
+  }
+}
+
+/// Native lines one by one, in a thread of their own.
+class PhysicalLines {
+ public:
+  PhysicalLines(const PhysicalPing& ping, const EchoBlock& block)
+      : ping_(ping),
+        block_(block),
+        beams_(ping.tables.filter.beams()),
+        speckle_(ping.tables, ping.speckle, ping.skip, skipped_),
+        texture_(ping.tables, ping.texture, ping.skip, skipped_),
+        noise_(ping.tables, ping.noise, ping.skip, skipped_),
+        silence_(beams_),
+        still_(beams_),
+        textured_(static_cast<std::size_t>(beams_)),
+        codes_(static_cast<std::size_t>(beams_)) {
+    std::fill_n(still_.real(), beams_, 1.0F);
+  }
+
+  void add_native_line(int native, Quantizer& output) {
+    const ReceiverTables& tables = ping_.tables;
+    // The device puts out exactly 0 in its near field.
+    const bool blanked = range_m(native) < tables.model.near_field_blank_m;
+    if (blanked && skips(SkipRule::blanked_near_field)) {
+      return;
+    }
+    const float gain = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(native)];
+    const float strongest = block_.strongest(native);
+    const float ring_down = ring_down_at(native);
+    const float level = noise_level_at(native);
+    const bool silent = level == 0 && skips(SkipRule::no_noise);
+    const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(native);
+    // No echo in any beam: speckle would multiply 0. Later images get other random
+    // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
+    if (!(strongest > 0) && ring_down == 0 && skips(SkipRule::lines_without_echo)) {
+      if (silent) {
+        return;
+      }
+      noise_envelope_row(level, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
+                         codes_.data());
+    } else {
+      const Phasors phasors = speckle_of(native);
+      envelope_row(echo_of(native), phasors.real, phasors.imaginary, ring_down, level, tables.profile.data(),
+                   noise.real, noise.imaginary, gain, beams_, codes_.data());
+    }
+    output.add(codes_.data());
+  }
+
+  const SkipCounts& skipped() const { return skipped_; }
+
+ private:
+  /// Counts too: to be asked only where the criterion of the rule is met.
+  bool skips(SkipRule rule) {
+    const bool on = ping_.skip.on(rule);
+    skipped_.add(rule, on ? 1 : 0);
+    return on;
+  }
+
+  double range_m(int native) const { return (native + 0.5) * ping_.tables.range.step_m; }
+
+  float ring_down_at(int native) {
+    const ReceiverTables& tables = ping_.tables;
+    if (!tables.rings) {
+      return 0.0F;
+    }
+    const bool over = native >= tables.ring_down_lines && skips(SkipRule::ring_down_over);
+    return over ? 0.0F : tables.ring_down[static_cast<std::size_t>(native)];
+  }
+
+  /// Amplitude before TVG.
+  float noise_level_at(int native) {
+    const float level = ping_.tables.noise;
+    if (!(ping_.tables.model.interference.probability > 0) ||
+        (!ping_.interference.raises(native) && skips(SkipRule::no_interference))) {
+      return level;
+    }
+    return level * ping_.interference.factor_at(native);
+  }
+
+  Phasors speckle_of(int native) {
+    const bool off = ping_.tables.model.speckle == PhysicalModel::Speckle::off;
+    return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(native);
+  }
+
+  /// The echo behind its texture.
+  const float* echo_of(int native) {
+    const PhysicalModel& model = ping_.tables.model;
+    const float* echo = block_.line(native);
+    if (!(model.texture_nu > 0) || model.speckle == PhysicalModel::Speckle::off) {
+      return echo;
+    }
+    const double scatterers = scatterers_at(model, range_m(native));
+    if (scatterers > texture_ends_at_nu && skips(SkipRule::many_scatterers)) {
+      return echo;
+    }
+    root_.set(scatterers);
+    root_.apply(echo, texture_.line(native).real, beams_, textured_.data());
+    return textured_.data();
+  }
+
+  const PhysicalPing& ping_;
+  const EchoBlock& block_;
+  int beams_;
+  SkipCounts skipped_;
+  FieldReader speckle_, texture_, noise_;
+  ComplexRow silence_;  ///< noise of amplitude 0: 0 throughout
+  ComplexRow still_;    ///< speckle that is off: a constant phasor
+  TextureRoot root_;
+  AlignedVector<float> textured_, codes_;
+};
+
+/// A line's neighbours may be another thread's.
+void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, WorkerPool& workers,
+                  SkipCounts& skipped) {
+  const int reach = ping.tables.pulse_correlation.reach();
+  if (field.kept == nullptr || reach == 0) {
+    return;
+  }
+  const int lines = ping.tables.range.count + 2 * reach;
+  constexpr int lines_per_job = 64;
+  const int jobs = (lines + lines_per_job - 1) / lines_per_job;
+  std::mutex counting;
+  workers.run(jobs, [&](int job) {
+    SkipCounts own;
+    FieldReader reader(ping.tables, field, ping.skip, own);
+    for (int line = job * lines_per_job; line < std::min((job + 1) * lines_per_job, lines); ++line) {
+      reader.evolve(line - reach);
+    }
+    const std::lock_guard lock(counting);
+    skipped += own;
+  });
+}
+
+}  // namespace
+
+void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped) {
+  evolve_whole(ping.speckle, ping, workers, skipped);
+  evolve_whole(ping.texture, ping, workers, skipped);
+}
+
+PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
+                             WorkerPool& workers, SkipCounts& skipped) {
+  evolve_fields(ping, workers, skipped);
+  return receive_lines<PhysicalLines>(echo, ping, settings, workers, skipped);
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,30 @@
+// Mode `physical` from the mean echo to samples: texture, speckle, noise, envelope, gain
+// (docs/physics.md 2.8, 2.9).
+#pragma once
+
+#include "renderer/acoustics/correlated_field.hpp"
+#include "renderer/acoustics/noise.hpp"
+#include "renderer/acoustics/receiver_tables.hpp"
+#include "renderer/ping.hpp"
+#include "renderer/skip_ledger.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// What one ping brings to the receiver beside its echo.
+struct PhysicalPing {
+  const ReceiverTables& tables;
+  RandomFieldOfPing speckle, texture, noise;
+  InterferenceStreak interference;
+  const SkipSwitches& skip;
+};
+
+/// Brings the kept fields up to date, all lines of them, where lines share a pulse: a line needs its
+/// neighbours then. Elsewhere each line is brought up to date when it is read.
+void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped);
+
+/// @param echo mean echo, as the array hears it. @param skipped what was left out is added to it.
+PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
+                             WorkerPool& workers, SkipCounts& skipped);
+
+}  // namespace sonard::render

@@ -1,0 +1,74 @@
+#include "renderer/acoustics/point_spread.hpp"
+
+#include <utility>
+
+namespace sonard::render {
+
+void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int stream,
+                          const SkipSwitches& skip, SkipCounts& skipped) {
+  uses_pattern_ = false;
+  uses_pulse_ = false;
+  if (settings.model == Model::paper) {
+    return;
+  }
+  if (is_heard_by_array(settings)) {
+    prepare_pattern(settings, seed, stream, skip, skipped);
+  }
+  if (settings.physical.pulse != PhysicalModel::Pulse::point && settings.physical.range_cell_m > 0) {
+    prepare_pulse(settings, skip, skipped);
+  }
+}
+
+void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int stream,
+                                  const SkipSwitches& skip, SkipCounts& skipped) {
+  if (pattern_ && aperture_ == settings.aperture && seed_ == seed && skip.on(SkipRule::unchanged_settings)) {
+    skipped.add(SkipRule::unchanged_settings);
+  } else {
+    // The elements are those of the sonar: the same in all its pings.
+    pattern_.emplace(settings.aperture, make_random_key(seed, stream, RandomField::array_elements, 0));
+    aperture_ = settings.aperture;
+    seed_ = seed;
+  }
+  uses_pattern_ = true;
+  const bool planar = settings.aperture.bearing == Aperture::Bearing::planar;
+  if (planar && pattern_->change() <= entry_of(SkipRule::separate_beams).bound &&
+      skip.on(SkipRule::separate_beams)) {
+    skipped.add(SkipRule::separate_beams);
+    uses_pattern_ = false;
+  }
+}
+
+void PointSpread::prepare_pulse(const SonarSettings& settings, const SkipSwitches& skip,
+                                SkipCounts& skipped) {
+  const PhysicalModel& model = settings.physical;
+  const double step_m = settings.range.step_m;
+  if (pulse_ && pulse_->pulse == model.pulse && pulse_->cell_m == model.range_cell_m &&
+      pulse_->step_m == step_m && skip.on(SkipRule::unchanged_settings)) {
+    skipped.add(SkipRule::unchanged_settings);
+  } else {
+    pulse_ = {model.pulse, model.range_cell_m, step_m,
+              PulseResponse(model.pulse, model.range_cell_m, step_m)};
+  }
+  uses_pulse_ = true;
+  // A bin loses that share at most, and gets it of the bins around it.
+  if (2 * pulse_->response.share_outside() <= entry_of(SkipRule::short_pulse).bound &&
+      skip.on(SkipRule::short_pulse)) {
+    skipped.add(SkipRule::short_pulse);
+    uses_pulse_ = false;
+  }
+}
+
+SonarSettings PointSpread::sampled(const SonarSettings& settings) {
+  SonarSettings fine = settings;
+  fine.aperture.beam_edges_rad = fine_beam_edges(settings.aperture);
+  return fine;
+}
+
+void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {
+  if (uses_pulse_) {
+    pulse_->response.apply(echo, memory_, workers);
+    std::swap(echo, memory_);
+  }
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,59 @@
+// What a sonar's array and pulse make of the mean echo, between the sampling of the world and the receiver.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "renderer/acoustics/beam_pattern.hpp"
+#include "renderer/acoustics/pulse.hpp"
+#include "renderer/ping.hpp"
+#include "renderer/skip_ledger.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// The beam pattern and the pulse of one sonar, with the tables of its last settings. Mode `paper` has
+/// neither.
+class PointSpread {
+ public:
+  /// Makes what these settings need.
+  /// @param skipped counts unchanged_settings, separate_beams and short_pulse
+  void prepare(const SonarSettings& settings, std::uint64_t seed, int stream, const SkipSwitches& skip,
+               SkipCounts& skipped);
+
+  /// Whether the world has to be sampled in fine beams, with sampled(), and turned into beams by
+  /// form_beams().
+  bool has_pattern() const { return uses_pattern_; }
+  /// The settings, with the fine beams in place of the beams.
+  static SonarSettings sampled(const SonarSettings& settings);
+  /// From fine beams to beams.
+  void form_beams(const EchoImage& fine, EchoImage& beams, WorkerPool& workers, const SkipSwitches& skip,
+                  SkipCounts& skipped) const {
+    pattern_->apply(fine, beams, workers, skip, skipped);
+  }
+
+  /// Spreads the echo in range by the length of the pulse.
+  void spread(EchoImage& echo, WorkerPool& workers);
+
+ private:
+  struct PulseTable {
+    PhysicalModel::Pulse pulse;
+    double cell_m;
+    double step_m;
+    PulseResponse response;
+  };
+
+  void prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int stream,
+                       const SkipSwitches& skip, SkipCounts& skipped);
+  void prepare_pulse(const SonarSettings& settings, const SkipSwitches& skip, SkipCounts& skipped);
+
+  std::optional<BeamPattern> pattern_;
+  Aperture aperture_;  // of pattern_
+  std::uint64_t seed_ = 0;
+  bool uses_pattern_ = false;
+  std::optional<PulseTable> pulse_;
+  bool uses_pulse_ = false;
+  EchoImage memory_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,179 @@
+#include "renderer/acoustics/pulse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+using Pulse = PhysicalModel::Pulse;
+
+/// sin(pi x) / (pi x): what an even band of frequencies is in time.
+double sinc_at(double x) {
+  const double y = std::numbers::pi * x;
+  return y == 0 ? 1.0 : std::sin(y) / y;
+}
+
+constexpr double reach_cells = 16;
+constexpr int steps_per_cell = 32;  // of the integration
+
+/// Intensity `cells` away from the echo, of any scale.
+double response(Pulse pulse, double cells) {
+  switch (pulse) {
+    case Pulse::tone:
+      return std::abs(cells) <= 0.5 ? 1.0 : 0.0;
+    case Pulse::windowed_chirp: {
+      // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
+      const double amplitude = sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
+      return amplitude * amplitude;
+    }
+    case Pulse::point:
+    case Pulse::chirp:
+      break;
+  }
+  return sinc_at(cells) * sinc_at(cells);
+}
+
+/// Two points that lie evenly in lines `lines` apart are x apart with a density that falls to 0 a line to
+/// either side of that.
+double mean_response(Pulse pulse, int lines, double line_cells) {
+  const int steps = 2 * std::max(1, static_cast<int>(std::ceil(line_cells * steps_per_cell)));
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double offset = 2 * (i + 0.5) / steps - 1;
+    sum += (1 - std::abs(offset)) * response(pulse, (lines + offset) * line_cells);
+  }
+  return sum * 2 / steps;
+}
+
+/// The same of a box, exactly: differences of the second integral of the box.
+double mean_tone(int lines, double line_cells) {
+  const auto second_integral = [](double x) {
+    const double inside = std::clamp(x, -0.5, 0.5);
+    return 0.5 * (inside + 0.5) * (inside + 0.5) + (x - inside) * (x > 0 ? 1.0 : 0.0);
+  };
+  const double middle = lines * line_cells;
+  return (second_integral(middle + line_cells) - 2 * second_integral(middle) +
+          second_integral(middle - line_cells)) /
+         (line_cells * line_cells);
+}
+
+SONARD_SIMD_CLONES
+void add_scaled(const float* __restrict in, float share, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] += share * in[i];
+  }
+}
+
+}  // namespace
+
+PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m) {
+  if (pulse == Pulse::point || !(cell_m > 0)) {
+    return;
+  }
+  const double line_cells = step_m / cell_m;
+  const double reach = pulse == Pulse::tone ? 0.5 : reach_cells;
+  const int farthest = static_cast<int>(std::ceil(reach / line_cells));
+  std::vector<double> shares;
+  double total = 0;
+  for (int lines = 0; lines <= farthest; ++lines) {
+    shares.push_back(pulse == Pulse::tone ? mean_tone(lines, line_cells)
+                                          : mean_response(pulse, lines, line_cells));
+    total += lines == 0 ? shares.back() : 2 * shares.back();
+  }
+  for (const double share : shares) {
+    share_.push_back(static_cast<float>(share / total));
+  }
+}
+
+void PulseResponse::apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const {
+  constexpr int beams_per_job = 8;
+  const auto lines = static_cast<std::size_t>(echo.lines);
+  out.beams = echo.beams;
+  out.lines = echo.lines;
+  out.intensity.resize(echo.intensity.size());
+  workers.run((echo.beams + beams_per_job - 1) / beams_per_job, [&](int job) {
+    const int end = std::min(echo.beams, (job + 1) * beams_per_job);
+    for (int beam = job * beams_per_job; beam < end; ++beam) {
+      const float* in = &echo.intensity[static_cast<std::size_t>(beam) * lines];
+      float* spread = &out.intensity[static_cast<std::size_t>(beam) * lines];
+      std::fill_n(spread, lines, 0.0F);
+      for (std::size_t k = 0; k < std::min(share_.size(), lines); ++k) {
+        add_scaled(in, share_[k], lines - k, spread + k);
+        if (k > 0) {
+          add_scaled(in + k, share_[k], lines - k, spread);
+        }
+      }
+    }
+  });
+}
+
+namespace {
+
+constexpr int most_lines_each_side = 32;
+
+/// Amplitude that is heard `lines` away from an echo, of any scale; 0 beyond the main lobe.
+double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
+  const double cells = lines * line_cells;
+  switch (pulse) {
+    case Pulse::point:
+      return lines == 0 ? 1.0 : 0.0;
+    case Pulse::chirp:
+      return cells < 1 ? sinc_at(cells) : 0.0;
+    case Pulse::windowed_chirp:  // the transform of a Hann window
+      return cells < 2 ? sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1)) : 0.0;
+    case Pulse::tone:
+      return std::max(0.0, std::min(0.5, cells + line_cells / 2) - std::max(-0.5, cells - line_cells / 2));
+  }
+  return 0.0;
+}
+
+SONARD_SIMD_CLONES
+void weigh_row(const float* __restrict row, float weight, int width, float* __restrict out) {
+  for (int i = 0; i < width; ++i) {
+    out[i] = weight * row[i];
+  }
+}
+
+SONARD_SIMD_CLONES
+void add_pair(const float* before, const float* after, float weight, int width, float* __restrict out) {
+  for (int i = 0; i < width; ++i) {
+    out[i] += weight * (before[i] + after[i]);
+  }
+}
+
+}  // namespace
+
+PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m) {
+  if (!(cell_m > 0)) {
+    return;
+  }
+  std::vector<double> amplitudes;
+  double power = 0;
+  for (int j = 0; j <= most_lines_each_side; ++j) {
+    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m);
+    if (!(amplitude > 0)) {
+      break;
+    }
+    amplitudes.push_back(amplitude);
+    power += (j == 0 ? 1 : 2) * amplitude * amplitude;
+  }
+  weights_.clear();
+  std::transform(amplitudes.begin(), amplitudes.end(), std::back_inserter(weights_),
+                 [&](double amplitude) { return static_cast<float>(amplitude / std::sqrt(power)); });
+}
+
+void PulseCorrelation::apply(const std::vector<const float*>& rows, int width, float* out) const {
+  const auto middle = weights_.size() - 1;
+  weigh_row(rows[middle], weights_[0], width, out);
+  for (std::size_t j = 1; j < weights_.size(); ++j) {
+    add_pair(rows[middle - j], rows[middle + j], weights_[j], width, out);
+  }
+}
+
+}  // namespace sonard::render

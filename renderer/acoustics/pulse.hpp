@@ -1,0 +1,64 @@
+// What the length of the pulse does along the range: it spreads the mean echo, and neighbouring lines share
+// speckle and noise.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "renderer/ping.hpp"
+#include "renderer/sonar_settings.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
+/// over the line, and over that in which it is heard (docs/physics.md 2.6). Chirps are followed out to 16
+/// cells to either side; of an echo nothing is lost.
+class PulseResponse {
+ public:
+  using Pulse = PhysicalModel::Pulse;
+
+  /// Spreads nothing.
+  PulseResponse() = default;
+  /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
+  PulseResponse(Pulse pulse, double cell_m, double step_m);
+
+  /// Shares of an echo in its own line and the lines to one side of it; 0: nothing is spread.
+  int taps() const { return static_cast<int>(share_.size()); }
+  /// Share that is heard `lines` away from where it is.
+  double share(int lines) const { return static_cast<double>(share_[static_cast<std::size_t>(lines)]); }
+
+  /// Share that is heard outside of the line where the echo is.
+  double share_outside() const { return share_.empty() ? 0.0 : 1 - share(0); }
+
+  /// What would be heard beyond the ends of the image is left out. What `out` holds is used as memory.
+  void apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const;
+
+ private:
+  std::vector<float> share_;
+};
+
+/// Lines shorter than the pulse hear the same scatterers, and noise behind the same matched filter: their
+/// fields are a white one filtered with the amplitude of the pulse, sum of squares 1 (docs/physics.md 2.8).
+class PulseCorrelation {
+ public:
+  /// Lines share nothing.
+  PulseCorrelation() = default;
+  /// Of a chirp the main lobe, of a tone its share of each line. @param cell_m PhysicalModel::range_cell_m;
+  /// 0: a pulse without length.
+  PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m);
+
+  /// Lines to either side that one line shares its field with; 0: none.
+  int reach() const { return static_cast<int>(weights_.size()) - 1; }
+  /// sum_j c_j rows[reach + j], j = -reach ... reach. @param rows 2 * reach + 1 of at least `width` numbers.
+  void apply(const std::vector<const float*>& rows, int width, float* out) const;
+  /// c_j of the sum, j >= 0; c_-j is the same.
+  float weight(int lines) const { return weights_[static_cast<std::size_t>(lines)]; }
+
+  bool operator==(const PulseCorrelation&) const = default;
+
+ private:
+  std::vector<float> weights_{1.0F};  ///< c_0 ... c_reach
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,53 @@
+// The field under the speckle of a scanning head, kept from sweep to sweep.
+#pragma once
+
+#include <map>
+
+#include "renderer/acoustics/complex_row.hpp"
+#include "renderer/acoustics/pulse.hpp"
+#include "renderer/acoustics/random.hpp"
+#include "renderer/acoustics/speckle_field.hpp"
+#include "renderer/pose.hpp"
+#include "renderer/skip_ledger.hpp"
+
+namespace sonard::render {
+
+/// Where a single beam looks, apart from what its head turns by.
+struct ScanPose {
+  glm::dvec3 position_m;
+  glm::dvec3 axis;     ///< that the head turns about: the sonar's z, in the world
+  double bearing_rad;  ///< of the beam about this axis, from a direction that belongs to the world
+
+  explicit ScanPose(const Pose& T_world_sonar);
+};
+
+/// CN(0, 1) per native line, for one beam that is turned about the sonar's z axis. What it looks at is what
+/// it looked at a sweep ago: the field hangs on the world's bearings, white over cells of a quarter of a
+/// beamwidth, and a beam hears the cells around it. Two bearings apart by d are correlated by exp(-(d / half
+/// a beamwidth)^2), as SpeckleField has it for a sonar that turns; only other motion fades
+/// (docs/physics.md 2.8).
+class ScannedSpeckle {
+ public:
+  ScannedSpeckle() = default;
+  ScannedSpeckle(double beamwidth_rad, int lines);
+
+  int lines() const { return lines_; }
+  /// All bearings lose correlation: exp(-decay) of the field is left. @param decay >= 0
+  void fade(double decay);
+  /// The field at a bearing, correlated along the range by the pulse. @param key of what is drawn anew.
+  /// @return good until the next call.
+  Phasors at(double bearing_rad, const PulseCorrelation& pulse, RandomKey key, const SkipSwitches& skip,
+             SkipCounts& skipped);
+
+ private:
+  SpeckleField& cell_at(int number);
+  Phasors joined(const PulseCorrelation& pulse);
+
+  double correlation_rad_ = 1.0;  ///< bearings this far apart are correlated by 1 / e
+  int lines_ = 0;                 ///< with those beyond both ends that the pulse reaches
+  int cell_count_ = 0;
+  std::map<int, SpeckleField> cells_;  ///< those that were looked at: one row of all native lines each
+  ComplexRow fresh_{0}, sum_{0}, out_{0};
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,13 @@
+// Time-varying gain: what the receiver makes good of spreading and absorption (docs/physics.md 2.9).
+#pragma once
+
+#include <vector>
+
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Time-varying gain and gain setting of mode `physical` per native line, as amplitude.
+std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range);
+
+}  // namespace sonard::render

@@ -1,0 +1,68 @@
+// The one interface between the pipeline and whatever finds out what the sonar hears of its surroundings.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/ping.hpp"
+
+namespace sonard::render {
+
+struct PartMesh;  // renderer/scene/world.hpp
+
+/// What a ping, or a span of its range, asks of an engine.
+struct EchoRequest {
+  Pose T_world_sonar;
+  const SonarSettings& settings;
+  /// What each line is yet to be multiplied with, for engines that weigh their errors; empty: 1.
+  const std::vector<float>& line_weight;
+  bool open_water = false;  ///< MeanEcho::open_sr is wanted; only in mode `physical`
+};
+
+/// The echo as it comes to the sonar, before array and pulse.
+struct MeanEcho {
+  /// Sum of response * solid angle * elevation pattern, steradians; in mode `paper` the weighted mean of the
+  /// response. Spreading and absorption are left to the caller: they depend on the line alone, and taken per
+  /// line they stay exact where one surface spreads over many lines.
+  EchoImage image;
+  /// [beam * lines + line], only where it was asked for. Solid angle * elevation pattern, steradians, of what
+  /// of the beam nothing stands before, up to the middle of the line.
+  std::vector<float> open_sr;
+};
+
+/// Finds what is visible and sums its echoes by beam and range line. One thread uses an engine.
+///
+/// To add an engine, implement this and make it in make_engine(). Every test of the image then runs on it.
+class EchoEngine {
+ public:
+  EchoEngine() = default;
+  virtual ~EchoEngine() = default;
+  EchoEngine(const EchoEngine&) = delete;
+  EchoEngine& operator=(const EchoEngine&) = delete;
+
+  /// The same for the same world and request, whatever came before.
+  /// @param echo gets the result; what it holds is used as memory.
+  /// @param statistics gets what it took, added to what it holds.
+  /// @throws RequestError when the settings cannot be sampled.
+  /// @throws RendererError when the engine itself fails.
+  virtual void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) = 0;
+
+  /// @param body in the order of the world, and in it.
+  virtual void set_body_pose(std::size_t body, const Pose& T_world_body) = 0;
+
+  /// Gives parts other meshes, with the attributes of those they had. Not for every ping: what is built of a
+  /// mesh is built anew.
+  /// @throws RendererError when the engine itself fails.
+  virtual void set_part_meshes(std::span<const PartMesh> changes) = 0;
+
+  /// From the next image on level rays sink by `bend_per_m` * x^2 over the horizontal distance x; 0, as at
+  /// the beginning: they are straight. Only where RendererOptions::ray_curvature_per_m is not 0.
+  virtual void set_ray_bend(double bend_per_m) = 0;
+
+  /// The engine and what it runs on, for logs: "raster, vendor / renderer / version".
+  virtual const std::string& description() const = 0;
+};
+
+}  // namespace sonard::render

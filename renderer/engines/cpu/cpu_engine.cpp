@@ -1,0 +1,125 @@
+#include "renderer/engines/cpu/cpu_engine.hpp"
+
+#include <utility>
+
+#include "renderer/engines/cpu/slice_binner.hpp"
+#include "renderer/sample_grid/grid_binner.hpp"
+#include "renderer/scene/bent_world.hpp"
+#include "renderer/stopwatch.hpp"
+#include "renderer/surface/surface_model.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+std::unique_ptr<SpatialIndex> bendable_index(const World& world, WorkerPool& workers,
+                                             double curvature_per_m) {
+  return curvature_per_m == 0.0 ? nullptr
+                                : std::make_unique<SpatialIndex>(bendable(world, curvature_per_m), workers);
+}
+
+/// Facets that were divided so that they bend with the rays are not to be merged again.
+SkipSwitches slice_switches(const RendererOptions& options) {
+  SkipSwitches switches = options.skip;
+  return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);
+}
+
+SliceAccuracy slice_accuracy(const SonarSettings& settings) {
+  SliceAccuracy accuracy;
+  // The paper's sigmoid makes more of small changes of incidence.
+  accuracy.slices_per_beam = settings.model == Model::paper ? 2 : 1;
+  if (settings.sampling.preset == Sampling::Preset::fast) {
+    accuracy.most_divisions = 25;
+    accuracy.first_in_five = true;
+    accuracy.disagreement = 2.5e-2F;
+    accuracy.shift_lines = 1.0F;
+    accuracy.bow_lines = 3e-3F;
+    accuracy.evenness = 0.15F;
+    accuracy.change = 0.05F;
+    accuracy.mapped_lines = 4.0F;
+    accuracy.facet_slopes = 0.5F;
+    accuracy.facet_lines = 0.03F;
+  } else if (settings.sampling.preset == Sampling::Preset::reference) {
+    accuracy.slices_per_beam = 9;
+    accuracy.disagreement = 1e-4F;
+    accuracy.shift_lines = 0.02F;
+    accuracy.bow_lines = 5e-5F;
+    accuracy.evenness = 0.005F;
+    accuracy.change = 0.001F;
+    accuracy.facet_slopes = 0.03F;
+    accuracy.facet_lines = 0.001F;
+  }
+  return accuracy;
+}
+
+}  // namespace
+
+CpuEngine::CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options)
+    : skip_(options.skip),
+      largest_response_(largest_response(index.world())),
+      workers_(workers),
+      bendable_(bendable_index(index.world(), workers, options.ray_curvature_per_m)),
+      slices_(bendable_ ? bendable_->world() : index.world(), workers, slice_switches(options)),
+      rays_(bendable_ ? *bendable_ : index, workers),
+      description_("ray, " + index.description()) {}
+
+void CpuEngine::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  slices_.set_body_pose(body, T_world_body);
+  if (bendable_) {
+    bendable_->set_body_pose(body, T_world_body);
+  }
+}
+
+void CpuEngine::set_part_meshes(std::span<const PartMesh> changes) {
+  slices_.set_part_meshes(changes);
+  if (bendable_) {
+    bendable_->set_part_meshes(changes);
+  }
+}
+
+void CpuEngine::set_ray_bend(double bend_per_m) {
+  slices_.set_ray_bend(bend_per_m);
+  rays_.set_ray_bend(bend_per_m);
+}
+
+void CpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
+  const BinningOptions options = binning_options(request, skip_, largest_response_);
+  if (needs_grid(request.settings)) {
+    image_by_grid(request, options, echo, statistics);
+  } else {
+    image_by_slices(request, options, echo, statistics);
+  }
+}
+
+void CpuEngine::image_by_grid(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                              PingStatistics& statistics) {
+  Stopwatch watch;
+  const SonarSettings& settings = request.settings;
+  if (grid_.prepare(settings, skip_.on(SkipRule::unchanged_settings))) {
+    statistics.skipped.add(SkipRule::unchanged_settings);
+  }
+  const auto views = rays_.sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),
+                                  settings.range.sampled_range_m());
+  statistics.visibility_s += watch.lap();
+  hand_over(
+      bin_echoes(grid_.grid(), views, settings.range, options, workers_, std::move(echo.image.intensity)),
+      echo, statistics);
+  statistics.binning_s += watch.lap();
+}
+
+void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                                PingStatistics& statistics) {
+  Stopwatch watch;
+  const SonarSettings& settings = request.settings;
+  const auto cells = slices_.sample(request.T_world_sonar, settings.aperture, settings.range,
+                                    settings.range.sampled_range_m(), surface_model(settings, skip_),
+                                    slice_accuracy(settings));
+  statistics.visibility_s += watch.lap();
+  statistics.skipped += slices_.skipped();
+  hand_over(bin_echoes(cells, settings.aperture, settings.range, options, workers_,
+                       std::move(echo.image.intensity)),
+            echo, statistics);
+  statistics.binning_s += watch.lap();
+}
+
+}  // namespace sonard::render

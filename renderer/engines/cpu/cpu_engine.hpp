@@ -1,0 +1,48 @@
+// The engine that needs no graphics: exact visibility in azimuth slices for presets, rays for fixed grids.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "renderer/backend.hpp"
+#include "renderer/binning/binning.hpp"
+#include "renderer/engine.hpp"
+#include "renderer/engines/cpu/ray_sampler.hpp"
+#include "renderer/engines/cpu/slice_sampler.hpp"
+#include "renderer/sample_grid/grid_cache.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+class CpuEngine final : public EchoEngine {
+ public:
+  /// @param index where the world is moved. Only a fixed grid traces rays through it.
+  /// @param workers outlives the engine, as the index does.
+  CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options);
+
+  void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) override;
+  void set_body_pose(std::size_t body, const Pose& T_world_body) override;
+  void set_part_meshes(std::span<const PartMesh> changes) override;
+  void set_ray_bend(double bend_per_m) override;
+  const std::string& description() const override { return description_; }
+
+ private:
+  void image_by_grid(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                     PingStatistics& statistics);
+  void image_by_slices(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                       PingStatistics& statistics);
+
+  const SkipSwitches skip_;
+  const float largest_response_;
+  WorkerPool& workers_;
+  std::unique_ptr<SpatialIndex>
+      bendable_;  ///< the world in facets that bend with the rays; null: they do not
+  SliceSampler slices_;
+  RaySampler rays_;
+  GridCache grid_;
+  std::string description_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,295 @@
+#include "renderer/engines/cpu/fan_triangles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr int share_count = 32;  // jobs; fixed, so that the order of triangles does not depend on the threads
+constexpr float thin_ratio = 3.0F;      // angular height over width
+constexpr float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges matter little
+constexpr auto half_turn = static_cast<float>(std::numbers::pi);
+
+/// Vertices of one cluster in the sonar frame.
+struct Corners {
+  std::array<float, MeshClusters::most_vertices> x, y, z;
+  std::array<float, MeshClusters::most_vertices> azimuth;
+  std::array<float, MeshClusters::most_vertices> horizontal_squared;
+  std::array<float, MeshClusters::most_vertices> tangent;  ///< of the elevation
+};
+
+SONARD_SIMD_CLONES
+void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Corners& out) {
+  const float* x = &part.clusters->x[cluster.first_vertex];
+  const float* y = &part.clusters->y[cluster.first_vertex];
+  const float* z = &part.clusters->z[cluster.first_vertex];
+  const glm::mat3 m = part.R_sonar_part;  // columns are the axes of the part
+  const glm::vec3 t = part.t_sonar_part_m;
+  const auto count = static_cast<int>(cluster.vertex_count);
+  for (int i = 0; i < count; ++i) {
+    const float px = m[0].x * x[i] + m[1].x * y[i] + m[2].x * z[i] + t.x;
+    const float py = m[0].y * x[i] + m[1].y * y[i] + m[2].y * z[i] + t.y;
+    out.x[static_cast<std::size_t>(i)] = px;
+    out.y[static_cast<std::size_t>(i)] = py;
+    const float pz = m[0].z * x[i] + m[1].z * y[i] + m[2].z * z[i] + t.z;
+    const float horizontal_squared = px * px + py * py;
+    out.z[static_cast<std::size_t>(i)] = pz;
+    out.azimuth[static_cast<std::size_t>(i)] = fast_azimuth(py, px);
+    out.horizontal_squared[static_cast<std::size_t>(i)] = horizontal_squared;
+    out.tangent[static_cast<std::size_t>(i)] = pz / std::sqrt(horizontal_squared + 1e-30F);
+  }
+}
+
+/// Moves the vertices to where they are seen.
+void bend_corners(const RayBend& bend, std::uint32_t count, Corners& at) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 p = bend.point({at.x[i], at.y[i], at.z[i]});
+    at.x[i] = p.x;
+    at.y[i] = p.y;
+    at.z[i] = p.z;
+    at.azimuth[i] = fast_azimuth(p.y, p.x);
+    at.horizontal_squared[i] = p.x * p.x + p.y * p.y;
+    at.tangent[i] = p.z / std::sqrt(at.horizontal_squared[i] + 1e-30F);
+  }
+}
+
+/// Whether a cluster is wholly out of the fan, wherever its rays bend to.
+bool is_out(const Fan& fan, const RayBend& bend, const PlacedPart& part,
+            const MeshClusters::Cluster& cluster) {
+  const glm::vec3 centre = part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m;
+  return bend.straight()
+             ? fan.misses(centre, cluster.radius_m)
+             : fan.misses(bend.point(centre), cluster.radius_m + bend.spread_m(centre, cluster.radius_m));
+}
+
+/// Whether all of a cluster lies to one side of the fan, by less than half a turn.
+SONARD_SIMD_CLONES
+bool lies_aside(const Fan& fan, std::uint32_t count, const Corners& at) {
+  const auto port = static_cast<float>(fan.edge_rad(0)) + azimuth_error_rad;
+  const auto starboard = static_cast<float>(fan.edge_rad(fan.beam_count())) - azimuth_error_rad;
+  const float* __restrict azimuth = at.azimuth.data();
+  std::int32_t to_port = 0, to_starboard = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float a = azimuth[i];
+    to_port += ((a > port) & (a < port + half_turn)) ? 1 : 0;
+    to_starboard += ((a < starboard) & (a > starboard - half_turn)) ? 1 : 0;
+  }
+  const auto all = static_cast<std::int32_t>(count);
+  return to_port == all || to_starboard == all;
+}
+
+/// One number of each corner of the triangles of a cluster.
+struct OfCorners {
+  std::array<float, MeshClusters::most_triangles> a, b, c;
+
+  void gather(const MeshClusters& mesh, const MeshClusters::Cluster& cluster,
+              const std::array<float, MeshClusters::most_vertices>& of_vertex) {
+    const std::uint8_t* const c0 = &mesh.corners[0][cluster.first_triangle];
+    const std::uint8_t* const c1 = &mesh.corners[1][cluster.first_triangle];
+    const std::uint8_t* const c2 = &mesh.corners[2][cluster.first_triangle];
+    for (std::size_t t = 0; t < cluster.triangle_count; ++t) {
+      a[t] = of_vertex[c0[t]];
+      b[t] = of_vertex[c1[t]];
+      c[t] = of_vertex[c2[t]];
+    }
+  }
+};
+
+/// What the corners of each triangle of a cluster say of it.
+struct Bounds {
+  OfCorners azimuth, horizontal_squared, height, tangent;
+  std::array<float, MeshClusters::most_triangles> low_azimuth, high_azimuth;
+  std::array<std::int32_t, MeshClusters::most_triangles> in_elevation, thin, upright;
+};
+
+inline float least(float a, float b, float c) {
+  const float ab = a < b ? a : b;
+  return ab < c ? ab : c;
+}
+inline float most(float a, float b, float c) {
+  const float ab = a > b ? a : b;
+  return ab > c ? ab : c;
+}
+
+SONARD_SIMD_CLONES
+void bound(const Fan& fan, std::size_t count, Bounds& out) {
+  const float room_per_square = fan.tan_limit() * fan.tan_limit();
+  const float upright_rad = fan.upright_rad();
+  const float upright_t = least_upright * fan.tan_limit();
+  const auto is_upright = [&](float lean, float rise) {
+    return (lean < upright_rad) & (lean > -upright_rad) & ((rise > upright_t) | (rise < -upright_t));
+  };
+  for (std::size_t t = 0; t < count; ++t) {
+    // No point of the triangle is farther out than its farthest corner, so none has less room in elevation.
+    const float far =
+        most(out.horizontal_squared.a[t], out.horizontal_squared.b[t], out.horizontal_squared.c[t]);
+    const float room = far * room_per_square;
+    const float bottom = least(out.height.a[t], out.height.b[t], out.height.c[t]);
+    const float top = most(out.height.a[t], out.height.b[t], out.height.c[t]);
+    out.in_elevation[t] =
+        ((bottom > 0) & (bottom * bottom > room)) | ((top < 0) & (top * top > room)) ? 0 : 1;
+    const float azimuth_a = out.azimuth.a[t], azimuth_b = out.azimuth.b[t], azimuth_c = out.azimuth.c[t];
+    const float tangent_a = out.tangent.a[t], tangent_b = out.tangent.b[t], tangent_c = out.tangent.c[t];
+    const float low = least(azimuth_a, azimuth_b, azimuth_c), high = most(azimuth_a, azimuth_b, azimuth_c);
+    out.low_azimuth[t] = low;
+    out.high_azimuth[t] = high;
+    const float tall = most(tangent_a, tangent_b, tangent_c) - least(tangent_a, tangent_b, tangent_c);
+    out.thin[t] = tall > thin_ratio * (high - low) ? 1 : 0;
+    const bool upright_ab = is_upright(azimuth_a - azimuth_b, tangent_a - tangent_b);
+    const bool upright_bc = is_upright(azimuth_b - azimuth_c, tangent_b - tangent_c);
+    const bool upright_ca = is_upright(azimuth_c - azimuth_a, tangent_c - tangent_a);
+    out.upright[t] = (upright_ab | upright_bc | upright_ca) ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+std::uint64_t FanTriangles::clusters_culled() const {
+  std::uint64_t culled = 0;
+  for (const Share& share : shares_) {
+    culled += share.culled;
+  }
+  return culled;
+}
+
+void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend,
+                        WorkerPool& workers, bool cull) {
+  cull_ = cull;
+  part_starts_.assign(1, 0);
+  for (const PlacedPart& part : parts) {
+    part_starts_.push_back(part_starts_.back() + static_cast<std::uint32_t>(part.clusters->clusters.size()));
+  }
+  cluster_count_ = part_starts_.back();
+  const auto beams = static_cast<std::size_t>(fan.beam_count());
+  shares_.resize(share_count);
+  workers.run(share_count, [&](int job) {
+    const auto j = static_cast<std::size_t>(job);
+    Share& share = shares_[j];
+    share.triangles.clear();
+    share.beams.clear();
+    share.per_beam.assign(beams, 0);
+    share.culled = 0;
+    collect(parts, fan, bend, cluster_count_ * j / share_count, cluster_count_ * (j + 1) / share_count,
+            share);
+  });
+  make_room_for_lists(beams);
+  workers.run(share_count, [&](int job) { list(shares_[static_cast<std::size_t>(job)]); });
+}
+
+void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend,
+                           std::size_t begin, std::size_t end, Share& share) const {
+  Corners at;
+  Bounds bounds;
+  std::size_t part_number = 0;
+  for (std::size_t c = begin; c < end; ++c) {
+    while (c >= part_starts_[part_number + 1]) {
+      ++part_number;
+    }
+    const PlacedPart& part = parts[part_number];
+    const MeshClusters::Cluster& cluster = part.clusters->clusters[c - part_starts_[part_number]];
+    const bool out = is_out(fan, bend, part, cluster);
+    if (out && cull_) {
+      ++share.culled;
+      continue;
+    }
+    transform(part, cluster, at);
+    if (!bend.straight()) {
+      bend_corners(bend, cluster.vertex_count, at);
+    }
+    if (lies_aside(fan, cluster.vertex_count, at) && cull_) {
+      ++share.culled;
+      continue;
+    }
+    bounds.azimuth.gather(*part.clusters, cluster, at.azimuth);
+    bounds.horizontal_squared.gather(*part.clusters, cluster, at.horizontal_squared);
+    bounds.height.gather(*part.clusters, cluster, at.z);
+    bounds.tangent.gather(*part.clusters, cluster, at.tangent);
+    bound(fan, cluster.triangle_count, bounds);
+    for (std::uint32_t n = 0; n < cluster.triangle_count; ++n) {
+      if (bounds.in_elevation[n] == 0) {
+        continue;
+      }
+      const std::uint32_t t = cluster.first_triangle + n;
+      const std::size_t i = part.clusters->corners[0][t];
+      const std::size_t j = part.clusters->corners[1][t];
+      const std::size_t k = part.clusters->corners[2][t];
+      const bool whole_turn = bounds.high_azimuth[n] - bounds.low_azimuth[n] > half_turn;
+      add({{at.x[i], at.x[j], at.x[k]},
+           {at.y[i], at.y[j], at.y[k]},
+           {at.z[i], at.z[j], at.z[k]},
+           static_cast<std::uint32_t>(part_number),
+           part.clusters->mesh_triangle[t],
+           !out && bounds.thin[n] != 0,
+           bounds.upright[n] != 0,
+           whole_turn ? -half_turn : bounds.low_azimuth[n],
+           whole_turn ? half_turn : bounds.high_azimuth[n]},
+          {at.azimuth[i], at.azimuth[j], at.azimuth[k]}, fan, share);
+    }
+  }
+}
+
+void FanTriangles::add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
+                       Share& share) {
+  if (triangle.high_azimuth_rad - triangle.low_azimuth_rad <= half_turn) {
+    share.add(triangle, fan.beams_between(triangle.low_azimuth_rad, triangle.high_azimuth_rad));
+    return;
+  }
+  if (std::min({std::abs(azimuth[0]), std::abs(azimuth[1]), std::abs(azimuth[2])}) < half_turn / 2) {
+    // It may hold the sonar's vertical axis: any azimuth can meet it.
+    share.add(triangle, {0, fan.beam_count() - 1});
+    return;
+  }
+  // It lies behind, across the azimuth where pi meets -pi.
+  float port = half_turn;
+  float starboard = -half_turn;
+  for (const float a : azimuth) {
+    (a > 0 ? port : starboard) = a > 0 ? std::min(port, a) : std::max(starboard, a);
+  }
+  share.add(triangle, fan.beams_between(port, half_turn));
+  share.add(triangle, fan.beams_between(-half_turn, starboard));
+}
+
+void FanTriangles::Share::add(const FanTriangle& triangle, Fan::BeamRange range) {
+  if (range.first > range.last) {
+    return;
+  }
+  triangles.push_back(triangle);
+  beams.push_back(range);
+  for (int b = range.first; b <= range.last; ++b) {
+    ++per_beam[static_cast<std::size_t>(b)];
+  }
+}
+
+/// Turns the counts of each share into the places where it lists its triangles.
+void FanTriangles::make_room_for_lists(std::size_t beams) {
+  first_of_beam_.resize(beams + 1);
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < beams; ++b) {
+    first_of_beam_[b] = next;
+    for (Share& share : shares_) {
+      const std::uint32_t count = share.per_beam[b];
+      share.per_beam[b] = static_cast<std::uint32_t>(next);
+      next += count;
+    }
+  }
+  first_of_beam_[beams] = next;
+  listed_.resize(next);
+}
+
+void FanTriangles::list(Share& share) {
+  for (std::size_t i = 0; i < share.triangles.size(); ++i) {
+    const FanTriangle& triangle = share.triangles[i];
+    for (int b = share.beams[i].first; b <= share.beams[i].last; ++b) {
+      listed_[share.per_beam[static_cast<std::size_t>(b)]++] = {&triangle, triangle.low_azimuth_rad,
+                                                                triangle.high_azimuth_rad};
+    }
+  }
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,93 @@
+// Which triangles of the world each beam has to look at.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "renderer/engines/cpu/fan.hpp"
+#include "renderer/engines/cpu/mesh_clusters.hpp"
+#include "renderer/scene/ray_bend.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Where one part of a body is for this ping: p_sonar = rotation * p_part + translation, taken from doubles.
+struct PlacedPart {
+  std::shared_ptr<const MeshClusters> clusters;
+  glm::mat3 R_sonar_part{1.0F};
+  glm::vec3 t_sonar_part_m{0.0F};
+};
+
+/// A triangle that may be in the fan, in the sonar frame.
+struct FanTriangle {
+  float x[3], y[3], z[3];
+  std::uint32_t part = 0;           ///< index of the PlacedPart
+  std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
+  /// Much taller than wide, as seen from the sonar: the leg of a frame, a pole. A slice beside it misses it.
+  bool thin = false;
+  bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
+  /// Between which it lies; -pi to pi where it may hold the sonar's vertical axis.
+  float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;
+
+  glm::vec3 corner(std::size_t k) const { return {x[k], y[k], z[k]}; }
+  /// Across the triangle, as its winding says; its length is twice the area.
+  glm::vec3 across() const { return glm::cross(corner(1) - corner(0), corner(2) - corner(0)); }
+};
+
+/// Entry of a beam's list, with its azimuths once more: what a slice does not touch is passed over without
+/// being looked up.
+struct ListedTriangle {
+  const FanTriangle* triangle;
+  float low_azimuth_rad, high_azimuth_rad;
+};
+
+/// Culls and transforms, first clusters against fan and range, then triangle by triangle; what is kept is
+/// listed for every beam its azimuths touch. A triangle too many costs time, never an error.
+class FanTriangles {
+ public:
+  /// Lists are the same for any number of threads.
+  /// @param cull false: no cluster is dropped, all their triangles are looked at.
+  void find(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend, WorkerPool& workers,
+            bool cull = true);
+
+  /// In the order of the world, which decides between surfaces in the same place.
+  std::span<const ListedTriangle> of_beam(int beam) const {
+    const auto b = static_cast<std::size_t>(beam);
+    return {listed_.data() + first_of_beam_[b], first_of_beam_[b + 1] - first_of_beam_[b]};
+  }
+  std::uint64_t clusters_culled() const;
+
+ private:
+  /// What one job finds: it owns a run of clusters.
+  struct Share {
+    std::vector<FanTriangle> triangles;
+    std::vector<Fan::BeamRange> beams;    ///< of each triangle
+    std::vector<std::uint32_t> per_beam;  ///< number of triangles; then where the next one is listed
+    std::uint64_t culled = 0;
+
+    void add(const FanTriangle& triangle, Fan::BeamRange range);
+  };
+
+  void collect(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend, std::size_t begin,
+               std::size_t end, Share& share) const;
+  static void add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
+                  Share& share);
+  void make_room_for_lists(std::size_t beams);
+  void list(Share& share);
+
+  std::vector<std::uint32_t> part_starts_;  ///< first cluster of each part, counting through all parts
+  std::vector<Share> shares_;
+  std::vector<ListedTriangle> listed_;
+  std::vector<std::size_t> first_of_beam_;
+  std::size_t cluster_count_ = 0;
+  bool cull_ = true;
+};
+
+}  // namespace sonard::render

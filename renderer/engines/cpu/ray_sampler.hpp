@@ -1,0 +1,75 @@
+// Visibility by tracing rays on the CPU: one ray per pixel, sixteen at a time, on all cores.
+#pragma once
+
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "renderer/engines/cpu/ray_shading.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
+#include "renderer/surface/surface_model.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Needs no graphics of any kind. Pixels that no part of the grid uses are left as "nothing seen".
+class RaySampler {
+ public:
+  /// @param index where the world is moved; it outlives the sampler.
+  /// @param workers outlives the sampler; nobody else uses it during a call.
+  RaySampler(SpatialIndex& index, WorkerPool& workers);
+
+  /// The samples of view i, row after row as SubView orders them. They stay valid until the next call.
+  /// Surfaces beyond `max_range_m` may be reported or not.
+  /// @throws RendererError when Embree fails or runs out of memory.
+  std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
+                                           const SurfaceModel& surface, double max_range_m);
+  /// As of EchoEngine. The trees of the world are made anew for every ping then: several times the cost of a
+  /// ping.
+  void set_ray_bend(double bend_per_m) { bend_per_m_ = bend_per_m; }
+
+ private:
+  /// Patch of packet_side x packet_side pixels, cut at the sides of the view.
+  struct Tile {
+    std::size_t view = 0;
+    std::size_t column = 0, row = 0;  ///< counted in tiles
+  };
+  struct Rows {
+    int begin = 0, end = 0;
+    bool operator==(const Rows&) const = default;
+  };
+  /// A view with its rays in the order of a packet's lanes, single precision.
+  struct View {
+    SubView geometry;
+    std::vector<Lanes<float>> tangent_x;  ///< by column of tiles
+    std::vector<Lanes<float>> tangent_y;  ///< by row of tiles
+    // In world axes, of the current ping: a ray is middle + tangent_y * up.
+    glm::vec3 starboard{0.0F}, up{0.0F};  ///< what the tangents multiply
+    std::vector<Lanes<float>> middle_x, middle_y,
+        middle_z;  ///< by column of tiles: axis + tangent_x * starboard
+    std::vector<SurfaceSample> samples;
+
+    explicit View(const SubView& view);
+    void turn(const glm::dquat& R_world_sonar);
+  };
+
+  void prepare(const SampleGrid& grid);
+  void trace_tiles(const SpatialIndex& index, const SurfaceModel& surface, float max_range_m);
+  void place_shaders(const SpatialIndex& index);
+  void shade(const RayPacket& rays, const RayHits& hits, const SurfaceModel& surface,
+             SurfacePacket& surfaces) const;
+  void trace(const SpatialIndex& index, const Tile& tile, const SurfaceModel& surface, float max_range_m);
+  static void store(const Lanes<SurfaceSample>& samples, const Tile& tile, View& view);
+
+  SpatialIndex& index_;
+  WorkerPool& workers_;
+  std::vector<SurfaceShader> shaders_;  ///< of the parts of all bodies
+  double bend_per_m_ = 0.0;
+  std::vector<View> views_;
+  std::vector<std::vector<Rows>> used_;  // by view and column of tiles: the rows that parts of the grid use
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,371 @@
+#include "renderer/engines/cpu/slice_cutter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr std::size_t widest_vector = 16;  // arrays end on a multiple, so that no loop has a rest
+constexpr float nearest_m = 1e-4F;         // what is nearer to the vertical axis is cut off
+constexpr float sharp_turn_rad = 0.6F;
+constexpr double same_edge_rad = 2e-6;  // edges nearer to each other stand in one place
+
+/// Azimuth into which the normal of a triangle points that is turned away from the sonar.
+float facing(const FanTriangle& t) {
+  const glm::vec3 n = t.across();
+  return glm::dot(n, t.corner(0)) < 0 ? std::atan2(-n.y, -n.x) : std::atan2(n.y, n.x);
+}
+
+}  // namespace
+
+void SliceCutter::load(std::span<const ListedTriangle> triangles, double low_rad, double high_rad,
+                       const Fan& fan, bool two_sided) {
+  const auto low = static_cast<float>(low_rad) - azimuth_error_rad;
+  const auto high = static_cast<float>(high_rad) + azimuth_error_rad;
+  triangles_.clear();
+  for (const ListedTriangle& t : triangles) {
+    if (t.high_azimuth_rad >= low && t.low_azimuth_rad <= high) {
+      triangles_.push_back(t.triangle);
+    }
+  }
+  list_upright_edges(low_rad, high_rad, fan);
+  if (!two_sided) {
+    drop_back_faces();
+  }
+  padded_ = (triangles_.size() + widest_vector - 1) / widest_vector * widest_vector;
+  for (auto* corner : {x_, y_, z_}) {
+    for (int k = 0; k < 3; ++k) {
+      corner[k].resize(padded_);
+    }
+  }
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      x_[k][i] = triangles_[i]->x[k];
+      y_[k][i] = triangles_[i]->y[k];
+      z_[k][i] = triangles_[i]->z[k];
+    }
+  }
+  for (std::size_t i = triangles_.size(); i < padded_; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      x_[k][i] = y_[k][i] = z_[k][i] = 0.0F;  // cut by no slice
+    }
+  }
+  for (auto* array : {&normal_x_, &normal_y_, &normal_z_}) {
+    array->resize(padded_);
+  }
+  fate_.resize(padded_);
+  load_normals();
+  list_thin();
+}
+
+SONARD_SIMD_CLONES
+void SliceCutter::load_normals() {
+  const float* __restrict x0 = x_[0].data();
+  const float* __restrict x1 = x_[1].data();
+  const float* __restrict x2 = x_[2].data();
+  const float* __restrict y0 = y_[0].data();
+  const float* __restrict y1 = y_[1].data();
+  const float* __restrict y2 = y_[2].data();
+  const float* __restrict z0 = z_[0].data();
+  const float* __restrict z1 = z_[1].data();
+  const float* __restrict z2 = z_[2].data();
+  float* __restrict nx = normal_x_.data();
+  float* __restrict ny = normal_y_.data();
+  float* __restrict nz = normal_z_.data();
+  const std::size_t count = padded_;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float ax = x1[i] - x0[i], ay = y1[i] - y0[i], az = z1[i] - z0[i];
+    const float bx = x2[i] - x0[i], by = y2[i] - y0[i], bz = z2[i] - z0[i];
+    const float cx = ay * bz - az * by, cy = az * bx - ax * bz, cz = ax * by - ay * bx;
+    const float scale = 1.0F / std::sqrt(cx * cx + cy * cy + cz * cz + 1e-36F);
+    nx[i] = cx * scale;
+    ny[i] = cy * scale;
+    nz[i] = cz * scale;
+  }
+}
+
+void SliceCutter::drop_back_faces() {
+  const auto seen_from_behind = [](const FanTriangle* t) { return glm::dot(t->across(), t->corner(0)) > 0; };
+  std::erase_if(triangles_, seen_from_behind);
+}
+
+/// Thin triangles of one part that touch in azimuth make one thing: the facets of a pole are not missed one
+/// by one.
+void SliceCutter::list_thin() {
+  thin_.clear();
+  for (const FanTriangle* t : triangles_) {
+    if (t->thin) {
+      thin_.push_back({t->part, t->low_azimuth_rad, t->high_azimuth_rad});
+    }
+  }
+  std::sort(thin_.begin(), thin_.end(), [](const ThinThing& a, const ThinThing& b) {
+    return std::tie(a.part, a.low_azimuth_rad) < std::tie(b.part, b.low_azimuth_rad);
+  });
+  std::size_t things = 0;
+  for (const ThinThing& thing : thin_) {
+    if (things > 0 && thin_[things - 1].part == thing.part &&
+        thing.low_azimuth_rad <= thin_[things - 1].high_azimuth_rad) {
+      thin_[things - 1].high_azimuth_rad =
+          std::max(thin_[things - 1].high_azimuth_rad, thing.high_azimuth_rad);
+    } else {
+      thin_[things++] = thing;
+    }
+  }
+  thin_.resize(things);
+}
+
+void SliceCutter::list_upright_edges(double low_rad, double high_rad, const Fan& fan) {
+  edge_parts_.clear();
+  for (const FanTriangle* t : triangles_) {
+    if (t->upright) {
+      add_edge_parts(*t, low_rad, high_rad, fan);
+    }
+  }
+  std::sort(edge_parts_.begin(), edge_parts_.end(),
+            [](const EdgePart& a, const EdgePart& b) { return a.azimuth_rad < b.azimuth_rad; });
+}
+
+/// Azimuths are compared as tangents of their differences: most edges are no upright ones.
+void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad,
+                                 const Fan& fan) {
+  double x[3], y[3], t[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = static_cast<double>(triangle.x[k]);
+    y[k] = static_cast<double>(triangle.y[k]);
+    t[k] = static_cast<double>(triangle.z[k]) / std::sqrt(x[k] * x[k] + y[k] * y[k]);
+  }
+  const auto tan_limit = static_cast<double>(fan.tan_limit());
+  const auto probe = [tan_limit](double at) {
+    const double place = (at / (probe_reach * tan_limit) + 1) * (0.5 * (side_probes - 1)) + 1;
+    return static_cast<std::int32_t>(std::clamp(place, 0.0, static_cast<double>(side_probes)));
+  };
+  const auto turn = [&](int from, int to) {
+    return (x[from] * y[to] - y[from] * x[to]) / (x[from] * x[to] + y[from] * y[to]);
+  };
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3, opposite = (k + 2) % 3;
+    const double lean = turn(k, next);
+    const std::int32_t first = probe(std::min(t[k], t[next])), last = probe(std::max(t[k], t[next]));
+    if (!(std::abs(lean) < static_cast<double>(fan.upright_rad())) || last - first < 2) {
+      continue;
+    }
+    const double at = std::atan2(y[k], x[k]) + 0.5 * lean;
+    if (at > low_rad && at < high_rad) {
+      // Where the edge, or its continuation, is as high as the third corner.
+      const double beside = lean * (t[opposite] - t[k]) / (t[next] - t[k]);
+      edge_parts_.push_back({at, first, last, turn(k, opposite) > beside ? 1 : -1, facing(triangle)});
+    }
+  }
+}
+
+/// Of the parts [begin, end), which stand in one place.
+ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
+  std::array<std::int32_t, side_probes + 1> sides{};
+  std::array<float, side_probes + 1> turns{};
+  for (std::size_t i = begin; i < end; ++i) {
+    const EdgePart& part = edge_parts_[i];
+    const auto first = static_cast<std::size_t>(part.first_probe);
+    const auto last = static_cast<std::size_t>(part.last_probe);
+    sides[first] += part.side;
+    sides[last] -= part.side;
+    turns[first] += static_cast<float>(part.side) * part.facing_rad;
+    turns[last] -= static_cast<float>(part.side) * part.facing_rad;
+  }
+  ProbeSet probes;
+  std::int32_t side = 0;
+  float turn = 0.0F;
+  for (std::size_t k = 0; k < side_probes; ++k) {
+    side += sides[k];
+    turn += turns[k];
+    probes[k] = side != 0 || std::abs(turn) > sharp_turn_rad;
+  }
+  return probes;
+}
+
+void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const {
+  constexpr double margin = 1e-3;  // of the wedge
+  constexpr std::size_t most_edges = 4;
+  constexpr std::int32_t least_probes = 12;  // lower edges do as well in even parts
+  const double reach = (0.5 - margin) * static_cast<double>(slice.width_rad);
+  edges.clear();
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < edge_parts_.size(); ++i) {
+    const double at = edge_parts_[begin].azimuth_rad;
+    if (i + 1 < edge_parts_.size() && edge_parts_[i + 1].azimuth_rad - at < same_edge_rad) {
+      continue;
+    }
+    std::int32_t most_probes = 0;
+    for (std::size_t k = begin; k <= i; ++k) {
+      most_probes += edge_parts_[k].last_probe - edge_parts_[k].first_probe;
+    }
+    if (most_probes >= least_probes && std::abs(at - slice.azimuth_rad) < reach) {
+      const ProbeSet probes = probes_of_edge(begin, i + 1);
+      if (probes.count() >= static_cast<std::size_t>(least_probes)) {
+        edges.push_back({at, probes});
+      }
+    }
+    begin = i + 1;
+  }
+  if (edges.size() > most_edges) {
+    std::nth_element(
+        edges.begin(), edges.begin() + most_edges, edges.end(),
+        [](const UprightEdge& a, const UprightEdge& b) { return a.probes.count() > b.probes.count(); });
+    edges.resize(most_edges);
+  }
+  std::sort(edges.begin(), edges.end(),
+            [](const UprightEdge& a, const UprightEdge& b) { return a.azimuth_rad > b.azimuth_rad; });
+}
+
+bool SliceCutter::misses_thin_thing(const Slice& slice) const {
+  const auto azimuth = static_cast<float>(slice.azimuth_rad);
+  const float half = 0.5F * slice.width_rad;
+  return std::any_of(thin_.begin(), thin_.end(), [&](const ThinThing& thing) {
+    const float port = thing.high_azimuth_rad - azimuth;
+    const float starboard = thing.low_azimuth_rad - azimuth;
+    // Whether a slice next door hits it is not asked: what reaches into the wedge is to be hit there.
+    // Azimuths are only known so well; a slice along the very edge of a thing may miss it too.
+    return (starboard > -azimuth_error_rad && starboard < half) || (port < azimuth_error_rad && port > -half);
+  });
+}
+
+void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
+  for (auto* array : {&segments.low, &segments.high, &segments.w_at_0, &segments.w_slope, &segments.low_drift,
+                      &segments.high_drift, &segments.low_reach, &segments.high_reach}) {
+    array->resize(padded_);
+  }
+  segments.kept.resize(padded_ + 1);
+  cut_all(slice, tan_limit, segments);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    if (fate_[i] == partly_behind) {
+      clip_behind(slice, tan_limit, i, segments);
+    }
+    segments.kept[count] = static_cast<std::int32_t>(i);
+    count += fate_[i] == kept ? 1 : 0;
+  }
+  segments.kept.resize(count);
+}
+
+/// With s the distance of a corner from the plane of the slice, an edge from i to j meets it where
+/// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes the signs of numerator
+/// and denominator and nothing else, so that two triangles find the same point on their common edge.
+SONARD_SIMD_CLONES
+void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segments) {
+  const float cosine = slice.cosine, sine = slice.sine;
+  const float* __restrict x0 = x_[0].data();
+  const float* __restrict x1 = x_[1].data();
+  const float* __restrict x2 = x_[2].data();
+  const float* __restrict y0 = y_[0].data();
+  const float* __restrict y1 = y_[1].data();
+  const float* __restrict y2 = y_[2].data();
+  const float* __restrict z0 = z_[0].data();
+  const float* __restrict z1 = z_[1].data();
+  const float* __restrict z2 = z_[2].data();
+  float* __restrict low = segments.low.data();
+  float* __restrict high = segments.high.data();
+  float* __restrict at_0 = segments.w_at_0.data();
+  float* __restrict slope = segments.w_slope.data();
+  float* __restrict low_drift = segments.low_drift.data();
+  float* __restrict high_drift = segments.high_drift.data();
+  float* __restrict low_reach = segments.low_reach.data();
+  float* __restrict high_reach = segments.high_reach.data();
+  std::int32_t* __restrict fate = fate_.data();
+  constexpr float w_nearest = 1.0F / nearest_m;
+  const std::size_t count = padded_;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float s0 = y0[i] * cosine - x0[i] * sine, h0 = x0[i] * cosine + y0[i] * sine;
+    const float s1 = y1[i] * cosine - x1[i] * sine, h1 = x1[i] * cosine + y1[i] * sine;
+    const float s2 = y2[i] * cosine - x2[i] * sine, h2 = x2[i] * cosine + y2[i] * sine;
+    // Sides of the slice as numbers: GCC 12 does not vectorise a comparison of comparisons.
+    const float side0 = s0 >= 0 ? 1.0F : -1.0F, side1 = s1 >= 0 ? 1.0F : -1.0F,
+                side2 = s2 >= 0 ? 1.0F : -1.0F;
+    const bool cut01 = side0 * side1 < 0;
+    const bool cut20 = side2 * side0 < 0;
+    // The two edges that are cut: p is 0-1 or else 1-2, q is 2-0 or else 1-2.
+    const float hpi = cut01 ? h0 : h1, hpj = cut01 ? h1 : h2, spi = cut01 ? s0 : s1, spj = cut01 ? s1 : s2;
+    const float zpi = cut01 ? z0[i] : z1[i], zpj = cut01 ? z1[i] : z2[i];
+    const float hqi = cut20 ? h2 : h1, hqj = cut20 ? h0 : h2, sqi = cut20 ? s2 : s1, sqj = cut20 ? s0 : s2;
+    const float zqi = cut20 ? z2[i] : z1[i], zqj = cut20 ? z0[i] : z2[i];
+    const float ep = spj - spi, eq = sqj - sqi;
+    const float over_p = 1.0F / (hpi * spj - hpj * spi), over_q = 1.0F / (hqi * sqj - hqj * sqi);
+    const float tp = (zpi * spj - zpj * spi) * over_p, wp = ep * over_p;
+    const float tq = (zqi * sqj - zqj * sqi) * over_q, wq = eq * over_q;
+    // dt / d azimuth along the edge is (dz - t dh) / ds; the azimuth over which it runs is w ds.
+    const float rp = (zpj - zpi) - tp * (hpj - hpi), rq = (zqj - zqi) - tq * (hqj - hqi);
+    const float mp = rp / ep, mq = rq / eq;
+    const float fp = rp * wp, fq = rq * wq;
+    const bool p_low = tp < tq;
+    const float a = p_low ? tp : tq, b = p_low ? tq : tp, wa = p_low ? wp : wq, wb = p_low ? wq : wp;
+    const float steepness = (wb - wa) / (b - a);
+    low[i] = a;
+    high[i] = b;
+    slope[i] = steepness;
+    at_0[i] = wa - steepness * a;
+    low_drift[i] = p_low ? mp : mq;
+    high_drift[i] = p_low ? mq : mp;
+    const float reach_a = p_low ? fp : fq, reach_b = p_low ? fq : fp;
+    low_reach[i] = reach_a < 0 ? -reach_a : reach_a;
+    high_reach[i] = reach_b < 0 ? -reach_b : reach_b;
+    const std::int32_t cut = side0 * side1 + side2 * side0 < 2 ? 1 : 0;
+    const std::int32_t seen =
+        ((b - a > shortest_rad * (1 + a * a)) & (b > -tan_limit) & (a < tan_limit)) ? kept : none;
+    const std::int32_t not_in_front = ((wp <= 0) & (wq <= 0)) ? none : partly_behind;
+    fate[i] = cut * (((wp > 0) & (wq > 0) & (wp < w_nearest) & (wq < w_nearest)) ? seen : not_in_front);
+  }
+}
+
+/// The same for a triangle of which the plane of the slice cuts a part behind the vertical axis, in doubles
+/// and one at a time: such triangles are few.
+void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments) {
+  const auto cosine = static_cast<double>(slice.cosine), sine = static_cast<double>(slice.sine);
+  double s[3], h[3], z[3];
+  for (int k = 0; k < 3; ++k) {
+    const double x = static_cast<double>(x_[k][i]), y = static_cast<double>(y_[k][i]);
+    s[k] = y * cosine - x * sine;
+    h[k] = x * cosine + y * sine;
+    z[k] = static_cast<double>(z_[k][i]);
+  }
+  double end_h[2] = {0, 0}, end_z[2] = {0, 0};
+  int ends = 0;
+  for (int k = 0; k < 3 && ends < 2; ++k) {
+    const int j = (k + 1) % 3;
+    if ((s[k] >= 0) != (s[j] >= 0)) {
+      const double share = s[k] / (s[k] - s[j]);
+      end_h[ends] = h[k] + (h[j] - h[k]) * share;
+      end_z[ends++] = z[k] + (z[j] - z[k]) * share;
+    }
+  }
+  fate_[i] = none;
+  if (ends < 2 || std::max(end_h[0], end_h[1]) <= static_cast<double>(nearest_m)) {
+    return;
+  }
+  const int back = end_h[0] < end_h[1] ? 0 : 1;
+  if (end_h[back] < static_cast<double>(nearest_m)) {
+    const double share = (static_cast<double>(nearest_m) - end_h[back]) / (end_h[1 - back] - end_h[back]);
+    end_z[back] += (end_z[1 - back] - end_z[back]) * share;
+    end_h[back] = static_cast<double>(nearest_m);
+  }
+  const double t0 = end_z[0] / end_h[0], t1 = end_z[1] / end_h[1];
+  const int lower = t0 < t1 ? 0 : 1;
+  const double a = std::min(t0, t1), b = std::max(t0, t1);
+  if (!(b - a > static_cast<double>(shortest_rad) * (1 + a * a)) || b < -static_cast<double>(tan_limit) ||
+      a > static_cast<double>(tan_limit)) {
+    return;
+  }
+  const double steepness = (1 / end_h[1 - lower] - 1 / end_h[lower]) / (b - a);
+  segments.low[i] = static_cast<float>(a);
+  segments.high[i] = static_cast<float>(b);
+  segments.w_slope[i] = static_cast<float>(steepness);
+  segments.w_at_0[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
+  segments.low_drift[i] = segments.high_drift[i] = 0.0F;
+  segments.low_reach[i] = segments.high_reach[i] = 0.0F;
+  fate_[i] = kept;
+}
+
+}  // namespace sonard::render

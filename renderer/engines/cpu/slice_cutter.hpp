@@ -1,0 +1,135 @@
+// Cuts the triangles of one beam with half planes of constant azimuth.
+#pragma once
+
+#include <bitset>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/engines/cpu/fan_triangles.hpp"
+
+namespace sonard::render {
+
+/// A slice: the half plane h > 0 at one azimuth, with horizontal distance h and height z as coordinates, and
+/// the thin wedge around it that it stands for. Rays of the slice are told apart by the tangent of their
+/// elevation, t = z / h; along any straight line of it 1 / h is affine in t.
+struct Slice {
+  double azimuth_rad = 0.0;
+  float width_rad = 0.0F;            ///< of the wedge
+  float cosine = 1.0F, sine = 0.0F;  ///< of the azimuth
+
+  Slice() = default;
+  Slice(double azimuth, float width)
+      : azimuth_rad(azimuth),
+        width_rad(width),
+        cosine(static_cast<float>(std::cos(azimuth))),
+        sine(static_cast<float>(std::sin(azimuth))) {}
+};
+
+/// Neighbouring slices are compared at so many t, evenly spaced over the elevation of the fan; the first and
+/// the last lie just inside its limits, where a beam that hears little hears it.
+inline constexpr int side_probes = 256;
+inline constexpr double probe_reach = 0.999;  ///< of the tangent of the limit
+
+using ProbeSet = std::bitset<side_probes>;
+
+/// Where a surface ends along a slice or turns sharply: the end of a wall, the side of a post, the corner of
+/// a room.
+struct UprightEdge {
+  double azimuth_rad = 0.0;
+  ProbeSet probes;  ///< at which it does
+};
+
+/// Of a segment, in radians of elevation: a shorter one says nothing of the slope of its surface, and is left
+/// out.
+inline constexpr float shortest_rad = 1e-6F;
+
+/// How the end of a piece moves beside the slice, as the edge runs of which it is a point.
+struct EdgeRun {
+  float drift = 0.0F;  ///< dt / d azimuth
+  float reach = 0.0F;  ///< the edge ends after so much of t: within a wedge it moves no farther
+
+  /// As a straight line over a wedge of the fan. An end at `t` that drifts out of the fan stops there.
+  float drift_within(float t, float width_rad, float tan_limit) const {
+    const float rest = (tan_limit - (t < 0 ? -t : t)) * 2;
+    const float most = (reach < rest ? reach : rest) / width_rad;
+    return drift > most ? most : (drift < -most ? -most : drift);
+  }
+};
+
+/// What a slice cuts out of triangles: a straight segment each, in arrays as long as the list of triangles,
+/// because loops over them are vectorised. Only those named in `kept` exist.
+struct Segments {
+  std::vector<std::int32_t> kept;
+  std::vector<float> low, high;                                     ///< t at the two ends; low < high
+  std::vector<float> w_at_0, w_slope;                               ///< 1 / h = w_at_0 + w_slope * t
+  std::vector<float> low_drift, high_drift, low_reach, high_reach;  ///< see EdgeRun
+
+  EdgeRun low_run(std::size_t segment) const { return {low_drift[segment], low_reach[segment]}; }
+  EdgeRun high_run(std::size_t segment) const { return {high_drift[segment], high_reach[segment]}; }
+  float w(int segment, float t) const {
+    const auto s = static_cast<std::size_t>(segment);
+    return w_at_0[s] + w_slope[s] * t;
+  }
+};
+
+/// The triangles of one beam, ready to be cut at any azimuth inside it.
+class SliceCutter {
+ public:
+  /// @param low_rad, high_rad azimuths between which it will be cut; triangles elsewhere are left out.
+  /// @param two_sided false: triangles seen from behind are left out.
+  void load(std::span<const ListedTriangle> triangles, double low_rad, double high_rad, const Fan& fan,
+            bool two_sided);
+
+  /// Keeps the segments that reach between -tan_limit and tan_limit, in the order of the triangles. An edge
+  /// shared by two triangles is cut at the same point, to the bit.
+  void cut(const Slice& slice, float tan_limit, Segments& segments);
+
+  /// Whether something narrow and tall, the leg of a frame or a pole, reaches into the wedge of a slice but
+  /// not to its middle: the slice misses all of it.
+  bool misses_thin_thing(const Slice& slice) const;
+
+  /// Those well inside the wedge, from port to starboard, but for the lowest if they are many.
+  void find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const;
+
+  const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }
+  /// Unit normal in the sonar frame; its sign is that of the winding.
+  const float* normal_x() const { return normal_x_.data(); }
+  const float* normal_y() const { return normal_y_.data(); }
+  const float* normal_z() const { return normal_z_.data(); }
+
+ private:
+  void load_normals();
+  void drop_back_faces();
+  void list_thin();
+  void list_upright_edges(double low_rad, double high_rad, const Fan& fan);
+  void add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad, const Fan& fan);
+  ProbeSet probes_of_edge(std::size_t begin, std::size_t end) const;
+  void cut_all(const Slice& slice, float tan_limit, Segments& segments);
+  void clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments);
+
+  std::vector<const FanTriangle*> triangles_;
+  std::size_t padded_ = 0;
+  std::vector<float> x_[3], y_[3], z_[3];
+  std::vector<float> normal_x_, normal_y_, normal_z_;
+  struct ThinThing {
+    std::uint32_t part;
+    float low_azimuth_rad, high_azimuth_rad;
+  };
+  std::vector<ThinThing> thin_;
+  /// An upright edge of one triangle.
+  struct EdgePart {
+    double azimuth_rad;
+    std::int32_t first_probe, last_probe;  ///< probes first <= i < last
+    /// 1 if the triangle lies to port of it, else -1: where a surface goes on to the other side the two
+    /// cancel out, where it ends or folds back they do not.
+    std::int32_t side;
+    float facing_rad;  ///< azimuth of the triangle's normal; where it goes on evenly, this cancels out too
+  };
+  std::vector<EdgePart> edge_parts_;  ///< by rising azimuth
+  enum Fate : std::int32_t { none, kept, partly_behind };
+  std::vector<std::int32_t> fate_;  // of each triangle in the slice that is being cut
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,270 @@
+#include "renderer/engines/cpu/slice_sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "renderer/engines/cpu/coplanar_facets.hpp"
+#include "renderer/engines/cpu/slice_sampler_impl.hpp"
+#include "renderer/engines/cpu/slice_shading.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr double widest_first_slice_rad = std::numbers::pi / 180;
+constexpr double most_sag_lines = 0.06;  // at `change` 1 %
+
+/// How wide a first slice may be around an azimuth. Along a wall across the axis the range is d / cos psi and
+/// the echo goes as cos^3 psi: within a slice the echo must not change, and the range not depart from a
+/// straight line, by more than the accuracy allows.
+double widest_first_slice(double azimuth_rad, double line_m, double max_range_m, double change) {
+  const double tangent = std::abs(std::tan(std::min(std::abs(azimuth_rad), 1.4)));
+  const double for_echo = change * std::sqrt(12.0) / (3 * tangent + 1e-9);
+  const double sag_m = most_sag_lines * line_m * (change / 0.01);
+  const double for_range = std::sqrt(8 * sag_m / (max_range_m * (1 + 2 * tangent * tangent)));
+  return std::min({widest_first_slice_rad, for_echo, std::max(for_range, for_echo / 4)});
+}
+
+}  // namespace
+
+/// What parts share: meshes and normal maps are prepared once, however many parts use them.
+struct SliceSampler::Prepared {
+  struct Shape {
+    std::shared_ptr<const TriangleMesh> mesh;
+    std::shared_ptr<const MeshClusters> clusters;
+    std::uint64_t merged_facets = 0;
+  };
+  std::map<std::pair<const TriangleMesh*, bool>, Shape> shapes;  ///< as it is (false) or merged (true)
+  std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
+
+  const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge) {
+    Shape& shape = shapes[{mesh.get(), merge}];
+    if (!shape.mesh) {
+      shape.mesh = mesh;
+      if (merge) {
+        TriangleMesh merged = merge_coplanar_facets(*mesh);
+        shape.merged_facets = mesh->triangle_count() - merged.triangle_count();
+        if (shape.merged_facets > 0) {  // else there is no need for a second one of the same
+          shape.mesh = std::make_shared<const TriangleMesh>(std::move(merged));
+        }
+      }
+      shape.clusters = std::make_shared<const MeshClusters>(*shape.mesh);
+    }
+    return shape;
+  }
+  /// @param map null: one without bumps
+  std::shared_ptr<const NormalPyramid> pyramid(const NormalMap* map) {
+    auto& pyramid = pyramids[map];
+    if (!pyramid) {
+      pyramid = std::make_shared<const NormalPyramid>(map ? NormalPyramid(*map) : NormalPyramid::straight());
+    }
+    return pyramid;
+  }
+};
+
+SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip)
+    : workers_(workers), skip_(skip) {
+  Prepared prepared;
+  for (const Body& body : world.bodies) {
+    for (const BodyPart& part : body.parts) {
+      add_part(part, prepared);
+    }
+    T_world_body_.push_back(body.T_world_body);
+  }
+}
+
+/// Of the body that is added next.
+void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
+  PartSurface surface;
+  surface.backscatter = Backscatter(part.material);
+  surface.reflectance = static_cast<float>(part.material.reflectance);
+  if (surface.backscatter.facet_strength > 0) {
+    any_facets_ = true;
+  }
+  surface.vertex_normals = !(skip_.on(SkipRule::geometric_normals) && has_plain_facets(*part.mesh));
+  skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
+  if (!part.normal_map && skip_.on(SkipRule::absent_normal_map)) {
+    skipped_parts_.add(SkipRule::absent_normal_map);
+  } else if (part.mesh->can_be_mapped()) {
+    surface.normal_map = prepared.pyramid(part.normal_map.get());
+    any_mapped_ = true;
+  }
+  // Nothing but its plane is asked of a facet that is shaded by its own normal.
+  const bool merge = !surface.vertex_normals && !surface.normal_map && skip_.on(SkipRule::coplanar_facets);
+  const Prepared::Shape& shape = prepared.shape(part.mesh, merge);
+  skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
+  surface.mesh = shape.mesh;
+  parts_.push_back({T_world_body_.size(), part.T_body_part});
+  placed_.push_back({shape.clusters, {}, {}});
+  surfaces_.push_back(std::move(surface));
+}
+
+/// Facets of such parts are not merged: neighbouring parts share corners.
+void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
+  std::vector<Replacement> replacements(changes.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (const Replacement* known = replacements_.find(changes[i].mesh.get())) {
+      replacements[i] = *known;
+    }
+  }
+  workers_.run(static_cast<int>(changes.size()), [&](int i) {
+    const TriangleMesh& mesh = *changes[static_cast<std::size_t>(i)].mesh;
+    Replacement& replacement = replacements[static_cast<std::size_t>(i)];
+    if (!replacement.clusters) {
+      const bool plain = skip_.on(SkipRule::geometric_normals) && has_plain_facets(mesh);
+      replacement = {std::make_shared<const MeshClusters>(mesh), !plain};
+    }
+  });
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    placed_[changes[i].part].clusters = replacements[i].clusters;
+    surfaces_[changes[i].part].mesh = changes[i].mesh;
+    surfaces_[changes[i].part].vertex_normals = replacements[i].vertex_normals;
+    replacements_.keep(changes[i].mesh, replacements[i]);
+  }
+}
+
+/// In doubles up to here: no world coordinate reaches a float.
+void SliceSampler::place_parts(const Pose& T_world_sonar) {
+  bend_.up = glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1));
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Pose T_sonar_part = relative(T_world_sonar, T_world_body_[parts_[i].body]) * parts_[i].T_body_part;
+    placed_[i].R_sonar_part = glm::mat3(glm::mat3_cast(T_sonar_part.orientation));
+    placed_[i].t_sonar_part_m = glm::vec3(T_sonar_part.position_m);
+    surfaces_[i].R_part_sonar = glm::transpose(placed_[i].R_sonar_part);
+    surfaces_[i].bend_in_part = {surfaces_[i].R_part_sonar * bend_.up, bend_.per_m};
+  }
+}
+
+std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
+  if (cells_used_ == cells_.size()) {
+    cells_.push_back(std::make_unique<SliceCell>());
+  }
+  SliceCell& cell = *cells_[cells_used_];
+  cell.slice = slice;
+  cell.beam = beam;
+  cell.seen = false;
+  cell.fresh = true;
+  cell.to_starboard = {};
+  cell.edge_at_port.reset();
+  cell.edge_at_starboard.reset();
+  return cells_used_++;
+}
+
+void SliceSampler::lay_first_slices(const Setting& setting) {
+  cells_used_ = 0;
+  order_.clear();
+  for (int beam = 0; beam < setting.fan.beam_count(); ++beam) {
+    const double port = setting.fan.edge_rad(beam);
+    const double width = port - setting.fan.edge_rad(beam + 1);
+    const double widest = widest_first_slice(port - width / 2, static_cast<double>(setting.line_m),
+                                             static_cast<double>(setting.fan.max_range_m()),
+                                             static_cast<double>(setting.accuracy.change));
+    const int count =
+        std::max(setting.accuracy.slices_per_beam, static_cast<int>(std::ceil(width / widest - 1e-9)));
+    for (int k = 0; k < count; ++k) {
+      order_.push_back(new_cell({port - width * (k + 0.5) / count, static_cast<float>(width / count)}, beam));
+    }
+  }
+}
+
+std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, const Aperture& aperture,
+                                                   const RangeLines& range, double sampled_range_m,
+                                                   const SurfaceModel& surface,
+                                                   const SliceAccuracy& accuracy) {
+  place_parts(T_world_sonar);
+  const Fan fan(aperture, sampled_range_m);
+  const Setting setting{
+      fan,
+      ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)),
+      surface,
+      accuracy,
+      surfaces_,
+      any_mapped_,
+      surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
+      static_cast<float>(range.step_m),
+      SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))};
+  triangles_.find(placed_, setting.fan, bend_, workers_, skip_.on(SkipRule::culled_clusters));
+  lay_first_slices(setting);
+  std::vector<std::size_t> fresh = order_;
+  do {
+    see(setting, fresh);
+  } while (refine(setting, fresh));
+  make_patches(setting);
+  std::vector<const SliceCell*> cells;
+  for (const std::size_t i : order_) {
+    cells.push_back(cells_[i].get());
+  }
+  skipped_ = skipped_parts_;
+  skipped_.add(SkipRule::culled_clusters, triangles_.clusters_culled());
+  skipped_.add(SkipRule::flat_elevation, setting.pattern.flat() ? 1 : 0);
+  if (surface.facets == Facets::near_normal) {
+    for (const SliceCell* cell : cells) {
+      skipped_.add(SkipRule::facet_kernel, cell->without_facets);
+    }
+  }
+  return cells;
+}
+
+/// Fills the cells `fresh`, which run from port to starboard; all of one beam in one job, unless the beams
+/// are so few that threads would be left without.
+void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& fresh) {
+  constexpr std::size_t enough_jobs = 4;
+  const std::size_t longest = std::max<std::size_t>(1, fresh.size() / enough_jobs);
+  std::vector<std::size_t> begins;  // of each job in `fresh`
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    if (i == 0 || cells_[fresh[i]]->beam != cells_[fresh[i - 1]]->beam || i - begins.back() >= longest) {
+      begins.push_back(i);
+    }
+  }
+  begins.push_back(fresh.size());
+  workers_.run(static_cast<int>(begins.size()) - 1, [&](int job) {
+    thread_local Scratch scratch;
+    const auto j = static_cast<std::size_t>(job);
+    const SliceCell& first = *cells_[fresh[begins[j]]];
+    const SliceCell& last = *cells_[fresh[begins[j + 1] - 1]];
+    scratch.cutter.load(triangles_.of_beam(first.beam),
+                        last.slice.azimuth_rad - 0.5 * static_cast<double>(last.slice.width_rad),
+                        first.slice.azimuth_rad + 0.5 * static_cast<double>(first.slice.width_rad),
+                        setting.fan, setting.surface.two_sided);
+    for (std::size_t i = begins[j]; i < begins[j + 1]; ++i) {
+      see_cell(setting, scratch, *cells_[fresh[i]]);
+    }
+  });
+}
+
+void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell) {
+  if (!cell.seen) {
+    scratch.cutter.cut(cell.slice, setting.fan.tan_limit(), scratch.segments);
+    scratch.sweep.run(scratch.cutter, cell.slice, scratch.segments, setting.fan.tan_limit(), cell.pieces);
+    cell.seen = true;
+  }
+  if (setting.accuracy.most_divisions == 1) {
+    return;
+  }
+  cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
+  scratch.cutter.find_upright_edges(cell.slice, cell.edges);
+  scratch.expectation.find(cell.pieces, cell.slice.width_rad, setting.side_view, cell.sides);
+}
+
+/// Of the slices that are left.
+void SliceSampler::make_patches(const Setting& setting) {
+  constexpr std::size_t cells_per_job = 4;
+  workers_.run(static_cast<int>((order_.size() + cells_per_job - 1) / cells_per_job), [&](int job) {
+    thread_local SlicePatcher patcher;
+    const std::size_t begin = static_cast<std::size_t>(job) * cells_per_job;
+    for (std::size_t i = begin; i < std::min(order_.size(), begin + cells_per_job); ++i) {
+      SliceCell& cell = *cells_[order_[i]];
+      cell.patches.clear();
+      cell.without_facets =
+          patcher.make({cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern,
+                        setting.fan.tan_limit(), setting.accuracy.evenness, setting.any_mapped,
+                        setting.accuracy.mapped_lines, setting.any_facets, setting.accuracy.facet_slopes,
+                        setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},
+                       cell.patches);
+    }
+  });
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,49 @@
+// What a slice expects at the two sides of its wedge if its surfaces go on as they are seen in its middle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/engines/cpu/piece_arrays.hpp"
+
+namespace sonard::render {
+
+inline constexpr int probe_padding = 4;  ///< at the end of a profile; so many are written at once
+/// 1 / horizontal distance at the probes of one side, 0 where nothing is seen.
+using SideProfile = std::array<float, side_probes + probe_padding>;
+
+/// Neighbours compare theirs.
+struct SliceSides {
+  SideProfile port, starboard;
+  float heard = 0.0F;      ///< share of elevations at which something is expected within the range
+  float one_sided = 0.0F;  ///< the same, of one side only
+  float lines = 0.0F;      ///< over which that lies
+};
+
+/// The elevations and the range in which sides are looked at, for one ping.
+struct SideView {
+  SideView(float tan_limit, float max_range_m, float line_m);
+
+  float tan_limit, max_range_m, line_m;
+  SideProfile secant;  ///< of the probes' elevations: range = secant / w
+};
+
+/// One per thread; keeps its memory.
+class SideExpectation {
+ public:
+  void find(const std::vector<VisiblePiece>& pieces, float width_rad, const SideView& view,
+            SliceSides& sides);
+
+ private:
+  void lay_out(const std::vector<VisiblePiece>& pieces);
+  void follow(float width_rad, float tan_limit);
+  void find_probes(float tan_limit, float offset_rad);
+  void profile(float tan_limit, float offset_rad, SideProfile& out);
+
+  PieceArrays seen_;
+  std::vector<float> w_by_azimuth_;
+  std::vector<std::int32_t> first_probe_, last_probe_;
+};
+
+}  // namespace sonard::render

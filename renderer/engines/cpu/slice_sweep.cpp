@@ -1,0 +1,302 @@
+#include "renderer/engines/cpu/slice_sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderer/simd.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr float never = std::numeric_limits<float>::infinity();
+constexpr int nothing = -1;
+// Relative difference of 1 / h below which two segments touch but do not cross; above the rounding of cuts.
+constexpr float touching = 1e-5F;
+
+constexpr float widest_gap_rad = 2 * shortest_rad;  // where segments were left out
+
+}  // namespace
+
+void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segments& segments, float tan_limit,
+                     std::vector<VisiblePiece>& pieces) {
+  cutter_ = &cutter;
+  segments_ = &segments;
+  pieces_ = &pieces;
+  cosine_ = slice.cosine;
+  sine_ = slice.sine;
+  count_ = segments.kept.size();
+  limit_ = tan_limit;
+  pieces.clear();
+  crossed_.clear();
+  short_.clear();
+  waiting_.clear();
+  sort_by_low_end();
+  next_ = 0;
+  current_ = nothing;
+  crossing_ = never;
+  t_ = -limit_;
+  run_ = {};
+  while (t_ < limit_) {
+    if (current_ == nothing) {
+      if (next_ == count_) {
+        break;
+      }
+      step_to_next_start();
+      continue;
+    }
+    const float end = std::min(segments.high[static_cast<std::size_t>(current_)], limit_);
+    const float start = next_start();
+    if (crossing_ < start && crossing_ < end) {
+      const std::size_t before = pieces.size();
+      emit(crossing_, {});
+      if (pieces.size() > before) {
+        crossed_.push_back(before);
+      }
+      std::swap(current_, waiting_[crosser_]);
+      find_next_crossing();
+    } else if (start < end) {
+      meet(order_[next_++]);
+    } else {
+      step_to_end_of_current();
+    }
+  }
+  follow_crossings();
+  close_gaps();
+}
+
+/// Takes out what is seen through a gap in a surface.
+void SliceSweep::close_gaps() {
+  for (std::size_t k = short_.size(); k-- > 0;) {
+    const std::size_t i = short_[k];
+    if (i == 0 || i + 1 >= pieces_->size()) {
+      continue;
+    }
+    const VisiblePiece& before = (*pieces_)[i - 1];
+    const VisiblePiece& piece = (*pieces_)[i];
+    const VisiblePiece& after = (*pieces_)[i + 1];
+    const float w = piece.w_at_0 + piece.w_slope * piece.low;
+    if (before.high == piece.low && piece.high == after.low &&
+        before.w_at_0 + before.w_slope * piece.low > w * (1 + touching) &&
+        after.w_at_0 + after.w_slope * piece.high > w * (1 + touching)) {
+      pieces_->erase(pieces_->begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+}
+
+/// Where two surfaces cross, their pieces end along the line in which their planes meet. Its direction e
+/// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
+void SliceSweep::follow_crossings() {
+  for (const std::size_t i : crossed_) {
+    if (i + 1 >= pieces_->size()) {
+      continue;
+    }
+    VisiblePiece& before = (*pieces_)[i];
+    VisiblePiece& after = (*pieces_)[i + 1];
+    const float e_h = before.normal_s * after.normal_z - before.normal_z * after.normal_s;
+    const float e_s = before.normal_z * after.normal_h - before.normal_h * after.normal_z;
+    const float e_z = before.normal_h * after.normal_s - before.normal_s * after.normal_h;
+    const float drift = (e_z - before.high * e_h) / e_s;
+    // It moves no farther than the longer piece reaches.
+    const float reach = std::max(before.high - before.low, after.high - after.low);
+    before.high_run = after.low_run = std::isfinite(drift) ? EdgeRun{drift, reach} : EdgeRun{};
+  }
+}
+
+float SliceSweep::next_start() const {
+  return next_ < count_ ? std::max(-limit_, start_[next_]) : never;
+}
+
+float SliceSweep::start_after_next() const {
+  return next_ + 1 < count_ ? start_[next_ + 1] : never;
+}
+
+/// A counting sort into as many buckets as there are segments, then insertion: linear where segments are
+/// spread over the fan, as the triangles of a surface are.
+void SliceSweep::sort_by_low_end() {
+  const std::size_t count = segments_->kept.size();
+  const auto buckets = static_cast<std::int32_t>(std::clamp<std::size_t>(2 * count, 16, 65536));
+  for (auto* array : {&order_, &bucket_}) {
+    array->resize(std::max(array->size(), count));
+  }
+  for (auto* array : {&start_, &unsorted_start_}) {
+    array->resize(std::max(array->size(), count));
+  }
+  find_buckets(buckets);
+  bucket_begin_.assign(static_cast<std::size_t>(buckets) + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    ++bucket_begin_[static_cast<std::size_t>(bucket_[i]) + 1];
+  }
+  for (std::size_t b = 0; b < static_cast<std::size_t>(buckets); ++b) {
+    bucket_begin_[b + 1] += bucket_begin_[b];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t at = bucket_begin_[static_cast<std::size_t>(bucket_[i])]++;
+    order_[at] = segments_->kept[i];
+    start_[at] = unsorted_start_[i];
+  }
+  for (std::size_t i = 1; i < count; ++i) {
+    const float start = start_[i];
+    if (start_[i - 1] <= start) {
+      continue;
+    }
+    const std::int32_t segment = order_[i];
+    std::size_t at = i;
+    for (; at > 0 && start_[at - 1] > start; --at) {
+      order_[at] = order_[at - 1];
+      start_[at] = start_[at - 1];
+    }
+    order_[at] = segment;
+    start_[at] = start;
+  }
+}
+
+SONARD_SIMD_CLONES
+void SliceSweep::find_buckets(std::int32_t buckets) {
+  const std::size_t count = segments_->kept.size();
+  const float* __restrict low = segments_->low.data();
+  const std::int32_t* __restrict kept = segments_->kept.data();
+  float* __restrict start = unsorted_start_.data();
+  std::int32_t* __restrict bucket = bucket_.data();
+  const float limit = limit_;
+  const float scale = static_cast<float>(buckets) / (2 * limit);
+  const float last = static_cast<float>(buckets - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float begin = low[kept[i]];
+    start[i] = begin;
+    const float place = (begin + limit) * scale;
+    const float above = place > 0 ? place : 0.0F;
+    bucket[i] = static_cast<std::int32_t>(above < last ? above : last);
+  }
+}
+
+void SliceSweep::emit(float until, const EdgeRun& run) {
+  if (until > t_) {
+    if (until - t_ < widest_gap_rad * (1 + t_ * t_)) {
+      short_.push_back(pieces_->size());
+    }
+    const auto s = static_cast<std::size_t>(current_);
+    const float nx = cutter_->normal_x()[s], ny = cutter_->normal_y()[s];
+    pieces_->push_back({t_, until, run_, run, segments_->w_at_0[s], segments_->w_slope[s],
+                        nx * cosine_ + ny * sine_, ny * cosine_ - nx * sine_, cutter_->normal_z()[s],
+                        &cutter_->triangle(current_)});
+    t_ = until;
+  }
+  run_ = run;
+}
+
+/// Nothing is seen here: go on to where something begins.
+void SliceSweep::step_to_next_start() {
+  t_ = next_start();
+  const auto first = static_cast<std::size_t>(order_[next_]);
+  run_ = segments_->low[first] > -limit_ ? segments_->low_run(first) : EdgeRun{};
+  take_nearest_waiting();
+}
+
+/// A segment begins while another is seen.
+void SliceSweep::meet(int segment) {
+  const auto s = static_cast<std::size_t>(segment);
+  const auto c = static_cast<std::size_t>(current_);
+  const float start = std::max(-limit_, segments_->low[s]);
+  float at = never;
+  const bool cross = crosses(segment, current_, start, at);
+  if (is_seen_first(segment, current_, start)) {
+    emit(start, segments_->low_run(s));
+    if (cross || segments_->high[c] > segments_->high[s]) {
+      waiting_.push_back(current_);
+    }
+    current_ = segment;
+    find_next_crossing();
+  } else if (cross || segments_->high[s] > segments_->high[c]) {
+    // Otherwise it ends behind the current one and is never seen.
+    waiting_.push_back(segment);
+    if (cross && at < crossing_) {
+      crossing_ = at;
+      crosser_ = waiting_.size() - 1;
+    }
+  }
+}
+
+void SliceSweep::step_to_end_of_current() {
+  const auto c = static_cast<std::size_t>(current_);
+  const bool cut_by_limit = segments_->high[c] >= limit_;
+  emit(std::min(segments_->high[c], limit_), cut_by_limit ? EdgeRun{} : segments_->high_run(c));
+  if (waiting_.empty() && next_start() <= t_ && start_after_next() > t_) {
+    // The next facet of one surface, with nothing behind it: by far the most common case.
+    current_ = order_[next_++];
+    crossing_ = never;
+    return;
+  }
+  take_nearest_waiting();
+}
+
+/// Makes the nearest of all that have begun and not ended the current one.
+void SliceSweep::take_nearest_waiting() {
+  while (next_ < count_ && next_start() <= t_) {
+    waiting_.push_back(order_[next_++]);
+  }
+  std::size_t kept = 0;
+  std::size_t best = 0;
+  for (const std::int32_t segment : waiting_) {
+    if (!(segments_->high[static_cast<std::size_t>(segment)] > t_)) {
+      continue;
+    }
+    waiting_[kept] = segment;
+    if (kept > 0 && is_seen_first(segment, waiting_[best], t_)) {
+      best = kept;
+    }
+    ++kept;
+  }
+  waiting_.resize(kept);
+  current_ = nothing;
+  crossing_ = never;
+  if (kept > 0) {
+    current_ = waiting_[best];
+    waiting_[best] = waiting_.back();
+    waiting_.pop_back();
+    find_next_crossing();
+  }
+}
+
+/// Which of two is seen at and after `from`: compared in the middle of what both span, since ends are shared
+/// by neighbours, but where they cross at `from` itself.
+bool SliceSweep::is_seen_first(int a, int b, float from) const {
+  float at = never;
+  if (crosses(a, b, from, at)) {
+    return segments_->w(a, from) > segments_->w(b, from);
+  }
+  const float until =
+      std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
+  const float middle = 0.5F * (from + until);
+  const float difference = segments_->w(a, middle) - segments_->w(b, middle);
+  return difference > 0 || (difference == 0 && a < b);
+}
+
+bool SliceSweep::crosses(int a, int b, float from, float& at) const {
+  const float until =
+      std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
+  const float w_from = segments_->w(a, from);
+  const float first = w_from - segments_->w(b, from);
+  const float last = segments_->w(a, until) - segments_->w(b, until);
+  const float margin = touching * std::abs(w_from);
+  if (!(first * last < 0) || std::abs(first) < margin || std::abs(last) < margin) {
+    return false;
+  }
+  at = from + (until - from) * (first / (first - last));
+  return at > from && at < until;
+}
+
+void SliceSweep::find_next_crossing() {
+  crossing_ = never;
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    float at = never;
+    if (segments_->high[static_cast<std::size_t>(waiting_[k])] > t_ &&
+        crosses(current_, waiting_[k], t_, at) && at < crossing_) {
+      crossing_ = at;
+      crosser_ = k;
+    }
+  }
+}
+
+}  // namespace sonard::render

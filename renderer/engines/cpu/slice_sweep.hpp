@@ -1,0 +1,68 @@
+// What is visible in one slice: an exact sweep over its segments from the lowest elevation to the highest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/engines/cpu/slice_cutter.hpp"
+
+namespace sonard::render {
+
+/// Part of a triangle that the sonar sees in a slice, between two elevations.
+struct VisiblePiece {
+  float low, high;  ///< t at the ends; low < high
+  EdgeRun low_run, high_run;
+  float w_at_0, w_slope;               ///< see Segments
+  float normal_h, normal_s, normal_z;  ///< of the triangle: along the slice, across it to port, and up
+  const FanTriangle* triangle;
+};
+
+/// Finds the nearest segment at every elevation, without sampling elevations: pieces end exactly where a
+/// segment ends, where a nearer one begins, or where two cross. One per thread; keeps its memory.
+class SliceSweep {
+ public:
+  /// Pieces from -tan_limit to tan_limit in rising order; they do not overlap. Of segments in the same place
+  /// the earlier is seen.
+  /// @param segments what `cutter` cut out of `slice` last.
+  void run(const SliceCutter& cutter, const Slice& slice, const Segments& segments, float tan_limit,
+           std::vector<VisiblePiece>& pieces);
+
+ private:
+  void follow_crossings();
+  void close_gaps();
+  void sort_by_low_end();
+  void find_buckets(std::int32_t buckets);
+  void step_to_next_start();
+  void step_to_end_of_current();
+  void meet(int segment);
+  void take_nearest_waiting();
+  void emit(float until, const EdgeRun& run);
+  bool is_seen_first(int a, int b, float from) const;
+  bool crosses(int a, int b, float from, float& at) const;
+  void find_next_crossing();
+  float next_start() const;
+  float start_after_next() const;
+
+  const SliceCutter* cutter_ = nullptr;
+  const Segments* segments_ = nullptr;
+  std::vector<VisiblePiece>* pieces_ = nullptr;
+  float cosine_ = 1.0F, sine_ = 0.0F;  ///< of the azimuth
+  float limit_ = 0.0F;
+  std::size_t count_ = 0;            ///< of segments; arrays may be longer
+  std::vector<std::int32_t> order_;  ///< segments by rising low end
+  std::vector<float> start_;         ///< their low ends
+  std::vector<float> unsorted_start_;
+  std::vector<std::int32_t> bucket_;  ///< of the sort
+  std::vector<std::uint32_t> bucket_begin_;
+  std::size_t next_ = 0;               ///< in order_
+  std::vector<std::int32_t> waiting_;  ///< begun, hidden by the current one, and possibly seen later
+  int current_ = -1;
+  float t_ = 0.0F;         ///< the sweep is here; the current piece began here
+  EdgeRun run_;            ///< of that beginning
+  float crossing_ = 0.0F;  ///< where a waiting segment comes before the current one
+  std::size_t crosser_ = 0;
+  std::vector<std::size_t> short_;    ///< pieces that may lie in a gap
+  std::vector<std::size_t> crossed_;  ///< pieces that end where the next one crosses them
+};
+
+}  // namespace sonard::render

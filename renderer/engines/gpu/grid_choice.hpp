@@ -1,0 +1,89 @@
+// How finely backend `raster` samples each beam for an error preset (docs/accuracy.md).
+#pragma once
+
+#include <vector>
+
+#include "renderer/binning/binning.hpp"
+#include "renderer/engines/gpu/beam_judge.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// How finely a beam is sampled: evenly, or more finely in a zone of it. Columns are even in number.
+struct BeamDensity {
+  int columns = 0;  ///< in the beam, or in the zone
+  int rows = 0;     ///< over the height of the fan
+  /// The zone, where there is one.
+  double zone_port_rad = 0.0, zone_starboard_rad = 0.0;
+  int port_columns = 0, starboard_columns = 0;  ///< beside the zone; 0: it ends where the beam ends
+
+  bool has_zone() const { return zone_port_rad > zone_starboard_rad; }
+  double samples() const { return 1.0 * (columns + port_columns + starboard_columns) * rows; }
+  bool operator==(const BeamDensity&) const = default;
+};
+
+/// What a preset promises of every image (docs/physics.md 6).
+struct GridTargets {
+  double bins;     ///< relative RMS of bins above 1e-2 of their beam's maximum
+  BeamError beam;  ///< of the worst beam
+};
+
+/// Of `fast` and `normal`; `reference` has those of `normal`.
+GridTargets grid_targets(Sampling::Preset preset);
+
+/// The even grid that a preset begins with: fewer samples where it were more than 2^25.
+/// @throws RequestError when the aperture cannot be gridded.
+BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset);
+
+/// All beams of the aperture in one run, without a zone.
+BeamRun whole_fan(const Aperture& aperture, const BeamDensity& density);
+
+/// A beam and how finely it is to be sampled.
+struct BeamChoice {
+  int beam = 0;
+  BeamDensity density;
+};
+
+/// Neighbours that are sampled alike share views. Runs have 1, 2, 4 ... beams, so that views of few sizes
+/// come back from ping to ping; a beam with a zone is one for itself.
+/// @param choices in the order of beams.
+std::vector<BeamRun> beam_runs(const Aperture& aperture, const std::vector<BeamChoice>& choices);
+
+/// The same runs with every second column and row.
+std::vector<BeamRun> thinned(std::vector<BeamRun> runs);
+
+/// Every second column and row of the samples of a grid, as if the grid of the thinned runs had been sampled:
+/// each is moved to the centre of its larger pixel, along the surface that it saw.
+class ThinnedSamples {
+ public:
+  ThinnedSamples(const SampleGrid& fine, const std::vector<const SurfaceSample*>& samples,
+                 const SampleGrid& coarse);
+  /// As RasterSampler::sample() returns them; they live as long as this object.
+  std::vector<const SurfaceSample*> views() const;
+
+ private:
+  std::vector<std::vector<SurfaceSample>> views_;
+};
+
+/// What the relative RMS error of a beam's bins above 1e-2 of its maximum may be, judged by how far its image
+/// of thinned samples is from it.
+/// @param echo, thinned `lines` values each.
+/// @param line_weight of every line, what the image is yet to be multiplied with; empty: 1.
+double bin_error(const float* echo, const float* thinned, std::size_t lines,
+                 const std::vector<float>& line_weight);
+
+/// What is known of a beam.
+struct BeamState {
+  BeamDensity density;
+  JudgedBeam judged;
+  double bin_rms = 0.0;
+};
+
+/// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they
+/// take no more than 2^25 samples.
+/// @param beams all beams of the aperture.
+std::vector<BeamChoice> beams_in_doubt(const Aperture& aperture, const std::vector<BeamState>& beams,
+                                       const GridTargets& targets);
+
+}  // namespace sonard::render

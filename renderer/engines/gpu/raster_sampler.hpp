@@ -1,0 +1,58 @@
+// Visibility by rasterising: OpenSceneGraph culls and draws, a fragment shader writes one SurfaceSample per
+// pixel.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/pose.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
+#include "renderer/scene/world.hpp"
+#include "renderer/surface/surface_model.hpp"
+
+namespace sonard::render {
+
+class EglContext;
+
+/// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar:
+/// the subtraction of world positions happens in double on the CPU, once per body and ping.
+class RasterSampler {
+ public:
+  /// @throws RendererError without OpenGL 4.5, or when a shader does not compile.
+  explicit RasterSampler(const World& world);
+  ~RasterSampler();
+  RasterSampler(const RasterSampler&) = delete;
+  RasterSampler& operator=(const RasterSampler&) = delete;
+
+  /// The samples of view i, row after row as SubView orders them. They stay valid until the next call of
+  /// draw() or sample(). Surfaces beyond `max_range_m` may be reported or not.
+  /// @throws RequestError when a view is larger than a texture can be.
+  /// @throws RendererError when OpenGL fails.
+  std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
+                                           const SurfaceModel& surface, double max_range_m);
+
+  // These three do what EchoEngine says.
+  void set_body_pose(std::size_t body, const Pose& T_world_body);
+  void set_part_meshes(std::span<const PartMesh> changes);
+  void set_ray_bend(double bend_per_m);
+
+  /// "raster, vendor / renderer / version"
+  const std::string& description() const;
+
+  /// As sample(), but what is seen stays on the GPU.
+  /// @return names of textures, one for every view: RGBA32F, a SurfaceSample each texel, row by row upwards.
+  /// They stay valid until the next call of draw() or sample().
+  std::vector<unsigned> draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+                             double max_range_m);
+  /// Where these textures are, made current.
+  /// @throws RendererError when the context is lost.
+  EglContext& current_context();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,64 @@
+// The values of one ping: what is asked for, the mean echo, the samples, and what it cost.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/pose.hpp"
+#include "renderer/skip_ledger.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Mean echo intensity behind array and pulse, before speckle, noise and gain. Linear; mode `physical`: re
+/// the source intensity at 1 m, per beam and native line; mode `paper`: the paper's I_bin in [0, 1].
+struct EchoImage {
+  int beams = 0;
+  int lines = 0;
+  std::vector<float> intensity;  ///< [beam * lines + line]
+
+  float at(int beam, int line) const {
+    return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) +
+                     static_cast<std::size_t>(line)];
+  }
+};
+
+/// What the receiver hands to the device, ready to be sent: line after line, each from port to starboard.
+struct PingSamples {
+  int beams = 0;
+  int lines = 0;                   ///< after range compression
+  std::vector<std::uint8_t> u8;    ///< [line * beams + beam], when 8 bit were asked for
+  std::vector<std::uint16_t> u16;  ///< the same, when 16 bit were asked for
+};
+
+struct PingRequest {
+  Pose T_world_sonar;  ///< when the ping is sent
+  SonarSettings settings;
+  std::uint64_t ping_number = 0;  ///< enters the random numbers; never wraps
+  std::uint64_t seed = 0;
+  /// When the echo of the last line returns, 2 R / c later; nullopt: the sonar is at rest
+  /// (docs/physics.md 2.14).
+  std::optional<Pose> T_world_sonar_at_end{};
+};
+
+/// Seconds spent, and how much work there was. For logs, metrics and the benchmark.
+struct PingStatistics {
+  double visibility_s = 0.0;
+  double binning_s = 0.0;
+  double multipath_s = 0.0;
+  double azimuth_pattern_s = 0.0;
+  double pulse_s = 0.0;
+  double receiver_s = 0.0;
+  std::uint64_t samples = 0;
+  std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
+  /// Echoes beyond what the sums of GpuBinner hold, taken as that: 2^14 times unit response or more.
+  std::uint64_t saturated_samples = 0;
+  /// Why a fixed grid that was to be binned on the GPU was binned on the CPU; empty otherwise. One line.
+  std::string gpu_binning_obstacle;
+  SkipCounts skipped;  ///< what was left out; stages that did not run have counted nothing
+};
+
+}  // namespace sonard::render

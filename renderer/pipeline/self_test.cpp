@@ -1,0 +1,107 @@
+// The scene every start of the daemon renders before it serves: a wall with a closed-form echo.
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr double wall_m = 10.0;
+constexpr double worst_error = 0.05;
+
+World make_wall() {
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->positions = {{0, -60, -60}, {0, 60, -60}, {0, 60, 60}, {0, -60, 60}};
+  mesh->indices = {0, 2, 1, 0, 3, 2};
+  BodyPart part;
+  part.mesh = mesh;
+  part.material.lambert_mu = 1.0;
+  Body wall{"wall", {}, {part}};
+  wall.T_world_body.position_m.x = wall_m;
+  World world;
+  world.bodies.push_back(wall);
+  return world;
+}
+
+/// Integral of cos^4 from 0 to u.
+double cos4_integral(double u) {
+  return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32;
+}
+
+/// docs/physics.md 3.2, T2: echo of a perpendicular wall between two ranges, per unit azimuth. Along one
+/// azimuth the wall is at wall / (cos psi cos theta), so each range bounds an elevation.
+double wall_echo(double psi, double from_m, double to_m, double elevation_limit) {
+  const auto elevation_at = [&](double range_m) {
+    const double cosine = wall_m / (range_m * std::cos(psi));
+    return cosine >= 1 ? 0.0 : std::min(elevation_limit, std::acos(cosine));
+  };
+  const double c = std::cos(psi);
+  return 2 * c * c * c / (wall_m * wall_m) *
+         (cos4_integral(elevation_at(to_m)) - cos4_integral(elevation_at(from_m)));
+}
+
+/// The same over the width of a beam, by the midpoint rule.
+double beam_echo(double psi_from, double psi_to, double from_m, double to_m, double elevation_limit) {
+  constexpr int steps = 400;
+  const double step = (psi_to - psi_from) / steps;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    sum += wall_echo(psi_from + (i + 0.5) * step, from_m, to_m, elevation_limit) * step;
+  }
+  return sum;
+}
+
+/// RMS over bins above 1e-2 of the beam's maximum.
+double error_of(const EchoImage& image, const SonarSettings& settings) {
+  double squared = 0;
+  int compared = 0;
+  for (int beam = 0; beam < image.beams; ++beam) {
+    const double psi_from = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
+    const double psi_to = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
+    std::vector<double> expected;
+    for (int k = 0; k < settings.range.count; ++k) {
+      expected.push_back(beam_echo(psi_from, psi_to, std::max(1e-9, k * settings.range.step_m),
+                                   (k + 1) * settings.range.step_m, settings.aperture.elevation_limit_rad()));
+    }
+    const double strongest = *std::max_element(expected.begin(), expected.end());
+    for (int k = 0; k < settings.range.count; ++k) {
+      const double truth = expected[static_cast<std::size_t>(k)];
+      if (truth > 1e-2 * strongest) {
+        const double error = static_cast<double>(image.at(beam, k)) / truth - 1;
+        squared += error * error;
+        ++compared;
+      }
+    }
+  }
+  return std::sqrt(squared / compared);
+}
+
+}  // namespace
+
+double run_self_test(const RendererOptions& options) {
+  SonarRenderer renderer(make_wall(), options);
+  PingRequest request;
+  SonarSettings& settings = request.settings;
+  settings.aperture.beam_edges_rad = equal_sine_edges(16, 1.0471975511965976);
+  settings.range = {1200, 0.02, 0, false};
+  settings.physical.absorption_db_per_m = 0.0;
+  double worst = 0;
+  // Fixed grids go another way than presets, with `raster` through shaders of their own.
+  for (const Sampling& sampling : {Sampling{}, Sampling::of_grid(3, 64, 256)}) {
+    settings.sampling = sampling;
+    const double error = error_of(renderer.render_echo(request), settings);
+    if (!(error < worst_error)) {
+      throw RendererError(
+          fmt::format("self test: the echo of a wall, by {}, is off by {:.1f} % RMS on {}",
+                      sampling.preset == Sampling::Preset::grid ? "a fixed grid" : "the default preset",
+                      error * 100, renderer.backend_description()));
+    }
+    worst = std::max(worst, error);
+  }
+  return worst;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,313 @@
+#include "renderer/pipeline/sonar_renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "renderer/acoustics/point_spread.hpp"
+#include "renderer/acoustics/receiver.hpp"
+#include "renderer/acoustics/transmission_loss.hpp"
+#include "renderer/acoustics/volume_reverberation.hpp"
+#include "renderer/engines/make_engine.hpp"
+#include "renderer/multipath/multipath.hpp"
+#include "renderer/pipeline/echo_cache.hpp"
+#include "renderer/pipeline/ping_motion.hpp"
+#include "renderer/scene/bent_world.hpp"
+#include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/terrain_levels.hpp"
+#include "renderer/spatial_index/spatial_index.hpp"
+#include "renderer/stopwatch.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr int most_native_lines = 65535;  // multibeam heads count them in 16 bits
+constexpr int most_beams = 4096;
+constexpr double shortest_line_m = 1e-6;
+constexpr double longest_range_m = 1e5;
+
+void check(const SonarSettings& settings) {
+  check_aperture(settings.aperture);
+  const RangeLines& range = settings.range;
+  if (range.count < 1 || range.count > most_native_lines) {
+    throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " +
+                       std::to_string(most_native_lines));
+  }
+  if (!(range.step_m >= shortest_line_m) || !(range.max_range_m() <= longest_range_m)) {
+    throw RequestError("range: a line of " + std::to_string(range.step_m) + " m gives no usable range");
+  }
+  if (settings.sixteen_bit && settings.output_scale != OutputScale::linear) {
+    throw RequestError("output: samples of 16 bits are linear, a scale of half decibels has 8 bits");
+  }
+  if (range.compression_log2 < 0 || range.compression_log2 > 4) {
+    throw RequestError("range: compression 2^" + std::to_string(range.compression_log2) +
+                       ", expected 2^0 to 2^4");
+  }
+  if (settings.aperture.beam_count() > most_beams) {
+    throw RequestError("aperture: more than " + std::to_string(most_beams) + " beams");
+  }
+}
+
+/// The pose with a unit quaternion.
+Pose checked(const Pose& pose) {
+  const double norm = glm::length(pose.orientation);
+  const glm::dvec3& p = pose.position_m;
+  if (!std::isfinite(norm) || !(std::abs(norm - 1) < 1e-3) || !std::isfinite(p.x + p.y + p.z)) {
+    throw RequestError("pose: not finite, or its quaternion is not of unit length");
+  }
+  return {p, pose.orientation / norm};
+}
+
+}  // namespace
+
+struct SonarRenderer::Impl {
+  const SkipSwitches skip;
+  const double ray_curvature_per_m;
+  WorkerPool workers;  // outlives whoever uses it
+  SpatialIndex index;  // the world, and where it is moved
+  ChosenEngine chosen;
+  Multipath multipath;
+  TerrainLevels terrain;
+  Receiver receiver;
+  TransmissionLoss loss;
+  PingStatistics statistics;
+  std::unordered_map<std::string, std::size_t> body_number;
+  std::uint64_t world_revision = 1;          // counts the moves of bodies
+  std::map<int, CachedEcho> cached_echoes;   // by stream
+  std::map<int, PointSpread> point_spreads;  // by stream
+  EchoImage fine_echo;                       // memory
+
+  Impl(const World& world, const RendererOptions& options)
+      : skip(options.skip),
+        ray_curvature_per_m(options.ray_curvature_per_m),
+        workers(options.threads),
+        index(world, workers),
+        chosen(make_engine(index, workers, options)),
+        multipath(index, workers, options.skip),
+        terrain(world, options.skip,
+                ray_curvature_per_m == 0.0 ? 0.0F : bendable_edge_m(world, ray_curvature_per_m)),
+        receiver(options.skip) {
+    for (std::size_t body = 0; body < world.bodies.size(); ++body) {
+      body_number[world.bodies[body].name] = body;
+    }
+  }
+
+  void set_body_pose(std::size_t body, const Pose& T_world_body) {
+    if (index.world().bodies[body].T_world_body == T_world_body) {
+      return;  // publishers repeat the poses of bodies that rest
+    }
+    index.set_body_pose(body, T_world_body);
+    chosen.engine->set_body_pose(body, T_world_body);
+    ++world_revision;
+  }
+
+  /// SkipRule::motion_within_ping. @throws RequestError
+  SonarMotion motion_of(const PingRequest& request) {
+    SonarMotion motion{checked(request.T_world_sonar), std::nullopt};
+    const SonarSettings& settings = request.settings;
+    if (!request.T_world_sonar_at_end || settings.model != Model::physical ||
+        !settings.physical.motion_within_ping) {
+      return motion;
+    }
+    const Pose at_end = checked(*request.T_world_sonar_at_end);
+    if (at_end == motion.T_world_sonar) {
+      return motion;
+    }
+    if (skip.on(SkipRule::motion_within_ping) && !turns_beams(turn_between_rad(motion.T_world_sonar, at_end),
+                                                              settings.aperture.receive_beamwidth_rad)) {
+      statistics.skipped.add(SkipRule::motion_within_ping);
+      return motion;
+    }
+    motion.at_end = at_end;
+    return motion;
+  }
+
+  /// SkipRule::straight_rays.
+  void bend_rays(const SonarSettings& settings) {
+    double bend_per_m = settings.model == Model::physical ? ray_curvature_per_m / 2 : 0.0;
+    if (bend_per_m != 0.0 && skip.on(SkipRule::straight_rays) &&
+        !bends_beams(bend_per_m, settings.range.max_range_m(), settings.aperture.vertical_beamwidth_rad)) {
+      statistics.skipped.add(SkipRule::straight_rays);
+      bend_per_m = 0.0;
+    }
+    chosen.engine->set_ray_bend(bend_per_m);
+  }
+
+  /// @param settings_and_seed of which the pose is not looked at
+  void render_echo(const PingRequest& settings_and_seed, int stream, const SonarMotion& motion,
+                   EchoImage& image) {
+    const SonarSettings& settings = settings_and_seed.settings;
+    image.beams = settings.aperture.beam_count();
+    image.lines = settings.range.count;
+    if (!settings.transmit) {
+      image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines),
+                             0.0F);
+      return;
+    }
+    PointSpread& point_spread = point_spreads[stream];
+    point_spread.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
+    if (point_spread.has_pattern()) {
+      sample_echo(PointSpread::sampled(settings), motion, fine_echo);
+      Stopwatch watch;
+      point_spread.form_beams(fine_echo, image, workers, skip, statistics.skipped);
+      statistics.azimuth_pattern_s = watch.lap();
+    } else {
+      sample_echo(settings, motion, image);
+    }
+    Stopwatch watch;
+    point_spread.spread(image, workers);
+    statistics.pulse_s = watch.lap();
+  }
+
+  /// The echo as it comes to the sonar.
+  void sample_echo(const SonarSettings& settings, const SonarMotion& motion, EchoImage& image) {
+    static const std::vector<float> no_loss;
+    const std::vector<float>& line_weight =
+        settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
+    const bool clear_water = is_clear_water(settings) && skip.on(SkipRule::clear_water);
+    bend_rays(settings);
+    follow_terrain(settings, motion);
+    const EchoRequest request{motion.T_world_sonar, settings, line_weight,
+                              has_volume_reverberation(settings) && !clear_water};
+    MeanEcho echo{std::move(image), {}};
+    if (motion.at_end) {
+      image_in_spans(request, *motion.at_end, echo);
+    } else {
+      chosen.engine->image(request, echo, statistics);
+    }
+    image = std::move(echo.image);
+    Stopwatch watch;
+    multipath.add_to(image.intensity, settings, motion.T_world_sonar, statistics.skipped);
+    statistics.multipath_s = watch.lap();
+    if (settings.model == Model::physical) {
+      add_volume_reverberation(echo.open_sr, settings, image);
+      if (has_volume_reverberation(settings) && echo.open_sr.empty()) {
+        statistics.skipped.add(SkipRule::clear_water);
+      }
+      apply_loss(line_weight, image);
+    }
+    statistics.binning_s += watch.lap();
+  }
+
+  /// SkipRule::terrain_detail. Motion within a ping changes no detail, but it reaches further.
+  void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
+    Stopwatch watch;
+    const glm::dvec3& start_m = motion.T_world_sonar.position_m;
+    const double way_m = motion.at_end ? glm::length(motion.at_end->position_m - start_m) : 0.0;
+    const std::vector<PartMesh> changes =
+        terrain.look({start_m, settings.range.sampled_range_m() + way_m, settings.range.step_m},
+                     index.world(), workers, statistics.skipped);
+    if (!changes.empty()) {
+      index.set_part_meshes(changes);
+      chosen.engine->set_part_meshes(changes);
+    }
+    statistics.visibility_s += watch.lap();
+  }
+
+  /// Every line from the pose of its span. Nothing is blended, so a line is heard whole, and once.
+  void image_in_spans(const EchoRequest& request, const Pose& at_end, MeanEcho& joined) {
+    SonarSettings up_to_end = request.settings;
+    const int beams = up_to_end.aperture.beam_count();
+    const int lines = up_to_end.range.count;
+    joined.image.beams = beams;
+    joined.image.lines = lines;
+    joined.image.intensity.resize(static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines));
+    joined.open_sr.resize(request.open_water ? joined.image.intensity.size() : 0);
+    MeanEcho echo;
+    for (const RangeSpan& span :
+         range_spans(request.T_world_sonar, at_end, lines, up_to_end.aperture.receive_beamwidth_rad)) {
+      up_to_end.range.count = span.end_line;
+      chosen.engine->image({span.T_world_sonar, up_to_end, request.line_weight, request.open_water}, echo,
+                           statistics);
+      copy_lines(echo.image.intensity, span, beams, joined.image.intensity);
+      copy_lines(echo.open_sr, span, beams, joined.open_sr);
+    }
+  }
+
+  /// From an image that ends with the span.
+  static void copy_lines(const std::vector<float>& from, const RangeSpan& span, int beams,
+                         std::vector<float>& to) {
+    const std::size_t lines_from = from.size() / static_cast<std::size_t>(beams);
+    const std::size_t lines_to = to.size() / static_cast<std::size_t>(beams);
+    for (std::size_t beam = 0; beam < static_cast<std::size_t>(beams) && lines_from > 0; ++beam) {
+      const auto first = static_cast<std::size_t>(span.first_line);
+      std::copy(&from[beam * lines_from] + first, &from[beam * lines_from] + lines_from,
+                &to[beam * lines_to] + first);
+    }
+  }
+
+  const TransmissionLoss& loss_for(const SonarSettings& settings) {
+    if (loss.fits(settings) && skip.on(SkipRule::unchanged_settings)) {
+      statistics.skipped.add(SkipRule::unchanged_settings);
+    } else {
+      loss = TransmissionLoss(settings);
+    }
+    return loss;
+  }
+};
+
+SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
+SonarRenderer::~SonarRenderer() = default;
+
+Backend SonarRenderer::backend() const {
+  return impl_->chosen.backend;
+}
+
+const std::string& SonarRenderer::backend_description() const {
+  return impl_->chosen.description;
+}
+
+bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
+  const Pose pose = checked(T_world_body);
+  const auto known = impl_->body_number.find(body_name);
+  if (known == impl_->body_number.end()) {
+    return false;
+  }
+  impl_->set_body_pose(known->second, pose);
+  return true;
+}
+
+const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stream) {
+  check(request.settings);
+  impl_->statistics = {};
+  const SonarMotion motion = impl_->motion_of(request);
+  CachedEcho& cached = impl_->cached_echoes[stream];
+  if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
+    impl_->statistics.skipped.add(SkipRule::unchanged_scene);
+    return cached.image;
+  }
+  cached.world_revision = 0;  // until all of it is there
+  impl_->render_echo(request, stream, motion, cached.image);
+  cached.settings = request.settings;
+  cached.seed = request.seed;
+  cached.motion = motion;
+  cached.world_revision = impl_->world_revision;
+  return cached.image;
+}
+
+PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
+  const EchoImage& echo = render_echo(request, stream);
+  Stopwatch watch;
+  PingSamples samples = impl_->receiver.receive(echo, request, stream, impl_->workers);
+  impl_->statistics.receiver_s = watch.lap();
+  impl_->statistics.skipped += impl_->receiver.skipped();
+  return samples;
+}
+
+bool SonarRenderer::pass_ping(const PingRequest& request, int stream) {
+  check(request.settings);
+  impl_->statistics = {};
+  return impl_->receiver.pass(request, stream, impl_->workers);
+}
+
+const PingStatistics& SonarRenderer::last_statistics() const {
+  return impl_->statistics;
+}
+
+}  // namespace sonard::render

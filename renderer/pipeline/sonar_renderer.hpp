@@ -1,0 +1,65 @@
+// The door of the renderer: a world and a ping request go in, an echo image and the device's samples come
+// out.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "renderer/backend.hpp"
+#include "renderer/errors.hpp"
+#include "renderer/ping.hpp"
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+/// Renders pings of one world. Every call, construction and destruction included, comes from one thread,
+/// which owns the GL context if there is one. Several sonars may share one renderer; each gives its own
+/// `stream` number, which keeps their speckle apart.
+class SonarRenderer {
+ public:
+  /// @throws RendererError when what was asked for cannot be had: `raster` without OpenGL 4.5, or binning on
+  /// the GPU where its shaders do not build.
+  explicit SonarRenderer(const World& world, const RendererOptions& options = {});
+  ~SonarRenderer();
+  SonarRenderer(const SonarRenderer&) = delete;
+  SonarRenderer& operator=(const SonarRenderer&) = delete;
+
+  /// The backend in use: `raster` or `ray`.
+  Backend backend() const;
+  /// The same and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
+  const std::string& backend_description() const;
+
+  /// Moves a body of the world. @return false when the world has no body of that name.
+  bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+
+  /// Mean echo only: no speckle, noise or gain. The image stays valid until the next call for this stream; as
+  /// long as nothing that it depends on changes (SkipRule::unchanged_scene), the same one is handed out.
+  /// @throws RequestError, RendererError
+  const EchoImage& render_echo(const PingRequest& request, int stream = 0);
+
+  /// The whole chain. The result is the same bytes for the same history of requests of this stream; with
+  /// speckle `frozen` or `per_ping` it depends on this request alone.
+  /// @throws RequestError, RendererError
+  PingSamples render_ping(const PingRequest& request, int stream = 0);
+
+  /// Leaves all that this stream keeps from ping to ping as render_ping() would, for a fraction of its time:
+  /// whoever renders every n-th ping of a run gets the bytes of the whole run.
+  /// @return false, and nothing has happened, when that depends on the echo: where pulses are shorter than a
+  /// line, speckle `ou` goes on only in lines with an echo. Then render_ping() it is.
+  /// @throws RequestError
+  bool pass_ping(const PingRequest& request, int stream = 0);
+
+  const PingStatistics& last_statistics() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2), by the default preset and by a
+/// fixed grid.
+/// @return the larger RMS error over bins above 1e-2 of the beam's maximum.
+/// @throws RendererError when the backend fails, the image is empty or the error exceeds 5 %.
+double run_self_test(const RendererOptions& options = {});
+
+}  // namespace sonard::render

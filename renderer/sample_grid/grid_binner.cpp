@@ -1,0 +1,162 @@
+#include "renderer/sample_grid/grid_binner.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+
+#include "renderer/binning/beam_sums.hpp"
+#include "renderer/sample_grid/range_plane.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+/// What of a pixel counts: a parallelogram, its centre relative to the pixel's, tangent units.
+struct Cell {
+  float x_offset, y_offset, width, height;
+  float slope;  ///< dy/dx of its upper and lower side
+};
+
+/// The echo of `cell` of the pixel at tangents (x, y): two independent even spreads, along its two sides.
+EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& cell, float weight) {
+  RangePlane plane{sample.range_m, sample.range_dx, sample.range_dy};
+  if (cell.x_offset != 0 || cell.y_offset != 0) {
+    plane.move(x, y, cell.x_offset, cell.y_offset);
+  }
+  const float across = std::abs(plane.dx + cell.slope * plane.dy) * cell.width;
+  const float along = std::abs(plane.dy) * cell.height;
+  const float spread = std::max(across, along);
+  const float side = x + cell.x_offset;
+  const float tangent = (y + cell.y_offset) / std::sqrt(1 + side * side);
+  const float smear = std::min(across, along);
+  return {plane.range - 0.5F * spread,
+          plane.range + 0.5F * spread,
+          smear,
+          smear,
+          weight * sample.response,
+          weight,
+          0.0F,
+          0.0F,
+          tangent,
+          tangent};
+}
+
+/// The patches of one column of one beam, cut at the beam's edges and the elevation limit: a pixel is not one
+/// range but the span its cell covers on the plane it hit (docs/physics.md 2.3).
+/// @return the number of samples that were marked invalid.
+std::uint64_t make_patches(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                           const ColumnPart& part, std::vector<EchoPatch>& patches) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
+  const float* weights = &grid.weights[part.weights];
+  const auto x = static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width());
+  const auto bottom = static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height());
+  const auto pixel_height = static_cast<float>(view.pixel_height());
+  std::uint64_t invalid = 0;
+  patches.clear();
+  for (int row = part.row_begin; row < part.row_end; ++row) {
+    const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
+    if (!(sample.range_m > 0)) {
+      invalid += sample.range_m < 0 ? 1 : 0;
+      continue;
+    }
+    Cell cell{part.x_offset, 0.0F, part.width, pixel_height, 0.0F};
+    if (row == part.row_begin) {
+      cell = {part.x_offset, part.first_y_offset, part.width, part.first_height, -part.limit_slope};
+    } else if (row + 1 == part.row_end) {
+      cell = {part.x_offset, part.last_y_offset, part.width, part.last_height, part.limit_slope};
+    }
+    const float y = bottom + static_cast<float>(row) * pixel_height;
+    patches.push_back(patch_of(sample, x, y, cell, weights[row - part.row_begin]));
+  }
+  return invalid;
+}
+
+void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                const ColumnPart& part, double lines_per_m, BeamSums& sums) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
+  for (int row = part.row_begin; row < part.row_end; ++row) {
+    const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
+    const float weight = grid.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)];
+    if (sample.range_m > 0) {
+      sums.add_point(std::floor(static_cast<double>(sample.range_m) * lines_per_m), weight * sample.response,
+                     weight);
+    }
+    sums.invalid += sample.range_m < 0 ? 1 : 0;
+  }
+}
+
+double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
+  const auto begin = static_cast<std::size_t>(grid.beam_parts[beam]);
+  const auto end = static_cast<std::size_t>(grid.beam_parts[beam + 1]);
+  const std::size_t first = begin < end ? grid.parts[begin].weights : 0;
+  const std::size_t last = end < grid.parts.size() ? grid.parts[end].weights : grid.weights.size();
+  return begin < end ? std::accumulate(grid.weights.begin() + static_cast<std::ptrdiff_t>(first),
+                                       grid.weights.begin() + static_cast<std::ptrdiff_t>(last), 0.0)
+                     : 0.0;
+}
+
+/// The part of a column, with its patches.
+PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std::vector<EchoPatch>& patches) {
+  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+  const double middle =
+      -view.tan_half_width + (part.column + 0.5) * view.pixel_width() + static_cast<double>(part.x_offset);
+  const double half = static_cast<double>(part.width) / 2;
+  return {view.azimuth_rad - std::atan(middle - half), view.azimuth_rad - std::atan(middle + half),
+          patches.data(), patches.data() + patches.size()};
+}
+
+BinningResult bin_grid_by_cones(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                                const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                                std::vector<float> memory) {
+  std::vector<std::vector<EchoPatch>> patches(grid.parts.size());
+  std::atomic<std::uint64_t> invalid{0};
+  workers.run(static_cast<int>(grid.parts.size()), [&](int p) {
+    const auto part = static_cast<std::size_t>(p);
+    invalid += make_patches(grid, views, grid.parts[part], patches[part]);
+  });
+  std::vector<PatchColumn> columns;
+  for (std::size_t part = 0; part < grid.parts.size(); ++part) {
+    columns.push_back(column_of(grid, grid.parts[part], patches[part]));
+  }
+  BinningResult result = bin_by_cones(std::move(columns), range, options, workers, std::move(memory));
+  result.invalid_samples += invalid;
+  return result;
+}
+
+}  // namespace
+
+BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory) {
+  if (options.cone_aperture != nullptr) {
+    return bin_grid_by_cones(grid, views, range, options, workers, std::move(memory));
+  }
+  const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
+  const auto fill = [&](std::size_t beam, BeamSums& sums) {
+    for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
+      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+      if (options.footprint) {
+        thread_local std::vector<EchoPatch> patches;
+        sums.invalid += make_patches(grid, views, part, patches);
+        for (const EchoPatch& patch : patches) {
+          sums.add(patch);
+        }
+      } else {
+        add_points(grid, views, part, legacy_scale / range.step_m, sums);
+      }
+    }
+  };
+  const auto content = [&](std::size_t beam) {
+    const double solid_angle = solid_angle_of(grid, beam);
+    return BeamContent{solid_angle, solid_angle * static_cast<double>(options.largest_response)};
+  };
+  return bin_beams(grid.beam_count(), range, options, workers, std::move(memory),
+                   {[](std::size_t) { return false; }, content, fill});
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,19 @@
+// Samples of a grid -> echo per beam and range line.
+#pragma once
+
+#include <vector>
+
+#include "renderer/binning/binning.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
+#include "renderer/worker_pool.hpp"
+
+namespace sonard::render {
+
+/// Sums of a grid. Sums are exact (RangeProfile), so the result is the same for any number of threads.
+/// @param views the samples of every view, row after row as SubView orders them.
+/// @param memory as of bin_beams()
+BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                         std::vector<float> memory = {});
+
+}  // namespace sonard::render

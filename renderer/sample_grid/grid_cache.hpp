@@ -1,0 +1,26 @@
+// The last grid that was made.
+#pragma once
+
+#include <optional>
+
+#include "renderer/sample_grid/sample_grid.hpp"
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
+class GridCache {
+ public:
+  /// Makes the grid that the settings ask for.
+  /// @param may_keep the one that is there will do, if it is the one.
+  /// @return whether it was; else what was made of it is to be made anew.
+  /// @throws RequestError as make_sample_grid()
+  bool prepare(const SonarSettings& settings, bool may_keep);
+  const SampleGrid& grid() const { return grid_; }
+
+ private:
+  SampleGrid grid_;
+  std::optional<SonarSettings> made_of_;
+};
+
+}  // namespace sonard::render

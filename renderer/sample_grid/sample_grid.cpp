@@ -1,0 +1,228 @@
+#include "renderer/sample_grid/sample_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <string>
+
+#include "renderer/errors.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr double widest_single_view_rad = 2.8;  // planar projection ends below pi
+constexpr double most_samples = 0x1p27;         // 2 GiB of them
+
+void check(const Sampling& sampling) {
+  if (sampling.views < 1 || sampling.columns_per_view < 1 || sampling.rows < 1 || sampling.views > 64 ||
+      sampling.columns_per_view > 16384 || sampling.rows > 16384) {
+    throw RequestError("sampling: views, columns or rows out of range");
+  }
+}
+
+BeamRun even_views(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+  check(sampling);
+  const double port = aperture.beam_edges_rad.front();
+  const double width = port - aperture.beam_edges_rad.back();
+  int count = sampling.views;
+  if (options.elevation_mask) {
+    count = std::max(count, static_cast<int>(std::ceil(width / widest_view_rad - 1e-9)));
+  } else if (width / count > widest_single_view_rad) {
+    throw RequestError("sampling: one planar view cannot span the fan; raise views");
+  }
+  const double samples = 1.0 * count * sampling.columns_per_view * sampling.rows;
+  if (samples > most_samples) {
+    throw RequestError("sampling: more than 2^27 samples; lower views, columns or rows");
+  }
+  BeamRun run{0, aperture.beam_count(), {}, sampling.rows};
+  for (int i = 0; i < count; ++i) {
+    run.views.push_back(
+        {port - width * i / count, port - width * (i + 1) / count, sampling.columns_per_view});
+  }
+  return run;
+}
+
+SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, const GridOptions& options) {
+  const double half = (span.port_rad - span.starboard_rad) / 2;
+  SubView view;
+  view.azimuth_rad = (span.port_rad + span.starboard_rad) / 2;
+  view.tan_half_width = std::tan(half);
+  // The elevation limit is highest in the plane of the view at its sides. Without the mask the paper's
+  // frustum is kept: the limit holds on the axis only.
+  view.tan_half_height =
+      std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
+  view.columns = span.columns;
+  view.rows = rows;
+  return view;
+}
+
+/// Builds the parts of one aperture; a class only to keep the running vectors together.
+class GridBuilder {
+ public:
+  GridBuilder(const Aperture& aperture, const GridOptions& options, SampleGrid& grid)
+      : aperture_(aperture), options_(options), grid_(grid) {
+    grid_.elevation_limit_rad = aperture.elevation_limit_rad();
+    grid_.beam_parts.push_back(0);
+  }
+
+  /// @throws RequestError when a beam gets no column.
+  void add_run(const BeamRun& run) {
+    const std::size_t first_view = grid_.views.size();
+    for (const ViewSpan& span : run.views) {
+      grid_.views.push_back(make_view(aperture_, span, run.rows, options_));
+    }
+    for (int beam = run.begin; beam < run.end; ++beam) {
+      const auto b = static_cast<std::size_t>(beam);
+      add_beam(first_view, aperture_.beam_edges_rad[b], aperture_.beam_edges_rad[b + 1]);
+      if (grid_.beam_parts.back() == *std::prev(grid_.beam_parts.end(), 2)) {
+        throw RequestError("sampling: beam " + std::to_string(beam) +
+                           " gets no column; raise columns per view");
+      }
+    }
+  }
+
+ private:
+  /// From the views from `first_view` on.
+  void add_beam(std::size_t first_view, double port_edge_rad, double starboard_edge_rad) {
+    for (std::size_t v = first_view; v < grid_.views.size(); ++v) {
+      const SubView& view = grid_.views[v];
+      const double half = std::atan(view.tan_half_width);
+      // Azimuth to starboard of the view axis; edges outside the view are cut at its side.
+      const double from = std::clamp(view.azimuth_rad - port_edge_rad, -half, half);
+      const double to = std::clamp(view.azimuth_rad - starboard_edge_rad, -half, half);
+      if (to > from) {
+        add_columns(static_cast<int>(v), std::tan(from), std::tan(to));
+      }
+    }
+    grid_.beam_parts.push_back(static_cast<int>(grid_.parts.size()));
+  }
+
+  void add_columns(int view_index, double x_from, double x_to) {
+    const SubView& view = grid_.views[static_cast<std::size_t>(view_index)];
+    const double step = view.pixel_width();
+    const auto column_of = [&](double x) { return (x + view.tan_half_width) / step; };
+    const int first = std::clamp(static_cast<int>(std::floor(column_of(x_from))), 0, view.columns - 1);
+    const int last = std::clamp(static_cast<int>(std::ceil(column_of(x_to))), 1, view.columns);
+    for (int column = first; column < last; ++column) {
+      const double left = -view.tan_half_width + column * step;
+      double part_from = std::max(x_from, left);
+      double part_to = std::min(x_to, left + step);
+      if (options_.whole_columns) {
+        const double centre = left + step / 2;
+        if (centre < x_from || centre >= x_to) {
+          continue;
+        }
+        part_from = left;
+        part_to = left + step;
+      }
+      if (part_to - part_from > 1e-9 * step) {
+        add_part(view_index, column, part_from, part_to);
+      }
+    }
+  }
+
+  void add_part(int view_index, int column, double x_from, double x_to) {
+    const SubView& view = grid_.views[static_cast<std::size_t>(view_index)];
+    const double x = (x_from + x_to) / 2;
+    const double centre = -view.tan_half_width + (column + 0.5) * view.pixel_width();
+    const double limit = options_.elevation_mask ? std::tan(grid_.elevation_limit_rad) * std::hypot(1.0, x)
+                                                 : view.tan_half_height;
+    ColumnPart part;
+    part.view = view_index;
+    part.column = column;
+    const bool whole = x_to - x_from > (1 - 1e-9) * view.pixel_width();
+    part.x_offset = whole ? 0.0F : static_cast<float>(x - centre);
+    part.width = static_cast<float>(x_to - x_from);
+    if (options_.elevation_mask) {
+      part.limit_slope = static_cast<float>(std::tan(grid_.elevation_limit_rad) * x / std::hypot(1.0, x));
+    }
+    add_rows(view, x, std::min(limit, view.tan_half_height), part);
+    grid_.parts.push_back(part);
+  }
+
+  void add_rows(const SubView& view, double x, double limit, ColumnPart& part) {
+    const double step = view.pixel_height();
+    const auto row_of = [&](double y) { return (y + view.tan_half_height) / step; };
+    part.row_begin = std::clamp(static_cast<int>(std::floor(row_of(-limit) + 1e-9)), 0, view.rows - 1);
+    part.row_end =
+        std::clamp(static_cast<int>(std::ceil(row_of(limit) - 1e-9)), part.row_begin + 1, view.rows);
+    part.weights = grid_.weights.size();
+    for (int row = part.row_begin; row < part.row_end; ++row) {
+      const double bottom = -view.tan_half_height + row * step;
+      const double from = std::max(bottom, -limit);
+      const double to = std::min(bottom + step, limit);
+      const double y = (from + to) / 2;
+      const double height = std::max(0.0, to - from);
+      if (row == part.row_begin) {
+        part.first_y_offset = static_cast<float>(y - bottom - step / 2);
+        part.first_height = static_cast<float>(height);
+      }
+      if (row + 1 == part.row_end) {
+        part.last_y_offset = static_cast<float>(y - bottom - step / 2);
+        part.last_height = static_cast<float>(height);
+      }
+      const double q = 1 + x * x + y * y;
+      const double solid_angle = part.width * height / (q * std::sqrt(q));
+      grid_.weights.push_back(static_cast<float>(solid_angle * elevation_weight(x, y)));
+    }
+  }
+
+  /// Of a ray. Where there is no pattern, nobody needs the angle: this is most of the cost of a grid.
+  double elevation_weight(double x, double y) const {
+    return aperture_.elevation == Aperture::Elevation::top_hat
+               ? 1.0
+               : aperture_.elevation_weight(std::atan(y / std::hypot(1.0, x)));
+  }
+
+  const Aperture& aperture_;
+  const GridOptions& options_;
+  SampleGrid& grid_;
+};
+
+}  // namespace
+
+double BeamRun::samples() const {
+  double columns = 0;
+  for (const ViewSpan& view : views) {
+    columns += view.columns;
+  }
+  return columns * rows;
+}
+
+bool needs_grid(const SonarSettings& settings) {
+  const PaperModel& paper = settings.paper;
+  return settings.sampling.preset == Sampling::Preset::grid || !settings.sampling.footprint ||
+         (settings.model == Model::paper &&
+          (!paper.footprint || paper.legacy_bin_index || paper.legacy_columns || !paper.elevation_mask));
+}
+
+GridOptions grid_options(const SonarSettings& settings) {
+  GridOptions options;
+  if (settings.model == Model::paper) {
+    options.whole_columns = settings.paper.legacy_columns;
+    options.elevation_mask = settings.paper.elevation_mask;
+  }
+  return options;
+}
+
+SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+  check_aperture(aperture);
+  SampleGrid grid;
+  GridBuilder(aperture, options, grid).add_run(even_views(aperture, sampling, options));
+  return grid;
+}
+
+SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs) {
+  check_aperture(aperture);
+  const GridOptions options;
+  SampleGrid grid;
+  GridBuilder builder(aperture, options, grid);
+  for (const BeamRun& run : runs) {
+    builder.add_run(run);
+  }
+  return grid;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,111 @@
+// Where the fan is sampled: side-by-side planar views, what their pixels see, and which part of which pixel
+// belongs to which beam.
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "renderer/sonar_settings.hpp"
+
+namespace sonard::render {
+
+/// Beyond, pixels of one planar view grow too unequal (docs/physics.md 1.3).
+inline constexpr double widest_view_rad = std::numbers::pi / 3;
+
+/// One planar view. A ray of the view is q(x, y) = axis + x * starboard + y * up with tangents x and y;
+/// the axis lies in the sonar's xy plane at azimuth `azimuth_rad`. Pixel (column c, row j) is centred at
+/// x = -tan_half_width + (c + 1/2) * pixel_width(), y = -tan_half_height + (j + 1/2) * pixel_height():
+/// columns run to starboard, rows upwards.
+struct SubView {
+  double azimuth_rad = 0.0;  ///< psi of the axis, positive to port
+  double tan_half_width = 0.0;
+  double tan_half_height = 0.0;
+  int columns = 0;
+  int rows = 0;
+
+  double pixel_width() const { return 2 * tan_half_width / columns; }
+  double pixel_height() const { return 2 * tan_half_height / rows; }
+};
+
+/// What is seen along the ray of one pixel. With q the un-normalised ray of SubView, range_dx and range_dy
+/// are the signed derivatives of the range along the tangents x and y on the plane of the surface hit
+/// (docs/physics.md 2.3, equation 2); they use the geometric normal, never the shading normal.
+struct SurfaceSample {
+  float range_m = 0.0F;   ///< slant range to the first surface; 0: nothing seen
+  float response = 0.0F;  ///< echo per solid angle at unit range; see SurfaceModel
+  float range_dx = 0.0F;  ///< metres per unit tangent
+  float range_dy = 0.0F;
+
+  bool operator==(const SurfaceSample&) const = default;
+};
+
+/// The part of one pixel column that lies inside one beam, cut at the beam's edges and at the elevation
+/// limit.
+struct ColumnPart {
+  int view = 0;
+  int column = 0;
+  float x_offset = 0.0F;  ///< centre of the part minus centre of the column, tangent units
+  float width = 0.0F;     ///< tangent units
+  int row_begin = 0;      ///< rows [row_begin, row_end) are inside the fan
+  int row_end = 0;
+  /// First and last row are cut: offset of the part's centre from the pixel centre, and its height.
+  float first_y_offset = 0.0F, first_height = 0.0F;
+  float last_y_offset = 0.0F, last_height = 0.0F;
+  /// dy/dx of the upper elevation limit in this column; the lower one has the opposite slope.
+  float limit_slope = 0.0F;
+  /// Index into SampleGrid::weights of row `row_begin`.
+  std::size_t weights = 0;
+};
+
+/// The sampling of one aperture: pure geometry, made once per configuration and shared by both samplers.
+struct SampleGrid {
+  std::vector<SubView> views;
+  std::vector<ColumnPart> parts;  ///< sorted by beam
+  std::vector<int> beam_parts;    ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
+  std::vector<float> weights;     ///< solid angle times elevation pattern, steradians; per part and row
+  double elevation_limit_rad = 0.0;
+
+  int beam_count() const { return static_cast<int>(beam_parts.size()) - 1; }
+};
+
+/// How the fan is cut into pixels. The defaults are what accuracy wants; the others reproduce the paper.
+struct GridOptions {
+  bool whole_columns = false;  ///< a column belongs to the beam that holds its centre
+  bool elevation_mask = true;  ///< false: every row of a column counts
+
+  bool operator==(const GridOptions&) const = default;
+};
+
+/// Whether only a grid of pixels gives what is asked for: a fixed grid, samples without footprints, or one of
+/// the paper's variants of these.
+bool needs_grid(const SonarSettings& settings);
+
+/// What the model of `settings` asks for.
+GridOptions grid_options(const SonarSettings& settings);
+
+/// @throws RequestError when the aperture or the sampling cannot be gridded, or when a beam would get no
+/// column.
+SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling,
+                            const GridOptions& options = {});
+
+/// A view of some azimuths.
+struct ViewSpan {
+  double port_rad = 0.0, starboard_rad = 0.0;
+  int columns = 1;
+};
+
+/// Neighbouring beams that have views of their own.
+struct BeamRun {
+  int begin = 0, end = 0;       ///< beams [begin, end) of the aperture, at least one
+  std::vector<ViewSpan> views;  ///< from port to starboard; together the azimuths of the beams
+  int rows = 1;
+
+  double samples() const;
+};
+
+/// The sampling of some beams only. The beams of the grid are those of the runs, one run after the other.
+/// @param runs in the order of the beams, none twice; no view wider than 60 degrees.
+/// @throws RequestError when a beam gets no column.
+SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs);
+
+}  // namespace sonard::render
