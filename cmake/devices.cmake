@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The kinds of device, one line each: the only place that names them all. A kind NAME has
 #   protocol/NAME             library sonard_NAME: its bytes and its state machine
 #   server/devices/NAME       library sonard_device_NAME with `const DeviceKind& NAME_kind()` in kind.hpp

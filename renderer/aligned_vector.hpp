@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors whose elements start on a cache line, as wide vector loads want it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which method finds the visible surfaces, where samples are binned, on how many threads a ping is made, and
 // what may be skipped.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one interface between the pipeline and whatever finds out what the sonar hears of its surroundings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The values of one ping: what is asked for, the mean echo, the samples, and what it cost.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Hot loops are compiled three times, for baseline x86-64, AVX2 and AVX-512, and the best one is picked at

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that is not worked out, and why the image may do without: named rules that can be switched off
 // and that count what they save (docs/skipping.md).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one ping asks of the renderer: aperture, range lines, water, receiver. All angles in radians.
 #pragma once
 

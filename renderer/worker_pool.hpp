@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A few threads that share the loop iterations of one ping.
 #pragma once
 

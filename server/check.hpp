@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonard check`: everything that can be known before serving, assets and addresses included.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonard check --listen`: what arrives on the pose inputs of a configuration.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program: command line, log, and the one place where exceptions become exit codes.
 #include <chrono>
 #include <cmath>
@@ -26,7 +27,7 @@
 #include "server/offline/arguments.hpp"
 #include "server/offline/output_folder.hpp"
 #include "server/offline/render_run.hpp"
-#include "server/offline/voyage.hpp"
+#include "server/offline/vehicle_trajectory.hpp"
 #include "server/program_log/stderr_sink.hpp"
 #include "server/replay/replay.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays a trajectory into a pose link, in real time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // posecast: plays a trajectory file as a pose stream for sonard, as a simulator would send it.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/posecast/pose_link.hpp"
 
 #include <array>

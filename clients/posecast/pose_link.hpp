@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way of poses to sonard: one message per UDP datagram, or a TCP stream of delimited messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/ros1/frame_tree.hpp"
 
 #include <console_bridge/console.h>

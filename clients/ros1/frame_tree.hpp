@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tree of frames that /tf and /tf_static tell of.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // roscast: passes poses of a ROS 1 system on to sonard.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/ros1/options.hpp"
 
 #include <CLI/CLI.hpp>

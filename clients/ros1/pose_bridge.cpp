@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/ros1/pose_bridge.hpp"
 
 #include <fmt/format.h>

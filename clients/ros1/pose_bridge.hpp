@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From what ROS says to what sonard is told.
 #pragma once
 

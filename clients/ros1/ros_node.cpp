@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/ros1/ros_node.hpp"
 
 #include <nav_msgs/Odometry.h>

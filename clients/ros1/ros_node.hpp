@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The node: what roscpp does for the bridge.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What ROS says about a frame, without the headers of ROS, which do not compile as C++20.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/command_line.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of sonarview: what the user asks of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How sonarview ends, in its documentation and in scripts.
 #pragma once
 

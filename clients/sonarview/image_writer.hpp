@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures, drawn and written beside the conversation with the head.
 #pragma once
 

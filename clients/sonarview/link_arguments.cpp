@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/link_arguments.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options that say how a head on a serial line, or beside it, is reached.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sonarview: talks to a sonar as a vehicle would, and compares images. Usage: docs/sonarview.md.
 #include <fmt/format.h>
 

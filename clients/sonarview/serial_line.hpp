@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way of bytes to a head on a serial line: a serial device, or a device server by TCP or UDP.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Something that sonarview does, as its command line knows it: talking to one kind of device, or comparing
 // images.
 #pragma once

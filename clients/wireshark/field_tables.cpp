@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/wireshark/field_tables.hpp"
 
 #include <array>

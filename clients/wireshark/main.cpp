@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints one of the field tables of the dissectors:
 //   wireshark_fields gemini >clients/wireshark/sonard_gemini_fields.lua
 #include <cstdio>

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: Apache-2.0
 -- What the dissectors of both sonars share: fields of Wireshark from a table of fields, and a message shown by it.
 -- The tables (sonard_gemini_fields.lua, sonard_micron_fields.lua) say how each message is laid out; the dissectors
 -- load this file themselves.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads fields out of bytes whose length and content nobody vouches for.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Appends fields to a byte vector, the mirror of ByteReader.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every emulated head is: a state machine that takes events at points in time and says what to do.
 // It knows no sockets, clocks or threads.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wire layouts as tables: where each field of a message lies, once, for reading and for writing.
 #pragma once
 

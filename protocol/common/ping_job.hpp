@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One ping, between the device that decides when and with what settings to ping, and whoever renders it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One ping as logs keep it, whichever device made it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of a datagram in memory that several datagrams share.
 #pragma once
 

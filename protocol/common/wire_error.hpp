@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why bytes from a peer were refused: cheap to make, enough for a log line or a metric label.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the beams of a Gemini 720i look (docs/protocols/gemini.md 6.5).
 #pragma once
 

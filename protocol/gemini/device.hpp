@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Gemini 720i as a pure state machine: datagrams and time go in; datagrams and jobs come out.
 // It knows no sockets, clocks, threads or images beyond sample bytes. Source: docs/protocols/gemini.md.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/gemini/encoded_ping.hpp"
 
 #include <array>

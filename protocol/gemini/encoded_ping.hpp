@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole ping as the datagrams that carry it (docs/protocols/gemini.md 6, 7.3).
 #pragma once
 

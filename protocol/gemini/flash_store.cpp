@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/gemini/flash_store.hpp"
 
 #include <algorithm>

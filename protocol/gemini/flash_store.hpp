@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flash memory of a head (docs/protocols/gemini.md 3.7).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the gain fields of a ping configuration do to the level of the image (docs/protocols/gemini.md 5).
 #pragma once
 

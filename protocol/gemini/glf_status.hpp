@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A status packet in the fields that a .glf log has (docs/logs.md 1.5).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a surface knows of the clock of a head.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where each field of each fixed-layout message lies: the one table that the codec reads and writes by, and
 // that tools can print. Source: docs/protocols/gemini.md 3, 5, 6. The variable messages (SerialTransmit,
 // MdioCommands, PingLine's data, SerialData, InfoBlockWrite) have their variable part written out in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of a Gemini 720i as values, both directions, one struct per message.
 // Source: docs/protocols/gemini.md, section numbers beside each struct. Members keep the device's own
 // integers and units, so that decode and encode lose nothing; member functions and helpers give them a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spaces the datagrams of pings on the wire (docs/protocols/gemini.md 8.5, 3.6, 7.7).
 #pragma once
 

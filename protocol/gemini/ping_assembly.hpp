@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One ping as it comes together at the surface: head, lines and tail in any order, some twice, some never.
 // Source: docs/protocols/gemini.md 6, 7.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ping configuration makes the head do (docs/protocols/gemini.md 5, 6.2, 6.7).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an application asks of a head, and the ping configuration that the early client library makes of it.
 // Source: docs/protocols/gemini.md 5, "How V1 fills it".
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One ping on its way to the surface, in the order and at the times at which a head sends it.
 #pragma once
 

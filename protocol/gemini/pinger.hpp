@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a head pings, and what it sends for it: run modes, rate limits, transmission, retries.
 // Source: docs/protocols/gemini.md 7.3, 8.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long a peer takes to answer, learned from its answers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the surface wants to have again of the last ping (docs/protocols/gemini.md 7.3).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Run-length coding of zero beams in a range line of 8-bit samples (docs/protocols/gemini.md 6.8).
 #pragma once
 

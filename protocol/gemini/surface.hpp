@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface's side of a Gemini 720i as a pure state machine: datagrams and time go in; datagrams and pings
 // come out. It knows no sockets, clocks or threads. Source: docs/protocols/gemini.md 1, 5, 6, 7.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/glf/dat_index.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the records of a .dat lie. Source: docs/logs.md 1.3, 1.7. No state; any thread.
 #pragma once
 

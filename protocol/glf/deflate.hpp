@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three things that logs need of zlib. No state but Crc32's; any thread.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/glf/headers.hpp"
 
 #include "protocol/glf/layout.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stands at the front of records, enough to tell how long one is without unpacking it.
 // Source: docs/logs.md 1.3, 1.4. No state; any thread.
 #pragma once

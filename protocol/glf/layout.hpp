@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where each field of each record lies: the one table that records are read and written by.
 // Source: docs/logs.md 1.3 to 1.5. What depends on the record itself (pixels, bearings, the field that other
 // versions of images lack) is written out in codec.cpp and headers.cpp.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The .cfg entry of a .glf: XML that says who wrote the log, when, and of which sonars.
 // Source: docs/logs.md 1.2. No state; any thread.
 #pragma once

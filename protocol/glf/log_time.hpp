@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The clock of logs, and the names of files that follow from it. Source: docs/logs.md 1.1, 1.6.
 // A log counts seconds since 1980-01-01 00:00:00 of local time and does not say which zone that is, so the
 // offset of the zone from UTC is an argument: fix it when a log is opened, for local time jumps.

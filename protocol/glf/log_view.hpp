@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log that was read: a whole .glf, or the .dat of one. Source: docs/logs.md 1.2, 1.3, 1.7.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packs a closed .dat into a .glf, without ever having more of it in memory than one block.
 // Source: docs/logs.md 1.2. Knows no files: it says which bytes stand around those of the .dat.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that belong together but lie in pieces, as a .dat does inside a .glf.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two records of a .glf or .dat log that this library writes: images and statuses, as values.
 // Source: docs/logs.md 1.3 to 1.5. Members hold what the file holds, in its units, so that decode and encode
 // lose nothing; how pixels are packed is no part of a value.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The records of a ZIP archive that a .glf has, as tables for its writer and its reader.
 // Source: docs/logs.md 1.2. Only what a .glf needs: no ZIP64, no encryption, one archive to a file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What lies in a ZIP archive, as far as a .glf is one. Source: docs/logs.md 1.2, 1.7. Any thread.
 #pragma once
 

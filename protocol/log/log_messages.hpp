@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of sonard's MCAP files, as protobuf generates them from protocol/log/sonard_log.proto, which
 // says what each field means. They are filled in and read as they are; poses by
 // protocol/pose/pose_message.hpp.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checksum of MAVLink frames (MAVLink guide, "Packet Serialization": CRC-16/MCRF4XX, which the guide
 // names after X.25).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/mavlink/frames.hpp"
 
 #include "protocol/common/byte_reader.hpp"

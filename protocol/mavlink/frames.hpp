@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of MAVLink 1 and 2 in a datagram (MAVLink guide, "Packet Serialization").
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which messages are known: number, checksum seed and length of each, from the definitions in minimal.xml
 // (HEARTBEAT) and common.xml (the others) of the MAVLink project.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages that say where a vehicle is, as they are defined in common.xml of the MAVLink project. Fields
 // keep their names and frames; docs/frames-and-units.md says what becomes of them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Going through the data section of an MCAP file, record by record.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads MCAP files: what is in one, and its messages in the order of their log times.
 #pragma once
 

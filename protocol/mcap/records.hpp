@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records of MCAP files, as far as sonard writes and reads them: bytes <-> values.
 // Source: the MCAP specification, mcap.dev/spec, section numbers by record name. A file is
 //   magic, Header, data section (here: chunks, each followed by its message indexes), DataEnd, summary,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/mcap/recovery.hpp"
 
 #include "protocol/mcap/writer.hpp"

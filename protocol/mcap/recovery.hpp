@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finishing an MCAP file whose writer was killed.
 #pragma once
 

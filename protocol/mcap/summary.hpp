@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the end of an MCAP file says about all of it: known to who writes, read from the end of a whole file,
 // or found again by going through one that has no end.
 #pragma once

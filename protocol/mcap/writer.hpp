@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes an MCAP file as a sequence of pieces to append to it.
 #pragma once
 

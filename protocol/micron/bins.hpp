@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Amplitudes of one line as they travel: 8 bit, or two to a byte (docs/protocols/micron.md 6.3).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames <-> messages of a Micron. Source: docs/protocols/micron.md 3, 5, 6. No state; any thread.
 #pragma once
 

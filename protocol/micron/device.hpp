@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Micron as a pure state machine: bytes and time go in; frames and jobs come out.
 // It knows no sockets, serial ports, clocks or threads. Source: docs/protocols/micron.md.
 #pragma once

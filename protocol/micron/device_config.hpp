@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything a user may set about a simulated Micron, as plain values.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a head has done and what it refused, for logs and metrics.
 #pragma once
 

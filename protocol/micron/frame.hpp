@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of the Micron's serial line: where one begins and ends in a stream of bytes, and how one is written.
 // Source: docs/protocols/micron.md 2. There is no checksum and no escaping; only the length tells the end.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The host's side of a Micron as a pure state machine: bytes and time go in; frames and lines come out. It
 // knows no serial ports, sockets, clocks or threads. Source: docs/protocols/micron.md 5, 7, 8.
 //

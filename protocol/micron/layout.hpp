@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where each field of each message lies: the one table that the codec reads and writes by. Offsets are from
 // the start of the frame; the line feed at its end is not counted. Source: docs/protocols/micron.md 5, 6.
 // What depends on the message itself (forms of the head command, data of lines, older user blocks) is written

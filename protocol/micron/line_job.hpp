@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ping that a head makes with given parameters, or made once (docs/protocols/micron.md 4, 6.3).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long the parts of one line take (docs/protocols/micron.md 8.4).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the transducer stands while it turns a long way: to the centre, or to a new sector.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line of a Micron as logs keep it, and back: what goes to a log, and how a head sends what comes from one.
 #pragma once
 

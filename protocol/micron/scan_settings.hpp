@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a user wants of a scan, and what a Micron makes of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When and where a head pings, and the lines it sends for it. Source: docs/protocols/micron.md 7.4, 8.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a host has set, in words for the log.
 #pragma once
 

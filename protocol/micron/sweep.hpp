@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the transducer looks from line to line (docs/protocols/micron.md 8.3).
 #pragma once
 

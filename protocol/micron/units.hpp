@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers of the Micron's wire in SI units, and back (docs/protocols/micron.md 4). Angles of a head are 1/16
 // gradian, 6400 to the turn, clockwise seen from above: 0 astern, 1600 port, 3200 ahead, 4800 starboard.
 #pragma once

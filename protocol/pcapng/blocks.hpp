@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Capture files of the form pcapng, which Wireshark and tcpdump read: IPv4 packets with their times.
 // Source: draft-ietf-opsawg-pcapng, sections 3 and 4; link type 101 (IPv4 or IPv6 without more) by the list
 // of link-layer header types of tcpdump.org. One section, little-endian, times in nanoseconds.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // IPv4 packets around what was said on a socket or a serial line, so that a capture of it looks as if it had
 // been taken from a cable. Headers and checksums as RFC 791, RFC 768 and RFC 9293 say; no options, no
 // fragments.

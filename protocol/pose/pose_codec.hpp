@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The native pose stream: bytes <-> PoseSample. The message is protocol/pose/pose.proto; docs/poses.md tells
 // publishers about it.
 #pragma once

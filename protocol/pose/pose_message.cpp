@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "protocol/pose/pose_message.hpp"
 
 namespace sonard::pose {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transforms in messages that hold a sonard.pose.Pose. For codecs only: it brings in the generated code.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded motion: the text of a trajectory file, and playing it. docs/poses.md describes the two formats.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rigid motion in double precision, as plain values: what a pose stream and a trajectory are made of. C++17
 // reads it too: the headers of ROS 1 know nothing later.
 #pragma once

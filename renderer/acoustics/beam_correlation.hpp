@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What neighbouring beams share of speckle and noise: the receive pattern as a filter across beams.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/acoustics/beam_pattern.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double faintest_in_band = 1e-4;  // of the axis
 constexpr int lines_per_tile = 32;         // that are even, or not, together
-constexpr float evenness = 0.01F;
+constexpr float linearity = 0.01F;
 constexpr int rows_per_pass = 4;
 
 /// sum, and the least and most per angle, of the rows so far and this one.
@@ -264,7 +265,7 @@ std::vector<BeamPattern::Span> BeamPattern::spans_of(const LineSums& sums, int l
     bool even = skip.on(SkipRule::even_lines);
     for (int k = begin; even && k < end; ++k) {
       const auto line = static_cast<std::size_t>(k);
-      even = sums.most[line] - sums.least[line] <= evenness * sums.most[line];
+      even = sums.most[line] - sums.least[line] <= linearity * sums.most[line];
     }
     if (even) {
       skipped.add(SkipRule::even_lines, static_cast<std::uint64_t>(end - begin));

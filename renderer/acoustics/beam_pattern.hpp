@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the receive array makes of directions: main lobes that overlap, side lobes, and what errors of the
 // elements let leak into all beams.
 #pragma once

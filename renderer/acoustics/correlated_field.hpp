@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random fields of a ping, line after line, correlated across beams by the array and along the range by the
 // pulse.
 #pragma once

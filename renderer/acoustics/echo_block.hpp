@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A few native lines of an echo image, turned so that the beams of a line lie side by side.
 #pragma once
 

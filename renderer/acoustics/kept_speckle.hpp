@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The random fields that a sonar keeps from ping to ping.
 #pragma once
 

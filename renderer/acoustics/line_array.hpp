@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The receive array: a straight line of elements half a wavelength apart.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Additive noise: its level, and what the array hears of itself and of others (docs/physics.md 2.9, 2.16).
 #pragma once
 

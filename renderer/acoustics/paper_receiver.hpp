@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mode `paper` from the mean echo to samples: I * n, then gain with a clamp (docs/physics.md 1.1, 1.2 A8,
 // A9).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mode `physical` from the mean echo to samples: texture, speckle, noise, envelope, gain
 // (docs/physics.md 2.8, 2.9).
 #pragma once

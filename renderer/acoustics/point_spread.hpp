@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sonar's array and pulse make of the mean echo, between the sampling of the world and the receiver.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the length of the pulse does along the range: it spreads the mean echo, and neighbouring lines share
 // speckle and noise.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random numbers as a pure function of what they belong to: no state, no order, the same on every thread
 // count.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Native lines of a ping, shared among the threads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/acoustics/receiver.hpp"
 
 #include "renderer/acoustics/paper_receiver.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From mean echo to device samples: speckle, noise, gain, range compression, quantiser.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The transducer's own ringing after the pulse (docs/physics.md 2.16).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The field under the speckle of a scanning head, kept from sweep to sweep.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The field under the speckle of one sonar, kept from ping to ping.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texture: how the number of scatterers varies from cell to cell (docs/physics.md 2.8).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What spreading and absorption leave of an echo.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time-varying gain: what the receiver makes good of spreading and absorption (docs/physics.md 2.9).
 #pragma once
 

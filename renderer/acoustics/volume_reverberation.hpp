@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the water itself scatters back: bubbles, plankton, silt (docs/physics.md 2.10).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What sea and fresh water do to sound: absorption and speed. Pure functions, thread-safe.
 // Formulas, ranges and check values: docs/physics.md 2.2.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sums of beams: patches in, lines out. Its loops are part of what includes it, to be vectorised there.
 #pragma once
 

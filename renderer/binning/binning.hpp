@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How patches become an image, and the image with what it took.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/binning/cone_bearing.hpp"
 
 #include <algorithm>

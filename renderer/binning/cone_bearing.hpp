@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bearing that a straight array measures: the angle of a cone around it, not the azimuth.
 #pragma once
 

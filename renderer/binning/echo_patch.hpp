@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What visibility hands to binning: bits of visible surface, each within one beam.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One beam's echo over range, being summed.
 #pragma once
 

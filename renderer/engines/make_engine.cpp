@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/make_engine.hpp"
 
 #include "renderer/engines/cpu/cpu_engine.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the backend that was asked for to the engine that runs here.
 #pragma once
 

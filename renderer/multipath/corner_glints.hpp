@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Echoes straight back from corners: two or three mirrors that meet at right angles (docs/physics.md 2.11).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Echoes by way of a mirror: a ray leaves the sonar, is mirrored by a smooth surface and meets a rough one
 // (docs/physics.md 2.11).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a surface keeps of a sound wave that it reflects as a mirror (docs/physics.md 2.11).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether anything near the sonar is smooth enough to mirror sound: the numeric rule that spares all of
 // multipath where it would not be heard.
 #pragma once

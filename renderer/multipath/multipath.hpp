@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Multipath: ghosts in smooth surfaces and glints of corners, added to the mean echo (docs/physics.md 2.11).
 #pragma once
 

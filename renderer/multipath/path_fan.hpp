@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The directions that sound leaves in and comes back from: the fan as cells for the rays of multipath.
 #pragma once
 

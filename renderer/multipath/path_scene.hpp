@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world as the legs of a path meet it: meshes and the water surface, with how well each mirrors.
 #pragma once
 

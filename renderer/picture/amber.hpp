@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colours of a sonar display: echoes glow from copper to amber to white on a night-blue ground.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a range and a beam lie in a fan picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of a ping: the fan as a person would see it from above, and the raw samples.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What lies over the echoes of a picture: range rings, bearing lines, captions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a range and a bearing lie in a picture of a sector seen from above.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of one turn of a scanning head.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/pipeline/echo_cache.hpp"
 
 namespace sonard::render {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The last mean echo of a sonar, and whether it is still the one that is asked for.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion of the sonar between sending a ping and hearing the last of it.
 #pragma once
 

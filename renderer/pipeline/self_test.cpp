@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene every start of the daemon renders before it serves: a wall with a closed-form echo.
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/pipeline/sonar_renderer.hpp"
 
 #include <algorithm>
@@ -15,8 +16,8 @@
 #include "renderer/multipath/multipath.hpp"
 #include "renderer/pipeline/echo_cache.hpp"
 #include "renderer/pipeline/ping_motion.hpp"
-#include "renderer/scene/bent_world.hpp"
 #include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/refracted_world.hpp"
 #include "renderer/scene/terrain_levels.hpp"
 #include "renderer/spatial_index/spatial_index.hpp"
 #include "renderer/stopwatch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The door of the renderer: a world and a ping request go in, an echo image and the device's samples come
 // out.
 #pragma once

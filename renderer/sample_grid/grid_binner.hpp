@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples of a grid -> echo per beam and range line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/sample_grid/grid_cache.hpp"
 
 namespace sonard::render {

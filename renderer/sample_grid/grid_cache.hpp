@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The last grid that was made.
 #pragma once
 

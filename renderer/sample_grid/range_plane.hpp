@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The range to the plane of a surface, as a function of the tangents of a view.
 #pragma once
 

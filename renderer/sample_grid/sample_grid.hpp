@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the fan is sampled: side-by-side planar views, what their pixels see, and which part of which pixel
 // belongs to which beam.
 #pragma once

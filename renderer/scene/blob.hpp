@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values as bytes between a reader in its child process and us. Both ends are this program: host byte order.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images of worlds: height maps and normal maps. Local PNG, JPEG, TIFF, BMP, TGA or PNM files, through osgDB.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs foreign file readers where their faults cannot hurt: in a child process.
 #pragma once
 

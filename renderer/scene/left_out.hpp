@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an SDF file has and a world has not: one line for each kind of it.
 #pragma once
 

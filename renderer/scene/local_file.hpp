@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What may be handed to a foreign file reader: an existing local file of a known kind, nothing else.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The named acoustic materials and the rules that make a material from what a world file says.
 #pragma once
 

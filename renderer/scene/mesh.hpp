@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What turns the triangles of a file or a shape into a TriangleMesh that the samplers can trust.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What was built of meshes that come and go.
 #pragma once
 

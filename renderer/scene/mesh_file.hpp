@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files, under one strict policy: an existing local file of a known format, its axes kept, its unit
 // applied, normals only where the file has them, and never silently nothing. See docs/worlds.md.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles out of whatever osgDB can read. Runs inside run_isolated(): nothing here is safe against bad
 // files.
 #pragma once

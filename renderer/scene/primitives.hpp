@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shapes of SDF as triangles, centred on the origin as SDF has them. Normals point outward and are smooth
 // on curved parts; texture coordinates run over [0, 1]. Vertices lie on the true surface; curved surfaces are
 // divided so finely that no triangle is farther than 2 mm from it up to a radius of about 50 m, at least 48

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refraction in water whose speed of sound changes evenly with height.
 #pragma once
 

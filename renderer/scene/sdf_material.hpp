@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our own elements in an SDF file, <sonard:material> and <sonard:water_surface_z>, and our own attribute,
 // sonard:type of a <sensor>. Defined in docs/worlds.md.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libsdformat, made strict and quiet: everything it would print or skip becomes an error or a warning of
 // ours.
 #pragma once

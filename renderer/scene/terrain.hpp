@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A large heightmap in tiles, each of which becomes triangles at the level of detail that is asked for.
 #pragma once
 

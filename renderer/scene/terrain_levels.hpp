@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which detail each tile of a terrain is drawn with in a ping: as much as the sonar can tell.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a URI in a world file to a local path.
 #pragma once
 

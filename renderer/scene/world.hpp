@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world as both samplers see it: plain triangles with acoustic materials, grouped in bodies that move.
 // No scene graph and no graphics types here: a sampler builds its own acceleration data from this.
 #pragma once

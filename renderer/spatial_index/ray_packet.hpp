@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sixteen rays at a time: what goes into a search and what comes out, lane by lane.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/spatial_index/spatial_index.hpp"
 
 #include <algorithm>

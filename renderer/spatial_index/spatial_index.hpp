@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world in search trees, for whoever asks what a ray meets.
 #pragma once
 

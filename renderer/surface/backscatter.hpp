@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a material answers in mode `physical`: Lambert's law and facets (docs/physics.md 2.4).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A normal map as both samplers read it: averaged over the area of a sample, the same arithmetic in C++ and
 // GLSL.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole configuration of the daemon as plain values: SI units, radians, parsed addresses, paths that
 // are resolved against the folder of the configuration file.
 // server/config/loader.hpp makes it from YAML; everything else of the server only reads it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the configuration needs to know of a kind of device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of the loader that reads one item of `heads`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a YAML file to a DaemonConfig. docs/configuration.md lists the keys.
 #pragma once
 

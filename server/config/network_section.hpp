@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of the loader that read how clients reach a head.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What two heads, or a head and a pose input, must not share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Strict reading of YAML mappings: every key is known, given once, of the right type and in range, or it is
 // reported with its place. All problems of a file are collected; nothing here throws.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon: pose sources, heads and the render thread joined, from start to signal.
 #pragma once
 

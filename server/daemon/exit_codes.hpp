@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the programs of the daemon end, for scripts and service managers.
 #pragma once
 

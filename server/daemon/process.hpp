@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a daemon settles with its operating system: standard descriptors and signals.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a configuration leaves to its world: mounts of heads, and which model is the vehicle.
 #pragma once
 

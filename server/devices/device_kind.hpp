@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the server needs to know of a kind of device. Each kind has a folder of its own beside this file.
 #pragma once
 

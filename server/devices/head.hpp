@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One head of the daemon: a device on its transport, whose pings are rendered or played back, and recorded.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a head says of itself in the log of the program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every head does to have its pings rendered, and what it counts and says of that.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/devices/ping_dump.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps what the renderer handed over, so that a test can compare it with what arrived.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What heads play back instead of having it rendered.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pings that a head would make along a trajectory, for rendering without serving.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a kind of device takes the options of a survey.
 #pragma once
 

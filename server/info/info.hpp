@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonard info`: what is in a log.
 #pragma once
 

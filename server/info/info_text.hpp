@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A summary of a log as people and as programs read it.
 #pragma once
 

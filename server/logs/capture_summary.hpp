@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What passed between heads and clients in a .pcapng.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log on disk, mapped into memory, and what it shows itself to be.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/logs/mcap_recording.hpp"
 
 #include <cmath>

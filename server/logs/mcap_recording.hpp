@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The images and scan lines of sonard's own .mcap.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pings of a log, whatever its format: for replay, `sonard info` and whoever looks at them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A datagram between a head and the other end, with both ends named.
 #pragma once
 

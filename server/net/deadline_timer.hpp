@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One timer that always waits for the next thing that is due.
 #pragma once
 

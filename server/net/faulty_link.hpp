@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A link that loses, delays, repeats and swaps datagrams as configured, to test drivers with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole frames into a stream whose other end may be slow.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The IPv4 addresses of this machine, to tell a user about a head that no client could talk to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One direction of a serial line: what is put in comes out when its last byte would have arrived.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial line as a pseudo terminal, for clients that open a tty.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The serial line of a device, with every way by which clients reach it.
 #pragma once
 

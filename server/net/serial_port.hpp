@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One way of reaching a serial device: a TCP listener, a UDP socket or a pseudo terminal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A head on a serial line that all its clients share.
 #pragma once
 

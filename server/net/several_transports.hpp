@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A head that is reached in several ways at once.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp_port.hpp"
 
 #include <netinet/in.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial line as raw bytes over TCP, the way serial device servers give it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a head reaches its clients, whatever lies between: sockets, a serial line.
 #pragma once
 

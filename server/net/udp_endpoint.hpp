@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A UDP socket that knows on which of its addresses it was addressed, and never drops what it shall send.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A head on one UDP socket, with the faults that its link may have.
 #pragma once
 

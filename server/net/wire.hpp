@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What passed between a head and its clients, for those who record it.
 #pragma once
 

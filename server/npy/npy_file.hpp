@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arrays as NumPy keeps them: format 1.0 of numpy.lib.format. No state; any thread.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which body of the world is heard in each bin of a ping.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/offline/fan_frames.hpp"
 
 #include <algorithm>
@@ -35,14 +36,14 @@ int count_of(Survey& survey, int pings) {
 }  // namespace
 
 FanFrames::FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
-                     const Voyage& voyage, const OfflineOptions& options, BodyTruth* truth)
+                     const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth)
     : head_(head),
       place_(place),
-      voyage_(voyage),
+      trajectory_(trajectory),
       survey_(std::move(survey)),
-      times_{voyage.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
-                                                : static_cast<double>(survey_->natural_period().count())},
-      count_(count_of(*survey_, times_.count_until(voyage.end_ns()))),
+      times_{trajectory.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
+                                                    : static_cast<double>(survey_->natural_period().count())},
+      count_(count_of(*survey_, times_.count_until(trajectory.end_ns()))),
       job_(survey_->job(0)),
       bearings_rad_(survey_->bearings_rad()),
       truth_(truth),
@@ -53,7 +54,7 @@ std::string FanFrames::name(int frame) const {
 }
 
 render::Pose FanFrames::T_world_sonar(std::int64_t time_ns) const {
-  return voyage_.T_world_vehicle(time_ns) * head_.T_vehicle_sonar;
+  return trajectory_.T_world_vehicle(time_ns) * head_.T_vehicle_sonar;
 }
 
 render::PingRequest FanFrames::request(int frame) const {
@@ -65,7 +66,7 @@ render::PingRequest FanFrames::request(int frame) const {
 
 void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
-  place_vehicle(voyage_, times_.at(frame), renderer, nullptr);
+  place_vehicle(trajectory_, times_.at(frame), renderer, nullptr);
   if (!renderer.pass_ping(ping, place_.stream)) {
     renderer.render_ping(ping, place_.stream);
   }
@@ -73,7 +74,7 @@ void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
 
 Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
-  place_vehicle(voyage_, times_.at(frame), renderer, truth_);
+  place_vehicle(trajectory_, times_.at(frame), renderer, truth_);
   render::PingSamples rendered = renderer.render_ping(ping, place_.stream);
   auto samples = std::make_shared<const NpyTable>(
       NpyTable{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
@@ -129,7 +130,7 @@ std::string FanFrames::sidecar(int frame, const render::PingRequest& request) co
                                    job_.bin_m(), job_.bin_m() * job_.bins(), job_.sound_speed_mps,
                                    json_list(bearings_rad_)));
   text.add("settings", "{" + settings_json() + "}");
-  text.add("T_world_vehicle", json_pose(voyage_.T_world_vehicle(times_.at(frame))));
+  text.add("T_world_vehicle", json_pose(trajectory_.T_world_vehicle(times_.at(frame))));
   text.add("T_world_sonar", json_pose(request.T_world_sonar));
   text.add("T_world_sonar_at_end", json_pose(*request.T_world_sonar_at_end));
   text.add_truth(name(frame), truth_);

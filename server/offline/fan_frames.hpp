@@ -1,4 +1,5 @@
-// The pings of a multibeam head along a voyage.
+// SPDX-License-Identifier: Apache-2.0
+// The pings of a multibeam head along a trajectory.
 #pragma once
 
 #include <memory>
@@ -12,7 +13,7 @@
 #include "server/offline/body_truth.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/options.hpp"
-#include "server/offline/voyage.hpp"
+#include "server/offline/vehicle_trajectory.hpp"
 
 namespace sonard::server {
 
@@ -21,7 +22,7 @@ class FanFrames final : public FrameSource {
  public:
   /// All arguments but the survey and the options outlive this. @param truth null: not asked for
   FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
-            const Voyage& voyage, const OfflineOptions& options, BodyTruth* truth);
+            const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth);
 
   int count() const override { return count_; }
   std::string name(int frame) const override;
@@ -30,7 +31,7 @@ class FanFrames final : public FrameSource {
   std::string settings_json() const override;
   bool makes_glf() const override;
   std::optional<glf::ImageRecord> record(int frame, std::string_view npy) const override;
-  std::int64_t unix_ns(int frame) const override { return voyage_.unix_ns(times_.at(frame)); }
+  std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(frame)); }
 
   /// What the renderer is asked for.
   render::PingRequest request(int frame) const;
@@ -42,7 +43,7 @@ class FanFrames final : public FrameSource {
 
   const HeadConfig& head_;
   HeadPlace place_;
-  const Voyage& voyage_;
+  const VehicleTrajectory& trajectory_;
   std::unique_ptr<Survey> survey_;
   PingTimes times_;
   int count_;

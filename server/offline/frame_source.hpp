@@ -1,4 +1,5 @@
-// What a head makes of a voyage: frames, one after the other.
+// SPDX-License-Identifier: Apache-2.0
+// What a head makes of a trajectory: frames, one after the other.
 #pragma once
 
 #include <cstdint>

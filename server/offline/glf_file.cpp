@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/offline/glf_file.hpp"
 
 #include <algorithm>

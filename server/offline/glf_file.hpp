@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A .glf of many pings, made in one go.
 #pragma once
 

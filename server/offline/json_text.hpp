@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values as JSON. The same values give the same text everywhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder that frames go into, shared by processes and by runs that were interrupted.
 #pragma once
 

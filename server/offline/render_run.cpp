@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/offline/render_run.hpp"
 
 #include <chrono>
@@ -32,7 +33,7 @@
 #include "server/offline/progress.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/sweep_frames.hpp"
-#include "server/offline/voyage.hpp"
+#include "server/offline/vehicle_trajectory.hpp"
 
 namespace sonard::server {
 namespace {
@@ -62,16 +63,16 @@ HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
 }
 
 std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, std::size_t head,
-                                         const Voyage& voyage, const OfflineOptions& options,
+                                         const VehicleTrajectory& trajectory, const OfflineOptions& options,
                                          BodyTruth* truth) {
   const DeviceKind& kind = kind_of(heads[head]);
   std::unique_ptr<Survey> survey = kind.survey(heads[head], options.survey);
   if (kind.scanning()) {
-    return std::make_unique<SweepFrames>(heads[head], static_cast<int>(head), std::move(survey), voyage,
+    return std::make_unique<SweepFrames>(heads[head], static_cast<int>(head), std::move(survey), trajectory,
                                          options, truth);
   }
-  return std::make_unique<FanFrames>(heads[head], place_of(heads, head), std::move(survey), voyage, options,
-                                     truth);
+  return std::make_unique<FanFrames>(heads[head], place_of(heads, head), std::move(survey), trajectory,
+                                     options, truth);
 }
 
 std::uint32_t crc_of(const std::filesystem::path& path) {
@@ -104,7 +105,7 @@ class RenderRun {
   const OfflineOptions& options_;
   std::size_t head_;
   render::World world_;
-  Voyage voyage_;
+  VehicleTrajectory trajectory_;
   render::SonarRenderer renderer_;
   std::unique_ptr<BodyTruth> truth_;
   std::unique_ptr<FrameSource> frames_;
@@ -119,14 +120,14 @@ render::RendererOptions tested(const render::RendererOptions& options) {
 
 /// @throws StartError, pose::TrajectoryError where there are none
 std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, std::size_t head,
-                                         const Voyage& voyage, const OfflineOptions& options,
+                                         const VehicleTrajectory& trajectory, const OfflineOptions& options,
                                          BodyTruth* truth) {
   try {
     check_sampling_of(heads[head]);
   } catch (const render::RequestError& error) {
     throw StartError("sampling", exit_config, error.what());
   }
-  std::unique_ptr<FrameSource> frames = make_source(heads, head, voyage, options, truth);
+  std::unique_ptr<FrameSource> frames = make_source(heads, head, trajectory, options, truth);
   if (frames->count() == 0) {
     throw pose::TrajectoryError(fmt::format("{}: ends before the first sweep of head '{}' does",
                                             options.trajectory.string(), heads[head].name));
@@ -151,11 +152,11 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       options_(options),
       head_(chosen_head(loaded, options.head)),
       world_(world_heard_by(config_, head_)),
-      voyage_(pose::load_trajectory(options.trajectory, options.axes),
-              config_.heads[head_].hides_vehicle ? std::string() : config_.vehicle_model),
+      trajectory_(pose::load_trajectory(options.trajectory, options.axes),
+                  config_.heads[head_].hides_vehicle ? std::string() : config_.vehicle_model),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
-      frames_(make_frames(config_.heads, head_, voyage_, options, truth_.get())),
+      frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
       folder_(options.out) {
   folder_.claim(manifest(), options.overwrite);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonard render`: a trajectory to files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The JSON beside a frame, and what else the sources of frames share.
 #pragma once
 

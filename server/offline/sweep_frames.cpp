@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/offline/sweep_frames.hpp"
 
 #include <cstdint>
@@ -34,14 +35,14 @@ int bins_of(const Survey& survey, const std::vector<int>& first_lines) {
 }  // namespace
 
 SweepFrames::SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey,
-                         const Voyage& voyage, const OfflineOptions& options, BodyTruth* truth)
+                         const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth)
     : head_(head),
       stream_(stream),
-      voyage_(voyage),
+      trajectory_(trajectory),
       survey_(std::move(survey)),
-      times_{voyage.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
-                                                : static_cast<double>(survey_->natural_period().count())},
-      first_lines_(survey_->frames(times_.count_until(voyage.end_ns()))),
+      times_{trajectory.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
+                                                    : static_cast<double>(survey_->natural_period().count())},
+      first_lines_(survey_->frames(times_.count_until(trajectory.end_ns()))),
       bins_(bins_of(*survey_, first_lines_)),
       truth_(truth),
       picture_(shape_of(*survey_, bins_), {.radius_px = options.radius_px}) {}
@@ -54,7 +55,7 @@ render::PingRequest SweepFrames::request(int line) const {
   const PingJob ping = survey_->job(line);
   const std::int64_t time_ns = times_.at(line);
   const auto pose_at = [&](std::int64_t time) {
-    return T_world_transducer(voyage_.T_world_vehicle(time) * head_.T_vehicle_sonar, ping.bearing_rad);
+    return T_world_transducer(trajectory_.T_world_vehicle(time) * head_.T_vehicle_sonar, ping.bearing_rad);
   };
   return {pose_at(time_ns), kind_of(head_).sonar_settings(ping, head_), static_cast<std::uint64_t>(line),
           head_.seed, pose_at(time_ns + ping.listening_time.count())};
@@ -63,7 +64,7 @@ render::PingRequest SweepFrames::request(int line) const {
 void SweepFrames::pass(render::SonarRenderer& renderer, int frame) {
   for (int line = first_line(frame); line < first_line(frame + 1); ++line) {
     const render::PingRequest ping = request(line);
-    place_vehicle(voyage_, times_.at(line), renderer, nullptr);
+    place_vehicle(trajectory_, times_.at(line), renderer, nullptr);
     if (!renderer.pass_ping(ping, stream_)) {
       renderer.render_ping(ping, stream_);
     }
@@ -82,7 +83,7 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   auto lines = std::make_shared<std::vector<picture::TurnLine>>();
   for (int column = 0; column < columns; ++column) {
     const render::PingRequest ping = request(first + column);
-    place_vehicle(voyage_, times_.at(first + column), renderer, truth_);
+    place_vehicle(trajectory_, times_.at(first + column), renderer, truth_);
     picture::TurnLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
                            renderer.render_ping(ping, stream_).u8};
     const std::vector<std::uint16_t> heard =
@@ -121,7 +122,7 @@ std::string SweepFrames::sidecar(int frame) const {
   for (int line = first; line < end; ++line) {
     bearings_rad.push_back(survey_->job(line).bearing_rad);
     stamps_s.push_back(static_cast<double>(times_.at(line)) / 1e9);
-    vehicle.push_back(json_pose(voyage_.T_world_vehicle(times_.at(line))));
+    vehicle.push_back(json_pose(trajectory_.T_world_vehicle(times_.at(line))));
     transducer.push_back(json_pose(request(line).T_world_sonar));
   }
   SidecarText text;

@@ -1,4 +1,5 @@
-// The sweeps of a scanning head along a voyage.
+// SPDX-License-Identifier: Apache-2.0
+// The sweeps of a scanning head along a trajectory.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,7 @@
 #include "server/offline/body_truth.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/options.hpp"
-#include "server/offline/voyage.hpp"
+#include "server/offline/vehicle_trajectory.hpp"
 
 namespace sonard::server {
 
@@ -20,16 +21,16 @@ namespace sonard::server {
 class SweepFrames final : public FrameSource {
  public:
   /// All arguments but the survey and the options outlive this. @param truth null: not asked for
-  SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey, const Voyage& voyage,
-              const OfflineOptions& options, BodyTruth* truth);
+  SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey,
+              const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth);
 
-  /// 0 where the voyage is over before the first sweep is.
+  /// 0 where the trajectory is over before the first sweep is.
   int count() const override { return static_cast<int>(first_lines_.size()) - 1; }
   std::string name(int frame) const override;
   Frame render(render::SonarRenderer& renderer, int frame) override;
   void pass(render::SonarRenderer& renderer, int frame) override;
   std::string settings_json() const override;
-  std::int64_t unix_ns(int frame) const override { return voyage_.unix_ns(times_.at(first_line(frame))); }
+  std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(first_line(frame))); }
 
   /// What the renderer is asked for, by the number of the line since the beginning.
   render::PingRequest request(int line) const;
@@ -41,7 +42,7 @@ class SweepFrames final : public FrameSource {
 
   const HeadConfig& head_;
   int stream_;
-  const Voyage& voyage_;
+  const VehicleTrajectory& trajectory_;
   std::unique_ptr<Survey> survey_;
   PingTimes times_;
   std::vector<int> first_lines_;  ///< of every frame, and the end of the last

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the entities of a simulator to our vehicle and bodies.
 #pragma once
 

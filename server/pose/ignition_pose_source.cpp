@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one file that includes the headers of Ignition, which take seconds to compile.
 #include "server/pose/ignition_pose_source.hpp"
 

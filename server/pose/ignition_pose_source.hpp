@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of Gazebo, by Ignition Transport (docs/simulators/gazebo.md).
 #pragma once
 

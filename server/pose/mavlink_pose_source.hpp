@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses by MAVLink over UDP (docs/simulators/ardusub.md).
 #pragma once
 

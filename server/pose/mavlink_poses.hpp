@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From MAVLink messages to poses of the vehicle.
 #pragma once
 

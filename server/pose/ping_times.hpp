@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a head pings by the clock of the source of the poses.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/pose/pose_history.hpp"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the vehicle and the moving bodies are at the transmit time of a ping.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All pose sources of a configuration, and how well each delivers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way of poses from their sources into the history, and to the pings that wait for them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/pose/pose_source.hpp"
 
 #include "server/pose/ignition_pose_source.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Something that delivers poses to the daemon.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How well poses come: what a user asks first when the image does not move.
 #pragma once
 

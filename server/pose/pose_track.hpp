@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recent motion of one body on the publisher's clock.
 #pragma once
 

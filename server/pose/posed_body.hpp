@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A body of the world and where it is.
 #pragma once
 

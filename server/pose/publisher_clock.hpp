@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What time it is at the publisher of the poses, told from its time stamps and when they arrived.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses by TCP: publishers connect and send varint-delimited messages of pose.proto (docs/poses.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of the pose protocol as the renderer has them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses from a trajectory file, played in real time.
 #pragma once
 

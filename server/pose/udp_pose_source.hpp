@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses by UDP: one message of pose.proto per datagram (docs/poses.md).
 #pragma once
 

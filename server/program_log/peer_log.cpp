@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/program_log/peer_log.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines of the log that somebody outside can cause as often as they like.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The log on standard error, which never waits for whoever reads it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A file that only grows, and that a full disk leaves whole.
 #pragma once
 

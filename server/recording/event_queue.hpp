@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the threads that serve to the one that records, without ever holding up the former.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What heads say, on its way from the thread where it was said to the thread that writes it down.
 #pragma once
 

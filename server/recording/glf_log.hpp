@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The .dat of one head while it grows (docs/logs.md 1 and "Recording").
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a .glf of a .dat, a slice at a time (docs/logs.md 1.1 and "Recording").
 #pragma once
 

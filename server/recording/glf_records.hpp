@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The records of a .glf log (docs/logs.md 1.4, 1.5), made of what any multibeam head sends. Pure: whoever has
 // a ping, serving, rendering a trajectory or playing a log back, gets the same record.
 #pragma once

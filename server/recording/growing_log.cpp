@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/recording/growing_log.hpp"
 
 #include <spdlog/spdlog.h>

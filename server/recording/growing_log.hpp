@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One file of a recording, with what is done when it cannot be written.
 #pragma once
 

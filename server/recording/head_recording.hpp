@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A head's end of the recorder. Without a recorder nothing is done.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What files of a recording are called (docs/logs.md, "Recording").
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The logs that begin and end together.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The MCAP file of all heads (docs/logs.md, "MCAP" and "Recording").
 #pragma once
 

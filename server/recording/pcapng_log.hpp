@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The capture of all heads, for Wireshark (docs/logs.md, "pcapng" and "Recording").
 #pragma once
 

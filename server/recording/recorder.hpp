@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes down what the heads say, on a thread of its own.
 #pragma once
 

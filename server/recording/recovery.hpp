@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes whole what a daemon that was killed has left behind (docs/logs.md, "Recording").
 #pragma once
 

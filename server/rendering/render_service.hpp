@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The render thread: owns the renderer and its GL context, takes jobs from the I/O thread, hands results
 // back.
 #pragma once

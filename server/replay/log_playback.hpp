@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording as heads play it back: which ping is next, what clients asked for instead, when it is over.
 #pragma once
 
@@ -42,9 +43,9 @@ class LogPlayback final : public Playback {
     PlayedHead played;
     /// Pings that differ from what was asked for, by kind of difference in the order in which they came.
     std::vector<std::pair<std::string, std::uint64_t>> differences{};
-    std::uint64_t pings = 0;           ///< begun
-    std::uint64_t ended = 0;           ///< of those, at the last progress()
-    std::uint64_t messages = 0;        ///< at the last progress()
+    std::uint64_t pings = 0;             ///< begun
+    std::uint64_t ended = 0;             ///< of those, at the last progress()
+    std::uint64_t messages = 0;          ///< at the last progress()
     std::optional<TimePoint> idle_at{};  ///< last time at which the head had something to send
   };
 

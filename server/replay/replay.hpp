@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonard replay`: a recording, served as the device that made it.
 #pragma once
 

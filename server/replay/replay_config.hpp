@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which head of the network plays which head of a recording.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When each ping of a recording is due. Pure: time is an argument.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends what an sf::Odometry sensor of Stonefish measures to sonard, one UDP datagram for each sample. Needs
 // protobuf and, once, the message:
 //     protoc --proto_path=protocol/pose --cpp_out=. pose.proto

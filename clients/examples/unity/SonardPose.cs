@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pose in Unity's axes as a message for sonard (protocol/pose/pose.proto), without protobuf or the engine.
 // SonardPublisher.cs uses it.
 //

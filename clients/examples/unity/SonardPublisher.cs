@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A component for the vehicle: sends its pose to sonard after every step of the physics (50 a second by default).
 // Copy it and SonardPose.cs into the Assets folder and drop it on the vehicle's game object.
 using System.Net.Sockets;

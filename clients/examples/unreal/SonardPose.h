@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pose in Unreal's axes as a message for sonard (protocol/pose/pose.proto), without protobuf or the engine:
 // it takes any types with the members of FVector and FQuat. SonardPublisher.h uses it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `sonarview compare` compares: pictures, and samples that sonard and sonarview write to files.
 #pragma once
 

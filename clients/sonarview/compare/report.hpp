@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sonarview compare`: two images go in, a table and a file come out.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How alike two images are: the five measures of Cerqueira et al. 2017, 4.3 and table 4. Images are CV_64FC1
 // of one size, values 0..255 (load_frame()). docs/sonarview.md says how each measure comes to its score in
 // [0, 1].

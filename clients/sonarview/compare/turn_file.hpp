@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines of a scanning head as sonarview writes them with --raw.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/gemini/datagram_dropper.hpp"
 
 namespace sonard::client {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loses datagrams on purpose, to see how head and surface take it.
 #pragma once
 

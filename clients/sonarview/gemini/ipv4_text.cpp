@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/gemini/ipv4_text.hpp"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the user asks of sonarview for a Gemini 720i.
 #pragma once
 

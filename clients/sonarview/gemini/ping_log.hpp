@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What sonarview says about pings, as key=value for scripts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program between command line and exit status, with a Gemini 720i.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where one turn of a scan ends and the next begins, and which lines are missing between.
 #pragma once
 

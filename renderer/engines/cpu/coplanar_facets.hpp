@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Large flat surfaces in few triangles, however finely they were modelled.
 #pragma once
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/cpu/cpu_engine.hpp"
 
 #include <utility>
 
 #include "renderer/engines/cpu/slice_binner.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
-#include "renderer/scene/bent_world.hpp"
+#include "renderer/scene/refracted_world.hpp"
 #include "renderer/stopwatch.hpp"
 #include "renderer/surface/surface_model.hpp"
 
@@ -34,7 +35,7 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
     accuracy.disagreement = 2.5e-2F;
     accuracy.shift_lines = 1.0F;
     accuracy.bow_lines = 3e-3F;
-    accuracy.evenness = 0.15F;
+    accuracy.linearity = 0.15F;
     accuracy.change = 0.05F;
     accuracy.mapped_lines = 4.0F;
     accuracy.facet_slopes = 0.5F;
@@ -44,7 +45,7 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
     accuracy.disagreement = 1e-4F;
     accuracy.shift_lines = 0.02F;
     accuracy.bow_lines = 5e-5F;
-    accuracy.evenness = 0.005F;
+    accuracy.linearity = 0.005F;
     accuracy.change = 0.001F;
     accuracy.facet_slopes = 0.03F;
     accuracy.facet_lines = 0.001F;

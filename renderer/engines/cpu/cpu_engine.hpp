@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The engine that needs no graphics: exact visibility in azimuth slices for presets, rays for fixed grids.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facets of all pieces of a slice at once, as arrays, because loops over them are vectorised.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fan of a sonar as the slices see it: beams found by azimuth, limits of elevation and range.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which triangles of the world each beam has to look at.
 #pragma once
 

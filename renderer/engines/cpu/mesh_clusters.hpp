@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh cut into small clusters of neighbouring triangles: what is out of the fan is dropped a cluster at a
 // time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What slices know of the surface of one part of a body.
 #pragma once
 

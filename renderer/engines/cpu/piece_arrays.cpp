@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/cpu/piece_arrays.hpp"
 
 namespace sonard::render {

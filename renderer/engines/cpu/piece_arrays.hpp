@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Visible pieces as arrays, because loops over them are vectorised.
 #pragma once
 

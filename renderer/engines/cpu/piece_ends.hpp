@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the ends of visible pieces run across the wedge of their slice.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/cpu/ray_sampler.hpp"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "renderer/scene/bent_world.hpp"
+#include "renderer/scene/refracted_world.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -134,7 +135,7 @@ std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, 
     index_.place(T_world_sonar.position_m);
     trace_tiles(index_, surface, static_cast<float>(max_range_m));
   } else {
-    SpatialIndex bent(bent_world(index_.world(), T_world_sonar.position_m, bend_per_m_), workers_);
+    SpatialIndex bent(refracted_world(index_.world(), T_world_sonar.position_m, bend_per_m_), workers_);
     bent.place(glm::dvec3(0.0));
     trace_tiles(bent, surface, static_cast<float>(max_range_m));
   }

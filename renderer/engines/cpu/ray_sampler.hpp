@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Visibility by tracing rays on the CPU: one ray per pixel, sixteen at a time, on all cores.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a surface that a ray has met answers: the twin of the fragment shader of RasterSampler.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slices -> echo per beam and range line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts the triangles of one beam with half planes of constant azimuth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the facets of a surface are heard over one piece of a slice, and across the wedge of the slice.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/cpu/slice_patches.hpp"
 
 #include <algorithm>
@@ -279,7 +280,7 @@ void SlicePatcher::find_tilts(const Request& request) {
   const float width = request.slice.width_rad;
   const float furthest = request.max_range_m;
   // A tilt moves the middle of the echo by a third of this.
-  const float least_tilted_m = 0.5F * request.evenness * request.line_m;
+  const float least_tilted_m = 0.5F * request.linearity * request.line_m;
   for (std::size_t i = 0; i < count; ++i) {
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
     const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
@@ -331,7 +332,7 @@ bool SlicePatcher::is_mapped(const Request& request, const VisiblePiece& piece) 
 
 /// Into how many parts a piece is to be divided.
 int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
-  const float allowed_m = request.evenness * request.line_m;
+  const float allowed_m = request.linearity * request.line_m;
   const float span_m = std::abs(range_mid_[i] - range_low_[i]) + std::abs(range_high_[i] - range_mid_[i]);
   float parts = 1.0F;
   if (displaced_[i] > allowed_m) {
@@ -360,7 +361,7 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
 float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
   const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
   const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
-  const float share = one_place ? 0.25F : 0.36F * std::sqrt(request.evenness);  // of the fan's half height
+  const float share = one_place ? 0.25F : 0.36F * std::sqrt(request.linearity);  // of the fan's half height
   return std::ceil((seen_.high[i] - seen_.low[i]) / (share * request.tan_limit));
 }
 
@@ -378,7 +379,7 @@ float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, floa
 /// Divides the pieces whose echo runs otherwise in range than a patch can say.
 bool SlicePatcher::divide_uneven(const Request& request) {
   if (!request.any_mapped && !request.any_facets && !request.pattern.varies() &&
-      all_even(request.evenness * request.line_m)) {
+      all_even(request.linearity * request.line_m)) {
     return false;
   }
   bool any = false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Visible pieces of a slice -> echo patches.
 #pragma once
 
@@ -48,7 +49,7 @@ class SlicePatcher {
     float tan_limit;  ///< of the fan's elevation
     /// Within a piece the echo is taken as even in range, or as rising in a straight line. Pieces are divided
     /// until that displaces it by no more than this many lines.
-    float evenness;
+    float linearity;
     bool any_mapped;  ///< whether any of the parts has a normal map
     /// Under one, pieces are no longer than this many lines, so that its bumps appear at their ranges.
     float mapped_lines;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where slices have to be narrower.
 #include <algorithm>
 #include <array>

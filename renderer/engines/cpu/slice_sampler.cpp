@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/cpu/slice_sampler.hpp"
 
 #include <algorithm>
@@ -259,7 +260,7 @@ void SliceSampler::make_patches(const Setting& setting) {
       cell.patches.clear();
       cell.without_facets =
           patcher.make({cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern,
-                        setting.fan.tan_limit(), setting.accuracy.evenness, setting.any_mapped,
+                        setting.fan.tan_limit(), setting.accuracy.linearity, setting.any_mapped,
                         setting.accuracy.mapped_lines, setting.any_facets, setting.accuracy.facet_slopes,
                         setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},
                        cell.patches);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact visibility in slices of constant azimuth, refined where neighbouring slices disagree: the adaptive
 // sampling of the CPU.
 #pragma once
@@ -39,7 +40,7 @@ struct SliceAccuracy {
   /// A slice that hears n range lines may be bent by this times n lines: what a bow displaces are the first
   /// and last of them, the fewer there are the more it matters.
   float bow_lines = 6e-4F;
-  float evenness = 0.03F;      ///< see SlicePatcher::Request
+  float linearity = 0.03F;     ///< see SlicePatcher::Request
   float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
   float mapped_lines = 2.0F;   ///< see SlicePatcher::Request
   float facet_slopes = 0.17F;  ///< see SlicePatcher::Request

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the two halves of SliceSampler share: seeing slices (slice_sampler.cpp) and refining them
 // (slice_refinement.cpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a surface answers at a piece of a slice: interpolated normals, normal maps, and the response laws.
 #pragma once
 

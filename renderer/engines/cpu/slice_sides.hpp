@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a slice expects at the two sides of its wedge if its surfaces go on as they are seen in its middle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is visible in one slice: an exact sweep over its segments from the lowest elevation to the highest.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/gpu/beam_judge.hpp"
 
 #include <algorithm>

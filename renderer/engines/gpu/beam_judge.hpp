@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far off a beam may be, judged by the samples that it was made of (docs/accuracy.md).
 #pragma once
 

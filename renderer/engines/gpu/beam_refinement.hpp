@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grids of samples that are as fine as each beam needs (docs/accuracy.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLSL of GpuBinner: what grid_binner and RangeProfile do, for one texture of samples, and the sums of
 // it. Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the
 // same however the work is shared out (docs/physics.md 4.2).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An OpenGL context without window or display server, as OpenSceneGraph wants it.
 #pragma once
 

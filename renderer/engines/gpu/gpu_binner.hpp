@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binning where the samples are: on the GPU that drew them. Only the image is read back.
 #pragma once
 

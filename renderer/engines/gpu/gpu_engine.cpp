@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/gpu/gpu_engine.hpp"
 
 #include <utility>
@@ -5,7 +6,7 @@
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
-#include "renderer/scene/bent_world.hpp"
+#include "renderer/scene/refracted_world.hpp"
 #include "renderer/stopwatch.hpp"
 #include "renderer/surface/surface_model.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The engine that draws with OpenGL: presets are refined beam by beam, fixed grids binned where they are
 // drawn.
 #pragma once

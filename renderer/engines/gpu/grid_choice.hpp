@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How finely backend `raster` samples each beam for an error preset (docs/accuracy.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A part of a body as RasterSampler draws it: chunks of its mesh in OpenSceneGraph, and what
 // surface_shader.hpp wants to know of its surface.
 #pragma once

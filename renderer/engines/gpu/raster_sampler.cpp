@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/gpu/raster_sampler.hpp"
 
 #include <algorithm>

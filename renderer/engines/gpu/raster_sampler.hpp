@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Visibility by rasterising: OpenSceneGraph culls and draws, a fragment shader writes one SurfaceSample per
 // pixel.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the
 // shader.
 #pragma once

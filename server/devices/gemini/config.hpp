@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What only a head of type `gemini_720i` has in the configuration (docs/configuration.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Gemini on its socket.
 #pragma once
 

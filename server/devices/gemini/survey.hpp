@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pings of a Gemini along a trajectory.
 #pragma once
 

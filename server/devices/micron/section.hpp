@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of the loader that reads a head of type `micron`.
 #pragma once
 

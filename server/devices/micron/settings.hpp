@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one place that knows both a ping of a Micron and the renderer's settings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sweeps of a Micron along a trajectory.
 #pragma once
 

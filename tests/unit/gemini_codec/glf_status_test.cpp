@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expectations are worked out by hand from docs/protocols/gemini.md and docs/logs.md 1.5.
 #include "protocol/gemini/glf_status.hpp"
 

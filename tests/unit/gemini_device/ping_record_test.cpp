@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a log is told of a ping: it is what a surface has of it after decoding.
 #include <cmath>
 

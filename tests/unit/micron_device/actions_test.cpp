@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a head wants done beside its frames: log lines, a renderer left in peace, figures.
 #include <algorithm>
 #include <string_view>

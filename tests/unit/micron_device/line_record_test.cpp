@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a log is told of a line, and how that becomes a line again.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a Micron sends what comes from a log, and what is told about requests that differ.
 #include "protocol/micron/recorded_form.hpp"
 

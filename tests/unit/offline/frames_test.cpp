@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What heads are asked for along a voyage.
+// What heads are asked for along a trajectory.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -28,9 +28,9 @@ using testing::HasSubstr;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
 /// Along x from the origin, for `seconds`, from the stamp 100 s on.
-Voyage ahead(int seconds, double speed_mps = 1.0) {
+VehicleTrajectory ahead(int seconds, double speed_mps = 1.0) {
   const std::int64_t start = 100 * second_ns;
-  return Voyage(
+  return VehicleTrajectory(
       pose::Trajectory({{start, {{0, 0, 0}, {1, 0, 0, 0}}},
                         {start + seconds * second_ns, {{speed_mps * seconds, 0, 0}, {1, 0, 0, 0}}}}));
 }
@@ -45,23 +45,24 @@ HeadConfig gemini(const Change& change) {
   return head;
 }
 
-FanFrames fans_of(const HeadConfig& head, const HeadPlace& place, const Voyage& voyage,
+FanFrames fans_of(const HeadConfig& head, const HeadPlace& place, const VehicleTrajectory& trajectory,
                   const OfflineOptions& options) {
-  return {head, place, kind_of(head).survey(head, options.survey), voyage, options, nullptr};
+  return {head, place, kind_of(head).survey(head, options.survey), trajectory, options, nullptr};
 }
 
-SweepFrames sweeps_of(const HeadConfig& head, const Voyage& voyage, const OfflineOptions& options) {
-  return {head, 0, kind_of(head).survey(head, options.survey), voyage, options, nullptr};
+SweepFrames sweeps_of(const HeadConfig& head, const VehicleTrajectory& trajectory,
+                      const OfflineOptions& options) {
+  return {head, 0, kind_of(head).survey(head, options.survey), trajectory, options, nullptr};
 }
 
 TEST(FanFrames, PingAtTheRateAskedForWithNumberAndPose) {
   HeadConfig head = gemini_kind().make_default();
   head.T_vehicle_sonar.position_m = {0.5, 0, 0};
   head.seed = 9;
-  const Voyage voyage = ahead(2);
+  const VehicleTrajectory trajectory = ahead(2);
   OfflineOptions options;
   options.rate_hz = 4.0;
-  const FanFrames frames = fans_of(head, {1, 0}, voyage, options);
+  const FanFrames frames = fans_of(head, {1, 0}, trajectory, options);
   EXPECT_EQ(frames.count(), 9);
   EXPECT_EQ(frames.name(3), "ping_000003");
   const render::PingRequest ping = frames.request(3);
@@ -77,12 +78,12 @@ TEST(FanFrames, PingAtTheRateAskedForWithNumberAndPose) {
 // docs/protocols/gemini.md 8.4, 8.5.
 TEST(FanFrames, TheNaturalRateIsTheFastestThatHeadWaterAndLinkAllow) {
   HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.min_ping_period = 100ms; });
-  const Voyage voyage = ahead(10);
+  const VehicleTrajectory trajectory = ahead(10);
   const auto frames_with = [&](double range_m, int compression_log2) {
     OfflineOptions options;
     options.survey.range_m = range_m;
     options.survey.compression_log2 = compression_log2;
-    return fans_of(head, {}, voyage, options).count();
+    return fans_of(head, {}, trajectory, options).count();
   };
   EXPECT_EQ(frames_with(20, 0), 101);  // the head
   head = gemini([](gemini::DeviceConfig& device) {
@@ -95,12 +96,12 @@ TEST(FanFrames, TheNaturalRateIsTheFastestThatHeadWaterAndLinkAllow) {
 
 TEST(FanFrames, RecordsAreThoseOfTheLog) {
   const HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.sonar_id = 777; });
-  const Voyage voyage = ahead(1);
+  const VehicleTrajectory trajectory = ahead(1);
   OfflineOptions options;
   options.rate_hz = 2.0;
   options.survey.range_m = 1.0;
   options.survey.gain_percent = 30.0;
-  const FanFrames frames = fans_of(head, {0, 2}, voyage, options);
+  const FanFrames frames = fans_of(head, {0, 2}, trajectory, options);
   EXPECT_TRUE(frames.makes_glf());
   constexpr int lines = 121;  // 1 m of 1500 / 2 / 90422 m
   std::vector<std::uint8_t> pixels(lines * 256U, 7);
@@ -120,10 +121,10 @@ TEST(FanFrames, RecordsAreThoseOfTheLog) {
 
 TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
   const HeadConfig head = micron_kind().make_default();
-  const Voyage voyage = ahead(10);
+  const VehicleTrajectory trajectory = ahead(10);
   OfflineOptions options;
   options.rate_hz = 50.0;  // 501 lines
-  const SweepFrames frames = sweeps_of(head, voyage, options);
+  const SweepFrames frames = sweeps_of(head, trajectory, options);
   EXPECT_EQ(frames.count(), 2);
   EXPECT_EQ(frames.first_line(1), 200);
   EXPECT_EQ(frames.first_line(2), 400);
@@ -138,11 +139,11 @@ TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
 
 TEST(SweepFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
   const HeadConfig head = micron_kind().make_default();
-  const Voyage voyage = ahead(3);
+  const VehicleTrajectory trajectory = ahead(3);
   OfflineOptions options;
   options.rate_hz = 50.0;                     // 151 lines
   options.survey.sector_deg = {-45.0, 45.0};  // 51 bearings
-  const SweepFrames frames = sweeps_of(head, voyage, options);
+  const SweepFrames frames = sweeps_of(head, trajectory, options);
   ASSERT_EQ(frames.count(), 3);
   EXPECT_EQ(frames.first_line(1), 51);
   EXPECT_EQ(frames.first_line(2), 101);
@@ -158,14 +159,14 @@ TEST(SweepFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
 
 TEST(SweepFrames, WithoutTimeForASweepThereIsNone) {
   const HeadConfig head = micron_kind().make_default();
-  const Voyage voyage = ahead(1);
-  EXPECT_EQ(sweeps_of(head, voyage, {}).count(), 0);
+  const VehicleTrajectory trajectory = ahead(1);
+  EXPECT_EQ(sweeps_of(head, trajectory, {}).count(), 0);
 }
 
 TEST(SweepFrames, GoIntoNoLogOfFans) {
   const HeadConfig head = micron_kind().make_default();
-  const Voyage voyage = ahead(10);
-  const SweepFrames frames = sweeps_of(head, voyage, {});
+  const VehicleTrajectory trajectory = ahead(10);
+  const SweepFrames frames = sweeps_of(head, trajectory, {});
   EXPECT_FALSE(frames.makes_glf());
   EXPECT_FALSE(frames.record(0, {}));
 }
@@ -188,13 +189,13 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.sonar_id = 777; });
   head.name = "bow";
   head.seed = 5;
-  const Voyage voyage = ahead(1);
+  const VehicleTrajectory trajectory = ahead(1);
   OfflineOptions options;
   options.rate_hz = 2.0;
   options.radius_px = 64;
   options.survey.range_m = 1.0;
   options.survey.compression_log2 = 2;
-  FanFrames frames = fans_of(head, {3, 0}, voyage, options);
+  FanFrames frames = fans_of(head, {3, 0}, trajectory, options);
   render::SonarRenderer renderer(board(), {render::Backend::ray, 0});
   const Frame frame = frames.render(renderer, 1);
   for (const char* line :
@@ -215,12 +216,12 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
 
 TEST(FanFrames, OfSixteenBitsTheLogHasTheHighOnes) {
   const HeadConfig head = gemini_kind().make_default();
-  const Voyage voyage = ahead(1);
+  const VehicleTrajectory trajectory = ahead(1);
   OfflineOptions options;
   options.radius_px = 64;
   options.survey.range_m = 1.0;
   options.survey.bits = 16;
-  const FanFrames frames = fans_of(head, {}, voyage, options);
+  const FanFrames frames = fans_of(head, {}, trajectory, options);
   std::vector<std::uint16_t> samples(121U * 256U, 0x1234);
   samples[0] = 0xFF01;
   const auto record = frames.record(0, npy_bytes({121, 256, {}, samples}));
@@ -237,7 +238,7 @@ TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   config->device.node = 9;
   head.device = config;
   head.name = "mast";
-  const Voyage voyage = ahead(1);
+  const VehicleTrajectory trajectory = ahead(1);
   OfflineOptions options;
   options.rate_hz = 50.0;
   options.radius_px = 64;
@@ -245,7 +246,7 @@ TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   options.survey.bins = 40;
   options.survey.step_deg = 9.0;
   options.survey.sector_deg = {-45.0, 45.0};
-  SweepFrames frames = sweeps_of(head, voyage, options);
+  SweepFrames frames = sweeps_of(head, trajectory, options);
   render::SonarRenderer renderer(board(), {render::Backend::ray, 0});
   frames.pass(renderer, 0);
   const Frame frame = frames.render(renderer, 1);
@@ -299,8 +300,8 @@ void take_noise_off(HeadConfig& head) {
 TEST(FanFrames, HavePortOnTheLeftOfTheirPictures) {
   HeadConfig head = gemini_kind().make_default();
   take_noise_off(head);
-  const Voyage voyage = ahead(1, 0.0);
-  FanFrames frames = fans_of(head, {}, voyage, quiet_options());
+  const VehicleTrajectory trajectory = ahead(1, 0.0);
+  FanFrames frames = fans_of(head, {}, trajectory, quiet_options());
   render::SonarRenderer renderer(board(0.3F), {render::Backend::ray, 0});
   EXPECT_GT(left_over_right(frames.render(renderer, 0).draw()), 0.3);
 }
@@ -313,15 +314,15 @@ TEST(SweepFrames, HavePortOnTheLeftOfTheirPicturesHoweverTheHeadIsMounted) {
     auto config = std::make_shared<MicronConfig>();
     config->device.mounted_inverted = inverted;
     head.device = config;
-    const Voyage voyage = ahead(5, 0.0);
+    const VehicleTrajectory trajectory = ahead(5, 0.0);
     OfflineOptions options = quiet_options();
     render::SonarRenderer renderer(board(0.3F), {render::Backend::ray, 0});
-    SweepFrames turns = sweeps_of(head, voyage, options);
+    SweepFrames turns = sweeps_of(head, trajectory, options);
     EXPECT_GT(left_over_right(turns.render(renderer, 0).draw()), 0.3);
     // Lopsided, so that a sector on the wrong side misses the board: as the head says it, from 80 degrees to
     // the side where the board is to 10 beyond ahead.
     options.survey.sector_deg = inverted ? std::vector{-10.0, 80.0} : std::vector{-80.0, 10.0};
-    SweepFrames sweeps = sweeps_of(head, voyage, options);
+    SweepFrames sweeps = sweeps_of(head, trajectory, options);
     EXPECT_GT(left_over_right(sweeps.render(renderer, 0).draw()), 0.3);
   }
 }

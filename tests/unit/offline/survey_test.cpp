@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each kind of device makes of the options of a survey, and what it refuses.
 #include <chrono>
 #include <memory>

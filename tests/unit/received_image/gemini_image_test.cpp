@@ -72,7 +72,8 @@ class Client {
     happen(TimePassed{}, intensity);
     surface_.advance(now_);
     for (const auto& datagram : surface_.take_outgoing()) {
-      happen(BytesReceived{{0, {surface_address, 52900}, head_address}, SharedBytes(datagram.bytes)}, intensity);
+      happen(BytesReceived{{0, {surface_address, 52900}, head_address}, SharedBytes(datagram.bytes)},
+             intensity);
     }
     now_ += 200us;
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expectations are worked out by hand from docs/logs.md.
 #include "server/recording/glf_records.hpp"
 

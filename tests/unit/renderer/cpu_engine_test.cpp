@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who builds search trees: only what traces rays.
 #include "renderer/engines/cpu/cpu_engine.hpp"
 

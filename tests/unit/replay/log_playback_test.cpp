@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What heads are given of a log, and when it is over.
 #include "server/replay/log_playback.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds for every kind of device that the program is built with, and what of a head goes to its logs.
 #include "server/devices/kinds/kinds.hpp"
 

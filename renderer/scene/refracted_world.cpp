@@ -1,4 +1,5 @@
-#include "renderer/scene/bent_world.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene/refracted_world.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +81,7 @@ World bendable(const World& world, double ray_curvature_per_m) {
   return divided;
 }
 
-World bent_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m) {
+World refracted_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m) {
   const RayBend bend{{0.0F, 0.0F, 1.0F}, static_cast<float>(bend_per_m)};
   World bent = world;
   for (Body& body : bent.bodies) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds made ready for refraction: facets small enough to bend, and bodies bent on the CPU.
 #pragma once
 
@@ -19,6 +20,6 @@ float bendable_edge_m(const World& world, double ray_curvature_per_m);
 
 /// The bodies as they are seen from `sonar_position_m`, see RayBend, at poses without a turn in axes of the
 /// world around the sonar. For methods that cannot move corners themselves.
-World bent_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m);
+World refracted_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m);
 
 }  // namespace sonard::render

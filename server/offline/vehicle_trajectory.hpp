@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trajectory as the way of a vehicle, on the clocks of what is made of it.
 #pragma once
 
@@ -28,10 +29,10 @@ struct PingTimes {
 };
 
 /// Stamps are those of the trajectory file, in nanoseconds.
-class Voyage {
+class VehicleTrajectory {
  public:
   /// @param vehicle_model the body of the world that moves along; empty: none does
-  explicit Voyage(pose::Trajectory trajectory, std::string vehicle_model = {})
+  explicit VehicleTrajectory(pose::Trajectory trajectory, std::string vehicle_model = {})
       : trajectory_(std::move(trajectory)), vehicle_model_(std::move(vehicle_model)) {}
 
   const std::string& vehicle_model() const { return vehicle_model_; }

@@ -1,4 +1,5 @@
-#include "server/offline/voyage.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "server/offline/vehicle_trajectory.hpp"
 
 #include <cmath>
 
@@ -34,11 +35,11 @@ int PingTimes::count_until(std::int64_t end_ns) const {
   return last + 1;
 }
 
-render::Pose Voyage::T_world_vehicle(std::int64_t time_ns) const {
+render::Pose VehicleTrajectory::T_world_vehicle(std::int64_t time_ns) const {
   return to_render(trajectory_.at(time_ns).T_world_vehicle);
 }
 
-std::int64_t Voyage::unix_ns(std::int64_t time_ns) const {
+std::int64_t VehicleTrajectory::unix_ns(std::int64_t time_ns) const {
   return start_ns() >= unix_ns_of_1980 ? time_ns : unix_ns_of_1980 + time_ns;
 }
 

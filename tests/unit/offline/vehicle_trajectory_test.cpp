@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/offline/voyage.hpp"
+#include "server/offline/vehicle_trajectory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-Voyage voyage_from(std::int64_t start_ns) {
-  return Voyage(pose::Trajectory(
+VehicleTrajectory trajectory_from(std::int64_t start_ns) {
+  return VehicleTrajectory(pose::Trajectory(
       {{start_ns, {{0, 0, 0}, {1, 0, 0, 0}}}, {start_ns + 2 * second_ns, {{4, 0, -2}, {1, 0, 0, 0}}}}));
 }
 
@@ -32,18 +32,18 @@ TEST(PingTimes, MoreThanCanBeNumberedAreRefused) {
   EXPECT_THROW((void)(PingTimes{0, 1e-3}.count_until(second_ns)), TooManyPings);
 }
 
-TEST(Voyage, GoesStraightFromPointToPointAndRestsBeyond) {
-  const Voyage voyage = voyage_from(0);
-  EXPECT_EQ(voyage.T_world_vehicle(second_ns).position_m, glm::dvec3(2, 0, -1));
-  EXPECT_EQ(voyage.T_world_vehicle(9 * second_ns).position_m, glm::dvec3(4, 0, -2));
+TEST(VehicleTrajectory, GoesStraightFromPointToPointAndRestsBeyond) {
+  const VehicleTrajectory trajectory = trajectory_from(0);
+  EXPECT_EQ(trajectory.T_world_vehicle(second_ns).position_m, glm::dvec3(2, 0, -1));
+  EXPECT_EQ(trajectory.T_world_vehicle(9 * second_ns).position_m, glm::dvec3(4, 0, -2));
 }
 
 // 1980-01-01 00:00:00 UTC is 3652 days after 1970-01-01.
-TEST(Voyage, StampsCountFrom1980UnlessTheyAreUnixTimes) {
+TEST(VehicleTrajectory, StampsCountFrom1980UnlessTheyAreUnixTimes) {
   constexpr std::int64_t of_1980 = 3652LL * 86'400 * second_ns;
-  EXPECT_EQ(voyage_from(0).unix_ns(second_ns), of_1980 + second_ns);
-  EXPECT_EQ(voyage_from(of_1980 - 1).unix_ns(of_1980), 2 * of_1980);
-  EXPECT_EQ(voyage_from(of_1980).unix_ns(of_1980 + 7), of_1980 + 7);
+  EXPECT_EQ(trajectory_from(0).unix_ns(second_ns), of_1980 + second_ns);
+  EXPECT_EQ(trajectory_from(of_1980 - 1).unix_ns(of_1980), 2 * of_1980);
+  EXPECT_EQ(trajectory_from(of_1980).unix_ns(of_1980 + 7), of_1980 + 7);
 }
 
 }  // namespace
