@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "clients/sonarview/subcommand.hpp"
+#include "clients/sonarview/common/subcommand.hpp"
 
 namespace sonard::client {
 

@@ -22,7 +22,7 @@ struct StartError : std::runtime_error {
       : std::runtime_error(what), key(std::move(config_key)), exit_code(code) {}
 
   std::string key;  ///< "heads[0].network.bind"
-  int exit_code;    ///< of server/exit_codes.hpp
+  int exit_code;    ///< of server/daemon/exit_codes.hpp
 };
 
 /// The world of a configuration, which takes from it what it leaves to its world (resolve_mounts()). Logs

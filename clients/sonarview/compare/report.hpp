@@ -4,9 +4,9 @@
 
 #include <string>
 
+#include "clients/sonarview/common/exit_status.hpp"
 #include "clients/sonarview/compare/options.hpp"
 #include "clients/sonarview/compare/similarity.hpp"
-#include "clients/sonarview/exit_status.hpp"
 
 namespace sonard::client {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/image_writer.hpp"
+#include "clients/sonarview/common/image_writer.hpp"
 #include "protocol/gemini/surface.hpp"
 #include "renderer/picture/fan_image.hpp"
 

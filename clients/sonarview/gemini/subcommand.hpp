@@ -2,7 +2,7 @@
 // `sonarview gemini`.
 #pragma once
 
-#include "clients/sonarview/subcommand.hpp"
+#include "clients/sonarview/common/subcommand.hpp"
 
 namespace sonard::client {
 

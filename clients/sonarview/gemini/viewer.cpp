@@ -13,12 +13,12 @@
 #include <string>
 #include <utility>
 
+#include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/gemini/datagram_dropper.hpp"
 #include "clients/sonarview/gemini/ipv4_text.hpp"
 #include "clients/sonarview/gemini/ping_log.hpp"
 #include "clients/sonarview/gemini/ping_pictures.hpp"
 #include "clients/sonarview/gemini/sockets.hpp"
-#include "clients/sonarview/image_writer.hpp"
 
 namespace sonard::client {
 namespace {

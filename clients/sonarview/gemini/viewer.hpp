@@ -2,7 +2,7 @@
 // The program between command line and exit status, with a Gemini 720i.
 #pragma once
 
-#include "clients/sonarview/exit_status.hpp"
+#include "clients/sonarview/common/exit_status.hpp"
 #include "clients/sonarview/gemini/options.hpp"
 
 namespace sonard::client {

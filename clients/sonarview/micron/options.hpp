@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/link_arguments.hpp"
+#include "clients/sonarview/common/link_arguments.hpp"
 #include "protocol/micron/host.hpp"
 #include "protocol/micron/scan_settings.hpp"
 

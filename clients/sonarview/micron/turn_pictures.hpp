@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/image_writer.hpp"
+#include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/micron/scan_turns.hpp"
 #include "protocol/micron/scan_settings.hpp"
 #include "renderer/picture/turn_image.hpp"

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "clients/sonarview/image_writer.hpp"
+#include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/micron/line_file.hpp"
 #include "clients/sonarview/micron/scan_log.hpp"
 #include "clients/sonarview/micron/scan_turns.hpp"

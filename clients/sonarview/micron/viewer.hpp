@@ -2,7 +2,7 @@
 // The program between command line and exit status, with a Micron.
 #pragma once
 
-#include "clients/sonarview/exit_status.hpp"
+#include "clients/sonarview/common/exit_status.hpp"
 #include "clients/sonarview/micron/options.hpp"
 
 namespace sonard::client {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "clients/sonarview/serial_line.hpp"
+#include "clients/sonarview/common/serial_line.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;

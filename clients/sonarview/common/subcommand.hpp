@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 
-#include "clients/sonarview/exit_status.hpp"
+#include "clients/sonarview/common/exit_status.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;

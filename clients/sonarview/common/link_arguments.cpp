@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/link_arguments.hpp"
+#include "clients/sonarview/common/link_arguments.hpp"
 
 #include <CLI/CLI.hpp>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/image_writer.hpp"
+#include "clients/sonarview/common/image_writer.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/serial_line.hpp"
+#include "clients/sonarview/common/serial_line.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
