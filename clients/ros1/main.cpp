@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "clients/posecast/pose_link.hpp"
+#include "clients/ros1/messages/ros_node.hpp"
 #include "clients/ros1/options.hpp"
 #include "clients/ros1/pose_bridge.hpp"
-#include "clients/ros1/ros_node.hpp"
 
 namespace sonard::client {
 namespace {

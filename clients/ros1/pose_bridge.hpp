@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "clients/ros1/frame_tree.hpp"
-#include "clients/ros1/ros_pose.hpp"
+#include "clients/ros1/messages/frame_tree.hpp"
+#include "clients/ros1/messages/ros_pose.hpp"
 #include "protocol/pose/pose_codec.hpp"
 
 namespace sonard::client {

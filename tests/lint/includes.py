@@ -120,23 +120,9 @@ def shortest_circle(pairs):
     return best
 
 
-def read_known(text):
-    """{(from, to): line} of known_cycles.txt."""
-    known = {}
-    for number, line in enumerate(text.splitlines(), 1):
-        line = line.split("#")[0].strip()
-        if line:
-            start, _, end = line.partition("->")
-            known[start.strip(), end.strip()] = number
-    return known
-
-
-def cycle_complaints(found, known, name="tests/lint/known_cycles.txt"):
-    """Circles that are left without the known arrows, and known arrows that close no circle any more."""
-    left = {pair: where for pair, where in found.items() if pair not in known}
-    for pair, line in known.items():
-        if pair not in found or shortest_circle([*left, pair]) is None:
-            yield f"{name}:{line}: {pair[0]} -> {pair[1]} closes no circle any more; take the line out"
+def cycle_complaints(found):
+    """Circles of folders, the shortest first; each is opened at its thinnest arrow before the next is looked for."""
+    left = dict(found)
     while circle := shortest_circle(left):
         text = "these folders include each other in a circle:"
         for pair in circle:
@@ -145,3 +131,28 @@ def cycle_complaints(found, known, name="tests/lint/known_cycles.txt"):
         thinnest = min(circle, key=lambda pair: len(left[pair]))
         yield text + f"\n  the thinnest arrow is {thinnest[0]} -> {thinnest[1]}"
         del left[thinnest]
+
+
+SOURCES = re.compile(r"(sonard_library|sonard_program|add_executable|target_sources)\(\s*(\S+)\s+([^)]*)\)")
+
+
+def library_complaints(tree):
+    """Folders whose sources are not those of one library, or of programs."""
+    folders = collections.defaultdict(set)
+    for path in tree.files:
+        if path.endswith(".cpp") and path.split("/")[0] in ROOMS:
+            folders[os.path.dirname(path)].add(os.path.basename(path))
+    for folder, sources in folders.items():
+        path = f"{folder}/CMakeLists.txt"
+        if path not in tree.files:
+            yield f"{folder}: has sources and no CMakeLists.txt"
+            continue
+        calls = SOURCES.findall(tree.text(path))
+        libraries = [name for kind, name, _ in calls if kind == "sonard_library"]
+        if len(libraries) > 1:
+            yield f"{path}: {len(libraries)} libraries, {' and '.join(libraries)}; a folder is one"
+        listed = {source for _, _, names in calls for source in names.split() if source.endswith(".cpp")}
+        for source in sorted(sources - listed):
+            yield f"{path}: {source} is in no library and no program"
+        for source in sorted(name for name in listed if "/" in name and not name.startswith("$")):
+            yield f"{path}: {source} lies in another folder"

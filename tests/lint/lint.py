@@ -27,11 +27,6 @@ def own(name):
     return (HERE / name).read_text(encoding="utf-8")
 
 
-def spdx_later():
-    lines = (line.split("#")[0].strip() for line in own("spdx_later.txt").splitlines())
-    return [line for line in lines if line]
-
-
 def make_checks(tree, base):
     """{name: function that yields complaints}. With a base, the C++ files that are formatted are those that changed."""
     changed = tree.changed_since(base or "HEAD")
@@ -40,10 +35,11 @@ def make_checks(tree, base):
         "shell": lambda: tools.shell_complaints(tree),
         "spelling": lambda: tools.spelling_complaints(tree, str(HERE / "codespell_ignore.txt")),
         "configurations": lambda: configurations.configuration_complaints(tree),
-        "cycles": lambda: includes.cycle_complaints(includes.arrows(tree), includes.read_known(own("known_cycles.txt"))),
+        "cycles": lambda: includes.cycle_complaints(includes.arrows(tree)),
+        "libraries": lambda: includes.library_complaints(tree),
         "layers": lambda: includes.layer_complaints(tree),
         "words": lambda: words.word_complaints(tree, words.read_rows(own("words.yaml")), WORDS),
-        "spdx": lambda: spdx.spdx_complaints(tree, spdx_later()),
+        "spdx": lambda: spdx.spdx_complaints(tree),
         "commits": lambda: commits.commit_complaints(tree, base),
         "tidy": lambda: tools.tidy_complaints(tree, changed),
     }
@@ -92,7 +88,7 @@ def main():
     wanted = [name for name in arguments.checks or checks if name not in arguments.without]
     if arguments.fix:
         if "spdx" in wanted:
-            print(*(f"added to {path}\n" for path in spdx.add_lines(tree, spdx_later())), sep="", end="")
+            print(*(f"added to {path}\n" for path in spdx.add_lines(tree)), sep="", end="")
         if "words" in wanted:
             rows = words.read_rows(own("words.yaml"))
             print(*(f"lowered {word}\n" for word in words.lower_counts(tree, rows, WORDS)), sep="", end="")

@@ -45,8 +45,8 @@ class Cycles(LintTest):
               "server/b/two.hpp": '#include <vector>\n#include "server/c/three.hpp"\n',
               "server/c/three.hpp": '#include "server/a/one.hpp"\n'}
 
-    def complaints(self, tree, known=""):
-        return list(includes.cycle_complaints(includes.arrows(tree), includes.read_known(known), "known"))
+    def complaints(self, tree):
+        return list(includes.cycle_complaints(includes.arrows(tree)))
 
     def test_a_circle_of_three_is_shown_with_its_includes(self):
         complaints = self.complaints(self.write(self.CIRCLE))
@@ -59,15 +59,6 @@ class Cycles(LintTest):
         tree = self.write({**self.CIRCLE, "server/c/three.hpp": '#include "server/c/other.hpp"\n'})
         self.assertEqual(self.complaints(tree), [])
 
-    def test_a_known_arrow_is_let_pass(self):
-        self.assertEqual(self.complaints(self.write(self.CIRCLE), "# why\nserver/c -> server/a\n"), [])
-
-    def test_known_arrows_that_close_no_circle_are_complained_about(self):
-        known = "server/c -> server/a\nserver/a -> server/b\nserver/a -> server/nowhere\n"
-        complaints = self.complaints(self.write(self.CIRCLE), known)
-        # Either of the first two would do, so neither is needed beside the other.
-        self.assertEqual([complaint.split(":")[1] for complaint in complaints], ["1", "2", "3"])
-
     def test_headers_beside_the_file_are_of_its_folder(self):
         tree = self.write({"server/a/one.hpp": '#include "two.hpp"\n', "server/a/two.hpp": '#include "../b/three.hpp"\n',
                           "server/b/three.hpp": '#include "../a/one.hpp"\n'})
@@ -76,6 +67,31 @@ class Cycles(LintTest):
     def test_generated_headers_belong_to_the_folder_of_their_path(self):
         tree = self.write({"server/a/one.cpp": '#include "protocol/pose/pose.pb.h"\n'})
         self.assertEqual(set(includes.arrows(tree)), {("server/a", "protocol/pose")})
+
+
+class Libraries(LintTest):
+    def complaints(self, lists, *sources):
+        return list(includes.library_complaints(self.write({"server/a/CMakeLists.txt": lists,
+                                                            **{f"server/{name}": "" for name in sources}})))
+
+    def test_one_library_with_all_sources(self):
+        self.assertEqual(self.complaints("sonard_library(sonard_a one.cpp\n  two.cpp)\n", "a/one.cpp", "a/two.cpp"), [])
+
+    def test_a_program_beside_it(self):
+        self.assertEqual(self.complaints("sonard_library(sonard_a one.cpp)\nsonard_program(a main.cpp)\n",
+                                         "a/one.cpp", "a/main.cpp"), [])
+
+    def test_two_libraries(self):
+        complaints = self.complaints("sonard_library(x one.cpp)\nsonard_library(y two.cpp)\n", "a/one.cpp", "a/two.cpp")
+        self.assertEqual(complaints, ["server/a/CMakeLists.txt: 2 libraries, x and y; a folder is one"])
+
+    def test_a_source_of_nobody_and_one_of_another_folder(self):
+        complaints = self.complaints("sonard_library(x ../b/two.cpp)\n", "a/one.cpp")
+        self.assertEqual([complaint.split(": ")[1] for complaint in complaints],
+                         ["one.cpp is in no library and no program", "../b/two.cpp lies in another folder"])
+
+    def test_sources_without_a_list(self):
+        self.assertEqual(self.complaints("", "b/one.cpp"), ["server/b: has sources and no CMakeLists.txt"])
 
 
 class Layers(LintTest):
@@ -150,13 +166,12 @@ class Words(LintTest):
 class Spdx(LintTest):
     def test_each_kind_of_source_gets_it_after_its_first_line_if_that_names_an_interpreter(self):
         tree = self.write({"a.cpp": "int a;\n", "b.py": "#!/usr/bin/python3\npass\n", "c/CMakeLists.txt": "",
-                          "run": "#!/bin/bash\ntrue\n", "notes.md": "# Notes\n", "later.hpp": "int b;\n"})
-        self.assertEqual(len(list(spdx.spdx_complaints(tree, ["later*"]))), 4)
-        self.assertEqual(list(spdx.add_lines(tree, ["later*"])), ["a.cpp", "b.py", "c/CMakeLists.txt", "run"])
+                          "run": "#!/bin/bash\ntrue\n", "notes.md": "# Notes\n"})
+        self.assertEqual(len(list(spdx.spdx_complaints(tree))), 4)
+        self.assertEqual(list(spdx.add_lines(tree)), ["a.cpp", "b.py", "c/CMakeLists.txt", "run"])
         self.assertEqual((self.root / "a.cpp").read_text(), "// SPDX-License-Identifier: Apache-2.0\nint a;\n")
         self.assertEqual((self.root / "run").read_text(), "#!/bin/bash\n# SPDX-License-Identifier: Apache-2.0\ntrue\n")
-        self.assertEqual((self.root / "later.hpp").read_text(), "int b;\n")
-        self.assertEqual(list(spdx.spdx_complaints(Tree(self.root), ["later*"])), [])
+        self.assertEqual(list(spdx.spdx_complaints(Tree(self.root))), [])
 
 
 class Configurations(LintTest):

@@ -24,24 +24,24 @@ def comment(tree, path):
     return ""
 
 
-def missing(tree, later):
-    """(path, line to add) of each source without it; `later` are patterns of files that get it later."""
+def missing(tree):
+    """(path, line to add) of each source without it."""
     for path in tree.files:
         mark = comment(tree, path)
-        if not mark or matches(path, later):
+        if not mark:
             continue
         line = f"{mark} {MARK} {LICENCE}"
         if line not in tree.text(path).splitlines()[:3]:
             yield path, line
 
 
-def spdx_complaints(tree, later):
-    for path, line in missing(tree, later):
+def spdx_complaints(tree):
+    for path, line in missing(tree):
         yield f"{path}: wants the line '{line}' at its top; tests/lint/lint.py --fix spdx adds it"
 
 
-def add_lines(tree, later):
-    for path, line in list(missing(tree, later)):
+def add_lines(tree):
+    for path, line in list(missing(tree)):
         lines = tree.text(path).splitlines(keepends=True)
         lines.insert(1 if lines and lines[0].startswith("#!") else 0, line + "\n")
         (tree.root / path).write_text("".join(lines), encoding="utf-8")

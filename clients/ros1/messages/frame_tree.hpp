@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/ros1/ros_pose.hpp"
+#include "clients/ros1/messages/ros_pose.hpp"
 
 namespace sonard::client {
 

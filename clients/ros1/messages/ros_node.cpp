@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/ros1/ros_node.hpp"
+#include "clients/ros1/messages/ros_node.hpp"
 
 #include <nav_msgs/Odometry.h>
 #include <ros/callback_queue.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/ros1/frame_tree.hpp"
+#include "clients/ros1/messages/frame_tree.hpp"
 
 #include <console_bridge/console.h>
 #include <tf2/buffer_core.h>
