@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the fuzzing seeds in corpus/ from the byte examples in tests/data/gemini and tests/data/micron, and logs made here.
+"""Writes the fuzzing seeds in corpus/ from the byte examples in tests/data, and logs made here.
 
 gemini/datagrams/  one example each, as it is
 gemini/device/     scripts for fuzz_gemini_device: what a surface sends to a head, with time between
@@ -8,6 +8,7 @@ gemini/surface/    scripts for fuzz_gemini_surface: what a head sends to a surfa
 micron/frames/     one example each, and streams of some
 micron/device/     scripts for fuzz_micron_device: what a host sends to a head
 micron/host/       scripts for fuzz_micron_host: what a head sends to a host
+ping360/           the same three for the Ping360
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
 mavlink/           datagrams of each message, signed, among others, broken
@@ -31,6 +32,10 @@ FROM_HEAD, START_SINGLE, START_CONTINUOUS, STOP, PAUSE = 0, 4, 5, 6, 7
 # And for the Micron.
 BYTES, HOST_GONE, POWER_CYCLE, LOSE_STEP, LINE, LINE_FAILED = range(6)
 START_8_BIT, START_4_BIT, STOP_SCAN, GAIN, REVERSE = range(1, 6)
+# And for the Ping360: bytes of three clients, then these.
+P360_A, P360_B, P360_SERIAL, P360_GONE, P360_IMAGE, P360_FAILED, P360_FEED, P360_GRANT = range(8)
+P360_BYTES, P360_TURN, P360_SCAN, P360_STOP = range(4)
+PLAYS_BACK, WAITS, FAN_OUT, UNSCALED, SPLITS, SIGNED, CLAMPS, TWO_CLIENTS = (1 << bit for bit in range(8))
 AS_IS = 0x80
 
 
@@ -156,6 +161,67 @@ def micron_host_scripts():
     yield "changes", meet(START_8_BIT) + event(GAIN) + event(REVERSE) + micron_frame("head_data") + event(STOP_SCAN)
     yield "silent_head", event(START_8_BIT) + event(PAUSE, delay=250)
     yield "small_talk", micron_frame("fpga_cal_data") + micron_frame("fpga_version_data") + micron_frame("aux_data")
+
+
+def ping360_message(name, kind=P360_A, as_is=False, delay=2):
+    """A frame as it is, or its number and payload, of which the program makes a frame again."""
+    frame = example(name, "ping360")
+    return event(AS_IS | kind, frame, delay) if as_is else event(kind, frame[4:6] + frame[8:-2], delay)
+
+
+def ping360_device_scripts():
+    def script(flags, *events):
+        return bytes([flags]) + b"".join(events)
+
+    image = event(P360_IMAGE, delay=20)
+    scan = ping360_message("auto_transmit", as_is=True)
+    ping = ping360_message("transducer", delay=4) + event(P360_IMAGE, delay=130)
+    for client in ("brping", "ros_python", "pnarvor"):
+        yield client, script(0, ping360_message("request_protocol_version"), ping360_message("request_device_data"),
+                             2 * (ping360_message(f"transducer_{client}") + event(P360_IMAGE, delay=130)),
+                             ping360_message("motor_off"))
+    yield "scan", script(0, scan, 4 * image, ping360_message("request_device_data"), ping360_message("motor_off"))
+    yield "scan_ends", script(0, scan, image, event(AS_IS | P360_B, b""), scan, ping, scan, image, ping360_message("reset"))
+    yield "serial", script(0, event(AS_IS | P360_SERIAL, b"UUUUUUUUUU\0"), ping360_message("auto_transmit", P360_SERIAL),
+                           image, event(AS_IS | P360_SERIAL, b"U"))
+    yield "sector", script(SIGNED | CLAMPS, event(P360_A, struct.pack("<HBBHHHHHHBB", 2602, 1, 2, 32, 80, 740, 200, 65336, 10, 7, 3)),
+                           6 * image)
+    yield "two_clients", script(FAN_OUT | TWO_CLIENTS, scan, ping360_message("request_device_information", P360_B), image,
+                                event(P360_GONE), ping360_message("motor_off", P360_SERIAL))
+    yield "cancelled", script(UNSCALED, scan, ping360_message("motor_off"), event(P360_FAILED), scan, event(P360_FAILED))
+    yield "granted", script(WAITS, scan, 3 * (event(P360_GRANT) + image))
+    yield "played", script(PLAYS_BACK | SPLITS, scan, 3 * (event(P360_FEED) + image), ping360_message("transducer"),
+                           event(P360_FEED), image)
+    yield "ids", script(0, ping360_message("set_device_id"), ping360_message("set_common_device_id"),
+                        ping360_message("nack_not_recognised"), event(P360_A, struct.pack("<HH", 6, 2000)))
+    whole = example("transducer", "ping360")
+    yield "split", script(0, event(AS_IS | P360_A, whole[:9]), event(AS_IS | P360_B, b"\0\xff"),
+                          event(AS_IS | P360_A, whole[9:]), event(P360_IMAGE, delay=130))
+    yield "idle", script(0, scan, image, event(P360_GRANT, delay=255), event(P360_GRANT, delay=255), event(P360_GRANT, delay=255),
+                         event(P360_GRANT, delay=255), event(P360_GRANT, delay=255))
+
+
+def ping360_host_scripts():
+    def meet(start):
+        return (ping360_message("protocol_version", as_is=True) + ping360_message("device_information") +
+                ping360_message("device_data_at_boot") + event(start))
+
+    yield "turns", meet(P360_TURN) + 3 * ping360_message("device_data", delay=20)
+    yield "scan", meet(P360_SCAN) + event(PAUSE, delay=50) + 3 * ping360_message("auto_device_data", delay=20) + event(
+        P360_STOP) + ping360_message("ack_motor_off")
+    yield "refused", meet(P360_TURN) + ping360_message("nack_sample_period")
+    yield "timeouts", meet(P360_SCAN) + 2 * event(PAUSE, delay=250) + event(P360_STOP) + event(PAUSE, delay=150)
+    yield "silent_head", event(P360_TURN) + event(PAUSE, delay=250)
+    yield "small_talk", ping360_message("ascii_text") + ping360_message("set_device_id")
+
+
+def ping360_frames():
+    names = sorted(path.stem for path in (EXAMPLES / "ping360").glob("*.hex"))
+    for name in names:
+        yield name, example(name, "ping360")
+    yield "stream", b"\0\xffUBR".join(example(name, "ping360") for name in names)
+    yield "discovery", b"Discovery"
+    yield "set_ip", b"SetSS1IP 192.168.002.004"
 
 
 def glf_record(kind, body):
@@ -292,7 +358,9 @@ def main():
         if path.stat().st_size < 100))
     for folder, scripts in (("gemini/device", device_scripts()), ("gemini/surface", surface_scripts()),
                             ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
-                            ("glf/log", glf_logs()), ("mcap", mcap_files()), ("pcapng", pcapng_files()),
+                            ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
+                            ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
+                            ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams())):
         for name, script in scripts:
             write(folder, name, script)

@@ -1,0 +1,475 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/ping360/device.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "protocol/ping360/codec.hpp"
+#include "protocol/ping360/scanner.hpp"
+#include "protocol/ping360/settings_text.hpp"
+#include "protocol/ping360/units.hpp"
+
+namespace sonard::ping360 {
+namespace {
+
+constexpr std::string_view not_recognised = "command not recognised";
+
+void require(bool condition, const char* what) {
+  if (!condition) {
+    throw std::invalid_argument(std::string("ping360 device: ") + what);
+  }
+}
+
+bool is_device_id(int id) {
+  return id >= 1 && id < broadcast_id;
+}
+
+const DeviceConfig& validated(const DeviceConfig& config) {
+  constexpr std::chrono::nanoseconds zero{0};
+  require(is_device_id(config.id), "id must be 1..254");
+  require(config.information.device_revision > 0, "information.device_revision must not be 0");
+  require(config.water_sound_speed_mps > 0.0, "water_sound_speed_mps must be positive");
+  require(config.bearing_offset >= 0 && config.bearing_offset < gradians_per_turn,
+          "bearing_offset must be 0..399");
+  require(config.ping_overhead >= zero, "ping_overhead must not be negative");
+  require(config.time_per_gradian >= zero, "time_per_gradian must not be negative");
+  require(config.time_scale >= 0.0 && config.time_scale <= 1000.0, "time_scale must be 0..1000");
+  require(config.idle_timeout >= zero, "idle_timeout must not be negative");
+  require(config.reset_silence >= zero, "reset_silence must not be negative");
+  require(config.bootloader_silence >= zero, "bootloader_silence must not be negative");
+  require(config.queue_length >= 1, "queue_length must be at least 1");
+  require(config.max_clients >= 2, "max_clients must be at least 2");
+  return config;
+}
+
+}  // namespace
+
+class Device::Impl {
+ public:
+  Impl(const DeviceConfig& config, TimePoint start)
+      : config_(validated(config)), scanner_(config_, counters_), power_up_(start), id_(config_.id) {}
+
+  // One for each event.
+  void take(TimePoint, const TimePassed&) {}
+  void take(TimePoint now, const BytesReceived& piece);
+  void take(TimePoint now, const ClientGone& gone);
+  void take(TimePoint now, const PingRendered& ping) { scanner_.on_image(now, ping.image); }
+  void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }
+  void take(TimePoint, const TriggerEdge&) {}   // it has no such input
+  void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
+  void take(TimePoint, const PingFed& feed) { scanner_.feed(feed.ping); }
+  void take(TimePoint, const PingGranted&) { scanner_.grant(); }
+
+  void advance(TimePoint now);
+  Actions actions();
+
+  const DeviceCounters& counters() const { return counters_; }
+  std::uint8_t id() const { return id_; }
+
+ private:
+  struct Client {
+    Peer peer;
+    FrameBuffer input;
+    TimePoint heard{};
+  };
+
+  // Clients.
+  Client& client_of(TimePoint now, const Peer& peer);
+  void make_room();
+  void forget(TimePoint now, std::size_t index, std::string_view why);
+  void forget_silent_clients(TimePoint now);
+  bool is_serial(const Peer& peer) const { return peer.channel == config_.serial_channel; }
+  bool can_fall_silent(const Client& client) const;
+  std::string name_of(const Peer& peer) const;
+  void notice(std::string text) { notices_.push_back({Notice::Level::info, std::move(text)}); }
+  std::optional<TimePoint> next_deadline() const;
+
+  // Frames.
+  void read_frames(TimePoint now, Client& client);
+  void note_break(TimePoint now, Client& client);
+  void take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame);
+  void send(const Peer& to, const std::vector<std::uint8_t>& frame);
+  void send_to(const Peer& to, const std::vector<std::uint8_t>& frame);
+  void reply(const Peer& asker, const Report& report) { send(asker, encode(report, id_)); }
+  void refuse(const Peer& asker, std::uint16_t id, std::string_view text);
+  template <class Command>
+  bool refused(const Peer& asker, const Command& command);
+  void end_scan(TimePoint now, std::string_view why);
+  void set_id(const Peer& asker, MessageId order, std::uint8_t device_id);
+
+  // One for each command.
+  void handle(TimePoint now, const Peer& asker, const GeneralRequest& command);
+  void handle(TimePoint now, const Peer& asker, const SetCommonDeviceId& command);
+  void handle(TimePoint now, const Peer& asker, const SetDeviceId& command);
+  void handle(TimePoint now, const Peer& asker, const Reset& command);
+  void handle(TimePoint now, const Peer& asker, const Transducer& command);
+  void handle(TimePoint now, const Peer& asker, const AutoTransmit& command);
+  void handle(TimePoint now, const Peer& asker, const MotorOff& command);
+  void handle(TimePoint now, const Peer& asker, const Unknown& command);
+
+  const DeviceConfig config_;
+  DeviceCounters counters_;
+  SettingsWarnings warnings_;
+  Scanner scanner_;
+  const TimePoint power_up_;
+  std::uint8_t id_;
+  TimePoint silent_until_ = TimePoint::min();  ///< in the future while it restarts
+  std::vector<Client> clients_;
+
+  // Of the step that is under way.
+  std::vector<Outgoing> outgoing_;
+  std::vector<Notice> notices_;
+};
+
+// ---- Clients
+
+Device::Impl::Client& Device::Impl::client_of(TimePoint now, const Peer& peer) {
+  auto found = std::ranges::find_if(clients_, [&](const Client& it) { return same_client(it.peer, peer); });
+  if (found == clients_.end()) {
+    if (clients_.empty()) {
+      notice(fmt::format("client {} connected", name_of(peer)));
+    }
+    make_room();
+    found = clients_.insert(clients_.end(), Client{});
+  }
+  found->peer = peer;  // it may speak to another of our addresses than before
+  found->heard = now;
+  return *found;
+}
+
+/// Whoever has begun the scan stays: it only listens. There are two clients at least.
+void Device::Impl::make_room() {
+  if (clients_.size() < config_.max_clients) {
+    return;
+  }
+  const auto scan = scanner_.running_scan();
+  const auto longest_silent = std::ranges::min_element(clients_, {}, [&](const Client& client) {
+    const bool scans = scan && same_client(scan->first, client.peer);
+    return scans ? TimePoint::max() : client.heard;
+  });
+  clients_.erase(longest_silent);
+  ++counters_.clients_dropped;
+}
+
+void Device::Impl::forget(TimePoint now, std::size_t index, std::string_view why) {
+  const Peer peer = clients_[index].peer;
+  const auto scan = scanner_.running_scan();
+  if (scan && same_client(scan->first, peer)) {
+    end_scan(now, why);
+  }
+  scanner_.forget(now, peer);
+  clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
+  if (clients_.empty()) {
+    notice(fmt::format("client {} is gone: {}", name_of(peer), why));
+  }
+}
+
+void Device::Impl::take(TimePoint now, const ClientGone& gone) {
+  const auto found =
+      std::ranges::find_if(clients_, [&](const Client& it) { return same_client(it.peer, gone.who); });
+  if (found != clients_.end()) {
+    forget(now, static_cast<std::size_t>(found - clients_.begin()), "disconnected");
+  }
+}
+
+bool Device::Impl::can_fall_silent(const Client& client) const {
+  return config_.idle_timeout.count() > 0 && !is_serial(client.peer);
+}
+
+void Device::Impl::forget_silent_clients(TimePoint now) {
+  for (std::size_t i = clients_.size(); i-- > 0;) {
+    if (can_fall_silent(clients_[i]) && now - clients_[i].heard >= config_.idle_timeout) {
+      forget(now, i, "it has said nothing for long");
+    }
+  }
+}
+
+std::string Device::Impl::name_of(const Peer& peer) const {
+  return is_serial(peer) ? "on the serial line" : endpoint_text(peer.remote);
+}
+
+// ---- Frames
+
+/// An empty datagram is a break of the line behind a bridge, and so is 'U' between frames on a line of which
+/// the break itself is not seen (4.3, 4.4).
+void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
+  if (now < silent_until_) {
+    counters_.unheard_bytes += piece.bytes.size();
+    return;
+  }
+  Client& client = client_of(now, piece.from);
+  if (piece.bytes.size() > 0) {
+    client.input.append(now, {piece.bytes.data(), piece.bytes.size()});
+    read_frames(now, client);
+  } else if (!is_serial(client.peer)) {
+    client.input.clear();
+    end_scan(now, "an empty datagram came");
+  }
+  if (now < silent_until_) {
+    clients_.clear();  // it was told to restart
+  }
+}
+
+void Device::Impl::read_frames(TimePoint now, Client& client) {
+  const std::uint64_t dropped = client.input.dropped();
+  const std::uint64_t bad_checksums = client.input.bad_checksums();
+  for (auto frame = client.input.front(); frame && now >= silent_until_; frame = client.input.front()) {
+    note_break(now, client);
+    take_frame(now, client.peer, *frame);
+    client.input.pop();
+  }
+  note_break(now, client);
+  counters_.dropped_bytes += client.input.dropped() - dropped;
+  counters_.bad_checksums += client.input.bad_checksums() - bad_checksums;
+}
+
+void Device::Impl::note_break(TimePoint now, Client& client) {
+  if (client.input.take_baud_bytes() && is_serial(client.peer)) {
+    end_scan(now, "a break came");
+  }
+}
+
+void Device::Impl::take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame) {
+  const FrameHeader header = frame_header(frame);
+  const bool for_us =
+      header.destination == 0 || header.destination == broadcast_id || header.destination == id_;
+  if (config_.ignores_other_destinations && !for_us) {
+    ++counters_.other_destinations;
+    return;
+  }
+  const auto command = decode_command(frame);
+  if (!command) {
+    refuse(asker, header.message_id, "wrong payload length");
+    return;
+  }
+  counters_.commands += std::holds_alternative<Unknown>(*command) ? 0 : 1;
+  std::visit([&](const auto& message) { handle(now, asker, message); }, *command);
+}
+
+void Device::Impl::send(const Peer& to, const std::vector<std::uint8_t>& frame) {
+  if (config_.fan_out == FanOut::requester) {
+    send_to(to, frame);
+    return;
+  }
+  for (const Client& client : clients_) {
+    send_to(client.peer, frame);
+  }
+}
+
+void Device::Impl::send_to(const Peer& to, const std::vector<std::uint8_t>& frame) {
+  const auto shared = std::make_shared<const std::vector<std::uint8_t>>(frame);
+  const std::size_t most = config_.max_datagram > 0 ? config_.max_datagram : frame.size();
+  for (std::size_t begin = 0; begin < frame.size(); begin += most) {
+    outgoing_.push_back(
+        {Outgoing::To::peer, to, SharedBytes(shared, begin, std::min(most, frame.size() - begin))});
+  }
+}
+
+void Device::Impl::refuse(const Peer& asker, std::uint16_t id, std::string_view text) {
+  ++counters_.refused;
+  reply(asker, Nack{id, std::string(text)});
+}
+
+template <class Command>
+bool Device::Impl::refused(const Peer& asker, const Command& command) {
+  const auto field = out_of_range(command, config_);
+  if (field) {
+    warnings_.refused(*field, notices_);
+    refuse(asker, id_of(command), fmt::format("{} out of range", field->field));
+  }
+  return field.has_value();
+}
+
+void Device::Impl::end_scan(TimePoint now, std::string_view why) {
+  if (scanner_.running_scan()) {
+    scanner_.end_scan(now);
+    notice(fmt::format("auto scan ended: {}", why));
+  }
+}
+
+// ---- Commands
+
+void Device::Impl::handle(TimePoint now, const Peer& asker, const GeneralRequest& command) {
+  switch (static_cast<MessageId>(command.requested_id)) {
+    case MessageId::device_information:
+      reply(asker, config_.information);
+      return;
+    case MessageId::protocol_version:
+      reply(asker, ProtocolVersion{});
+      return;
+    case MessageId::device_data:
+      reply(asker, scanner_.state(now));
+      return;
+    case MessageId::set_device_id:
+      reply(asker, SetDeviceId{id_});
+      return;
+    case MessageId::auto_device_data:
+      if (const auto state = scanner_.scan_state(now)) {
+        reply(asker, *state);
+        return;
+      }
+      break;
+    default:
+      break;
+  }
+  refuse(asker, id_of(command), "cannot be requested");
+}
+
+void Device::Impl::handle(TimePoint, const Peer& asker, const SetCommonDeviceId& command) {
+  if (config_.obeys_set_common_device_id) {
+    set_id(asker, SetCommonDeviceId::id, command.device_id);
+  } else {
+    refuse(asker, id_of(command), not_recognised);
+  }
+}
+
+void Device::Impl::handle(TimePoint, const Peer& asker, const SetDeviceId& command) {
+  set_id(asker, SetDeviceId::id, command.device_id);
+}
+
+/// The answer still comes from the old one.
+void Device::Impl::set_id(const Peer& asker, MessageId order, std::uint8_t device_id) {
+  const auto order_id = static_cast<std::uint16_t>(order);
+  if (is_device_id(device_id)) {
+    reply(asker, Ack{order_id});
+    id_ = device_id;
+  } else {
+    refuse(asker, order_id, order == MessageId::set_device_id ? "id out of range" : "device_id out of range");
+  }
+}
+
+void Device::Impl::handle(TimePoint now, const Peer&, const Reset& command) {
+  end_scan(now, "reset");
+  scanner_.restart(now);
+  ++counters_.resets;
+  notice(command.bootloader != 0 ? "reset into the bootloader" : "reset");
+  silent_until_ = now + (command.bootloader != 0 ? config_.bootloader_silence : config_.reset_silence);
+  // take() forgets the clients, one of which is being read.
+}
+
+void Device::Impl::handle(TimePoint now, const Peer& asker, const Transducer& command) {
+  if (refused(asker, command)) {
+    return;
+  }
+  warnings_.taken(command, notices_);
+  end_scan(now, "a transducer command came");
+  scanner_.command(now, asker, command);
+}
+
+/// A client that is not content with what it gets sends the same command again and again: that is not told.
+void Device::Impl::handle(TimePoint now, const Peer& asker, const AutoTransmit& command) {
+  if (refused(asker, command)) {
+    return;
+  }
+  const auto before = scanner_.running_scan();
+  scanner_.scan(now, asker, command);
+  if (!before || before->second != command || !same_client(before->first, asker)) {
+    notice(fmt::format("auto scan by client {}: {}", name_of(asker), scan_text(command)));
+  }
+}
+
+void Device::Impl::handle(TimePoint now, const Peer& asker, const MotorOff& command) {
+  end_scan(now, "motor_off");
+  scanner_.stop(now);
+  reply(asker, Ack{id_of(command)});
+}
+
+/// What only heads say, as a nack, is not refused: two heads on one line would never come to an end.
+void Device::Impl::handle(TimePoint, const Peer& asker, const Unknown& command) {
+  if (command.id > static_cast<std::uint16_t>(MessageId::ascii_text)) {
+    refuse(asker, command.id, not_recognised);
+  }
+}
+
+// ---- Time
+
+void Device::Impl::advance(TimePoint now) {
+  forget_silent_clients(now);
+  std::vector<Scanner::Answer> answers;
+  scanner_.advance(now, id_, answers);
+  for (const Scanner::Answer& answer : answers) {
+    send(answer.to, answer.frame);
+  }
+}
+
+Actions Device::Impl::actions() {
+  Actions actions;
+  actions.send = std::exchange(outgoing_, {});
+  actions.notices = std::exchange(notices_, {});
+  actions.record = scanner_.take_record();
+  actions.render = scanner_.take_job();
+  if (actions.render) {
+    actions.render->transmit_us = static_cast<std::uint64_t>((actions.render->transmit_time - power_up_) /
+                                                             std::chrono::microseconds{1});
+  }
+  actions.cancelled = scanner_.cancelled();
+  actions.next_ping = scanner_.next_ping();
+  actions.nobody_there = clients_.empty();
+  actions.wake_at = next_deadline();
+  return actions;
+}
+
+std::optional<TimePoint> Device::Impl::next_deadline() const {
+  auto next = scanner_.next_deadline();
+  for (const Client& client : clients_) {
+    if (can_fall_silent(client)) {
+      const TimePoint due = client.heard + config_.idle_timeout;
+      next = std::min(next.value_or(due), due);
+    }
+  }
+  return next;
+}
+
+// ---- The door
+
+Device::Device(const DeviceConfig& config, TimePoint start) : impl_(std::make_unique<Impl>(config, start)) {}
+Device::~Device() = default;
+
+Actions Device::step(TimePoint now, const Event& event) {
+  std::visit([&](const auto& what) { impl_->take(now, what); }, event);
+  impl_->advance(now);
+  return impl_->actions();
+}
+
+PingProgress Device::progress() const {
+  const DeviceCounters& count = counters();
+  return {.sent = count.pings_sent,
+          .ended = count.pings_sent + count.pings_failed + count.pings_cancelled,
+          .messages = count.pings_sent};
+}
+
+std::vector<Counter> Device::counts() const {
+  using Shown = Counter::Shown;
+  const DeviceCounters& count = counters();
+  return {
+      {"pings_sent", count.pings_sent},
+      {"pings_failed", count.pings_failed, Shown::often},
+      {"pings_cancelled", count.pings_cancelled},
+      {"commands", count.commands},
+      {"refused", count.refused, Shown::often},
+      {"commands_dropped", count.commands_dropped, Shown::often},
+      {"dropped_bytes", count.dropped_bytes, Shown::often},
+      {"bad_checksums", count.bad_checksums},
+      {"other_destinations", count.other_destinations, Shown::warns, "{} commands were for another device"},
+      {"clients_dropped", count.clients_dropped, Shown::warns,
+       "{} clients were forgotten: there were too many at a time"},
+      {"unheard_bytes", count.unheard_bytes},
+      {"resets", count.resets},
+  };
+}
+
+const DeviceCounters& Device::counters() const {
+  return impl_->counters();
+}
+
+std::uint8_t Device::id() const {
+  return impl_->id();
+}
+
+}  // namespace sonard::ping360

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where each field of each message lies: the one table that the codec reads and writes by. Offsets are from
+// the start of the frame, so 8 more than those of the tables in docs/protocols/ping360.md 2; the checksum at
+// its end is not counted. Texts, and samples with their count, follow the table of their message and are
+// written out in codec.cpp.
+#pragma once
+
+#include <tuple>
+
+#include "protocol/common/layout.hpp"
+#include "protocol/ping360/messages.hpp"
+
+namespace sonard::ping360 {
+
+/// Table of one message, or of the part of it that a table can say (protocol/common/layout.hpp).
+template <class Message>
+struct Layout;
+
+template <>
+struct Layout<GeneralRequest> : WholeLayout<10> {
+  static constexpr auto fields = std::tuple{Field{8, "requested_id", &GeneralRequest::requested_id}};
+};
+
+template <>
+struct Layout<SetCommonDeviceId> : WholeLayout<9> {
+  static constexpr auto fields = std::tuple{Field{8, "device_id", &SetCommonDeviceId::device_id}};
+};
+
+template <>
+struct Layout<SetDeviceId> : WholeLayout<10> {
+  static constexpr auto fields = std::tuple{Field{8, "id", &SetDeviceId::device_id}, Spare<1>{9}};
+};
+
+template <>
+struct Layout<Reset> : WholeLayout<10> {
+  static constexpr auto fields = std::tuple{Field{8, "bootloader", &Reset::bootloader}, Spare<1>{9}};
+};
+
+template <>
+struct Layout<Transducer> : WholeLayout<22> {
+  static constexpr auto fields = std::tuple{
+      Field{8, "mode", &Transducer::mode},
+      Field{9, "gain_setting", &Transducer::gain_setting},
+      Field{10, "angle", &Transducer::angle},
+      Field{12, "transmit_duration", &Transducer::transmit_duration_us},
+      Field{14, "sample_period", &Transducer::sample_period},
+      Field{16, "transmit_frequency", &Transducer::transmit_frequency_khz},
+      Field{18, "number_of_samples", &Transducer::number_of_samples},
+      Field{20, "transmit", &Transducer::transmit},
+      Spare<1>{21},
+  };
+};
+
+template <>
+struct Layout<AutoTransmit> : WholeLayout<24> {
+  static constexpr auto fields = std::tuple{
+      Field{8, "mode", &AutoTransmit::mode},
+      Field{9, "gain_setting", &AutoTransmit::gain_setting},
+      Field{10, "transmit_duration", &AutoTransmit::transmit_duration_us},
+      Field{12, "sample_period", &AutoTransmit::sample_period},
+      Field{14, "transmit_frequency", &AutoTransmit::transmit_frequency_khz},
+      Field{16, "number_of_samples", &AutoTransmit::number_of_samples},
+      Field{18, "start_angle", &AutoTransmit::start_angle},
+      Field{20, "stop_angle", &AutoTransmit::stop_angle},
+      Field{22, "num_steps", &AutoTransmit::num_steps},
+      Field{23, "delay", &AutoTransmit::delay_ms},
+  };
+};
+
+template <>
+struct Layout<Ack> : WholeLayout<10> {
+  static constexpr auto fields = std::tuple{Field{8, "acked_id", &Ack::acked_id}};
+};
+
+/// Up to its text.
+template <>
+struct Layout<Nack> : WholeLayout<10> {
+  static constexpr auto fields = std::tuple{Field{8, "nacked_id", &Nack::nacked_id}};
+};
+
+template <>
+struct Layout<DeviceInformation> : WholeLayout<14> {
+  static constexpr auto fields = std::tuple{
+      Field{8, "device_type", &DeviceInformation::device_type},
+      Field{9, "device_revision", &DeviceInformation::device_revision},
+      Field{10, "firmware_version_major", &DeviceInformation::firmware_major},
+      Field{11, "firmware_version_minor", &DeviceInformation::firmware_minor},
+      Field{12, "firmware_version_patch", &DeviceInformation::firmware_patch},
+      Spare<1>{13},
+  };
+};
+
+template <>
+struct Layout<ProtocolVersion> : WholeLayout<12> {
+  static constexpr auto fields = std::tuple{
+      Field{8, "version_major", &ProtocolVersion::major},
+      Field{9, "version_minor", &ProtocolVersion::minor},
+      Field{10, "version_patch", &ProtocolVersion::patch},
+      Spare<1>{11},
+  };
+};
+
+/// Up to the count of its samples.
+template <>
+struct Layout<DeviceData> : WholeLayout<20> {
+  static constexpr auto fields = std::tuple{
+      Field{8, "mode", &DeviceData::mode},
+      Field{9, "gain_setting", &DeviceData::gain_setting},
+      Field{10, "angle", &DeviceData::angle},
+      Field{12, "transmit_duration", &DeviceData::transmit_duration_us},
+      Field{14, "sample_period", &DeviceData::sample_period},
+      Field{16, "transmit_frequency", &DeviceData::transmit_frequency_khz},
+      Field{18, "number_of_samples", &DeviceData::number_of_samples},
+  };
+};
+
+/// Up to the count of its samples. The order differs from that of the command.
+template <>
+struct Layout<AutoDeviceData> : WholeLayout<26> {
+  static constexpr auto fields = std::tuple{
+      Field{8, "mode", &AutoDeviceData::mode},
+      Field{9, "gain_setting", &AutoDeviceData::gain_setting},
+      Field{10, "angle", &AutoDeviceData::angle},
+      Field{12, "transmit_duration", &AutoDeviceData::transmit_duration_us},
+      Field{14, "sample_period", &AutoDeviceData::sample_period},
+      Field{16, "transmit_frequency", &AutoDeviceData::transmit_frequency_khz},
+      Field{18, "start_angle", &AutoDeviceData::start_angle},
+      Field{20, "stop_angle", &AutoDeviceData::stop_angle},
+      Field{22, "num_steps", &AutoDeviceData::num_steps},
+      Field{23, "delay", &AutoDeviceData::delay_ms},
+      Field{24, "number_of_samples", &AutoDeviceData::number_of_samples},
+  };
+};
+
+}  // namespace sonard::ping360

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which values of a command a head takes (docs/protocols/ping360.md 2.3).
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "protocol/ping360/device_config.hpp"
+#include "protocol/ping360/messages.hpp"
+
+namespace sonard::ping360 {
+
+/// The first field of a command whose value is refused.
+struct OutOfRange {
+  std::string_view field;  ///< as the layout tables spell it
+  int value = 0;
+  int least = 0;
+  int most = 0;
+
+  bool operator==(const OutOfRange&) const = default;
+};
+
+std::optional<OutOfRange> out_of_range(const Transducer& command, const DeviceConfig& config);
+std::optional<OutOfRange> out_of_range(const AutoTransmit& command, const DeviceConfig& config);
+
+/// A limit of a scan in whole gradians, 0..399, as the head is told to read it.
+int scan_angle(std::uint16_t angle, const DeviceConfig& config);
+
+}  // namespace sonard::ping360

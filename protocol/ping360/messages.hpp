@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// The messages of a Ping360 as values, both directions, one struct per message.
+// Source: docs/protocols/ping360.md, section numbers beside each struct. Members keep the device's own
+// integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
+// and skipped when read. "Host" is the client's computer; "head" is the sonar. Multi-byte integers travel
+// little-endian. Frame headers (frame.hpp) are not part of a message.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+
+namespace sonard::ping360 {
+
+enum class MessageId : std::uint16_t {
+  ack = 1,
+  nack = 2,
+  ascii_text = 3,
+  device_information = 4,
+  protocol_version = 5,
+  general_request = 6,
+  set_common_device_id = 100,
+  set_device_id = 2000,
+  device_data = 2300,
+  auto_device_data = 2301,
+  reset = 2600,
+  transducer = 2601,
+  auto_transmit = 2602,
+  motor_off = 2903,
+};
+
+/// A message whose number this library does not know.
+struct Unknown {
+  std::uint16_t id = 0;
+
+  bool operator==(const Unknown&) const = default;
+};
+
+// ---- Host -> head
+
+/// Asks for the message `requested_id` (2.1, 3.1). An empty message with the number 4, 5 or 2300 is an older
+/// spelling of the request for it, and decodes to this one.
+struct GeneralRequest {
+  static constexpr MessageId id = MessageId::general_request;
+  std::uint16_t requested_id = 0;
+
+  bool operator==(const GeneralRequest&) const = default;
+};
+
+/// The order of the common set, which heads in the field refuse (3.6).
+struct SetCommonDeviceId {
+  static constexpr MessageId id = MessageId::set_common_device_id;
+  std::uint8_t device_id = 0;  ///< 1..254
+
+  bool operator==(const SetCommonDeviceId&) const = default;
+};
+
+/// An order of a host; a head that is asked for it answers with its present number (3.1, 3.6).
+struct SetDeviceId {
+  static constexpr MessageId id = MessageId::set_device_id;
+  std::uint8_t device_id = 0;  ///< 1..254
+
+  bool operator==(const SetDeviceId&) const = default;
+};
+
+/// Restarts the head (3.5).
+struct Reset {
+  static constexpr MessageId id = MessageId::reset;
+  std::uint8_t bootloader = 0;  ///< 0: skip it, else enter it
+
+  bool operator==(const Reset&) const = default;
+};
+
+/// Moves the head and pings there once (3.2). The defaults are those of a head at boot (2.3).
+struct Transducer {
+  static constexpr MessageId id = MessageId::transducer;
+  std::uint8_t mode = 1;  ///< hosts send 0, too
+  std::uint8_t gain_setting = 0;
+  std::uint16_t angle = 0;  ///< gradians
+  std::uint16_t transmit_duration_us = 32;
+  std::uint16_t sample_period = 80;  ///< units of 25 ns
+  std::uint16_t transmit_frequency_khz = 740;
+  std::uint16_t number_of_samples = 1024;
+  std::uint8_t transmit = 1;  ///< 0: moves only
+
+  bool operator==(const Transducer&) const = default;
+};
+
+/// Scans until it is told to stop (3.3).
+struct AutoTransmit {
+  static constexpr MessageId id = MessageId::auto_transmit;
+  std::uint8_t mode = 1;
+  std::uint8_t gain_setting = 0;
+  std::uint16_t transmit_duration_us = 32;
+  std::uint16_t sample_period = 80;  ///< units of 25 ns
+  std::uint16_t transmit_frequency_khz = 740;
+  std::uint16_t number_of_samples = 1024;
+  std::uint16_t start_angle = 0;   ///< gradians
+  std::uint16_t stop_angle = 399;  ///< gradians, clockwise from the start
+  std::uint8_t num_steps = 1;      ///< gradians between two pings
+  std::uint8_t delay_ms = 0;       ///< in addition, between two pings
+
+  bool operator==(const AutoTransmit&) const = default;
+};
+
+/// Ends a scan and all that is queued (3.4).
+struct MotorOff {
+  static constexpr MessageId id = MessageId::motor_off;
+  bool operator==(const MotorOff&) const = default;
+};
+
+using Command = std::variant<Unknown, GeneralRequest, SetCommonDeviceId, SetDeviceId, Reset, Transducer,
+                             AutoTransmit, MotorOff>;
+
+// ---- Head -> host
+
+struct Ack {
+  static constexpr MessageId id = MessageId::ack;
+  std::uint16_t acked_id = 0;
+
+  bool operator==(const Ack&) const = default;
+};
+
+/// A refusal (3.8).
+struct Nack {
+  static constexpr MessageId id = MessageId::nack;
+  std::uint16_t nacked_id = 0;
+  std::string text;  ///< the rest of the payload, without a terminator
+
+  bool operator==(const Nack&) const = default;
+};
+
+struct AsciiText {
+  static constexpr MessageId id = MessageId::ascii_text;
+  std::string text;  ///< the whole payload, without a terminator
+
+  bool operator==(const AsciiText&) const = default;
+};
+
+struct DeviceInformation {
+  static constexpr MessageId id = MessageId::device_information;
+  std::uint8_t device_type = 2;      ///< 1 Ping1D, 2 Ping360
+  std::uint8_t device_revision = 1;  ///< > 0
+  std::uint8_t firmware_major = 3;   ///< up to 3.3.0 a known viewer scans with `transducer` (6)
+  std::uint8_t firmware_minor = 3;
+  std::uint8_t firmware_patch = 8;
+
+  bool operator==(const DeviceInformation&) const = default;
+};
+
+struct ProtocolVersion {
+  static constexpr MessageId id = MessageId::protocol_version;
+  std::uint8_t major = 1;
+  std::uint8_t minor = 0;
+  std::uint8_t patch = 0;
+
+  bool operator==(const ProtocolVersion&) const = default;
+};
+
+/// A ping of `transducer`, or the present state of the head (3.1, 3.2).
+struct DeviceData {
+  static constexpr MessageId id = MessageId::device_data;
+  std::uint8_t mode = 1;  ///< as commanded
+  std::uint8_t gain_setting = 0;
+  std::uint16_t angle = 0;  ///< gradians, 0..399: where the head is
+  std::uint16_t transmit_duration_us = 32;
+  std::uint16_t sample_period = 80;  ///< units of 25 ns
+  std::uint16_t transmit_frequency_khz = 740;
+  std::uint16_t number_of_samples = 1024;
+  std::span<const std::uint8_t> data;  ///< nearest sample first; views the frame; empty: there was no ping
+
+  bool operator==(const DeviceData& other) const;
+};
+
+/// A ping of a scan (3.3). All but angle and data is as commanded.
+struct AutoDeviceData {
+  static constexpr MessageId id = MessageId::auto_device_data;
+  std::uint8_t mode = 1;
+  std::uint8_t gain_setting = 0;
+  std::uint16_t angle = 0;  ///< gradians, 0..399
+  std::uint16_t transmit_duration_us = 32;
+  std::uint16_t sample_period = 80;  ///< units of 25 ns
+  std::uint16_t transmit_frequency_khz = 740;
+  std::uint16_t start_angle = 0;
+  std::uint16_t stop_angle = 399;
+  std::uint8_t num_steps = 1;
+  std::uint8_t delay_ms = 0;
+  std::uint16_t number_of_samples = 1024;
+  std::span<const std::uint8_t> data;  ///< nearest sample first; views the frame
+
+  bool operator==(const AutoDeviceData& other) const;
+};
+
+using Report = std::variant<Unknown, Ack, Nack, AsciiText, DeviceInformation, ProtocolVersion, SetDeviceId,
+                            DeviceData, AutoDeviceData>;
+
+// ---- What the four messages about pings have in common
+
+/// Takes over gain, pulse, sampling and frequency from one message about pings to another.
+template <class To, class From>
+void copy_ping_settings(To& to, const From& from) {
+  to.mode = from.mode;
+  to.gain_setting = from.gain_setting;
+  to.transmit_duration_us = from.transmit_duration_us;
+  to.sample_period = from.sample_period;
+  to.transmit_frequency_khz = from.transmit_frequency_khz;
+  to.number_of_samples = from.number_of_samples;
+}
+
+/// Takes over sector, step and delay from one message about scans to another.
+template <class To, class From>
+void copy_scan_settings(To& to, const From& from) {
+  to.start_angle = from.start_angle;
+  to.stop_angle = from.stop_angle;
+  to.num_steps = from.num_steps;
+  to.delay_ms = from.delay_ms;
+}
+
+}  // namespace sonard::ping360

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of the Ping360's wire in SI units (docs/protocols/ping360.md 2.3). Angles are whole gradians, 400
+// to the turn, clockwise seen from above.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <numbers>
+
+namespace sonard::ping360 {
+
+inline constexpr int gradians_per_turn = 400;
+inline constexpr std::chrono::nanoseconds sample_tick{25};  ///< unit of the sample period
+
+/// Any whole number of gradians as 0..399.
+constexpr int wrapped(int angle) {
+  return (angle % gradians_per_turn + gradians_per_turn) % gradians_per_turn;
+}
+/// The short way from one angle to another, -199..200; positive clockwise.
+constexpr int shortest_turn(int from, int to) {
+  const int turn = wrapped(to - from);
+  return turn > gradians_per_turn / 2 ? turn - gradians_per_turn : turn;
+}
+/// Relative to `ahead`, positive to starboard, in (-pi, pi].
+constexpr double bearing_rad(int angle, int ahead) {
+  return shortest_turn(ahead, angle) * (2.0 * std::numbers::pi / gradians_per_turn);
+}
+
+/// Two-way time from one sample to the next.
+constexpr double sample_time_s(int sample_period) {
+  return sample_period * 25e-9;
+}
+/// Time until the echo of the last sample is back.
+constexpr std::chrono::nanoseconds listening_time(int number_of_samples, int sample_period) {
+  return number_of_samples * sample_period * sample_tick;
+}
+
+}  // namespace sonard::ping360

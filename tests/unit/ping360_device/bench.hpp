@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// A head on a bench: virtual time, a renderer that takes a set time, everything said written down.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "protocol/ping360/codec.hpp"
+#include "protocol/ping360/device.hpp"
+#include "protocol/ping360/units.hpp"
+#include "tests/support/hex_fixture.hpp"
+
+namespace sonard::ping360 {
+
+using namespace std::chrono_literals;
+using Bytes = std::vector<std::uint8_t>;
+
+/// Frames as the document prints them and clients send them (tests/data/ping360).
+inline Bytes fixture(const std::string& name) {
+  return sonard::testing::load_hex_fixture("ping360", name);
+}
+
+// Clients. The serial line is channel 1 where a test has one.
+inline const Peer client_a{0, {0x7F000001, 4000}, 0};
+inline const Peer client_b{0, {0x7F000001, 4001}, 0};
+inline const Peer serial_client{1, {}, 0};
+
+inline DeviceConfig with_serial_line() {
+  DeviceConfig config;
+  config.serial_channel = 1;
+  return config;
+}
+
+/// Any values that tell pings and samples apart.
+inline Bytes test_samples(std::uint64_t ping, int count) {
+  Bytes samples(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i] = static_cast<std::uint8_t>(ping * 31 + i * 7);
+  }
+  return samples;
+}
+
+inline PingImage test_image(const PingJob& job) {
+  return {job.number, test_samples(job.number, job.bins()), {}};
+}
+
+/// What a head says, with data of its own: views do not outlive the bench's records.
+struct Heard {
+  TimePoint at{};
+  Peer to;
+  Bytes frame;
+  Report report;  ///< views `frame`
+
+  template <class Message>
+  const Message* get() const {
+    return std::get_if<Message>(&report);
+  }
+};
+
+class Bench {
+ public:
+  explicit Bench(const DeviceConfig& config = {}) : device(config, 0ns), max_datagram_(config.max_datagram) {
+    step(TimePassed{});
+  }
+
+  // What a test sets.
+  std::chrono::nanoseconds render_time{0};
+  std::function<PingImage(const PingJob&)> render = test_image;
+  bool renderer_answers = true;  ///< false: the test answers the jobs itself
+  bool renderer_fails = false;
+
+  // What a test looks at.
+  Device device;
+  TimePoint now{};
+  std::vector<Heard> heard;
+  std::vector<Outgoing> datagrams;
+  std::vector<PingJob> jobs;
+  std::vector<PingRecord> records;
+  std::vector<std::string> notices;
+  Actions last;  ///< of the last step
+
+  void raw(const Bytes& bytes, const Peer& from = client_a) { step(BytesReceived{from, SharedBytes(bytes)}); }
+  void command(const Command& command, const Peer& from = client_a) { raw(encode(command), from); }
+  void answer(const PingImage& image) { step(PingRendered{image}); }
+
+  /// The reports of one type among those heard from index `from` on.
+  template <class Message>
+  std::vector<Message> all(std::size_t from = 0) const {
+    std::vector<Message> found;
+    for (std::size_t i = from; i < heard.size(); ++i) {
+      if (const auto* const message = heard[i].get<Message>()) {
+        found.push_back(*message);
+      }
+    }
+    return found;
+  }
+  /// The answers to this command that come at once.
+  std::vector<Report> ask(const Command& question, const Peer& from = client_a) {
+    const std::size_t before = heard.size();
+    command(question, from);
+    std::vector<Report> answers;
+    for (std::size_t i = before; i < heard.size(); ++i) {
+      answers.push_back(heard[i].report);
+    }
+    return answers;
+  }
+
+  TimePoint next_event() const { return job_ ? std::min(timer_, job_->first) : timer_; }
+  /// One thing happens.
+  void run_once() {
+    now = std::max(now, next_event());
+    if (job_ && job_->first <= now) {
+      const PingJob job = std::exchange(job_, std::nullopt)->second;
+      renderer_fails ? step(PingNotRendered{job.number}) : step(PingRendered{render(job)});
+    } else {
+      step(TimePassed{});
+    }
+  }
+  void run_until(TimePoint end) {
+    while (next_event() <= end) {
+      run_once();
+    }
+    now = std::max(now, end);
+  }
+  void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
+  /// Until `count` more messages of this type were heard, for `limit` at most.
+  template <class Message>
+  std::vector<Message> wait_for(std::size_t count, std::chrono::nanoseconds limit = 100s) {
+    const std::size_t from = heard.size();
+    for (const TimePoint end = now + limit; all<Message>(from).size() < count && next_event() <= end;) {
+      run_once();
+    }
+    const auto found = all<Message>(from);
+    EXPECT_EQ(found.size(), count);
+    return found;
+  }
+
+  void step(const Event& event) {
+    last = device.step(now, event);
+    timer_ = last.wake_at.value_or(TimePoint::max());
+    EXPECT_GT(timer_, now) << "the head would keep its caller spinning";
+    if (last.record) {
+      records.push_back(*last.record);
+    }
+    for (const Notice& notice : last.notices) {
+      notices.push_back(notice.text);
+    }
+    for (const Outgoing& message : last.send) {
+      EXPECT_EQ(message.to, Outgoing::To::peer);
+      datagrams.push_back(message);
+      hear(message);
+    }
+    if (last.render) {
+      jobs.push_back(*last.render);
+      if (renderer_answers) {
+        EXPECT_FALSE(job_) << "a second job while one is unanswered";
+        job_.emplace(now + render_time, *last.render);
+      }
+    }
+    EXPECT_TRUE(!last.cancelled || !last.render);
+  }
+
+ private:
+  /// Each message is one frame, unless the head is told to cut them.
+  void hear(const Outgoing& message) {
+    partial_.insert(partial_.end(), message.bytes.begin(), message.bytes.end());
+    const auto found = next_frame(partial_);
+    if (max_datagram_ > 0 && found == 0) {
+      EXPECT_EQ(message.bytes.size(), max_datagram_);
+      return;
+    }
+    ASSERT_EQ(found, static_cast<std::ptrdiff_t>(partial_.size())) << "one whole frame at a time";
+    Heard& it = heard.emplace_back(Heard{now, message.peer, std::exchange(partial_, {}), {}});
+    const auto report = decode_report(it.frame);
+    ASSERT_TRUE(report) << to_string(report.error());
+    it.report = *report;
+  }
+
+  std::size_t max_datagram_;
+  TimePoint timer_ = TimePoint::max();
+  std::optional<std::pair<TimePoint, PingJob>> job_;
+  Bytes partial_;
+};
+
+/// What a log shows of a job; empty: nothing.
+inline std::string setting(const PingJob& job, std::string_view name) {
+  const auto found = std::ranges::find(job.settings, name, &Setting::name);
+  return found == job.settings.end() ? std::string() : found->value;
+}
+
+inline Bytes bytes_of(std::span<const std::uint8_t> data) {
+  return {data.begin(), data.end()};
+}
+
+inline std::vector<int> angles_of(const std::vector<AutoDeviceData>& pings) {
+  std::vector<int> angles;
+  std::ranges::transform(pings, std::back_inserter(angles), &AutoDeviceData::angle);
+  return angles;
+}
+
+/// A short ping: 200 samples of 2 us.
+inline Transducer ping_at(int angle) {
+  Transducer command;
+  command.angle = static_cast<std::uint16_t>(angle);
+  command.number_of_samples = 200;
+  return command;
+}
+
+inline AutoTransmit scan_of(int start, int stop, int step = 1) {
+  AutoTransmit command;
+  command.number_of_samples = 200;
+  command.start_angle = static_cast<std::uint16_t>(start);
+  command.stop_angle = static_cast<std::uint16_t>(stop);
+  command.num_steps = static_cast<std::uint8_t>(step);
+  return command;
+}
+
+}  // namespace sonard::ping360

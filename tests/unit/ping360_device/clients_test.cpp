@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+// What public clients do, in their order and with their bytes (docs/protocols/ping360.md 6): models of their
+// loops, written from the description of what they send and wait for.
+#include "bench.hpp"
+
+namespace sonard::ping360 {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The end of a client: what it hears in answer, and when it gives up.
+struct Client {
+  Bench& bench;
+  Peer peer = client_a;
+  std::size_t read = 0;
+
+  /// Until a frame comes that `wanted` says yes to; what comes before it is skipped.
+  std::optional<Heard> wait(std::chrono::nanoseconds timeout,
+                            const std::function<bool(const Report&)>& wanted) {
+    const TimePoint end = bench.now + timeout;
+    for (;;) {
+      for (; read < bench.heard.size(); ++read) {
+        const Heard& it = bench.heard[read];
+        if (it.to == peer && wanted(it.report)) {
+          Heard found = it;
+          found.report = *decode_report(found.frame);
+          ++read;
+          return found;
+        }
+      }
+      if (bench.next_event() > end) {
+        bench.run_until(end);
+        return std::nullopt;
+      }
+      bench.run_once();
+    }
+  }
+  template <class... Messages>
+  std::optional<Heard> wait_for(std::chrono::nanoseconds timeout) {
+    return wait(timeout,
+                [](const Report& report) { return (std::holds_alternative<Messages>(report) || ...); });
+  }
+};
+
+/// Of the frames that a client sends on the wire, one byte of the command is not the default.
+Transducer as_brping(int angle) {
+  Transducer command = std::get<Transducer>(*decode_command(fixture("transducer_brping")));
+  command.angle = static_cast<std::uint16_t>(angle);
+  return command;
+}
+
+// ---- brping
+
+TEST(Ping360Clients, brping_initialises_and_turns_with_mode_0) {
+  DeviceConfig config;
+  config.max_datagram = 100;  // it puts pieces together again
+  Bench bench(config);
+  Client client{bench};
+  bench.raw(fixture("request_protocol_version"));
+  ASSERT_TRUE(client.wait_for<ProtocolVersion>(500ms));
+  bench.raw(fixture("request_device_data"));
+  ASSERT_TRUE(client.wait_for<DeviceData>(500ms));
+  for (int angle = 0; angle < 400; angle += 10) {
+    bench.command(as_brping(angle));
+    const auto answer = client.wait_for<DeviceData, Nack>(4s);
+    ASSERT_TRUE(answer);
+    const auto* const data = answer->get<DeviceData>();
+    ASSERT_TRUE(data);
+    EXPECT_EQ(data->angle, angle);
+    EXPECT_EQ(data->mode, 0);
+    EXPECT_EQ(data->data.size(), 400U);
+  }
+  bench.raw(fixture("motor_off"));
+  EXPECT_TRUE(client.wait_for<Ack>(1s));
+}
+
+TEST(Ping360Clients, brping_gets_a_nack_back_for_what_is_refused) {
+  Bench bench;
+  Client client{bench};
+  Transducer command = as_brping(0);
+  command.number_of_samples = 5000;
+  bench.command(command);
+  const auto answer = client.wait_for<DeviceData, Nack>(4s);
+  ASSERT_TRUE(answer && answer->get<Nack>());
+  EXPECT_EQ(answer->get<Nack>()->nacked_id, 2601);
+}
+
+TEST(Ping360Clients, brping_on_a_serial_line_begins_with_u_and_finds_a_quiet_head) {
+  Bench bench(with_serial_line());
+  bench.command(scan_of(0, 399), serial_client);  // left behind by somebody
+  bench.run_for(1s);
+  Client client{bench, serial_client, bench.heard.size()};
+  bench.raw({'U'}, serial_client);
+  bench.raw(fixture("request_protocol_version"), serial_client);
+  ASSERT_TRUE(client.wait_for<ProtocolVersion>(500ms));
+  bench.run_for(1s);
+  EXPECT_EQ(client.read, bench.heard.size());
+}
+
+// ---- ping-cpp, the test of hardware
+
+struct Ping360PingCpp : ::testing::Test {
+  Bench bench;
+  Client client{bench};
+
+  void connect() {
+    bench.raw({0x00, 0xFF});
+    bench.raw(fixture("request_protocol_version"));
+    const auto version = client.wait_for<ProtocolVersion>(500ms);
+    ASSERT_TRUE(version);
+    EXPECT_EQ(version->frame, fixture("protocol_version"));
+    bench.raw(fixture("request_device_information"));
+    const auto information = client.wait_for<DeviceInformation>(500ms);
+    ASSERT_TRUE(information);
+    EXPECT_EQ(information->get<DeviceInformation>()->device_type, 2);
+    EXPECT_GT(information->get<DeviceInformation>()->device_revision, 0);
+    EXPECT_EQ(frame_header(information->frame).source, 2);
+  }
+};
+
+TEST_F(Ping360PingCpp, hardware_test_200_pings_and_200_of_a_scan_without_a_gap) {
+  connect();
+  for (int angle = 0; angle < 200; ++angle) {
+    bench.command(ping_at(angle));
+    const auto answer = client.wait_for<DeviceData>(8s);
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->get<DeviceData>()->angle, angle);
+  }
+  bench.raw(fixture("auto_transmit"));
+  for (int angle = 0; angle < 200; ++angle) {
+    const auto answer = client.wait_for<AutoDeviceData>(8s);
+    ASSERT_TRUE(answer);
+    ASSERT_EQ(answer->get<AutoDeviceData>()->angle, angle);
+  }
+  bench.raw(fixture("motor_off"));
+  const auto ack = client.wait_for<Ack>(1s);
+  ASSERT_TRUE(ack);
+  EXPECT_EQ(ack->frame, fixture("ack_motor_off"));
+}
+
+TEST_F(Ping360PingCpp, begins_on_a_serial_line_with_u_and_nul) {
+  Bench serial(with_serial_line());
+  Client end{serial, serial_client};
+  serial.raw(Bytes{'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 0}, serial_client);
+  serial.raw(fixture("request_protocol_version"), serial_client);
+  EXPECT_TRUE(end.wait_for<ProtocolVersion>(500ms));
+}
+
+TEST_F(Ping360PingCpp, takes_a_nack_of_a_request_for_its_answer_only_by_the_right_number) {
+  bench.command(GeneralRequest{1211});
+  const auto nack = client.wait_for<Nack>(500ms);
+  ASSERT_TRUE(nack);
+  EXPECT_EQ(nack->get<Nack>()->nacked_id, 6);
+}
+
+// ---- ROS nodes
+
+TEST_F(Ping360PingCpp, ros_node_sends_400_for_0_and_a_nack_would_be_stale_data) {
+  connect();
+  for (int turn = 0; turn < 2; ++turn) {
+    for (int angle = 20; angle <= 400; angle += 20) {
+      Transducer command = ping_at(angle);
+      command.number_of_samples = 1200;
+      bench.command(command);
+      const auto answer = client.wait_for<DeviceData, Nack>(8s);
+      ASSERT_TRUE(answer);
+      ASSERT_TRUE(answer->get<DeviceData>());
+      EXPECT_EQ(answer->get<DeviceData>()->angle, angle % 400);
+      EXPECT_EQ(answer->get<DeviceData>()->data.size(), 1200U);
+    }
+  }
+  bench.raw(fixture("motor_off"));
+  EXPECT_TRUE(client.wait_for<Ack>(1s));
+}
+
+TEST(Ping360Clients, ros_node_in_python_repeats_its_bytes) {
+  Bench bench;
+  Client client{bench};
+  for (int i = 0; i < 45; ++i) {
+    bench.raw(fixture("transducer_ros_python"));
+    const auto answer = client.wait_for<DeviceData, Nack>(4s);
+    ASSERT_TRUE(answer && answer->get<DeviceData>());
+    EXPECT_EQ(answer->get<DeviceData>()->angle, 10);
+    EXPECT_EQ(answer->get<DeviceData>()->gain_setting, 1);
+  }
+}
+
+// ---- pnarvor/ping360_driver
+
+/// It reads a datagram into 1024 bytes and insists on 14 of them first.
+TEST(Ping360Clients, pnarvor_reads_its_512_samples_whole) {
+  Bench bench;
+  bench.raw(fixture("request_protocol_version"));
+  ASSERT_EQ(bench.datagrams.size(), 1U);
+  EXPECT_EQ(bench.datagrams[0].bytes.size(), 14U);
+  bench.raw(fixture("transducer_pnarvor"));
+  bench.run_for(2s);
+  ASSERT_EQ(bench.datagrams.size(), 2U);
+  EXPECT_LE(bench.datagrams[1].bytes.size(), 1024U);
+  EXPECT_EQ(bench.all<DeviceData>().at(0).data.size(), 512U);
+}
+
+TEST(Ping360Clients, pnarvor_reads_1000_samples_and_of_more_only_where_datagrams_are_split) {
+  Transducer command = ping_at(0);
+  command.number_of_samples = 1000;
+  Bench bench;
+  bench.command(command);
+  bench.run_for(1s);
+  EXPECT_EQ(bench.datagrams.at(0).bytes.size(), 1024U);
+  DeviceConfig config;
+  config.max_datagram = 1024;
+  Bench splits(config);
+  command.number_of_samples = 1200;
+  splits.command(command);
+  splits.run_for(1s);
+  ASSERT_EQ(splits.datagrams.size(), 2U);
+  EXPECT_EQ(splits.datagrams[1].bytes.size(), 200U);
+}
+
+// ---- ping-viewer
+
+struct Ping360PingViewer : ::testing::Test {
+  Bench bench;
+  Client client{bench};
+  AutoTransmit wanted{.transmit_duration_us = 11,
+                      .sample_period = 88,
+                      .transmit_frequency_khz = 750,
+                      .number_of_samples = 1200};
+
+  /// An empty datagram, 100 ms, the question; the first frame of any kind is taken for the answer.
+  void detect() {
+    bench.raw({});
+    bench.run_for(100ms);
+    bench.raw(fixture("request_device_information"));
+    const auto first = client.wait(1s, [](const Report&) { return true; });
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->frame, fixture("device_information"));
+  }
+  void order_scan() {
+    bench.raw({});
+    bench.run_for(200ms);
+    client.read = bench.heard.size();
+    bench.command(wanted);
+  }
+  /// To the bit, or it would order again.
+  bool is_content_with(const AutoDeviceData& data) const {
+    return data.gain_setting == wanted.gain_setting &&
+           data.transmit_duration_us == wanted.transmit_duration_us &&
+           data.sample_period == wanted.sample_period &&
+           data.transmit_frequency_khz == wanted.transmit_frequency_khz &&
+           data.data.size() == wanted.number_of_samples && data.start_angle == wanted.start_angle &&
+           data.stop_angle == wanted.stop_angle && data.num_steps == wanted.num_steps &&
+           data.delay_ms == wanted.delay_ms;
+  }
+};
+
+TEST_F(Ping360PingViewer, detects_the_head_though_another_client_scans) {
+  bench.command(scan_of(0, 399), client_b);
+  bench.run_for(1s);
+  detect();
+}
+
+TEST_F(Ping360PingViewer, scans_turns_changes_settings_and_leaves) {
+  detect();
+  order_scan();
+  for (int ping = 0; ping < 450; ++ping) {
+    const auto answer = client.wait_for<AutoDeviceData>(4200ms);
+    ASSERT_TRUE(answer);
+    ASSERT_TRUE(is_content_with(*answer->get<AutoDeviceData>()));
+    EXPECT_EQ(answer->get<AutoDeviceData>()->angle, ping % 400);
+  }
+  // Its sector of 120 degrees: 133 gradians about 200, that is about straight ahead.
+  wanted.start_angle = 134;
+  wanted.stop_angle = 265;
+  wanted.num_steps = 4;
+  wanted.gain_setting = 2;
+  order_scan();
+  for (const int expected : {134, 138, 142}) {
+    const auto answer = client.wait_for<AutoDeviceData>(4200ms);
+    ASSERT_TRUE(answer);
+    EXPECT_TRUE(is_content_with(*answer->get<AutoDeviceData>()))
+        << "no ping of the old scan comes after the order";
+    EXPECT_EQ(answer->get<AutoDeviceData>()->angle, expected);
+  }
+  bench.raw({});
+  for (int i = 0; i < 10; ++i) {
+    bench.raw(fixture("motor_off"));
+    bench.run_for(100ms);
+  }
+  EXPECT_EQ(bench.all<Ack>().size(), 10U);
+}
+
+TEST_F(Ping360PingViewer, older_firmware_is_turned_with_single_commands_quickly_enough) {
+  Client loop{bench};
+  Transducer command = ping_at(0);
+  command.number_of_samples = 1200;
+  command.sample_period = 88;
+  for (int angle = 0; angle < 400; angle += 10) {
+    command.angle = static_cast<std::uint16_t>(angle);
+    bench.command(command);
+    ASSERT_TRUE(loop.wait_for<DeviceData>(10 * 6ms + 200ms)) << "it would send the command again";
+  }
+}
+
+TEST_F(Ping360PingViewer, asks_in_the_old_way_too) {
+  bench.raw(make_frame(4, 0, 0, {}));
+  EXPECT_TRUE(client.wait_for<DeviceInformation>(1s));
+}
+
+// ---- BlueOS, which looks for the best speed of a serial line
+
+TEST(Ping360Clients, blueos_asks_ten_times_at_each_speed_and_hears_nothing_at_wrong_ones) {
+  Bench bench(with_serial_line());
+  Client client{bench, serial_client};
+  for (int i = 0; i < 10; ++i) {
+    bench.raw({0x11, 0x42, 0x52, 0xE6, 0x0F, 0x98, 0x00}, serial_client);  // what a wrong speed makes of it
+    EXPECT_FALSE(client.wait_for<DeviceInformation>(100ms));
+  }
+  for (int i = 0; i < 10; ++i) {
+    bench.raw(fixture("request_device_information"), serial_client);
+    EXPECT_TRUE(client.wait_for<DeviceInformation>(100ms)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace sonard::ping360

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// The client's side against the head itself, and against a link that loses and cuts (6).
+#include "protocol/ping360/host.hpp"
+
+#include "bench.hpp"
+
+namespace sonard::ping360 {
+namespace {
+
+/// A host and a head on one line, in virtual time.
+class Session {
+ public:
+  using Carrier = std::function<std::vector<Bytes>(const Bytes&)>;
+
+  explicit Session(const DeviceConfig& config = {}) : head(config), host(0ns) {}
+
+  // What a test sets: the pieces in which a frame arrives; none: it is lost.
+  Carrier to_head = [](const Bytes& frame) { return std::vector<Bytes>{frame}; };
+  Carrier to_host = to_head;
+
+  Bench head;
+  Host host;
+  std::vector<ReceivedPing> pings;
+
+  void run_for(std::chrono::nanoseconds span) {
+    const TimePoint end = head.now + span;
+    exchange();
+    for (;;) {
+      const TimePoint own = host.next_deadline().value_or(TimePoint::max());
+      const TimePoint next = std::min(head.next_event(), own);
+      if (next > end) {
+        break;
+      }
+      if (head.next_event() <= own) {
+        head.run_once();
+      } else {
+        head.run_until(own);
+      }
+      exchange();
+    }
+    head.run_until(end);
+  }
+  void run_to_end(std::chrono::nanoseconds limit = 200s) {
+    for (const TimePoint end = head.now + limit; !host.finished() && head.now < end;) {
+      run_for(10ms);
+    }
+    EXPECT_TRUE(host.finished());
+  }
+
+ private:
+  void exchange() {
+    for (bool talks = true; talks;) {
+      for (talks = false; read_ < head.heard.size(); ++read_) {
+        for (const Bytes& piece : to_host(head.heard[read_].frame)) {
+          host.on_bytes(head.now, piece);
+        }
+      }
+      host.advance(head.now);
+      EXPECT_TRUE(!host.next_deadline() || *host.next_deadline() > head.now);
+      for (const Bytes& frame : host.take_outgoing()) {
+        talks = true;
+        for (const Bytes& piece : to_head(frame)) {
+          head.raw(piece);
+        }
+      }
+      for (ReceivedPing& ping : host.take_pings()) {
+        pings.push_back(std::move(ping));
+      }
+    }
+  }
+
+  std::size_t read_ = 0;
+};
+
+TEST(Ping360Host, meets_the_head) {
+  Session session;
+  session.run_for(100ms);
+  EXPECT_EQ(session.host.head().protocol, ProtocolVersion{});
+  EXPECT_EQ(session.host.head().information, DeviceInformation{});
+  EXPECT_EQ(session.host.head().state, PingForm{});
+  session.run_for(10s);
+  EXPECT_EQ(session.host.statistics().frames, 3U) << "then it is quiet";
+}
+
+TEST(Ping360Host, pings_one_after_another) {
+  Session session;
+  session.host.start(0ns, ping_at(380), 15, 5);
+  session.run_to_end();
+  ASSERT_EQ(session.pings.size(), 5U);
+  std::vector<int> angles;
+  for (const ReceivedPing& ping : session.pings) {
+    angles.push_back(ping.form.settings.angle);
+    EXPECT_EQ(ping.samples, test_samples(ping.number, 200));
+    EXPECT_FALSE(ping.form.scan);
+  }
+  EXPECT_EQ(angles, (std::vector{380, 395, 10, 25, 40}));
+  EXPECT_EQ(session.host.statistics().commands, 5U);
+}
+
+TEST(Ping360Host, scans_and_stops_the_scan_behind_it) {
+  Session session;
+  session.host.start(0ns, scan_of(390, 10, 5), 7);
+  session.run_to_end();
+  ASSERT_EQ(session.pings.size(), 7U);
+  EXPECT_EQ(session.pings[1].form.settings.angle, 395);
+  ASSERT_TRUE(session.pings[1].form.scan);
+  EXPECT_EQ(session.pings[1].form.scan->num_steps, 5);
+  session.run_for(1s);
+  EXPECT_EQ(session.head.all<Ack>().size(), 1U);
+  const std::size_t heard = session.head.heard.size();
+  session.run_for(5s);
+  EXPECT_EQ(session.head.heard.size(), heard);
+}
+
+TEST(Ping360Host, gives_signs_of_life_so_that_a_scan_goes_on) {
+  Session session;
+  session.host.start(0ns, scan_of(0, 399, 10), 0);
+  session.run_for(120s);
+  const std::size_t before = session.pings.size();
+  session.run_for(1s);
+  EXPECT_GT(session.pings.size(), before);
+  EXPECT_EQ(session.host.statistics().timeouts, 0U);
+  session.host.stop(session.head.now);
+  session.run_to_end(5s);
+}
+
+TEST(Ping360Host, changes_what_is_going_on) {
+  Session session;
+  session.host.start(0ns, scan_of(0, 399), 0);
+  session.run_for(1s);
+  session.host.start(session.head.now, ping_at(50), 1, 3);
+  session.run_to_end();
+  EXPECT_EQ(session.pings.back().form.settings.angle, 52);
+  session.host.start(session.head.now, scan_of(100, 150), 2);
+  session.run_to_end();
+  EXPECT_EQ(session.pings.back().form.settings.angle, 101);
+}
+
+TEST(Ping360Host, a_refusal_is_told_and_not_repeated) {
+  Session session;
+  session.host.start(0ns, Transducer{.number_of_samples = 1250}, 1, 0);
+  session.run_to_end(5s);
+  ASSERT_TRUE(session.host.refusal());
+  EXPECT_EQ(session.host.refusal()->text, "number_of_samples out of range");
+  session.run_for(10s);
+  EXPECT_EQ(session.host.statistics().commands, 1U);
+}
+
+TEST(Ping360Host, asks_again_for_what_is_lost) {
+  Session session;
+  int sent = 0;
+  const auto loses_every_third = [&](const Bytes& frame) {
+    return ++sent % 3 == 0 ? std::vector<Bytes>{} : std::vector<Bytes>{frame};
+  };
+  session.to_head = loses_every_third;
+  session.to_host = loses_every_third;
+  session.host.start(0ns, ping_at(0), 1, 20);
+  session.run_to_end(1000s);
+  EXPECT_EQ(session.pings.size(), 20U);
+  EXPECT_GT(session.host.statistics().timeouts, 0U);
+  session.host.start(session.head.now, scan_of(0, 399), 20);
+  session.run_to_end(1000s);
+  EXPECT_EQ(session.pings.size(), 40U);
+}
+
+TEST(Ping360Host, reads_a_stream_cut_anywhere_among_noise) {
+  Session session;
+  session.to_host = [](const Bytes& frame) {
+    std::vector<Bytes> pieces{{0x00, 0xFF, 'U', 'B'}};
+    for (std::size_t begin = 0; begin < frame.size(); begin += 100) {
+      const auto end = std::min(begin + 100, frame.size());
+      pieces.emplace_back(frame.begin() + static_cast<std::ptrdiff_t>(begin),
+                          frame.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+    return pieces;
+  };
+  session.host.start(0ns, ping_at(0), 1, 10);
+  session.run_to_end();
+  EXPECT_EQ(session.host.statistics().timeouts, 0U);
+  EXPECT_GT(session.host.statistics().dropped_bytes, 0U);
+}
+
+TEST(Ping360Host, gives_up_stopping_a_head_that_does_not_answer) {
+  Session session;
+  session.run_for(1s);
+  session.to_head = [](const Bytes&) { return std::vector<Bytes>{}; };
+  session.host.stop(session.head.now);
+  session.run_for(2s);
+  EXPECT_TRUE(session.host.finished());
+  EXPECT_EQ(session.host.next_deadline(), std::nullopt);
+}
+
+}  // namespace
+}  // namespace sonard::ping360

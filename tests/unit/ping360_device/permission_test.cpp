@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pings that begin when somebody else says so: a simulated time rules.
+#include "bench.hpp"
+
+namespace sonard::ping360 {
+namespace {
+
+DeviceConfig waiting() {
+  DeviceConfig config;
+  config.waits_for_permission = true;
+  return config;
+}
+
+struct Ping360Permission : ::testing::Test {
+  Bench bench{waiting()};
+
+  /// Grants what the head would begin by now, as a server does.
+  bool grant() {
+    const auto next = bench.last.next_ping;
+    if (!next || next->from > bench.now) {
+      return false;
+    }
+    bench.step(PingGranted{});
+    return true;
+  }
+};
+
+TEST_F(Ping360Permission, there_is_no_next_ping_until_one_is_wanted) {
+  EXPECT_FALSE(bench.last.next_ping);
+  Transducer command = ping_at(3);
+  command.transmit = 0;
+  bench.command(command);
+  EXPECT_FALSE(bench.last.next_ping);
+  bench.run_for(1s);
+  EXPECT_EQ(bench.all<DeviceData>().size(), 1U) << "a move needs no grant";
+  bench.command(ping_at(3));
+  EXPECT_TRUE(bench.last.next_ping);
+}
+
+TEST_F(Ping360Permission, nothing_is_sent_without_it_and_requests_are_answered) {
+  bench.command(scan_of(0, 399));
+  bench.run_for(5s);
+  EXPECT_TRUE(bench.jobs.empty());
+  EXPECT_EQ(bench.ask(GeneralRequest{4}).size(), 1U);
+}
+
+TEST_F(Ping360Permission, the_next_ping_says_how_pings_follow) {
+  AutoTransmit command = scan_of(0, 399, 10);
+  command.delay_ms = 5;
+  bench.command(command);
+  ASSERT_TRUE(grant());
+  bench.run_for(1ms);
+  ASSERT_TRUE(bench.last.next_ping);
+  const auto listening = 200 * 80 * 25ns;
+  EXPECT_EQ(bench.last.next_ping->listening, listening);
+  EXPECT_EQ(bench.last.next_ping->period, listening + 18ms + 61ms + 5ms);
+}
+
+TEST_F(Ping360Permission, pings_are_the_same_and_in_order_however_fast) {
+  bench.command(scan_of(0, 399, 3));
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(grant());
+    bench.run_for(1ms);  // no head turns as fast as that by its own clock
+  }
+  Bench own;
+  own.command(scan_of(0, 399, 3));
+  EXPECT_EQ(angles_of(bench.all<AutoDeviceData>()), angles_of(own.wait_for<AutoDeviceData>(20)));
+}
+
+TEST_F(Ping360Permission, scaled_to_nothing_a_ping_still_listens) {
+  DeviceConfig config = waiting();
+  config.time_scale = 0.0;
+  Bench fast(config);
+  fast.command(scan_of(0, 399));
+  ASSERT_TRUE(fast.last.next_ping);
+  EXPECT_EQ(fast.last.next_ping->period, fast.last.next_ping->listening);
+}
+
+}  // namespace
+}  // namespace sonard::ping360

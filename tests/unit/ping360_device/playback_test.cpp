@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// A head that plays back: it sends what it is fed, when that is due, whatever the client asks for.
+#include "bench.hpp"
+#include "protocol/ping360/recorded_form.hpp"
+
+namespace sonard::ping360 {
+namespace {
+
+/// At 100 gradians, 30 samples, from a scan that no test asks for.
+PingForm recorded_form_of_scan() {
+  AutoTransmit scan = scan_of(90, 110, 5);
+  scan.gain_setting = 1;
+  scan.sample_period = 400;  // 10 us: 300 us of listening
+  scan.transmit_frequency_khz = 690;
+  scan.number_of_samples = 30;
+  return form_of(scan, 100);
+}
+
+RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
+  RecordedPing ping;
+  ping.record = record;
+  ping.settings = {.bins = 30, .beams = 1, .bin_m = 10e-6 * 1480.0 / 2.0, .sound_speed_mps = 1480.0};
+  ping.bearing_rad = 1.25;
+  ping.wire = recorded_wire(recorded_form_of_scan(), 2);
+  ping.due = due;
+  return ping;
+}
+
+struct Ping360Playback : ::testing::Test {
+  static DeviceConfig player() {
+    DeviceConfig config;
+    config.plays_back = true;
+    return config;
+  }
+  Bench bench{player()};
+};
+
+TEST_F(Ping360Playback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
+  bench.command(ping_at(5));
+  bench.run_for(3s);
+  EXPECT_TRUE(bench.heard.empty());
+  bench.step(PingFed{recorded(5)});
+  bench.run_for(3s);
+  EXPECT_EQ(bench.all<DeviceData>().size(), 1U);
+  bench.step(PingFed{recorded(6)});
+  bench.run_for(3s);
+  EXPECT_EQ(bench.jobs.size(), 1U);
+}
+
+TEST_F(Ping360Playback, a_command_brings_the_recorded_ping_as_its_answer) {
+  bench.step(PingFed{recorded(5)});
+  Transducer command = ping_at(7);
+  command.mode = 0;
+  bench.command(command);
+  bench.run_for(1s);
+  ASSERT_EQ(bench.heard.size(), 1U);
+  EXPECT_TRUE(bench.heard[0].report == (Report{DeviceData{.mode = 0,
+                                                          .gain_setting = 1,
+                                                          .angle = 100,
+                                                          .sample_period = 400,
+                                                          .transmit_frequency_khz = 690,
+                                                          .number_of_samples = 30,
+                                                          .data = test_samples(0, 30)}}));
+}
+
+TEST_F(Ping360Playback, a_scan_brings_it_with_the_limits_that_its_client_compares) {
+  bench.step(PingFed{recorded(5)});
+  bench.command(scan_of(0, 399));
+  bench.run_for(1s);
+  const auto pings = bench.all<AutoDeviceData>();
+  ASSERT_EQ(pings.size(), 1U);
+  EXPECT_EQ(pings[0].angle, 100);
+  EXPECT_EQ(pings[0].sample_period, 400);
+  EXPECT_EQ(pings[0].start_angle, 0);
+  EXPECT_EQ(pings[0].stop_angle, 399);
+  EXPECT_EQ(pings[0].num_steps, 1);
+}
+
+TEST_F(Ping360Playback, the_job_is_what_the_ping_was_made_with_and_says_how_it_differs) {
+  bench.step(PingFed{recorded(5)});
+  bench.command(ping_at(7));
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  const PingJob& job = bench.jobs[0];
+  EXPECT_EQ(job.record, 5U);
+  EXPECT_EQ(job.bins(), 30);
+  EXPECT_EQ(job.bearing_rad, 1.25);
+  EXPECT_EQ(job.sound_speed_mps, 1480.0);
+  EXPECT_DOUBLE_EQ(job.bin_m(), 10e-6 * 1480.0 / 2.0);
+  EXPECT_EQ(job.listening_time, 300us);
+  EXPECT_EQ(job.gain_db, 6.0);
+  std::vector<std::string> kinds;
+  std::ranges::transform(job.differences, std::back_inserter(kinds), &Difference::kind);
+  EXPECT_EQ(kinds, (std::vector<std::string>{"range", "samples", "gain", "frequency", "angle"}));
+}
+
+TEST_F(Ping360Playback, what_is_recorded_again_is_what_was_sent) {
+  bench.step(PingFed{recorded(5)});
+  bench.command(scan_of(90, 110, 5));
+  bench.run_for(1s);
+  ASSERT_EQ(bench.records.size(), 1U);
+  EXPECT_EQ(bench.records[0].wire, recorded(5).wire);
+  EXPECT_EQ(bench.records[0].samples, test_samples(0, 30));
+  EXPECT_EQ(bench.records[0].bearings_rad, std::vector<double>{1.25});
+  EXPECT_EQ(bench.records[0].settings.frequency_hz, 690e3);
+}
+
+TEST_F(Ping360Playback, a_ping_that_does_not_say_how_it_travelled_is_none) {
+  RecordedPing ping = recorded(5);
+  ping.wire.clear();
+  bench.step(PingFed{ping});
+  bench.command(ping_at(7));
+  bench.run_for(3s);
+  EXPECT_TRUE(bench.jobs.empty());
+}
+
+TEST_F(Ping360Playback, a_ping_is_fed_in_place_of_the_one_before) {
+  bench.step(PingFed{recorded(5)});
+  bench.step(PingFed{recorded(6)});
+  bench.step(PingFed{std::nullopt});
+  bench.command(ping_at(7));
+  EXPECT_TRUE(bench.jobs.empty());
+  bench.step(PingFed{recorded(7)});
+  ASSERT_EQ(bench.jobs.size(), 1U);
+  EXPECT_EQ(bench.jobs[0].record, 7U);
+}
+
+TEST_F(Ping360Playback, a_ping_is_made_when_it_is_due_and_leaves_when_its_echoes_are_in) {
+  bench.step(PingFed{recorded(0, 700ms)});
+  bench.command(ping_at(7));
+  bench.run_for(2s);
+  EXPECT_EQ(bench.jobs.at(0).transmit_time, 700ms);
+  EXPECT_EQ(bench.heard.at(0).at, 700ms + 300us);
+}
+
+TEST_F(Ping360Playback, pings_of_a_scan_come_as_close_as_they_are_fed) {
+  bench.command(scan_of(0, 399));
+  for (std::uint64_t record = 0; record < 10; ++record) {
+    bench.step(PingFed{recorded(record)});
+    bench.wait_for<AutoDeviceData>(1);
+  }
+  EXPECT_EQ(bench.now, 10 * 300us) << "turning takes no time";
+}
+
+TEST_F(Ping360Playback, a_ping_that_has_begun_is_not_lost_to_a_client_that_orders_again) {
+  bench.renderer_answers = false;
+  bench.step(PingFed{recorded(3)});
+  bench.command(scan_of(0, 399));
+  bench.raw({});
+  bench.command(scan_of(0, 399));
+  EXPECT_EQ(bench.last.cancelled, std::nullopt);
+  bench.answer(test_image(bench.jobs.at(0)));
+  bench.run_for(1s);
+  EXPECT_EQ(bench.all<AutoDeviceData>().size(), 1U);
+  bench.step(PingFed{recorded(4)});
+  bench.command(MotorOff{});
+  EXPECT_EQ(bench.last.cancelled, 1U) << "but this ends all";
+}
+
+TEST_F(Ping360Playback, a_move_is_answered_without_a_ping) {
+  Transducer command = ping_at(10);
+  command.transmit = 0;
+  bench.command(command);
+  bench.run_for(1s);
+  EXPECT_EQ(bench.all<DeviceData>().at(0).angle, 10);
+}
+
+}  // namespace
+}  // namespace sonard::ping360
