@@ -145,12 +145,13 @@ std::string json_settings(const SettingsCount& count) {
 std::string json_head(const HeadSummary& head, LogKind log) {
   const PingRate rate = ping_rate(head.times_ns);
   const DeviceKind* const kind = kind_of(head, log);
+  const std::string device = kind != nullptr ? std::string(kind->type()) : head.device;
   return fmt::format(
       R"({{"device": {}, "scanning": {}, "name": {}, "id": {}, "pings": {}, "rate_hz": {}, "median_interval_s": {}, )"
       R"("gaps": {}, "longest_gap_s": {}, "settings": {}}})",
-      kind != nullptr ? json_string(std::string(kind->type())) : "null", head.scanning,
-      json_string(head.name), head.id, head.pings(), rate.rate_hz(), rate.median_interval_s, rate.gaps,
-      rate.longest_gap_s, json_list(head.settings, json_settings));
+      device.empty() ? "null" : json_string(device), head.scanning, json_string(head.name), head.id,
+      head.pings(), rate.rate_hz(), rate.median_interval_s, rate.gaps, rate.longest_gap_s,
+      json_list(head.settings, json_settings));
 }
 
 std::string json_span(const LogSummary& log, std::int32_t utc_offset_s) {

@@ -70,7 +70,9 @@ LogSummary summarise(const LogFile& file, const PingFinder& ping_in);
 
 /// Adds a ping; times come in any order, and summarise() sorts them.
 void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings);
-HeadSummary& head_of(LogSummary& log, const std::string& name, std::uint16_t id, bool scanning);
+/// The head of this name, device, ID and way of pinging, which it adds where there is none.
+HeadSummary& head_of(LogSummary& log, const std::string& name, const std::string& device, std::uint16_t id,
+                     bool scanning);
 /// Leaves out what is no plausible_time().
 void include(LogSummary& log, std::int64_t time_ns);
 void count(LogSummary& log, const std::string& what, std::uint64_t records = 1);

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -86,6 +89,15 @@ const DeviceKind& kind_of_logged(const LoggedHead& logged, const LogFile& file) 
   };
   const auto kinds = device_kinds();
   const auto found = std::ranges::find_if(kinds, fits);
+  if (found == kinds.end() && !logged.device.empty()) {
+    std::vector<std::string_view> types;
+    std::ranges::transform(kinds, std::back_inserter(types), &DeviceKind::type);
+    throw file.error(
+        fmt::format("head {} was a '{}', which this program does not know (expected {}, or --config "
+                    "with a head that is to play it)",
+                    logged.name.empty() ? std::to_string(logged.device_id) : "'" + logged.name + "'",
+                    logged.device, fmt::join(types, " or ")));
+  }
   if (found == kinds.end()) {
     const auto alike_kind =
         std::ranges::find(kinds, logged.scanning, [](const DeviceKind* kind) { return kind->scanning(); });

@@ -57,8 +57,7 @@ Said said_of(LogKind kind, const std::string& name, const std::string& device, s
              bool scanning) {
   LogSummary log;
   log.kind = kind;
-  HeadSummary& head = head_of(log, name, id, scanning);
-  head.device = device;
+  HeadSummary& head = head_of(log, name, device, id, scanning);
   RecordedSettings settings;
   settings.bins = 400;
   settings.beams = scanning ? 1 : 256;
@@ -86,8 +85,9 @@ TEST(InfoText, what_nobody_knows_is_a_sonar) {
   const Said line = said_of(LogKind::mcap, "", "", 2, true);
   EXPECT_THAT(line.text, HasSubstr("\nhead     scanning sonar 2: 1 lines\n"));
   EXPECT_THAT(line.json, HasSubstr(R"([{"device": null, "scanning": true, )"));
-  EXPECT_THAT(said_of(LogKind::mcap, "bow", "other_900", 600, false).text,
-              HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
+  const Said other = said_of(LogKind::mcap, "bow", "other_900", 600, false);
+  EXPECT_THAT(other.text, HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
+  EXPECT_THAT(other.json, HasSubstr(R"([{"device": "other_900", "scanning": false, )")) << "the log knows";
 }
 
 TEST(InfoText, the_format_of_a_log_says_whose_it_is) {
@@ -175,6 +175,20 @@ TEST(Capture, has_the_pings_that_a_kind_of_device_finds) {
   EXPECT_EQ(summary.heads[2].pings(), 1U);
   EXPECT_EQ(summary.other_records,
             (std::vector<std::pair<std::string, std::uint64_t>>{{"interfaces", 1}, {"UDP packets", 6}}));
+}
+
+TEST(Capture, keeps_devices_of_one_id_apart) {
+  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
+    PingSeen seen{datagram[0] == 1 ? "one" : "other", 7, {}};
+    seen.settings.beams = 64;
+    return seen;
+  };
+  const test::TemporaryLog temporary(".pcapng", capture_of({{1}, {2}, {1}}));
+  const LogSummary summary = summarise(LogFile(temporary.path()), find);
+  ASSERT_EQ(summary.heads.size(), 2U);
+  EXPECT_EQ(summary.heads[0].device, "one");
+  EXPECT_EQ(summary.heads[0].pings(), 2U);
+  EXPECT_EQ(summary.heads[1].device, "other");
 }
 
 TEST(Capture, of_a_line_of_a_micron_only_the_packet_is_counted) {
