@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Comes before the header of fmt 9 of the same name, and adds one declaration: its formatting is in the
 // library. spdlog calls vformat_to(), which is a template, so that each file that logs compiled all of it
-// anew, for 3 s.
+// anew, for 3 s. g++ only: clang gives the function another name than the library, which g++ compiled.
 #pragma once
 
 #include_next <fmt/format.h>
 
-#if FMT_VERSION >= 90000 && FMT_VERSION < 100000 && !defined(FMT_HEADER_ONLY)
+#if FMT_VERSION >= 90000 && FMT_VERSION < 100000 && !defined(FMT_HEADER_ONLY) && !defined(__clang__)
 extern template void fmt::detail::vformat_to<char>(buffer<char>&, basic_string_view<char>,
                                                    basic_format_args<buffer_context<char>>, locale_ref);
 #endif
