@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/gemini/options.hpp"
 
+#include <arpa/inet.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
-
-#include "clients/sonarview/gemini/ipv4_text.hpp"
 
 namespace sonard::client {
 namespace {
+
+/// Nothing for anything but four decimal octets.
+std::optional<std::uint32_t> parse_ipv4(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1) {
+    return std::nullopt;
+  }
+  return ntohl(address.s_addr);
+}
 
 std::chrono::nanoseconds to_ns(double seconds) {
   return std::chrono::nanoseconds{std::llround(seconds * 1e9)};

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <memory>
 
-#include "clients/sonarview/gemini/ipv4_text.hpp"
+#include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/messages.hpp"
 
 namespace sonard::client {
@@ -55,8 +55,8 @@ udp::socket open(boost::asio::io_context& io, std::uint32_t address, std::uint16
     socket.non_blocking(true, error);
   }
   if (error) {
-    throw SocketError(fmt::format("cannot {} {}:{}: {}{}", purpose, ipv4_text(address), port, error.message(),
-                                  advice(error, port)));
+    throw SocketError(fmt::format("cannot {} {}:{}: {}{}", purpose, address_text(address), port,
+                                  error.message(), advice(error, port)));
   }
   return socket;
 }

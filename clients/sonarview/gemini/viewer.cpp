@@ -15,10 +15,10 @@
 
 #include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/gemini/datagram_dropper.hpp"
-#include "clients/sonarview/gemini/ipv4_text.hpp"
 #include "clients/sonarview/gemini/ping_log.hpp"
 #include "clients/sonarview/gemini/ping_pictures.hpp"
 #include "clients/sonarview/gemini/sockets.hpp"
+#include "protocol/common/endpoint.hpp"
 
 namespace sonard::client {
 namespace {
@@ -165,8 +165,8 @@ void Viewer::send_commands() {
     commands_.send_to(boost::asio::buffer(datagram.bytes),
                       {boost::asio::ip::address_v4(datagram.to), gemini::head_port}, 0, error);
     if (error && !std::exchange(send_failed_, true)) {
-      fmt::print(stderr, "sonarview: cannot send to {}:{}: {}\n", ipv4_text(datagram.to), gemini::head_port,
-                 error.message());
+      fmt::print(stderr, "sonarview: cannot send to {}:{}: {}\n", address_text(datagram.to),
+                 gemini::head_port, error.message());
     }
   }
 }
@@ -194,7 +194,7 @@ void Viewer::greet_head() {
   const gemini::Status& status = head.status;
   if (!options_.quiet) {
     fmt::print(stderr, "sonarview: head {} at {}, netmask {}, firmware {:#06x}\n", status.sonar_id,
-               ipv4_text(head.address), ipv4_text(status.subnet_mask), status.firmware_version);
+               address_text(head.address), address_text(status.subnet_mask), status.firmware_version);
   }
   const auto own_mask = interface_netmask(options_.surface_address);
   const bool same_network = ((head.address ^ options_.surface_address) & status.subnet_mask) == 0;
@@ -203,8 +203,8 @@ void Viewer::greet_head() {
                "sonarview: warning: {} with netmask {} and {} with netmask {} are not on one network; the "
                "vendor's later "
                "libraries would send nothing\n",
-               ipv4_text(head.address), ipv4_text(status.subnet_mask), ipv4_text(options_.surface_address),
-               own_mask ? ipv4_text(*own_mask) : "unknown");
+               address_text(head.address), address_text(status.subnet_mask),
+               address_text(options_.surface_address), own_mask ? address_text(*own_mask) : "unknown");
   }
 }
 
@@ -237,8 +237,9 @@ void Viewer::check_limits(TimePoint at) {
                "sonarview: status comes, but no ping for {:.1f} s: can the head be reached at {}:{} from {}, "
                "and does it "
                "have a pose?\n",
-               std::chrono::duration<double>(options_.ping_wait).count(), ipv4_text(surface_.head()->address),
-               gemini::head_port, ipv4_text(options_.surface_address));
+               std::chrono::duration<double>(options_.ping_wait).count(),
+               address_text(surface_.head()->address), gemini::head_port,
+               address_text(options_.surface_address));
     failure_ = ExitStatus::incomplete;
     end();
   }
