@@ -22,10 +22,11 @@ struct PlannedSocket {
   std::string key;  ///< "heads[0].network.bind", or of a head "network.bind"
 };
 
-/// A value that no two heads of a kind may share.
+/// A value that no two heads may share.
 struct Identity {
-  std::string key;    ///< of the head: "sonar_id"
-  std::string value;  ///< as text: "513"
+  std::string key;      ///< of the head: "sonar_id"
+  std::string value;    ///< as text: "513"
+  bool of_kind = true;  ///< heads of different kinds may have the same; false: a file of this machine, say
 };
 
 /// One for each kind of device, without state. A head of the configuration names its kind, and its `device`
@@ -57,5 +58,7 @@ class HeadKind {
 
 /// Of a serial link under a key of a head.
 std::vector<PlannedSocket> serial_sockets(const SerialLinkConfig& link, const std::string& key);
+/// The links to its pseudo terminals, likewise.
+std::vector<Identity> serial_identities(const SerialLinkConfig& link, const std::string& key);
 
 }  // namespace sonard::server

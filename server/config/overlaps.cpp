@@ -61,12 +61,11 @@ class Overlaps {
     const HeadConfig& head = config_.heads[i];
     const HeadConfig& other = config_.heads[j];
     compare(i, {"name", fmt::format("'{}'", head.name)}, j, {"name", fmt::format("'{}'", other.name)});
-    if (head.kind != other.kind) {
-      return;
-    }
     for (const Identity& identity : head.kind->identities(head)) {
       for (const Identity& taken : other.kind->identities(other)) {
-        compare(i, identity, j, taken);
+        if (head.kind == other.kind || !identity.of_kind) {
+          compare(i, identity, j, taken);
+        }
       }
     }
   }
@@ -114,6 +113,16 @@ std::vector<PlannedSocket> serial_sockets(const SerialLinkConfig& link, const st
     sockets.push_back({Transport::tcp, link.tcp[i].bind, fmt::format("{}.tcp[{}].bind", key, i)});
   }
   return sockets;
+}
+
+std::vector<Identity> serial_identities(const SerialLinkConfig& link, const std::string& key) {
+  std::vector<Identity> identities;
+  for (const SerialPtyConfig& pty : link.pty) {
+    if (!pty.link.empty()) {
+      identities.push_back({key + ".pty", "'" + pty.link.string() + "'", false});
+    }
+  }
+  return identities;
 }
 
 std::vector<ConfigProblem> find_overlaps(const DaemonConfig& config, const KeyPositions& positions) {

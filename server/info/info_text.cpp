@@ -26,21 +26,8 @@ std::string offset_text(std::int32_t utc_offset_s) {
   return fmt::format("{}{:02}:{:02}", utc_offset_s < 0 ? '-' : '+', minutes / 60, minutes % 60);
 }
 
-/// The kind of device that a head was; null where neither the log nor its format says.
-const DeviceKind* kind_of(const HeadSummary& head, LogKind log) {
-  if (!head.device.empty()) {
-    return kind_of_type(head.device);
-  }
-  if (log != LogKind::glf && log != LogKind::dat) {
-    return nullptr;
-  }
-  const auto kinds = device_kinds();
-  const auto found = std::ranges::find_if(kinds, [](const DeviceKind* kind) { return kind->writes_glf(); });
-  return found == kinds.end() ? nullptr : *found;
-}
-
 std::string title_of(const HeadSummary& head, LogKind log) {
-  const DeviceKind* const kind = kind_of(head, log);
+  const DeviceKind* const kind = kind_of_logged(head.device, log);
   const std::string_view usual = head.scanning ? "scanning sonar" : "multibeam sonar";
   return fmt::format("{} {}{}", kind != nullptr ? kind->title() : usual, head.id,
                      head.name.empty() ? "" : fmt::format(" '{}'", head.name));
@@ -144,7 +131,7 @@ std::string json_settings(const SettingsCount& count) {
 
 std::string json_head(const HeadSummary& head, LogKind log) {
   const PingRate rate = ping_rate(head.times_ns);
-  const DeviceKind* const kind = kind_of(head, log);
+  const DeviceKind* const kind = kind_of_logged(head.device, log);
   const std::string device = kind != nullptr ? std::string(kind->type()) : head.device;
   return fmt::format(
       R"({{"device": {}, "scanning": {}, "name": {}, "id": {}, "pings": {}, "rate_hz": {}, "median_interval_s": {}, )"

@@ -81,15 +81,13 @@ void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file,
   replay.daemon.heads.push_back(kind.held_to_recording(head));
 }
 
-/// The kind that a head of a log was of.
-const DeviceKind& kind_of_logged(const LoggedHead& logged, const LogFile& file) {
-  const auto fits = [&](const DeviceKind* kind) {
-    return logged.device.empty() ? kind->scanning() == logged.scanning && !kind->why_not_played(logged)
-                                 : kind->type() == logged.device;
-  };
+/// The kind that plays a head of a log: its own, and where the log does not say, the first that can.
+const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
+  if (const DeviceKind* own = kind_of_logged(logged.device, file.kind())) {
+    return *own;
+  }
   const auto kinds = device_kinds();
-  const auto found = std::ranges::find_if(kinds, fits);
-  if (found == kinds.end() && !logged.device.empty()) {
+  if (!logged.device.empty()) {
     std::vector<std::string_view> types;
     std::ranges::transform(kinds, std::back_inserter(types), &DeviceKind::type);
     throw file.error(
@@ -98,14 +96,17 @@ const DeviceKind& kind_of_logged(const LoggedHead& logged, const LogFile& file) 
                     logged.name.empty() ? std::to_string(logged.device_id) : "'" + logged.name + "'",
                     logged.device, fmt::join(types, " or ")));
   }
-  if (found == kinds.end()) {
-    const auto alike_kind =
-        std::ranges::find(kinds, logged.scanning, [](const DeviceKind* kind) { return kind->scanning(); });
-    throw file.error(alike_kind == kinds.end()
-                         ? fmt::format("head {} is of no kind that is known", logged.device_id)
-                         : (*alike_kind)->why_not_played(logged).value_or("has a head of an unknown kind"));
+  std::string reason = "it is of no kind that is known";
+  for (const DeviceKind* kind : kinds) {
+    if (kind->scanning() == logged.scanning) {
+      const std::optional<std::string> hindrance = kind->why_not_played(logged);
+      if (!hindrance) {
+        return *kind;
+      }
+      reason = *hindrance;
+    }
   }
-  return **found;
+  throw file.error(fmt::format("head {} cannot be played: {}", logged.device_id, reason));
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ DaemonConfig loopback_config(const std::vector<LoggedHead>& logged, const LogFil
   Ipv4 address = first_loopback_head;
   for (const bool scanning : {false, true}) {
     for (const LoggedHead* head : alike(logged, scanning)) {
-      config.heads.push_back(kind_of_logged(*head, file).on_loopback(*head, address++));
+      config.heads.push_back(player_of(*head, file).on_loopback(*head, address++));
     }
   }
   return config;

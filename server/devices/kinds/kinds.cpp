@@ -17,6 +17,18 @@ const DeviceKind* kind_of_type(std::string_view type) {
   return found == kinds.end() ? nullptr : *found;
 }
 
+const DeviceKind* kind_of_logged(std::string_view device, LogKind log) {
+  if (!device.empty()) {
+    return kind_of_type(device);
+  }
+  if (log != LogKind::glf && log != LogKind::dat) {
+    return nullptr;
+  }
+  const auto kinds = device_kinds();
+  const auto found = std::ranges::find_if(kinds, &DeviceKind::writes_glf);
+  return found == kinds.end() ? nullptr : *found;
+}
+
 std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram) {
   for (const DeviceKind* kind : device_kinds()) {
     if (const std::optional<PingSeen> seen = kind->ping_in(datagram)) {

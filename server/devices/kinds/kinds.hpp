@@ -17,6 +17,10 @@ std::span<const HeadKind* const> head_kinds();
 /// The kind of a type of head; null where there is none.
 const DeviceKind* kind_of_type(std::string_view type);
 
+/// The kind of a head of a log: what the log says, or the kind whose users know such logs; null where neither
+/// tells.
+const DeviceKind* kind_of_logged(std::string_view device, LogKind log);
+
 /// The first ping in a datagram of any kind of device.
 std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram);
 

@@ -66,13 +66,7 @@ class MicronKind final : public DeviceKind {
   std::string socket_key() const override { return "serial"; }
 
   std::vector<Identity> identities(const HeadConfig& head) const override {
-    std::vector<Identity> identities;
-    for (const SerialPtyConfig& pty : micron_config(head).serial.pty) {
-      if (!pty.link.empty()) {
-        identities.push_back({"serial.pty", "'" + pty.link.string() + "'"});
-      }
-    }
-    return identities;
+    return serial_identities(micron_config(head).serial, "serial");
   }
 
   std::string summary(const HeadConfig& head) const override {
