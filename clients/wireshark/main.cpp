@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints one of the field tables of the dissectors:
 //   wireshark_fields gemini >clients/wireshark/sonard_gemini_fields.lua
+#include <algorithm>
 #include <cstdio>
+#include <string>
 #include <string_view>
 
 #include "clients/wireshark/field_tables.hpp"
 
 int main(int argc, char** argv) {
-  const std::string_view device = argc == 2 ? argv[1] : "";
-  if (device != "gemini" && device != "micron") {
-    std::fputs("Usage: wireshark_fields gemini|micron\n", stderr);
+  using sonard::wireshark::FieldTables;
+  const auto devices = sonard::wireshark::device_field_tables();
+  const std::string_view asked = argc == 2 ? argv[1] : "";
+  const auto found = std::ranges::find(devices, asked, &FieldTables::device);
+  if (found == devices.end()) {
+    std::string names;
+    for (const FieldTables& tables : devices) {
+      names += (names.empty() ? "" : "|") + std::string{tables.device};
+    }
+    std::fprintf(stderr, "Usage: wireshark_fields %s\n", names.c_str());
     return 64;
   }
-  const std::string lua = device == "gemini" ? sonard::wireshark::gemini_field_tables()
-                                             : sonard::wireshark::micron_field_tables();
-  std::fputs(lua.c_str(), stdout);
+  std::fputs(found->lua().c_str(), stdout);
   return 0;
 }

@@ -1,7 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
--- What the dissectors of both sonars share: fields of Wireshark from a table of fields, and a message shown by it.
--- The tables (sonard_gemini_fields.lua, sonard_micron_fields.lua) say how each message is laid out; the dissectors
--- load this file themselves.
+-- What the dissectors of all sonars share: fields of Wireshark from a table of fields, and a message shown by it.
+-- The tables (sonard_DEVICE_fields.lua) say how each message is laid out; the dissectors load this file themselves.
 local tables = {}
 
 -- Runs of bytes longer than this are shown as one value.

@@ -137,7 +137,8 @@ SOURCES = re.compile(r"(sonard_library|sonard_program|add_executable|target_sour
 
 
 def library_complaints(tree):
-    """Folders whose sources are not those of one library, or of programs."""
+    """Folders whose sources are not those of one library, or of programs. A loop of CMake over SONARD_DEVICES has the
+    variable `device`, which stands for each of them."""
     folders = collections.defaultdict(set)
     for path in tree.files:
         if path.endswith(".cpp") and path.split("/")[0] in ROOMS:
@@ -148,6 +149,8 @@ def library_complaints(tree):
             yield f"{folder}: has sources and no CMakeLists.txt"
             continue
         calls = SOURCES.findall(tree.text(path))
+        calls = [(kind, name, " ".join(names.replace("${device}", device) for device in DEVICES))
+                 for kind, name, names in calls]
         libraries = [name for kind, name, _ in calls if kind == "sonard_library"]
         if len(libraries) > 1:
             yield f"{path}: {len(libraries)} libraries, {' and '.join(libraries)}; a folder is one"

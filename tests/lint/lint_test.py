@@ -90,6 +90,13 @@ class Libraries(LintTest):
         self.assertEqual([complaint.split(": ")[1] for complaint in complaints],
                          ["one.cpp is in no library and no program", "../b/two.cpp lies in another folder"])
 
+    def test_a_source_for_each_device(self):
+        sources = [f"a/{device}_fields.cpp" for device in includes.DEVICES]
+        lists = "sonard_library(x one.cpp)\ntarget_sources(x PRIVATE ${device}_fields.cpp)\n"
+        self.assertEqual(self.complaints(lists, "a/one.cpp", *sources), [])
+        self.assertEqual(self.complaints(lists, "a/one.cpp", "a/toaster_fields.cpp"),
+                         ["server/a/CMakeLists.txt: toaster_fields.cpp is in no library and no program"])
+
     def test_sources_without_a_list(self):
         self.assertEqual(self.complaints("", "b/one.cpp"), ["server/b: has sources and no CMakeLists.txt"])
 

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "clients/wireshark/field_tables.hpp"
 #include "tests/support/run_process.hpp"
 
 namespace sonard::testing {
@@ -48,11 +49,13 @@ class TemporaryFile {
 
 std::vector<std::string> tshark_command(const std::string& path, const std::vector<std::string>& fields,
                                         const std::vector<std::string>& options) {
-  const std::string scripts = std::string{SONARD_SOURCE_DIR} + "/clients/wireshark/";
+  const std::string front = "lua_script:" SONARD_SOURCE_DIR "/clients/wireshark/sonard_";
   std::vector<std::string> command{"tshark", "-n",          "-r", path,           "-T", "fields",
                                    "-E",     "separator=|", "-E", "occurrence=a", "-E", "aggregator=,"};
-  for (const char* device : {"gemini", "micron"}) {
-    command.insert(command.end(), {"-X", "lua_script:" + scripts + "sonard_" + device + ".lua"});
+  for (const wireshark::FieldTables& tables : wireshark::device_field_tables()) {
+    std::string script = front;
+    script.append(tables.device).append(".lua");
+    command.insert(command.end(), {"-X", script});
   }
   for (const char* protocol : {"ip", "udp", "tcp"}) {
     command.insert(command.end(), {"-o", std::string{protocol} + ".check_checksum:TRUE"});

@@ -14,7 +14,7 @@ namespace sonard::testing {
 /// between.
 using Row = std::map<std::string, std::string>;
 
-/// Writes `packets`, one microsecond after the other, and has tshark read them with both dissectors and all
+/// Writes `packets`, one microsecond after the other, and has tshark read them with all dissectors and all
 /// checksums checked. @return one row for each packet. Fails the test when tshark cannot, or complains.
 std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
                          const std::vector<std::string>& options = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables that Wireshark's dissectors load are those of the codecs. What they mean on the wire is held to
-// byte examples by tests/logs/wireshark.
+// The tables that Wireshark's dissectors load are those of the codecs, for every device of
+// cmake/devices.cmake. What they mean on the wire is held to byte examples by tests/logs/wireshark.
 #include "clients/wireshark/field_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -12,22 +12,36 @@ namespace sonard::wireshark {
 namespace {
 
 std::string checked_in(const std::string& name) {
-  std::ifstream file{std::string{SONARD_SOURCE_DIR} + "/clients/wireshark/" + name};
+  std::ifstream file{SONARD_SOURCE_DIR "/clients/wireshark/" + name};
   return {std::istreambuf_iterator<char>{file}, {}};
 }
 
 TEST(FieldTables, files_are_up_to_date) {
-  EXPECT_EQ(checked_in("sonard_gemini_fields.lua"), gemini_field_tables())
-      << "wireshark_fields gemini >clients/wireshark/sonard_gemini_fields.lua";
-  EXPECT_EQ(checked_in("sonard_micron_fields.lua"), micron_field_tables())
-      << "wireshark_fields micron >clients/wireshark/sonard_micron_fields.lua";
+  for (const FieldTables& tables : device_field_tables()) {
+    const std::string device{tables.device};
+    const std::string file = "sonard_" + device + "_fields.lua";
+    EXPECT_EQ(checked_in(file), tables.lua())
+        << "wireshark_fields " << device << " >clients/wireshark/" << file;
+  }
 }
 
-// docs/protocols/gemini.md 6.2, 3.5; docs/protocols/micron.md 6.3.
-TEST(FieldTables, hold_fields_of_the_documents) {
-  EXPECT_NE(gemini_field_tables().find("{ 22, 2, \"end_range\" }"), std::string::npos);
-  EXPECT_NE(gemini_field_tables().find("[48] = \"retry_request\""), std::string::npos);
-  EXPECT_NE(micron_field_tables().find("{ 40, 2, \"bearing\" }"), std::string::npos);
+// A name that is missing in the code that makes a table comes out as "unknown".
+TEST(FieldTables, name_every_message) {
+  for (const FieldTables& tables : device_field_tables()) {
+    const std::string lua = tables.lua();
+    EXPECT_EQ(lua.find("unknown"), std::string::npos) << tables.device;
+    for (const char* part : {"  commands = {\n    [", "  reports = {\n    [", "  messages = {\n    "}) {
+      EXPECT_NE(lua.find(part), std::string::npos) << tables.device << " has no" << part;
+    }
+  }
+}
+
+TEST(FieldTables, have_a_dissector_that_loads_them) {
+  for (const FieldTables& tables : device_field_tables()) {
+    const std::string device{tables.device};
+    EXPECT_NE(checked_in("sonard_" + device + ".lua").find("sonard_" + device + "_fields.lua"),
+              std::string::npos);
+  }
 }
 
 }  // namespace
