@@ -230,8 +230,14 @@ local function dissect(tvb, pinfo, root, is_stream)
   return tvb:len()
 end
 
--- TCP hands over ports, UDP as well: the type of the port tells which it was.
+-- TCP hands over ports, UDP as well: the type of the port tells which it was. The ports are those of any serial device:
+-- what begins as another one's frames is handed to its dissector, which keeps the rest of that conversation.
 function micron.dissector(tvb, pinfo, root)
+  for _, other in ipairs(tables.serial_devices) do
+    if other.begins_with_frame(tvb) then
+      return other.proto.dissector(tvb, pinfo, root)
+    end
+  end
   return dissect(tvb, pinfo, root, pinfo.port_type == 2)
 end
 

@@ -63,4 +63,9 @@ function tables.has_bit(value, bit)
   return math.floor(value / 2 ^ bit) % 2 == 1
 end
 
+-- The dissectors of devices on serial lines, which all come on the same ports: each with `begins_with_frame(tvb)` and
+-- `proto`. In one list for all dissectors, although each of them loads this file for itself.
+sonard_serial_devices = sonard_serial_devices or {}
+tables.serial_devices = sonard_serial_devices
+
 return tables
