@@ -9,6 +9,10 @@ target_compile_options(sonard_flags INTERFACE
   -ffp-contract=off
   # GCC before 14 reports false positives of these in optimised standard library code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow>)
+if(CMAKE_UNITY_BUILD)
+  # It takes a source that another one includes for a header.
+  target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(SONARD_SANITIZE)
   target_compile_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   # That check opens a pipe to see whether memory can be read, so it fails where no descriptor is left: a case the

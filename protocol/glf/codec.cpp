@@ -26,8 +26,8 @@ void write_ci_header(ByteWriter& writer, const Origin& origin, RecordType type, 
 }
 
 /// The header of a record of that type.
-CiHeader read_ci_header(ByteReader& reader, RecordType type) {
-  const CiHeader header = glf::read_ci_header(reader);
+CiHeader read_header_of(RecordType type, ByteReader& reader) {
+  const CiHeader header = read_ci_header(reader);
   if (header.type != static_cast<std::uint8_t>(type)) {
     reader.fail_at(14, WireErrorReason::bad_value, "data_type");
   }
@@ -145,7 +145,7 @@ std::vector<std::uint8_t> skipped_pixels(ByteReader& reader, const ImageHeader& 
 Result<ImageRecord, WireError> read_image(std::span<const std::uint8_t> record, PixelReader read_pixels) {
   ByteReader reader{record};
   ImageRecord image;
-  image.origin = read_ci_header(reader, RecordType::image).origin();
+  image.origin = read_header_of(RecordType::image, reader).origin();
   const ImageHeader header = read_image_header(reader);
   image.first_line = header.first_line;
   image.lines = static_cast<std::uint32_t>(header.lines());
@@ -175,7 +175,7 @@ Result<ImageRecord, WireError> decode_image_outline(std::span<const std::uint8_t
 Result<StatusRecord, WireError> decode_status(std::span<const std::uint8_t> record) {
   ByteReader reader{record};
   StatusRecord status;
-  status.origin = read_ci_header(reader, RecordType::status).origin();
+  status.origin = read_header_of(RecordType::status, reader).origin();
   read_fields<Layout<StatusRecord>>(reader, status);
   if (!reader.ok()) {
     return *reader.error();

@@ -247,6 +247,17 @@ class Tools(LintTest):
         self.assertEqual(len(complaints), 1)
         self.assertIn("modernize-use-nullptr", complaints[0])
 
+    def test_tidy_of_a_source_that_is_compiled_with_others(self):
+        unity = f"{self.root}/Unity/unity_0_cxx.cxx"
+        tree = self.write({"bad.cpp": "int* a = 0;\n", "good.cpp": "int* b = nullptr;\n",
+                          "Unity/unity_0_cxx.cxx": f'#include "{self.root}/good.cpp"\n\n#include "{self.root}/bad.cpp"\n',
+                          "build/release/compile_commands.json": f'''[
+            {{"directory": "{self.root}", "file": "{unity}", "command": "g++ -c {unity}"}}]'''})
+        (self.root / ".clang-tidy").write_text("Checks: '-*,modernize-use-nullptr'\n", encoding="utf-8")
+        complaints = list(tools.tidy_complaints(tree, ["bad.cpp", "good.cpp"]))
+        self.assertEqual(len(complaints), 1)
+        self.assertIn("modernize-use-nullptr", complaints[0])
+
 
 class Trees(LintTest):
     def test_what_changed_since_a_base_is_what_this_branch_did(self):

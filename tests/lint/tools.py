@@ -4,6 +4,7 @@
 import concurrent.futures
 import json
 import os
+import pathlib
 import re
 import subprocess
 import tempfile
@@ -42,13 +43,25 @@ def spelling_complaints(tree, ignored):
     yield from run(tree, ["codespell", "--ignore-words", ignored], texts, batch=1000)
 
 
+def singles(entry):
+    """The commands for each of the sources that one compilation includes, or the one command itself."""
+    if "/Unity/unity_" not in entry["file"]:
+        return [entry]
+    try:
+        text = pathlib.Path(entry["file"]).read_text(encoding="utf-8")
+    except OSError:
+        return []
+    return [entry | {"file": source, "command": entry["command"].replace(entry["file"], source)}
+            for source in re.findall(r'^#include "(.*)"', text, re.MULTILINE)]
+
+
 def compile_commands(tree):
     """The commands of the clang build, if there is one, or of the release build, without precompiled headers: those of
     one compiler are nothing to the other. Empty where nothing is built."""
     for preset in ("checked", "release", "dev"):
         path = tree.root / "build" / preset / "compile_commands.json"
         if path.is_file():
-            entries = json.loads(path.read_text(encoding="utf-8"))
+            entries = [single for entry in json.loads(path.read_text(encoding="utf-8")) for single in singles(entry)]
             for entry in entries:
                 entry["command"] = re.sub(r" -Winvalid-pch| (-Xclang )?-include(-pch)? (-Xclang )?\S*cmake_pch\S*", "",
                                           entry["command"])
