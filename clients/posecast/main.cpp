@@ -20,7 +20,7 @@ namespace {
 using namespace sonard;
 
 constexpr int exit_done = 0;
-constexpr int exit_network = 1;  // the receiver is not there, or went away
+constexpr int exit_network = 1;  // the receiver is unreachable, or went away
 constexpr int exit_usage = 2;    // command line or trajectory file
 
 struct Arguments {
@@ -42,7 +42,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.footer(
       "Exit status: 0 all sent, or ended by Ctrl-C or --seconds; 1 network; 2 command line or trajectory.");
   app.add_option("trajectory", arguments.file,
-                 "File of lines `t,x,y,z,qx,qy,qz,qw` behind such a header, or in TUM format")
+                 "CSV file with the header `t,x,y,z,qx,qy,qz,qw`, or a TUM file")
       ->required();
   app.add_option("--to", arguments.to, "Where sonard listens, HOST:PORT")->capture_default_str();
   app.add_flag("--tcp", arguments.tcp, "Connect by TCP instead of sending UDP datagrams");

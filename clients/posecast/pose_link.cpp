@@ -127,7 +127,7 @@ class TcpLink final : public ConnectedLink<tcp> {
  private:
   /// The receiver never says anything; a read ends when it closes.
   void watch_for_end() {
-    socket_.async_read_some(asio::buffer(heard_), [this](const error_code& error, std::size_t) {
+    socket_.async_read_some(asio::buffer(received_), [this](const error_code& error, std::size_t) {
       if (error) {
         fail("closed by the receiver");
         return;
@@ -139,7 +139,7 @@ class TcpLink final : public ConnectedLink<tcp> {
   bool writing_ = false;
   std::function<void()> done_;
   std::vector<std::uint8_t> frame_;
-  std::array<std::uint8_t, 64> heard_{};
+  std::array<std::uint8_t, 64> received_{};
 };
 
 }  // namespace

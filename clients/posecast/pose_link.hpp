@@ -24,7 +24,7 @@ struct LinkError : std::runtime_error {
 
 struct LinkCounters {
   std::uint64_t sent = 0;
-  std::uint64_t refused = 0;  ///< UDP: sent, but came back as nobody listened there; TCP: none
+  std::uint64_t refused = 0;  ///< UDP: sent, but refused as no one listened there; TCP: none
   std::uint64_t skipped = 0;  ///< TCP: the receiver had not taken the one before yet
 };
 

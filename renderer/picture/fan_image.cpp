@@ -16,12 +16,12 @@ cv::Mat raw_polar_image(const cv::Mat& polar) {
   return upwards;
 }
 
-FanImage::FanImage(const FanShape& shape, const FanLook& look)
-    : geometry_(shape, look.radius_px, look.grid ? grid_margin_px : 0),
-      look_(look),
-      mapped_lines_(std::min(shape.lines, look.radius_px)) {
+FanImage::FanImage(const FanShape& shape, const FanStyle& style)
+    : geometry_(shape, style.radius_px, style.grid ? grid_margin_px : 0),
+      style_(style),
+      mapped_lines_(std::min(shape.lines, style.radius_px)) {
   map_pixels();
-  if (look.grid) {
+  if (style.grid) {
     grid_ = polar_grid(geometry_, {-60, -30, 0, 30, 60});
   }
 }
@@ -62,7 +62,7 @@ cv::Mat FanImage::project(const cv::Mat& polar) const {
 
 cv::Mat FanImage::draw(const cv::Mat& polar, const std::string& caption) const {
   cv::Mat picture = amber::paint(project(polar), inside_);
-  if (look_.grid) {
+  if (style_.grid) {
     add_grid(picture, grid_, caption);
   }
   return picture;

@@ -9,7 +9,7 @@
 
 namespace sonard::picture {
 
-struct FanLook {
+struct FanStyle {
   int radius_px = 900;  ///< from the apex to the full range
   bool grid = true;     ///< range arcs with metres, bearing lines with degrees, caption
 };
@@ -17,7 +17,7 @@ struct FanLook {
 /// Draws pings of one shape; the way from pixel to sample is worked out once. Any thread, one at a time.
 class FanImage {
  public:
-  FanImage(const FanShape& shape, const FanLook& look);
+  FanImage(const FanShape& shape, const FanStyle& style);
 
   const FanGeometry& geometry() const { return geometry_; }
 
@@ -33,7 +33,7 @@ class FanImage {
   void map_pixels();
 
   FanGeometry geometry_;
-  FanLook look_;
+  FanStyle style_;
   int mapped_lines_;   ///< lines of the picture that the maps look into
   cv::Mat map_beams_;  ///< CV_32FC1: fractional column of each pixel
   cv::Mat map_lines_;  ///< CV_32FC1: fractional row

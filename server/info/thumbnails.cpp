@@ -9,12 +9,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "renderer/picture/fan_image.hpp"
-#include "server/info/recorded_turns.hpp"
+#include "server/info/recorded_sweeps.hpp"
 
 namespace sonard::server {
 namespace {
 
-constexpr picture::FanLook thumbnail_look{.radius_px = 300, .grid = true};
+constexpr picture::FanStyle thumbnail_style{.radius_px = 300, .grid = true};
 
 // Bearings of the recording are positive to port, those of pictures to starboard.
 picture::FanShape shape_of(const LoggedHead& head, const RecordedSettings& settings) {
@@ -60,7 +60,7 @@ std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, con
       throw file.error(fmt::format("ping {} of sonar {} has beams that make no fan", ping, head.device_id));
     }
     if (!fan || fan->geometry().shape() != shape) {
-      fan.emplace(shape, thumbnail_look);
+      fan.emplace(shape, thumbnail_style);
     }
     std::vector<std::uint8_t> pixels = recording.samples(image);
     const cv::Mat polar(image.settings.bins, image.settings.beams, CV_8UC1, pixels.data());
@@ -70,8 +70,8 @@ std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, con
   return written;
 }
 
-picture::TurnLine drawn_line(const Recording& recording, const LoggedPing& line) {
-  picture::TurnLine drawn{picture_bearing(line), recording.samples(line)};
+picture::SweepLine drawn_line(const Recording& recording, const LoggedPing& line) {
+  picture::SweepLine drawn{picture_bearing(line), recording.samples(line)};
   if (line.bits_per_bin == 4) {
     constexpr int to_full_scale = 17;
     std::ranges::transform(drawn.samples, drawn.samples.begin(), [](std::uint8_t bin) {
@@ -81,17 +81,17 @@ picture::TurnLine drawn_line(const Recording& recording, const LoggedPing& line)
   return drawn;
 }
 
-std::uint64_t write_turns(const Recording& recording, const LoggedHead& scan,
-                          const std::filesystem::path& folder, std::uint64_t every) {
-  const std::vector<RecordedTurn> turns = turns_of(scan);
+std::uint64_t write_sweeps(const Recording& recording, const LoggedHead& scan,
+                           const std::filesystem::path& folder, std::uint64_t every) {
+  const std::vector<RecordedSweep> sweeps = sweeps_of(scan);
   std::uint64_t written = 0;
-  for (std::uint64_t number = 0; number < turns.size(); number += every, ++written) {
-    const RecordedTurn& turn = turns[number];
-    std::vector<picture::TurnLine> lines;
-    for (std::size_t place = turn.begin; place < turn.end; ++place) {
+  for (std::uint64_t number = 0; number < sweeps.size(); number += every, ++written) {
+    const RecordedSweep& sweep = sweeps[number];
+    std::vector<picture::SweepLine> lines;
+    for (std::size_t place = sweep.begin; place < sweep.end; ++place) {
       lines.push_back(drawn_line(recording, scan.pings[place]));
     }
-    const picture::TurnImage image(turn.shape, thumbnail_look);
+    const picture::SweepImage image(sweep.shape, thumbnail_style);
     write_picture(
         folder / file_name(scan, number),
         image.draw(lines, fmt::format("{} turn {}, {} lines", scan.device_id, number, lines.size())));
@@ -110,7 +110,7 @@ std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
   }
   std::uint64_t written = 0;
   for (const LoggedHead& head : recording.heads()) {
-    written += head.scanning ? write_turns(recording, head, folder, every)
+    written += head.scanning ? write_sweeps(recording, head, folder, every)
                              : write_fans(recording, head, file, folder, every);
   }
   return written;

@@ -10,7 +10,7 @@
 namespace sonard::server {
 
 /// Writes each `every`-th ping of each multibeam head as a fan seen from above, and each `every`-th turn of
-/// each scanning head (recorded_turns.hpp): FOLDER/<name or id>_000012.png, 0 being the head's first. Makes
+/// each scanning head (recorded_sweeps.hpp): FOLDER/<name or id>_000012.png, 0 being the head's first. Makes
 /// the folder; overwrites.
 /// @return how many. @throws LogError naming the file that cannot be written or the head that cannot be drawn
 std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,

@@ -15,24 +15,24 @@ OfflineArguments::OfflineArguments(CLI::App& app) {
 }
 
 void OfflineArguments::declare_run(CLI::App& app) {
-  app.add_option("--trajectory", options_.trajectory, "Way of the vehicle, CSV or TUM (docs/poses.md)")
+  app.add_option("--trajectory", options_.trajectory, "Trajectory of the vehicle, CSV or TUM (docs/poses.md)")
       ->required();
-  app.add_option("--out", options_.out, "Folder for all files; frames that are there are not made again")
+  app.add_option("--out", options_.out, "Folder for all files; existing frames are not rendered again")
       ->required();
   app.add_option("--axes", axes_, "Axes of world and vehicle in the trajectory")
       ->check(CLI::IsMember({"enu_flu", "ned_frd"}))
       ->capture_default_str();
-  app.add_option("--head", options_.head, "Name of a head in CONFIG; without it the first");
+  app.add_option("--head", options_.head, "Name of a head in CONFIG; default: the first");
   app.add_option("--rate", options_.rate_hz,
-                 "Pings a second (lines, of a scanning head); without it as many as the head can")
+                 "Pings per second (lines of a scanning head); default: as many as the head can")
       ->check(CLI::Range(1e-6, 1e6));
   app.add_option("--shard", shard_,
-                 "I/N: one of N processes, that render into one folder together what one would alone; I "
-                 "counts from 0 or from 1");
+                 "I/N: render share I of N, for N processes that fill one folder together; I counts from 0 or "
+                 "from 1");
   app.add_flag("--overwrite", options_.overwrite,
-               "Make frames that are there again, whatever they were made with");
+               "Render existing frames again, whatever their settings");
   app.add_flag("--truth", options_.truth,
-               "Also which body is heard in each bin; takes an echo for each body near");
+               "Also write which body echoes most in each bin; renders an echo for each body near");
   app.add_option("--size", options_.radius_px, "Pixels of pictures from the apex to the full range")
       ->check(CLI::Range(64, 8192))
       ->capture_default_str();
@@ -43,9 +43,9 @@ void OfflineArguments::declare_sonar(CLI::App& app) {
     return app.add_option(name, value, what)->group("Sonar");
   };
   SurveyOptions& survey = options_.survey;
-  add("--range", survey.range_m, "Metres; without it what is usual for the head");
+  add("--range", survey.range_m, "Metres; default: usual for the head");
   add("--gain", survey.gain_percent, "Percent [50]")->check(CLI::Range(0.0, 100.0));
-  add("--sound-speed", survey.sound_speed_mps, "Metres per second, in which ranges are counted [1500]");
+  add("--sound-speed", survey.sound_speed_mps, "Metres per second, for converting times to ranges [1500]");
   add("--compression", survey.compression_log2,
       "Multibeam: 0..4: average 1, 2, 4, 8 or 16 range lines into one [0]")
       ->check(CLI::Range(0, 4));
@@ -53,7 +53,7 @@ void OfflineArguments::declare_sonar(CLI::App& app) {
   add("--bins", survey.bins, "Scanning: bins of a line")->check(CLI::Range(1, 65'535));
   add("--step", survey.step_deg, "Scanning: degrees from line to line [1.8]");
   add("--sector", survey.sector_deg,
-      "Scanning: FROM TO, degrees, clockwise; to and fro between them. Else all round")
+      "Scanning: FROM TO, degrees, clockwise; back and forth between them. Default: all round")
       ->expected(2)
       ->check(CLI::Range(-360.0, 360.0));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which body of the world is heard in each bin of a ping.
+// Finds which body of the world echoes most in each bin of a ping.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 namespace sonard::server {
 
 /// Renders the mean echo of each body that is near enough, with all others there but silent, and compares.
-/// What counts is what lies in a bin: beams hear nothing beside them and pulses have no length, there are no
-/// mirror images, and the sonar is at rest while it listens. Always by the CPU. One thread uses it.
+/// What counts is what lies in a bin: beams receive nothing from beside them and pulses have no length, there
+/// are no mirror images, and the sonar is at rest while it listens. Always by the CPU. One thread uses it.
 ///
 /// It takes a renderer for each body that was ever near, and the time of one echo for each that is.
 class BodyTruth {

@@ -30,7 +30,7 @@ struct Frame {
 };
 
 /// Frames depend on nothing but what a source was made of, and on the frames before, which the renderer must
-/// have rendered or passed in order: speckle goes on from ping to ping. One thread uses it.
+/// have rendered or passed in order: speckle evolves from ping to ping. One thread uses it.
 class FrameSource {
  public:
   FrameSource() = default;
@@ -39,7 +39,7 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
 
   virtual int count() const = 0;
-  /// Of its files, without what tells them apart: "ping_000012".
+  /// Stem of a frame's files: "ping_000012".
   virtual std::string name(int frame) const = 0;
   /// @throws render::RequestError, render::RendererError
   virtual Frame render(render::SonarRenderer& renderer, int frame) = 0;

@@ -13,7 +13,7 @@
 
 namespace sonard::server {
 
-/// Records are collected in a .dat that nobody sees, which close() packs. The same records make the same
+/// Records are collected in a hidden .dat, which close() packs. The same records make the same
 /// bytes: all times in the file are those of its records. Where a .dat grows too large for readers another
 /// log begins. Logs get their names at the end, the first one last: where it is, all are.
 class GlfFile {

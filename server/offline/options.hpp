@@ -31,7 +31,7 @@ struct OfflineOptions {
   std::optional<double> rate_hz;  ///< pings a second, > 0; nullopt: as fast as the head can
   Shard shard;
   bool overwrite = false;
-  bool truth = false;    ///< also which body is heard in each bin
+  bool truth = false;    ///< also which body echoes most in each bin
   int radius_px = 900;   ///< of pictures
   SurveyOptions survey;  ///< what the sonar is asked for
 };

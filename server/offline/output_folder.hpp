@@ -56,7 +56,7 @@ class OutputFolder {
   void remove(const std::string& name) const;
 
   /// Makes the folder that of a run, which `manifest` describes to the last byte; it becomes the file
-  /// run.json. Where that is there already it must say the same, or with `overwrite` all frames and logs go.
+  /// run.json. An existing one must be equal, or with `overwrite` all frames and logs are removed.
   /// @throws OutputError where it says something else
   void claim(const std::string& manifest, bool overwrite) const;
 
@@ -71,7 +71,7 @@ class OutputFolder {
    private:
     int folder_ = -1;
   };
-  /// Of processes that were ended in the middle of a file. Only while no other can be writing one.
+  /// Removes the parts of files left by processes that were killed. Only while no other process writes.
   void remove_parts() const;
 
  private:

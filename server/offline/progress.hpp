@@ -20,12 +20,12 @@ struct ProgressState {
 /// them from.
 std::string progress_text(const ProgressState& state);
 
-/// Shows it on standard error: on a terminal as a bar that is drawn anew, elsewhere as a line now and then.
+/// Shows it on standard error: on a terminal as a bar, elsewhere as a line now and then.
 class Progress {
  public:
   Progress(int frames, int found);
 
-  /// One more frame is there.
+  /// One more frame is done.
   void made(std::chrono::nanoseconds now);
   /// Ends the bar, so that a line can follow.
   void end();

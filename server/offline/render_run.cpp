@@ -137,7 +137,7 @@ std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, s
 
 /// Without the vehicle where the head hides it: its body then has no parts.
 /// @throws StartError
-render::World world_heard_by(DaemonConfig& config, std::size_t head) {
+render::World world_without_hidden(DaemonConfig& config, std::size_t head) {
   render::World world = load_world_of(config);
   for (render::Body& body : world.bodies) {
     if (config.heads[head].hides_vehicle && body.name == config.vehicle_model) {
@@ -151,7 +151,7 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
     : config_(loaded.config),
       options_(options),
       head_(chosen_head(loaded, options.head)),
-      world_(world_heard_by(config_, head_)),
+      world_(world_without_hidden(config_, head_)),
       trajectory_(pose::load_trajectory(options.trajectory, options.axes),
                   config_.heads[head_].hides_vehicle ? std::string() : config_.vehicle_model),
       renderer_(world_, tested(renderer_options(config_))),

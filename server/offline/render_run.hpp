@@ -7,7 +7,7 @@
 
 namespace sonard::server {
 
-/// Renders the frames of this process that are not there yet. Whoever finds all frames of all processes there
+/// Renders the missing frames of this process. The process that finds all frames of all processes there
 /// at its end makes the .glf of them. docs/offline.md describes the files.
 /// @return exit_clean
 /// @throws StartError, OutputError, pose::TrajectoryError, render::RequestError, render::RendererError

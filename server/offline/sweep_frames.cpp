@@ -16,9 +16,9 @@
 namespace sonard::server {
 namespace {
 
-picture::TurnShape shape_of(const Survey& survey, int bins) {
+picture::SweepShape shape_of(const Survey& survey, int bins) {
   const Survey::Sector sector = survey.sector();
-  picture::TurnShape shape;
+  picture::SweepShape shape;
   shape.width = picture::turn_units(sector.width_rad);
   shape.left = shape.width == picture::units_per_turn ? 0 : picture::turn_bearing(sector.left_rad);
   shape.step = picture::turn_units(sector.step_rad);
@@ -80,18 +80,18 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   };
   NpyTable samples{bins_, columns, std::vector<std::uint8_t>(at(bins, 0)), {}};
   std::vector<std::uint16_t> bodies(truth_ != nullptr ? samples.u8.size() : 0);
-  auto lines = std::make_shared<std::vector<picture::TurnLine>>();
+  auto lines = std::make_shared<std::vector<picture::SweepLine>>();
   for (int column = 0; column < columns; ++column) {
     const render::PingRequest ping = request(first + column);
     place_vehicle(trajectory_, times_.at(first + column), renderer, truth_);
-    picture::TurnLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
-                           renderer.render_ping(ping, stream_).u8};
-    const std::vector<std::uint16_t> heard =
+    picture::SweepLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
+                            renderer.render_ping(ping, stream_).u8};
+    const std::vector<std::uint16_t> nearby =
         truth_ != nullptr ? truth_->bodies_in(ping) : std::vector<std::uint16_t>{};
     for (std::size_t bin = 0; bin < bins; ++bin) {
       samples.u8[at(bin, column)] = line.samples[bin];
       if (truth_ != nullptr) {
-        bodies[at(bin, column)] = heard[bin];
+        bodies[at(bin, column)] = nearby[bin];
       }
     }
     lines->push_back(std::move(line));

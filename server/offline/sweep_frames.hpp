@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/picture/turn_image.hpp"
+#include "renderer/picture/sweep_image.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/survey.hpp"
 #include "server/offline/body_truth.hpp"
@@ -48,7 +48,7 @@ class SweepFrames final : public FrameSource {
   std::vector<int> first_lines_;  ///< of every frame, and the end of the last
   int bins_;
   BodyTruth* truth_;
-  picture::TurnImage picture_;
+  picture::SweepImage picture_;
 };
 
 }  // namespace sonard::server

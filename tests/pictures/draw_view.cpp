@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/picture/fan_image.hpp"
-#include "renderer/picture/turn_image.hpp"
+#include "renderer/picture/sweep_image.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 
 namespace sonard::pictures {
@@ -24,27 +24,27 @@ picture::FanShape shape_of(const View& view) {
   return shape;
 }
 
-cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const picture::FanLook& look,
+cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const picture::FanStyle& style,
                  const std::string& caption) {
   render::PingSamples samples =
       renderer.render_ping({view.T_world_sonar, view.settings, 0, 1, view.T_world_sonar_at_end});
   const cv::Mat polar(samples.lines, samples.beams, CV_8UC1, samples.u8.data());
-  return picture::FanImage(shape_of(view), look).draw(polar, caption);
+  return picture::FanImage(shape_of(view), style).draw(polar, caption);
 }
 
-cv::Mat draw_turn(render::SonarRenderer& renderer, const View& view, const picture::FanLook& look,
-                  const std::string& caption) {
-  picture::TurnShape shape;
+cv::Mat draw_sweep(render::SonarRenderer& renderer, const View& view, const picture::FanStyle& style,
+                   const std::string& caption) {
+  picture::SweepShape shape;
   shape.step = view.scan_step;
   shape.bins = view.settings.range.output_count();
   shape.bin_m = view.settings.range.step_m * (1 << view.settings.range.compression_log2);
-  std::vector<picture::TurnLine> lines;
+  std::vector<picture::SweepLine> lines;
   std::uint64_t ping_number = 0;
   for (const ScanLine& line : view.scan) {
     render::PingSamples samples = renderer.render_ping({line.T_world_sonar, view.settings, ping_number++, 1});
     lines.push_back({line.bearing, std::move(samples.u8)});
   }
-  return picture::TurnImage(shape, look).draw(lines, caption);
+  return picture::SweepImage(shape, style).draw(lines, caption);
 }
 
 }  // namespace
@@ -54,9 +54,9 @@ cv::Mat draw_view(const View& view, render::Backend backend, int radius_px, cons
   options.backend = backend;
   options.ray_curvature_per_m = view.ray_curvature_per_m;
   render::SonarRenderer renderer(view.world, options);
-  const picture::FanLook look{radius_px, true};
-  return view.scan.empty() ? draw_fan(renderer, view, look, caption)
-                           : draw_turn(renderer, view, look, caption);
+  const picture::FanStyle style{radius_px, true};
+  return view.scan.empty() ? draw_fan(renderer, view, style, caption)
+                           : draw_sweep(renderer, view, style, caption);
 }
 
 }  // namespace sonard::pictures

@@ -8,8 +8,8 @@
 namespace sonard::pictures {
 
 /// Writes a picture (CV_8UC3, BGR) as a PNG with a palette of at most 256 colours: those of amber::palette()
-/// in steps of 6, and those between background, grid and label. Grain compresses to a third of what it takes
-/// in full colour.
+/// in steps of 6, and those between background, grid and label. Speckle compresses to a third of what it
+/// takes in full colour.
 /// @throws std::runtime_error naming the file
 void write_png(const std::filesystem::path& file, const cv::Mat& picture);
 

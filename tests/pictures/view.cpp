@@ -20,7 +20,7 @@
 namespace sonard::pictures {
 namespace {
 
-constexpr double line_rate_hz = 90'422;  // of a Gemini's native lines
+constexpr double line_rate_hz = 90'422;  // of a Gemini's range bins
 constexpr int micron_bins = 500;
 constexpr int micron_step = 32;  // 1.8 degrees
 

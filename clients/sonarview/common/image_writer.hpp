@@ -46,7 +46,7 @@ class ImageWriter {
 
   std::filesystem::path folder_;
   std::uint64_t written_ = 0;  ///< writer's thread, read after finish()
-  std::string error_;          ///< as above
+  std::string error_;          ///< see error()
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -33,8 +33,8 @@ class SerialLine {
   struct Events {
     std::function<void()> opened;
     std::function<void(std::span<const std::uint8_t> bytes)> received;
-    /// It could not be opened, or the other end is gone; it is closed now. A datagram that nobody took is no
-    /// reason: that UDP tells of it is chance.
+    /// It could not be opened, or the other end is gone; it is closed now. A datagram that no one received is
+    /// no reason: that UDP tells of it is chance.
     std::function<void(const std::string& why)> lost;
   };
 

@@ -13,7 +13,7 @@
 
 #include "clients/sonarview/compare/glf_image.hpp"
 #include "clients/sonarview/compare/npy_file.hpp"
-#include "clients/sonarview/compare/turn_file.hpp"
+#include "clients/sonarview/compare/sweep_file.hpp"
 #include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {
@@ -111,7 +111,7 @@ cv::Mat load_frame(const std::string& word) {
     return scaled(read_ping(file_of_ping(source.file, number_of(source, "PING"))));
   }
   if (source.file.extension() == ".jsonl") {
-    return scaled(read_turn(source.file, number_of(source, "TURN")));
+    return scaled(read_sweep(source.file, number_of(source, "TURN")));
   }
   if (is_log(source.file)) {
     return scaled(picture::raw_polar_image(read_glf_image(source.file, number_of(source, "IMAGE"))));

@@ -12,7 +12,7 @@ class App;
 namespace sonard::client {
 
 struct CompareOptions {
-  std::string a;  ///< as load_frame() takes it
+  std::string a;  ///< a source for load_frame()
   std::string b;
   std::filesystem::path json;  ///< file for the result; empty: none
 };

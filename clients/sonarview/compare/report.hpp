@@ -14,8 +14,8 @@ namespace sonard::client {
 /// there is none.
 std::string table_of(const Similarity& similarity);
 
-/// The same as an object: {"a": ..., "b": ..., "width": ..., "height": ..., "measures": [{"name": "mse",
-/// "value":
+/// The measures as a JSON object: {"a": ..., "b": ..., "width": ..., "height": ..., "measures": [{"name":
+/// "mse", "value":
 /// ..., "unit": ..., "score": ..., "identical": ...}, ...]}, null where there is none.
 std::string json_of(const Similarity& similarity, const CompareOptions& options, int width, int height);
 

@@ -23,10 +23,11 @@ double psnr_db(const cv::Mat& a, const cv::Mat& b);
 /// images. nullopt when the images are smaller than a window.
 std::optional<double> structural_similarity(const cv::Mat& a, const cv::Mat& b);
 
-/// The same over five scales, each half as wide and high as the one before (means of 2 x 2 pixels), Wang et
-/// al. 2003 (Asilomar Conf. 2:1398): product of the means of contrast and structure at all scales, and of
-/// luminance at the last, to the powers 0.0448, 0.2856, 0.3001, 0.2363, 0.1333; a mean below 0 counts as 0.
-/// In [0, 1]. nullopt when the smallest image is smaller than a window: less than 176 pixels wide or high.
+/// Structural similarity over five scales, each half as wide and high as the one before (means of 2 x 2
+/// pixels), Wang et al. 2003 (Asilomar Conf. 2:1398): product of the means of contrast and structure at all
+/// scales, and of luminance at the last, to the powers 0.0448, 0.2856, 0.3001, 0.2363, 0.1333; a mean below 0
+/// counts as 0. In [0, 1]. nullopt when the smallest image is smaller than a window: less than 176 pixels
+/// wide or high.
 std::optional<double> multi_scale_similarity(const cv::Mat& a, const cv::Mat& b);
 
 /// Distance of two sets of SIFT descriptors (Lowe 2004, as OpenCV finds them): the mean over the keypoints of

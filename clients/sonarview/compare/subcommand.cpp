@@ -9,12 +9,12 @@
 namespace sonard::client {
 namespace {
 
-constexpr const char* summary = "Says how alike two images are: MSE, PSNR, SSIM, MS-SSIM, SIFT.";
+constexpr const char* summary = "Compares two images by MSE, PSNR, SSIM, MS-SSIM and SIFT.";
 
 constexpr const char* footer = R"(Examples:
   sonarview compare out/polar-last.png before/polar-last.png
   sonarview compare dump/bow.csv#12 dump/bow.csv#13 --json difference.json
-  sonarview compare turn.jsonl#0 turn.jsonl#1
+  sonarview compare sweep.jsonl#0 sweep.jsonl#1
 
 Exit status: 0 compared; 1 a file could not be read or written, or the sizes differ; 2 command line.)";
 

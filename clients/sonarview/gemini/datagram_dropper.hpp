@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loses datagrams on purpose, to see how head and surface take it.
+// Loses datagrams on purpose, to see how head and topside take it.
 #pragma once
 
 #include <cstdint>

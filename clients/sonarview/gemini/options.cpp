@@ -36,23 +36,24 @@ Ipv4 address_of(const std::string& option, const std::string& text) {
 }  // namespace
 
 void GeminiArguments::declare_link(CLI::App& app) {
-  app.add_option("--surface-address", surface_address_, "Local address that commands leave from, port 52901")
+  app.add_option("--surface-address", topside_address_, "Local address that commands leave from, port 52901")
       ->capture_default_str()
       ->group("Link");
   app.add_option("--bind", bind_address_, "Local address on which reports arrive, port 52900")
       ->capture_default_str()
       ->group("Link");
   app.add_option("--head", head_address_,
-                 "Address of the head, port 52901; without it, the alternate address that its status names")
+                 "Address of the head, port 52901; default: the alternate address in its status")
       ->group("Link");
-  app.add_option("--sonar-id", options_.surface.sonar_id, "The head to talk to; 0: the first that is heard")
+  app.add_option("--sonar-id", options_.topside.sonar_id,
+                 "The head to talk to; 0: the first that sends a status")
       ->capture_default_str()
       ->group("Link");
   app.add_option("--wait", status_wait_s_, "Seconds to wait for the first status")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str()
       ->group("Link");
-  app.add_option("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: for ever")
+  app.add_option("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: no limit")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->group("Link");
@@ -68,7 +69,7 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str()
       ->group("Sonar");
-  app.add_option("--sound-speed", settings.sound_speed_mps, "Metres per second, in which ranges are counted")
+  app.add_option("--sound-speed", settings.sound_speed_mps, "Metres per second, for converting times to ranges")
       ->check(CLI::Range(1400.0, 1588.0))
       ->capture_default_str()
       ->group("Sonar");
@@ -78,7 +79,7 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->capture_default_str()
       ->group("Sonar");
   app.add_option("--rle", settings.rle_threshold,
-                 "Samples below this become zero and travel run-length coded; 0: off")
+                 "Samples below this become zero and are run-length coded; 0: off")
       ->check(CLI::Range(0, 255))
       ->capture_default_str()
       ->group("Sonar");
@@ -88,16 +89,16 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->group("Sonar");
   app.add_option(
          "--continuous", interval_ms_,
-         "Let the head ping by itself at this interval in milliseconds; without it each ping is asked for")
+         "Let the head ping by itself at this interval in milliseconds; default: request each ping")
       ->check(CLI::Range(1.0, 1e6))
       ->group("Sonar");
 }
 
 void GeminiArguments::declare_run(CLI::App& app) {
-  app.add_option("--pings", options_.pings, "End after this many pings; 0: go on")
+  app.add_option("--pings", options_.pings, "End after this many pings; 0: no limit")
       ->capture_default_str()
       ->group("Run");
-  app.add_option("--seconds", seconds_, "End this many seconds after the first status; 0: go on")
+  app.add_option("--seconds", seconds_, "End this many seconds after the first status; 0: no limit")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str()
       ->group("Run");
@@ -132,15 +133,15 @@ GeminiArguments::GeminiArguments(CLI::App& app) {
 
 GeminiOptions GeminiArguments::options() const {
   GeminiOptions options = options_;
-  options.surface_address = address_of("--surface-address", surface_address_);
+  options.topside_address = address_of("--surface-address", topside_address_);
   options.bind_address = address_of("--bind", bind_address_);
-  if (options.surface_address == 0) {
+  if (options.topside_address == 0) {
     throw CLI::ValidationError("--surface-address", "must name one address of this machine");
   }
   if (!head_address_.empty()) {
-    options.surface.head_address = address_of("--head", head_address_);
+    options.topside.head_address = address_of("--head", head_address_);
   }
-  if (options.surface.sonar_id == 1) {
+  if (options.topside.sonar_id == 1) {
     throw CLI::ValidationError("--sonar-id", "1 is reserved for production");
   }
   options.settings.sixteen_bit = bits_ == 16;

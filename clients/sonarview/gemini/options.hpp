@@ -9,7 +9,7 @@
 
 #include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "protocol/gemini/surface.hpp"
+#include "protocol/gemini/topside.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -18,9 +18,9 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  Ipv4 surface_address = 0x7F000001;  ///< commands leave from here
+  Ipv4 topside_address = 0x7F000001;  ///< commands leave from here
   Ipv4 bind_address = 0;              ///< reports arrive here; 0: on all addresses
-  gemini::SurfaceConfig surface;
+  gemini::TopsideConfig topside;
   gemini::PingSettings settings;
 
   std::uint64_t pings = 0;                 ///< 0: without limit
@@ -56,7 +56,7 @@ class GeminiArguments {
 
   GeminiOptions options_;
   // As they are typed, before they have their units.
-  std::string surface_address_ = "127.0.0.1";
+  std::string topside_address_ = "127.0.0.1";
   std::string bind_address_ = "0.0.0.0";
   std::string head_address_;
   int bits_ = 8;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "protocol/common/ping_job.hpp"
-#include "protocol/gemini/surface.hpp"
+#include "protocol/gemini/topside.hpp"
 
 namespace sonard::client {
 
@@ -32,7 +32,7 @@ class PingRate {
   TimePoint last_{};
 };
 
-/// Counters of the program beside those of the surface.
+/// Counters of the program beside those of the topside.
 struct ProgramCounters {
   double rate_hz = 0.0;
   std::uint64_t dropped_rx = 0;    ///< lost on purpose

@@ -31,13 +31,13 @@ std::string caption_of(const gemini::ReceivedPing& ping, double range_m) {
 /// Lives on the writer's thread.
 class PingPictures::Painter {
  public:
-  Painter(const picture::FanLook& look, double sound_speed_mps)
-      : look_(look), sound_speed_mps_(sound_speed_mps) {}
+  Painter(const picture::FanStyle& style, double sound_speed_mps)
+      : style_(style), sound_speed_mps_(sound_speed_mps) {}
 
   cv::Mat fan(const gemini::ReceivedPing& ping);
 
  private:
-  picture::FanLook look_;
+  picture::FanStyle style_;
   double sound_speed_mps_;
   std::optional<picture::FanImage> fan_;  ///< for the shape of the last ping
 };
@@ -48,7 +48,7 @@ cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {
   shape.lines = ping.lines;
   shape.line_step_m = sound_speed_mps_ / (2.0 * gemini::line_rate_hz) * (1 << ping.head.compression_log2());
   if (!fan_ || fan_->geometry().shape() != shape) {
-    fan_.emplace(shape, look_);
+    fan_.emplace(shape, style_);
   }
   const cv::Mat polar = polar_of(ping);
   cv::Mat eight_bit = polar;
@@ -58,8 +58,8 @@ cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {
   return fan_->draw(eight_bit, caption_of(ping, shape.range_m()));
 }
 
-PingPictures::PingPictures(const picture::FanLook& look, double sound_speed_mps)
-    : painter_(std::make_shared<Painter>(look, sound_speed_mps)) {}
+PingPictures::PingPictures(const picture::FanStyle& style, double sound_speed_mps)
+    : painter_(std::make_shared<Painter>(style, sound_speed_mps)) {}
 
 std::vector<Picture> PingPictures::of(gemini::ReceivedPing ping, const std::string& name) const {
   const auto shared = std::make_shared<const gemini::ReceivedPing>(std::move(ping));

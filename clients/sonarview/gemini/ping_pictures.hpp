@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clients/sonarview/common/image_writer.hpp"
-#include "protocol/gemini/surface.hpp"
+#include "protocol/gemini/topside.hpp"
 #include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {
@@ -17,7 +17,7 @@ namespace sonard::client {
 class PingPictures {
  public:
   /// `sound_speed_mps`: in which the user counts ranges.
-  PingPictures(const picture::FanLook& look, double sound_speed_mps);
+  PingPictures(const picture::FanStyle& style, double sound_speed_mps);
 
   /// The files fan-<name>.png and polar-<name>.png.
   std::vector<Picture> of(gemini::ReceivedPing ping, const std::string& name) const;

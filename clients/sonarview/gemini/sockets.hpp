@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two sockets of a surface, opened as the libraries of a vehicle open them
+// The two sockets of a topside, opened as the libraries of a vehicle open them
 // (docs/protocols/gemini.md 1.1).
 #pragma once
 

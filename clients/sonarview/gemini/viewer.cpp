@@ -64,7 +64,7 @@ class Viewer {
   TimePoint timer_due_ = TimePoint::max();
   boost::asio::signal_set signals_{io_, SIGINT, SIGTERM};
 
-  gemini::Surface surface_;
+  gemini::Topside topside_;
   DatagramDropper drop_rx_;
   DatagramDropper drop_tx_;
   std::uint64_t kernel_drops_ = 0;
@@ -86,8 +86,8 @@ class Viewer {
 Viewer::Viewer(const GeminiOptions& options)
     : options_(options),
       reports_(open_report_socket(io_, options.bind_address)),
-      commands_(open_command_socket(io_, options.surface_address)),
-      surface_(options.surface),
+      commands_(open_command_socket(io_, options.topside_address)),
+      topside_(options.topside),
       drop_rx_(options.drop_rx, options.seed, 0),
       drop_tx_(options.drop_tx, options.seed, 1),
       pictures_({.radius_px = options.radius_px}, options.settings.sound_speed_mps) {
@@ -102,7 +102,7 @@ ExitStatus Viewer::run() {
       end();
     }
   });
-  surface_.start(now(), make_ping_config(options_.settings), options_.pings);
+  topside_.start(now(), make_ping_config(options_.settings), options_.pings);
   wait_for_reports();
   arm_timer();
   io_.run();
@@ -126,7 +126,7 @@ void Viewer::on_reports() {
       break;
     }
     if (!drop_rx_.drop()) {
-      surface_.on_datagram(now(), std::span(buffer).first(*size));
+      topside_.on_datagram(now(), std::span(buffer).first(*size));
     }
   }
   advance();
@@ -137,12 +137,12 @@ void Viewer::advance() {
     return;
   }
   const TimePoint at = now();
-  surface_.advance(at);
+  topside_.advance(at);
   send_commands();
-  for (auto& ping : surface_.take_pings()) {
+  for (auto& ping : topside_.take_pings()) {
     take_ping(std::move(ping));
   }
-  if (surface_.head() && !head_met_) {
+  if (topside_.head() && !head_met_) {
     head_met_ = last_ping_at_ = at;
     progress_due_ = at + progress_period;
     greet_head();
@@ -157,7 +157,7 @@ void Viewer::advance() {
 }
 
 void Viewer::send_commands() {
-  for (const auto& datagram : surface_.take_outgoing()) {
+  for (const auto& datagram : topside_.take_outgoing()) {
     if (drop_tx_.drop()) {
       continue;
     }
@@ -190,27 +190,27 @@ void Viewer::take_ping(gemini::ReceivedPing ping) {
 }
 
 void Viewer::greet_head() {
-  const auto& head = *surface_.head();
+  const auto& head = *topside_.head();
   const gemini::Status& status = head.status;
   if (!options_.quiet) {
     fmt::print(stderr, "sonarview: head {} at {}, netmask {}, firmware {:#06x}\n", status.sonar_id,
                address_text(head.address), address_text(status.subnet_mask), status.firmware_version);
   }
-  const auto own_mask = interface_netmask(options_.surface_address);
-  const bool same_network = ((head.address ^ options_.surface_address) & status.subnet_mask) == 0;
+  const auto own_mask = interface_netmask(options_.topside_address);
+  const bool same_network = ((head.address ^ options_.topside_address) & status.subnet_mask) == 0;
   if (!same_network || (own_mask && *own_mask != status.subnet_mask)) {
     fmt::print(stderr,
                "sonarview: warning: {} with netmask {} and {} with netmask {} are not on one network; the "
                "vendor's later "
                "libraries would send nothing\n",
                address_text(head.address), address_text(status.subnet_mask),
-               address_text(options_.surface_address), own_mask ? address_text(*own_mask) : "unknown");
+               address_text(options_.topside_address), own_mask ? address_text(*own_mask) : "unknown");
   }
 }
 
 void Viewer::show_progress(TimePoint at) {
   progress_due_ = at + progress_period;
-  const auto& statistics = surface_.statistics();
+  const auto& statistics = topside_.statistics();
   const std::uint64_t pings = statistics.pings_complete + statistics.pings_incomplete;
   if (!options_.quiet) {
     fmt::print(stderr, "sonarview: {} pings, {} in the last second; {} lines repaired, {} missing\n", pings,
@@ -221,15 +221,15 @@ void Viewer::show_progress(TimePoint at) {
 
 void Viewer::check_limits(TimePoint at) {
   const bool out_of_time = head_met_ && options_.duration.count() > 0 && at - *head_met_ >= options_.duration;
-  if (surface_.finished() || out_of_time) {
+  if (topside_.finished() || out_of_time) {
     end();
   } else if (!head_met_ && at - started_ >= options_.status_wait) {
     fmt::print(stderr,
                "sonarview: no status{} on port {} within {:.1f} s: is sonard running, does it send its "
                "status to this "
                "address or broadcast it on this network, and does a firewall let UDP in?\n",
-               options_.surface.sonar_id != 0 ? fmt::format(" of head {}", options_.surface.sonar_id) : "",
-               gemini::surface_port, std::chrono::duration<double>(options_.status_wait).count());
+               options_.topside.sonar_id != 0 ? fmt::format(" of head {}", options_.topside.sonar_id) : "",
+               gemini::topside_port, std::chrono::duration<double>(options_.status_wait).count());
     failure_ = ExitStatus::no_head;
     end();
   } else if (head_met_ && options_.ping_wait.count() > 0 && at - last_ping_at_ >= options_.ping_wait) {
@@ -238,8 +238,8 @@ void Viewer::check_limits(TimePoint at) {
                "and does it "
                "have a pose?\n",
                std::chrono::duration<double>(options_.ping_wait).count(),
-               address_text(surface_.head()->address), gemini::head_port,
-               address_text(options_.surface_address));
+               address_text(topside_.head()->address), gemini::head_port,
+               address_text(options_.topside_address));
     failure_ = ExitStatus::incomplete;
     end();
   }
@@ -249,13 +249,13 @@ void Viewer::end() {
   if (std::exchange(ended_, true)) {
     return;
   }
-  surface_.stop();
+  topside_.stop();
   send_commands();
   io_.stop();
 }
 
 TimePoint Viewer::next_wake(TimePoint at) const {
-  TimePoint wake = surface_.next_deadline().value_or(TimePoint::max());
+  TimePoint wake = topside_.next_deadline().value_or(TimePoint::max());
   if (!head_met_) {
     return std::min(wake, started_ + options_.status_wait);
   }
@@ -304,7 +304,7 @@ ExitStatus Viewer::sum_up() {
   counters.dropped_rx = drop_rx_.dropped();
   counters.dropped_tx = drop_tx_.dropped();
   counters.kernel_drops = kernel_drops_;
-  const auto& statistics = surface_.statistics();
+  const auto& statistics = topside_.statistics();
   fmt::print("{}\n", summary_line(statistics, counters));
   std::fflush(stdout);
   const bool all_complete = statistics.pings_complete > 0 && statistics.pings_incomplete == 0;

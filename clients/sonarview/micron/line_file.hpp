@@ -20,7 +20,7 @@ class LineFile {
   explicit LineFile(std::filesystem::path path);
 
   /// `turn` counts turns from 0. The line is with the operating system on return.
-  void write(const micron::ReceivedLine& line, std::uint64_t turn);
+  void write(const micron::ReceivedLine& line, std::uint64_t sweep);
   /// Whether something could not be written.
   bool failed() const { return !out_; }
   const std::filesystem::path& path() const { return path_; }

@@ -33,7 +33,7 @@ micron::ScanSector sector_of(const std::vector<double>& from_to_deg) {
   const micron::ScanSector sector{micron::bearing_of_degrees(from_to_deg[0]),
                                   micron::bearing_of_degrees(from_to_deg[1])};
   if (sector.left == sector.right) {
-    throw CLI::ValidationError("--sector", "FROM and TO are one bearing; leave it away to scan all round");
+    throw CLI::ValidationError("--sector", "FROM and TO are equal; omit --sector to scan all round");
   }
   return sector;
 }
@@ -53,14 +53,14 @@ void MicronArguments::declare_link(CLI::App& app) {
       ->check(CLI::Range(1, 254))
       ->capture_default_str()
       ->group(group);
-  app.add_flag("--reboot", options_.host.reboot_first, "Begin with a head that has forgotten everything")
+  app.add_flag("--reboot", options_.host.reboot_first, "Reboot the head first: it forgets all settings")
       ->group(group);
   app.add_option("--wait", wait_s_,
-                 "Seconds to try to reach a link, at first or again, and to wait for the head's first word")
+                 "Seconds to wait for a connection, and then for the head's first message")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--line-wait", line_wait_s_, "Seconds to wait for the next line of a scan; 0: for ever")
+  app.add_option("--line-wait", line_wait_s_, "Seconds to wait for the next line of a scan; 0: no limit")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->group(group);
@@ -76,21 +76,21 @@ void MicronArguments::declare_sonar(CLI::App& app) {
   add("--bins", scan.bins, "Bins of a line")->check(CLI::Range(1, micron::max_bins));
   add("--step", step_deg_, "Degrees from line to line, a multiple of 0.05625 (1/16 gradian)");
   app.add_option("--sector", sector_deg_,
-                 "FROM TO: scan to and fro between these bearings, in degrees, 0 ahead, positive to "
-                 "starboard; the sector lies clockwise from FROM to TO. Without it: all round")
+                 "FROM TO: scan back and forth between these bearings, degrees, 0 ahead, positive to "
+                 "starboard; the sector lies clockwise from FROM to TO. Default: all round")
       ->expected(2)
       ->check(CLI::Range(-360.0, 360.0))
       ->group("Sonar");
-  app.add_flag("--scan-left", scan_left_, "Turn counter-clockwise; in a sector: at first")->group("Sonar");
+  app.add_flag("--scan-left", scan_left_, "Scan counter-clockwise; in a sector: begin that way")->group("Sonar");
   add("--gain", scan.gain_percent, "Initial gain, percent")->check(CLI::Range(0.0, 100.0));
   CLI::Option* four_bit =
-      app.add_flag("--four-bit", four_bit_, "4-bit bins, of the window below; else 8-bit bins, 0..80 dB")
+      app.add_flag("--four-bit", four_bit_, "4-bit bins over the window below; default: 8-bit bins, 0..80 dB")
           ->group("Sonar");
   add("--ad-low", scan.ad_low_db, "Lower end of the window, dB")
       ->check(CLI::Range(0.0, 80.0))
       ->needs(four_bit);
   add("--ad-span", scan.ad_span_db, "Width of the window, dB")->check(CLI::Range(0.0, 80.0))->needs(four_bit);
-  add("--sound-speed", scan.sound_speed_mps, "Metres per second, in which ranges are counted")
+  add("--sound-speed", scan.sound_speed_mps, "Metres per second, for converting times to ranges")
       ->check(CLI::Range(1300.0, 1700.0));
 }
 
@@ -98,14 +98,14 @@ void MicronArguments::declare_run(CLI::App& app) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->group("Run");
   };
-  add("--turns", options_.turns, "End after this many turns, or sweeps of the sector; 0: go on")
+  add("--turns", options_.sweeps, "End after this many turns, or sweeps of the sector; 0: no limit")
       ->capture_default_str();
-  add("--lines", options_.lines, "End after this many lines; 0: go on")->capture_default_str();
-  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: go on")
+  add("--lines", options_.lines, "End after this many lines; 0: no limit")->capture_default_str();
+  add("--seconds", seconds_, "End this many seconds after the head's first message; 0: no limit")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   add("--out", options_.out, "Folder for pictures: turn or sector in colour, the samples in grey");
-  add("--every", options_.every, "Keep the pictures of each n-th turn; 0: only of the last")
+  add("--every", options_.every, "Keep the pictures of every n-th sweep; 0: only of the last")
       ->capture_default_str();
   add("--size", options_.radius_px, "Pixels from the apex to the full range")
       ->check(CLI::Range(64, 8192))

@@ -23,9 +23,9 @@ struct MicronOptions {
   micron::HostConfig host;
   micron::ScanSettings scan;
 
-  std::uint64_t turns = 0;              ///< 0: without limit
+  std::uint64_t sweeps = 0;             ///< 0: without limit
   std::uint64_t lines = 0;              ///< 0: without limit
-  std::chrono::nanoseconds duration{};  ///< from the first word of the head; 0: without limit
+  std::chrono::nanoseconds duration{};  ///< from the head's first message; 0: without limit
   std::chrono::nanoseconds wait{};  ///< patience for a line that cannot be opened and a head without a word
   std::chrono::nanoseconds line_wait{};  ///< patience for the next line of the scan; 0: without limit
 

@@ -25,14 +25,14 @@ std::string scan_text(const micron::ScanSettings& settings) {
       micron::make_head_command(settings).gain[0], settings.eight_bit ? 8 : 4, settings.sound_speed_mps);
 }
 
-std::string line_text(const micron::ReceivedLine& line, std::uint64_t turn, double bin_m) {
+std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, double bin_m) {
   const auto strongest = std::max_element(line.bins.begin(), line.bins.end());
   boost::crc_32_type crc;
   crc.process_bytes(line.bins.data(), line.bins.size());
   return fmt::format(
       "line number={} turn={} bearing={} bearing_deg={:.5g} sweep={} bins={} strongest={} strongest_m={:.3f} "
       "crc32={:08x}",
-      line.number, turn, line.head.bearing, micron::bearing_deg(line.head.bearing),
+      line.number, sweep, line.head.bearing, micron::bearing_deg(line.head.bearing),
       static_cast<int>(line.head.sweep), line.bins.size(), *strongest,
       (static_cast<double>(strongest - line.bins.begin()) + 0.5) * bin_m, crc.checksum());
 }
@@ -42,7 +42,7 @@ std::string summary_text(const micron::HostStatistics& statistics, const ScanCou
       "summary turns={} lines={} lines_missed={} rate_hz={:.2f} requests={} timeouts={} head_commands={} "
       "reboots={} motor_errors={} lines_unmatched={} lines_unrequested={} frames={} frames_bad={} "
       "frames_of_others={} bytes_dropped={} alives={} reconnects={} images_written={} images_skipped={}",
-      counters.turns, statistics.lines, counters.lines_missed, counters.rate_hz, statistics.requests,
+      counters.sweeps, statistics.lines, counters.lines_missed, counters.rate_hz, statistics.requests,
       statistics.timeouts, statistics.head_commands, statistics.reboots, statistics.motor_errors,
       statistics.lines_unmatched, statistics.lines_unrequested, statistics.frames, statistics.bad_frames,
       statistics.other_nodes, statistics.dropped_bytes, statistics.alives, counters.reconnects,

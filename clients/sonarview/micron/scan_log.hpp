@@ -14,11 +14,11 @@ namespace sonard::client {
 std::string scan_text(const micron::ScanSettings& settings);
 
 /// "line number=0 turn=0 bearing_deg=0.00 ...". `bin_m`: length of a bin.
-std::string line_text(const micron::ReceivedLine& line, std::uint64_t turn, double bin_m);
+std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, double bin_m);
 
 /// Counters of the program beside those of the host.
 struct ScanCounters {
-  std::uint64_t turns = 0;
+  std::uint64_t sweeps = 0;
   std::uint64_t lines_missed = 0;
   double rate_hz = 0.0;
   std::uint64_t reconnects = 0;

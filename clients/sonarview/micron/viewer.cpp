@@ -18,8 +18,8 @@
 #include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/micron/line_file.hpp"
 #include "clients/sonarview/micron/scan_log.hpp"
-#include "clients/sonarview/micron/scan_turns.hpp"
-#include "clients/sonarview/micron/turn_pictures.hpp"
+#include "clients/sonarview/micron/scan_sweeps.hpp"
+#include "clients/sonarview/micron/sweep_pictures.hpp"
 
 namespace sonard::client {
 namespace {
@@ -52,7 +52,7 @@ class Viewer {
   void on_lost(const std::string& why);
   void advance();
   void take_line(const micron::ReceivedLine& line);
-  void take_turn(const Turn& turn);
+  void take_sweep(const Sweep& sweep);
   void greet_head();
   void show_progress(TimePoint at);
   std::string head_text() const;
@@ -73,10 +73,10 @@ class Viewer {
 
   const TimePoint started_ = now();
   micron::Host host_;
-  ScanTurns turns_;
-  std::uint64_t turns_done_ = 0;
+  ScanSweeps sweeps_;
+  std::uint64_t sweeps_done_ = 0;
   std::uint64_t parameters_sent_ = 0;
-  bool whole_turn_drawn_ = false;
+  bool whole_sweep_drawn_ = false;
 
   std::optional<TimePoint> head_met_;
   std::optional<TimePoint> lost_at_;    ///< nothing: the line is open
@@ -90,7 +90,7 @@ class Viewer {
   TimePoint progress_due_{};
   std::uint64_t lines_at_progress_ = 0;
 
-  TurnPictures pictures_;
+  SweepPictures pictures_;
   std::optional<ImageWriter> writer_;
   std::optional<LineFile> file_;
   std::optional<ExitStatus> failure_;
@@ -108,7 +108,7 @@ Viewer::Viewer(const MicronOptions& options)
                  },
              .lost = [this](const std::string& why) { on_lost(why); }}),
       host_(options.host, started_),
-      turns_(micron::make_head_command(options.scan)),
+      sweeps_(micron::make_head_command(options.scan)),
       lost_at_(started_),
       pictures_(options.scan, {.radius_px = options.radius_px}) {
   if (!options_.out.empty()) {
@@ -191,7 +191,7 @@ void Viewer::advance() {
     }
   }
   if (std::exchange(parameters_sent_, host_.statistics().head_commands) != parameters_sent_) {
-    turns_.restart();
+    sweeps_.restart();
     greet_head();
   }
   if (head_met_ && at >= progress_due_) {
@@ -209,30 +209,30 @@ void Viewer::take_line(const micron::ReceivedLine& line) {
   }
   last_line_at_ = waiting_since_ = line.received;
   last_bearing_ = line.head.bearing;
-  const std::uint64_t turn = turns_.current().number;
+  const std::uint64_t sweep = sweeps_.current().number;
   if (options_.log_lines) {
-    fmt::print("{}\n", line_text(line, turn, micron::bin_length_m(options_.scan)));
+    fmt::print("{}\n", line_text(line, sweep, micron::bin_length_m(options_.scan)));
     std::fflush(stdout);
   }
   if (file_) {
-    file_->write(line, turn);
+    file_->write(line, sweep);
   }
-  if (const auto done = turns_.add(line)) {
-    take_turn(*done);
+  if (const auto done = sweeps_.add(line)) {
+    take_sweep(*done);
   }
 }
 
-void Viewer::take_turn(const Turn& turn) {
-  ++turns_done_;
+void Viewer::take_sweep(const Sweep& sweep) {
+  ++sweeps_done_;
   if (writer_) {
     std::vector<std::string> names{"last"};
-    if (options_.every > 0 && turn.number % options_.every == 0) {
-      names.push_back(fmt::format("{:06}", turn.number));
+    if (options_.every > 0 && sweep.number % options_.every == 0) {
+      names.push_back(fmt::format("{:06}", sweep.number));
     }
-    writer_->write(pictures_.of(turn, names));
-    whole_turn_drawn_ = true;
+    writer_->write(pictures_.of(sweep, names));
+    whole_sweep_drawn_ = true;
   }
-  if (options_.turns > 0 && turns_done_ >= options_.turns) {
+  if (options_.sweeps > 0 && sweeps_done_ >= options_.sweeps) {
     end();
   }
 }
@@ -285,8 +285,8 @@ void Viewer::show_progress(TimePoint at) {
     return;
   }
   const std::string done =
-      turns_.begun() ? fmt::format("turn {}, {:.0f} %", turns_.current().number, 100.0 * turns_.share())
-                     : "on the way to the first limit";
+      sweeps_.begun() ? fmt::format("turn {}, {:.0f} %", sweeps_.current().number, 100.0 * sweeps_.share())
+                      : "on the way to the first limit";
   fmt::print(stderr, "sonarview: bearing {:+.1f} deg, {} lines, {} in the last second; {}\n",
              micron::bearing_deg(last_bearing_), lines, fresh, done);
 }
@@ -366,10 +366,10 @@ void Viewer::arm_timer() {
 ExitStatus Viewer::sum_up() {
   const auto& statistics = host_.statistics();
   ScanCounters counters{
-      .turns = turns_done_, .lines_missed = turns_.lines_missed(), .reconnects = reconnects_};
+      .sweeps = sweeps_done_, .lines_missed = sweeps_.lines_missed(), .reconnects = reconnects_};
   if (writer_) {
-    if (!whole_turn_drawn_ && !turns_.current().lines.empty()) {
-      writer_->write(pictures_.of(turns_.current(), {"last"}));
+    if (!whole_sweep_drawn_ && !sweeps_.current().lines.empty()) {
+      writer_->write(pictures_.of(sweeps_.current(), {"last"}));
     }
     writer_->finish();
     counters.images_written = writer_->written();

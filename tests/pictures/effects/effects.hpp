@@ -21,7 +21,7 @@ struct EffectPicture {
 };
 
 std::vector<EffectPicture> receiver_pictures();   ///< speckle, noise, what is in the samples without an echo
-std::vector<EffectPicture> multipath_pictures();  ///< ghosts and glints
+std::vector<EffectPicture> multipath_pictures();  ///< ghosts and corner reflectors
 std::vector<EffectPicture> response_pictures();   ///< patterns of the aperture, pulse
 std::vector<EffectPicture>
 propagation_pictures();  ///< speed of sound, motion while a ping is under way, refraction

@@ -20,7 +20,7 @@ render::BodyPart part_of(render::TriangleMesh mesh, double lambert_mu) {
   return part;
 }
 
-/// Without grain, which says nothing of ranges.
+/// Without speckle and noise, which say nothing of ranges.
 View smooth_view() {
   View view = configured_view("demo.yaml", 20);
   view.settings.physical.speckle = render::PhysicalModel::Speckle::off;

@@ -59,7 +59,7 @@ std::vector<EffectPicture> receiver_pictures() {
        .before = [](View& view) { view.settings.physical.speckle = PhysicalModel::Speckle::off; },
        .caption_after = "speckle: ou",
        .after = [](View& view) { view.settings.physical.speckle = PhysicalModel::Speckle::ou; }},
-      {.name = "range_grain",
+      {.name = "range_correlation",
        .view = close_bed,
        .caption_before = "pulse: point",
        .before = [](View&) {},

@@ -54,7 +54,7 @@ std::vector<EffectPicture> response_pictures() {
        .view =
            [] {
              View view = configured_view("demo.yaml", 20);
-             view.settings.physical.noise = false;  // with grain the picture is large
+             view.settings.physical.noise = false;  // noise makes the picture large
              view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
              return view;
            },
@@ -71,7 +71,7 @@ std::vector<EffectPicture> response_pictures() {
            [] {
              View view = configured_view("demo.yaml", 20);
              view.settings.physical.speckle =
-                 render::PhysicalModel::Speckle::off;  // its grain hides what fades
+                 render::PhysicalModel::Speckle::off;  // speckle hides what fades
              return view;
            },
        .caption_before = "elevation_pattern: top_hat",

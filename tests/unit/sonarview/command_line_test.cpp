@@ -82,7 +82,7 @@ TEST(CommandLine, WithoutASubcommandItIsAGemini) {
   EXPECT_EQ(options.settings.compression_log2, 1);
   EXPECT_EQ(options.settings.interval, std::chrono::microseconds{100'000});
   EXPECT_EQ(options.pings, 7U);
-  EXPECT_EQ(options.surface_address, 0x7F000001U);
+  EXPECT_EQ(options.topside_address, 0x7F000001U);
   EXPECT_EQ(options.status_wait, 5s);
   EXPECT_EQ(options.radius_px, 900);
 }

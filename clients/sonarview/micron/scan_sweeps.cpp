@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/micron/scan_turns.hpp"
+#include "clients/sonarview/micron/scan_sweeps.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace sonard::client {
 using micron::units_per_turn;
 using micron::wrapped;
 
-ScanTurns::ScanTurns(const micron::HeadCommand& parameters)
+ScanSweeps::ScanSweeps(const micron::HeadCommand& parameters)
     : sector_(!parameters.has(micron::control_bits::continuous)),
       step_(parameters.step),
       left_(parameters.left_limit),
@@ -20,17 +20,17 @@ ScanTurns::ScanTurns(const micron::HeadCommand& parameters)
       clockwise_(parameters.has(micron::control_bits::scan_right)),
       begun_(!sector_) {}
 
-std::optional<Turn> ScanTurns::add(const micron::ReceivedLine& line) {
+std::optional<Sweep> ScanSweeps::add(const micron::ReceivedLine& line) {
   return sector_ ? add_in_sector(line) : add_all_round(line);
 }
 
-std::optional<Turn> ScanTurns::add_all_round(const micron::ReceivedLine& line) {
-  std::optional<Turn> done;
+std::optional<Sweep> ScanSweeps::add_all_round(const micron::ReceivedLine& line) {
+  std::optional<Sweep> done;
   const int bearing = line.head.bearing;
   const int way = last_ ? wrapped(clockwise_ ? bearing - *last_ : *last_ - bearing) : 0;
   last_ = bearing;
   count_missed(way);
-  if (turn_.lines.empty()) {
+  if (sweep_.lines.empty()) {
     travelled_ = 0;
   } else if (travelled_ + way >= length_) {  // the last lines of the turn are missing
     done = finish();
@@ -45,8 +45,8 @@ std::optional<Turn> ScanTurns::add_all_round(const micron::ReceivedLine& line) {
 }
 
 /// The head turns round at its limits, so the way between two lines may lead over one.
-std::optional<Turn> ScanTurns::add_in_sector(const micron::ReceivedLine& line) {
-  std::optional<Turn> done;
+std::optional<Sweep> ScanSweeps::add_in_sector(const micron::ReceivedLine& line) {
+  std::optional<Sweep> done;
   // Relative to the middle first: a head may stop short of a limit or beyond it.
   const int place = micron::shortest_turn(left_ + length_ / 2, line.head.bearing) + length_ / 2;
   if (!begun_ && last_ && place != *last_) {
@@ -69,11 +69,11 @@ std::optional<Turn> ScanTurns::add_in_sector(const micron::ReceivedLine& line) {
   const bool at_left = line.head.sweep == micron::SweepCode::left_limit || place <= 0;
   const bool at_right = line.head.sweep == micron::SweepCode::right_limit || place >= length_;
   if (at_left || at_right) {
-    if (begun_ && turn_.lines.size() > 1) {
+    if (begun_ && sweep_.lines.size() > 1) {
       done = finish();
     }
-    turn_.lines.clear();
-    turn_.lines_missed = 0;
+    sweep_.lines.clear();
+    sweep_.lines_missed = 0;
     begun_ = true;
     clockwise_ = at_left;
     travelled_ = 0;
@@ -82,36 +82,36 @@ std::optional<Turn> ScanTurns::add_in_sector(const micron::ReceivedLine& line) {
   return done;
 }
 
-void ScanTurns::take(const micron::ReceivedLine& line) {
-  turn_.lines.push_back(line);
+void ScanSweeps::take(const micron::ReceivedLine& line) {
+  sweep_.lines.push_back(line);
 }
 
-int ScanTurns::steps(int way) const {
+int ScanSweeps::steps(int way) const {
   return (way + step_ - 1) / step_;
 }
 
-void ScanTurns::count_missed(int way) {
+void ScanSweeps::count_missed(int way) {
   const auto missed = static_cast<std::uint64_t>(std::max(0, steps(way) - 1));
-  turn_.lines_missed += missed;
+  sweep_.lines_missed += missed;
   lines_missed_ += missed;
 }
 
-Turn ScanTurns::finish() {
-  Turn next;
-  next.number = turn_.number + 1;
+Sweep ScanSweeps::finish() {
+  Sweep next;
+  next.number = sweep_.number + 1;
   travelled_ = 0;
-  return std::exchange(turn_, std::move(next));
+  return std::exchange(sweep_, std::move(next));
 }
 
-void ScanTurns::restart() {
-  turn_.lines.clear();
-  turn_.lines_missed = 0;
+void ScanSweeps::restart() {
+  sweep_.lines.clear();
+  sweep_.lines_missed = 0;
   last_.reset();
   travelled_ = 0;
   begun_ = !sector_;
 }
 
-double ScanTurns::share() const {
+double ScanSweeps::share() const {
   return std::min(1.0, static_cast<double>(travelled_) / length_);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns of a recorded scan, by hand.
-#include "server/info/recorded_turns.hpp"
+#include "server/info/recorded_sweeps.hpp"
 
 #include <numbers>
 
@@ -28,12 +28,12 @@ LoggedHead scan_of(const std::vector<int>& bearings) {
   return scan;
 }
 
-TEST(RecordedTurns, all_round_a_turn_ends_where_it_began) {
+TEST(RecordedSweeps, all_round_a_sweep_ends_where_it_began) {
   LoggedHead scan;
   for (int line = 0; line < 450; ++line) {
     scan.pings.push_back(at((3000 + 32 * line) % 6400));  // 200 to the turn
   }
-  const auto turns = turns_of(scan);
+  const auto turns = sweeps_of(scan);
   ASSERT_EQ(turns.size(), 3U);
   EXPECT_EQ(turns[1].begin, 200U);
   EXPECT_EQ(turns[1].end, 400U);
@@ -48,8 +48,8 @@ TEST(RecordedTurns, all_round_a_turn_ends_where_it_began) {
   EXPECT_EQ(turns[2].shape.width, 49 * 32);
 }
 
-TEST(RecordedTurns, in_a_sector_a_turn_ends_where_the_head_turns_back) {
-  const auto turns = turns_of(scan_of({6300, 6350, 0, 50, 100, 50, 0, 6350, 6300, 6350}));
+TEST(RecordedSweeps, in_a_sector_a_sweep_ends_where_the_head_turns_back) {
+  const auto turns = sweeps_of(scan_of({6300, 6350, 0, 50, 100, 50, 0, 6350, 6300, 6350}));
   ASSERT_EQ(turns.size(), 3U);
   EXPECT_EQ(turns[0].end, 5U);
   EXPECT_EQ(turns[0].shape.left, 6300);
@@ -59,31 +59,31 @@ TEST(RecordedTurns, in_a_sector_a_turn_ends_where_the_head_turns_back) {
   EXPECT_EQ(turns[1].shape.width, 150);
 }
 
-TEST(RecordedTurns, a_missing_line_is_a_gap_and_no_other_step) {
-  const auto turns = turns_of(scan_of({3200, 3232, 3264, 3328, 3360}));
+TEST(RecordedSweeps, a_missing_line_is_a_gap_and_no_other_step) {
+  const auto turns = sweeps_of(scan_of({3200, 3232, 3264, 3328, 3360}));
   ASSERT_EQ(turns.size(), 1U);
   EXPECT_EQ(turns[0].shape.step, 32);
   EXPECT_EQ(turns[0].shape.width, 160);
 }
 
-TEST(RecordedTurns, other_bins_begin_another_turn) {
+TEST(RecordedSweeps, other_bins_begin_another_sweep) {
   LoggedHead scan = scan_of({3200, 3232, 3264});
   scan.pings.push_back(at(3296, 200));
-  const auto turns = turns_of(scan);
+  const auto turns = sweeps_of(scan);
   ASSERT_EQ(turns.size(), 2U);
   EXPECT_EQ(turns[1].begin, 3U);
   EXPECT_EQ(turns[1].shape.bins, 200);
 }
 
-TEST(RecordedTurns, a_head_that_stands_still_has_turns_too) {
-  const auto turns = turns_of(scan_of(std::vector<int>(7000, 1600)));
+TEST(RecordedSweeps, a_head_that_stands_still_has_sweeps_too) {
+  const auto turns = sweeps_of(scan_of(std::vector<int>(7000, 1600)));
   ASSERT_EQ(turns.size(), 2U);
   EXPECT_EQ(turns[0].end, 6400U);
   EXPECT_EQ(turns[0].shape.left, 1600);
   EXPECT_GT(turns[0].shape.width, 0);
 }
 
-TEST(RecordedTurns, bearings_go_there_and_back) {
+TEST(RecordedSweeps, bearings_go_there_and_back) {
   for (const int bearing : {0, 1, 1600, 3199, 3200, 3201, 4800, 6399}) {
     EXPECT_EQ(picture_bearing(at(bearing)), bearing);
   }

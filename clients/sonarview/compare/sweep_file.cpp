@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/compare/turn_file.hpp"
+#include "clients/sonarview/compare/sweep_file.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -13,7 +13,7 @@
 #include <system_error>
 #include <vector>
 
-#include "renderer/picture/turn_image.hpp"
+#include "renderer/picture/sweep_image.hpp"
 
 namespace sonard::client {
 namespace {
@@ -21,9 +21,9 @@ namespace {
 constexpr int four_bit_scale = 17;
 
 struct ScanLine {
-  std::uint64_t turn = 0;
-  picture::TurnShape shape;
-  picture::TurnLine line;
+  std::uint64_t sweep = 0;
+  picture::SweepShape shape;
+  picture::SweepLine line;
 };
 
 std::vector<std::uint8_t> bytes_of(std::string_view digits, int scale) {
@@ -53,7 +53,7 @@ ScanLine parse_line(const std::string& text) {
   const YAML::Node object = YAML::Load(text);
   const int last_bearing = picture::units_per_turn - 1;
   ScanLine scan;
-  scan.turn = object["turn"].as<std::uint64_t>();
+  scan.sweep = object["turn"].as<std::uint64_t>();
   scan.line.bearing = integer(object, "bearing", 0, last_bearing);
   scan.line.samples =
       bytes_of(object["bins"].as<std::string>(), integer(object, "bits", 4, 8) == 8 ? 1 : four_bit_scale);
@@ -70,16 +70,16 @@ ScanLine parse_line(const std::string& text) {
   return scan;
 }
 
-bool same(const picture::TurnShape& a, const picture::TurnShape& b) {
+bool same(const picture::SweepShape& a, const picture::SweepShape& b) {
   return a.left == b.left && a.width == b.width && a.step == b.step && a.bins == b.bins;
 }
 
 }  // namespace
 
-cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
+cv::Mat read_sweep(const std::filesystem::path& file, std::uint64_t sweep) {
   std::ifstream in(file);
-  std::optional<picture::TurnShape> shape;
-  std::vector<picture::TurnLine> lines;
+  std::optional<picture::SweepShape> shape;
+  std::vector<picture::SweepLine> lines;
   int row = 0;
   for (std::string text; std::getline(in, text);) {
     ++row;
@@ -94,7 +94,7 @@ cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
     } catch (const std::runtime_error& error) {
       refuse(error.what());
     }
-    if (scan.turn != turn) {
+    if (scan.sweep != sweep) {
       continue;
     }
     if (shape && !same(*shape, scan.shape)) {
@@ -104,9 +104,9 @@ cv::Mat read_turn(const std::filesystem::path& file, std::uint64_t turn) {
     lines.push_back(std::move(scan.line));
   }
   if (!shape) {
-    throw std::runtime_error(fmt::format("{}: has no turn {}", file.string(), turn));
+    throw std::runtime_error(fmt::format("{}: has no turn {}", file.string(), sweep));
   }
-  return picture::turn_polar_image(*shape, lines);
+  return picture::sweep_polar_image(*shape, lines);
 }
 
 }  // namespace sonard::client

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the lines of a turn lie in its pictures, against closed forms: a bearing of u units looks to
 // (u - 3200) * 360 / 6400 degrees from ahead, which is up; bin k is at (k + 0.5) bin lengths.
-#include "renderer/picture/turn_image.hpp"
+#include "renderer/picture/sweep_image.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,12 +19,12 @@ namespace {
 constexpr int bins = 200;
 constexpr double bin_m = 0.05;  // 10 m
 constexpr int radius_px = 400;  // two pixels a bin
-constexpr FanLook plain{.radius_px = radius_px, .grid = false};
+constexpr FanStyle plain{.radius_px = radius_px, .grid = false};
 
-TurnShape all_round(int step = 32) {
+SweepShape all_round(int step = 32) {
   return {.step = step, .bins = bins, .bin_m = bin_m};
 }
-TurnShape sector(int left, int width, int step = 32) {
+SweepShape sector(int left, int width, int step = 32) {
   return {left, width, step, bins, bin_m};
 }
 
@@ -32,11 +32,11 @@ double angle_rad(double units) {
   return (units - 3200.0) * 2.0 * std::numbers::pi / 6400.0;
 }
 
-TurnLine even_line(int bearing, std::uint8_t value) {
+SweepLine even_line(int bearing, std::uint8_t value) {
   return {bearing, std::vector<std::uint8_t>(bins, value)};
 }
-TurnLine one_bin(int bearing, int bin) {
-  TurnLine line = even_line(bearing, 0);
+SweepLine one_bin(int bearing, int bin) {
+  SweepLine line = even_line(bearing, 0);
   line.samples[static_cast<std::size_t>(bin)] = 255;
   return line;
 }
@@ -50,7 +50,7 @@ class BrightBin : public testing::TestWithParam<int> {};
 
 TEST_P(BrightBin, AppearsAtItsBearingAndRange) {
   const int bearing = GetParam();
-  const TurnImage image(all_round(), plain);
+  const SweepImage image(all_round(), plain);
   const auto [samples, heard] = image.project({one_bin(bearing, 150)});
   ASSERT_EQ(samples.size(), cv::Size(2 * radius_px + 1, 2 * radius_px + 1));
   const double radius = 150.5 * radius_px / bins;
@@ -65,8 +65,8 @@ TEST_P(BrightBin, AppearsAtItsBearingAndRange) {
 INSTANTIATE_TEST_SUITE_P(Bearings, BrightBin,
                          testing::Values(0, 16, 800, 1600, 3168, 3200, 3232, 4801, 5600, 6399));
 
-TEST(TurnImage, AheadIsUpAndStarboardOnTheRight) {
-  const TurnImage image(all_round(), plain);
+TEST(SweepImage, AheadIsUpAndStarboardOnTheRight) {
+  const SweepImage image(all_round(), plain);
   const cv::Mat ahead = image.project({even_line(3200, 200)}).samples;
   EXPECT_EQ(ahead.at<uchar>(radius_px - 100, radius_px), 200);
   EXPECT_EQ(ahead.at<uchar>(radius_px + 100, radius_px), 0);
@@ -76,7 +76,7 @@ TEST(TurnImage, AheadIsUpAndStarboardOnTheRight) {
 }
 
 /// A line fills half a step on either side of its bearing, out to the range, and nothing else.
-void expect_wedge(const TurnImage& image, int bearing, int step) {
+void expect_wedge(const SweepImage& image, int bearing, int step) {
   const auto [samples, heard] = image.project({even_line(bearing, 177)});
   const double half_rad = step * std::numbers::pi / 6400.0;
   constexpr double rounding_rad = 1e-9;
@@ -99,22 +99,22 @@ void expect_wedge(const TurnImage& image, int bearing, int step) {
   EXPECT_GT(filled, 0.8 * half_rad * radius_px * radius_px);
 }
 
-TEST(TurnImage, ALineFillsItsOwnStepAndNothingElse) {
-  const TurnImage image(all_round(), plain);
+TEST(SweepImage, ALineFillsItsOwnStepAndNothingElse) {
+  const SweepImage image(all_round(), plain);
   for (const int bearing : {0, 40, 1616, 3200, 5000, 6390}) {
     expect_wedge(image, bearing, 32);
   }
 }
 
-TEST(TurnImage, AnOddStepIsCutInTheMiddleOfAUnit) {
-  const TurnImage image(all_round(9), plain);
+TEST(SweepImage, AnOddStepIsCutInTheMiddleOfAUnit) {
+  const SweepImage image(all_round(9), plain);
   expect_wedge(image, 3200, 9);
   expect_wedge(image, 4, 9);
 }
 
-TEST(TurnImage, TwoHundredStepsFillTheTurn) {
-  const TurnImage image(all_round(), plain);
-  std::vector<TurnLine> lines;
+TEST(SweepImage, TwoHundredStepsFillTheTurn) {
+  const SweepImage image(all_round(), plain);
+  std::vector<SweepLine> lines;
   for (int line = 0; line < 200; ++line) {
     lines.push_back(even_line((3200 + 32 * line) % 6400, static_cast<std::uint8_t>(line + 1)));
   }
@@ -133,8 +133,8 @@ TEST(TurnImage, TwoHundredStepsFillTheTurn) {
   EXPECT_EQ(samples.at<uchar>(400, 200), 151);
 }
 
-TEST(TurnImage, OfTwoLinesTheLaterIsSeen) {
-  const TurnImage image(all_round(), plain);
+TEST(SweepImage, OfTwoLinesTheLaterIsSeen) {
+  const SweepImage image(all_round(), plain);
   const cv::Mat samples = image.project({even_line(3200, 50), even_line(3216, 90)}).samples;
   const auto at = [&](double units) {
     return samples.at<uchar>(cvRound(400 - 300 * std::cos(angle_rad(units))),
@@ -145,9 +145,9 @@ TEST(TurnImage, OfTwoLinesTheLaterIsSeen) {
   EXPECT_EQ(at(3224), 90);
 }
 
-TEST(TurnImage, ASectorIsAsLargeAsItsEdgesSay) {
+TEST(SweepImage, ASectorIsAsLargeAsItsEdgesSay) {
   // 45 degrees to either side, and half a step of 1.8 degrees beyond.
-  const TurnImage image(sector(2400, 1600), plain);
+  const SweepImage image(sector(2400, 1600), plain);
   const double edge_rad = 45.9 * std::numbers::pi / 180.0;
   EXPECT_NEAR(image.geometry().port_edge_rad(), -edge_rad, 1e-12);
   EXPECT_NEAR(image.geometry().starboard_edge_rad(), edge_rad, 1e-12);
@@ -157,9 +157,9 @@ TEST(TurnImage, ASectorIsAsLargeAsItsEdgesSay) {
   expect_wedge(image, 4000, 32);
 }
 
-TEST(TurnImage, ASectorThroughAsternHangsDown) {
+TEST(SweepImage, ASectorThroughAsternHangsDown) {
   // 3200 + 2880 is 162 degrees to starboard; 640 units on is 162 degrees to port.
-  const TurnImage image(sector(6080, 640), plain);
+  const SweepImage image(sector(6080, 640), plain);
   const double half_width = std::ceil(400.0 * std::sin(18.9 * std::numbers::pi / 180.0));
   EXPECT_EQ(image.geometry().size(), cv::Size(2 * static_cast<int>(half_width) + 1, 401));
   EXPECT_EQ(image.geometry().apex(), cv::Point2d(half_width, 0.0));
@@ -168,24 +168,24 @@ TEST(TurnImage, ASectorThroughAsternHangsDown) {
   expect_wedge(image, 320, 32);
 }
 
-TEST(TurnImage, ASectorThatBeginsAtAsternIsNotCut) {
-  const TurnImage image(sector(8, 1000), plain);  // its edge is half a step before, on the other side
+TEST(SweepImage, ASectorThatBeginsAtAsternIsNotCut) {
+  const SweepImage image(sector(8, 1000), plain);  // its edge is half a step before, on the other side
   expect_wedge(image, 8, 32);
   expect_wedge(image, 1008, 32);
 }
 
-TEST(TurnImage, ASectorOfAllButAStepIsTheWholeCircle) {
-  const TurnImage image(sector(16, 6368), plain);
+TEST(SweepImage, ASectorOfAllButAStepIsTheWholeCircle) {
+  const SweepImage image(sector(16, 6368), plain);
   EXPECT_TRUE(image.geometry().full_circle());
   EXPECT_EQ(image.geometry().size(), cv::Size(801, 801));
   expect_wedge(image, 6384, 32);
 }
 
-TEST(TurnImage, OneOfManyFineBinsStaysVisible) {
-  const TurnShape shape{0, 6400, 32, 1500, 0.0024};
-  TurnLine line{3200, std::vector<std::uint8_t>(1500, 0)};
+TEST(SweepImage, OneOfManyFineBinsStaysVisible) {
+  const SweepShape shape{0, 6400, 32, 1500, 0.0024};
+  SweepLine line{3200, std::vector<std::uint8_t>(1500, 0)};
   line.samples[1000] = 255;
-  const cv::Mat samples = TurnImage(shape, {.radius_px = 100, .grid = false}).project({line}).samples;
+  const cv::Mat samples = SweepImage(shape, {.radius_px = 100, .grid = false}).project({line}).samples;
   double most = 0.0;
   cv::Point place;
   cv::minMaxLoc(samples.col(100), nullptr, &most, nullptr, &place);
@@ -193,8 +193,8 @@ TEST(TurnImage, OneOfManyFineBinsStaysVisible) {
   EXPECT_NEAR(100 - place.y, 1000.5 / 15.0, 1.0);
 }
 
-TEST(TurnImage, DrawsEchoesInThePaletteAndSilenceAsBackground) {
-  const TurnImage image(all_round(), plain);
+TEST(SweepImage, DrawsEchoesInThePaletteAndSilenceAsBackground) {
+  const SweepImage image(all_round(), plain);
   const cv::Mat picture = image.draw({even_line(3200, 160)}, "");
   EXPECT_EQ(picture.at<cv::Vec3b>(200, 400), amber::palette().at<cv::Vec3b>(0, 160));
   const cv::Scalar background = amber::background();
@@ -203,8 +203,8 @@ TEST(TurnImage, DrawsEchoesInThePaletteAndSilenceAsBackground) {
                       static_cast<uchar>(background[2])));
 }
 
-TEST(TurnImage, RingsAreAtWholeRanges) {
-  const TurnImage image(all_round(), {.radius_px = 500});
+TEST(SweepImage, RingsAreAtWholeRanges) {
+  const SweepImage image(all_round(), {.radius_px = 500});
   const cv::Mat picture = image.draw({}, "caption");
   // Rings of 2 m over 10 m, looked for at 15 degrees, off the bearing lines.
   for (const double range_m : {2.0, 4.0, 6.0, 8.0}) {
@@ -217,8 +217,8 @@ TEST(TurnImage, RingsAreAtWholeRanges) {
   }
 }
 
-TEST(TurnPolarImage, HasAColumnForEachStepAndAsternAtItsEdges) {
-  const cv::Mat polar = turn_polar_image(all_round(), {one_bin(3200, 0), one_bin(0, 7), one_bin(6368, 199)});
+TEST(SweepPolarImage, HasAColumnForEachStepAndAsternAtItsEdges) {
+  const cv::Mat polar = sweep_polar_image(all_round(), {one_bin(3200, 0), one_bin(0, 7), one_bin(6368, 199)});
   ASSERT_EQ(polar.size(), cv::Size(200, bins));
   EXPECT_EQ(polar.at<uchar>(bins - 1, 100), 255);  // the nearest is at the bottom
   EXPECT_EQ(polar.at<uchar>(bins - 8, 0), 255);
@@ -226,9 +226,9 @@ TEST(TurnPolarImage, HasAColumnForEachStepAndAsternAtItsEdges) {
   EXPECT_EQ(cv::countNonZero(polar), 3);
 }
 
-TEST(TurnPolarImage, ASectorHasItsLimitsAtItsEdges) {
+TEST(SweepPolarImage, ASectorHasItsLimitsAtItsEdges) {
   // 1590 units are 49.7 steps: the last step is shorter.
-  const cv::Mat polar = turn_polar_image(sector(6000, 1590), {one_bin(6000, 0), one_bin(1190, 1)});
+  const cv::Mat polar = sweep_polar_image(sector(6000, 1590), {one_bin(6000, 0), one_bin(1190, 1)});
   ASSERT_EQ(polar.size(), cv::Size(51, bins));
   EXPECT_EQ(polar.at<uchar>(bins - 1, 0), 255);
   EXPECT_EQ(polar.at<uchar>(bins - 2, 50), 255);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/picture/turn_image.hpp"
+#include "renderer/picture/sweep_image.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,21 +23,21 @@ int slot_of(double bearing_rad) {
   return (slot + slots_per_turn) % slots_per_turn;
 }
 
-SectorGeometry geometry_of(const TurnShape& shape, const FanLook& look) {
-  const int margin_px = look.grid ? grid_margin_px : 0;
+SectorGeometry geometry_of(const SweepShape& shape, const FanStyle& style) {
+  const int margin_px = style.grid ? grid_margin_px : 0;
   if (shape.full_circle()) {
-    return {shape.range_m(), -std::numbers::pi, std::numbers::pi, look.radius_px, margin_px};
+    return {shape.range_m(), -std::numbers::pi, std::numbers::pi, style.radius_px, margin_px};
   }
   const int port_slot = 2 * (shape.left - bearing_ahead) - shape.step;
   // A sector that begins within half a step of astern begins on its other side.
   const double port_rad =
       (port_slot < -slots_per_turn / 2 ? port_slot + slots_per_turn : port_slot) * slot_rad;
-  return {shape.range_m(), port_rad, port_rad + 2 * (shape.width + shape.step) * slot_rad, look.radius_px,
+  return {shape.range_m(), port_rad, port_rad + 2 * (shape.width + shape.step) * slot_rad, style.radius_px,
           margin_px};
 }
 
 /// Which line is seen in each slot; -1: none.
-std::vector<int> lines_in_slots(const std::vector<TurnLine>& lines, int step) {
+std::vector<int> lines_in_slots(const std::vector<SweepLine>& lines, int step) {
   std::vector<int> seen(slots_per_turn, -1);
   for (std::size_t line = 0; line < lines.size(); ++line) {
     for (int slot = 2 * lines[line].bearing - step; slot < 2 * lines[line].bearing + step; ++slot) {
@@ -48,7 +48,7 @@ std::vector<int> lines_in_slots(const std::vector<TurnLine>& lines, int step) {
 }
 
 /// A row for each line, a column for each bin. A line of another length is cut or filled up with 0.
-cv::Mat matrix_of(const std::vector<TurnLine>& lines, int bins) {
+cv::Mat matrix_of(const std::vector<SweepLine>& lines, int bins) {
   cv::Mat rows = cv::Mat::zeros(static_cast<int>(lines.size()), bins, CV_8UC1);
   for (std::size_t line = 0; line < lines.size(); ++line) {
     const auto& samples = lines[line].samples;
@@ -70,18 +70,18 @@ int turn_units(double angle_rad) {
   return std::max(1, static_cast<int>(std::lround(angle_rad * units_per_turn / (2.0 * std::numbers::pi))));
 }
 
-TurnImage::TurnImage(const TurnShape& shape, const FanLook& look)
+SweepImage::SweepImage(const SweepShape& shape, const FanStyle& style)
     : shape_(shape),
-      geometry_(geometry_of(shape, look)),
-      look_(look),
-      mapped_bins_(std::min(shape.bins, look.radius_px)) {
+      geometry_(geometry_of(shape, style)),
+      style_(style),
+      mapped_bins_(std::min(shape.bins, style.radius_px)) {
   map_pixels();
-  if (look.grid) {
+  if (style.grid) {
     grid_ = polar_grid(geometry_, round_bearings_deg(geometry_));
   }
 }
 
-void TurnImage::map_pixels() {
+void SweepImage::map_pixels() {
   const cv::Size size = geometry_.size();
   map_bins_.create(size, CV_32FC1);
   slots_.create(size, CV_32SC1);
@@ -99,7 +99,7 @@ void TurnImage::map_pixels() {
   }
 }
 
-TurnImage::Projection TurnImage::project(const std::vector<TurnLine>& lines) const {
+SweepImage::Projection SweepImage::project(const std::vector<SweepLine>& lines) const {
   const cv::Size size = geometry_.size();
   Projection projection{cv::Mat::zeros(size, CV_8UC1), cv::Mat::zeros(size, CV_8UC1)};
   if (lines.empty()) {
@@ -116,27 +116,27 @@ TurnImage::Projection TurnImage::project(const std::vector<TurnLine>& lines) con
       const int slot = slots_.at<int>(y, x);
       const int line = slot >= 0 ? seen[static_cast<std::size_t>(slot)] : -1;
       if (line >= 0) {
-        projection.heard.at<uchar>(y, x) = 255;
+        projection.covered.at<uchar>(y, x) = 255;
         map_lines.at<float>(y, x) = static_cast<float>(line);
       }
     }
   }
   cv::Mat samples;
   cv::remap(source, samples, map_bins_, map_lines, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  samples.copyTo(projection.samples, projection.heard);
+  samples.copyTo(projection.samples, projection.covered);
   return projection;
 }
 
-cv::Mat TurnImage::draw(const std::vector<TurnLine>& lines, const std::string& caption) const {
+cv::Mat SweepImage::draw(const std::vector<SweepLine>& lines, const std::string& caption) const {
   const Projection projection = project(lines);
-  cv::Mat picture = amber::paint(projection.samples, projection.heard);
-  if (look_.grid) {
+  cv::Mat picture = amber::paint(projection.samples, projection.covered);
+  if (style_.grid) {
     add_grid(picture, grid_, caption);
   }
   return picture;
 }
 
-cv::Mat turn_polar_image(const TurnShape& shape, const std::vector<TurnLine>& lines) {
+cv::Mat sweep_polar_image(const SweepShape& shape, const std::vector<SweepLine>& lines) {
   const bool all_round = shape.width == units_per_turn;
   const int steps = (shape.width + shape.step - 1) / shape.step;
   const int columns = all_round ? steps : steps + 1;

@@ -5,15 +5,15 @@
 #include <cstddef>
 #include <vector>
 
-#include "renderer/picture/turn_image.hpp"
+#include "renderer/picture/sweep_image.hpp"
 #include "server/logs/recording.hpp"
 
 namespace sonard::server {
 
 /// Once round, or in a sector once from one limit to the other; the first and the last may be less.
-struct RecordedTurn {
-  picture::TurnShape shape;  ///< bearings are those of the vehicle, whatever side the head is mounted on
-  std::size_t begin = 0;     ///< lines [begin, end) of LoggedHead::pings
+struct RecordedSweep {
+  picture::SweepShape shape;  ///< bearings are those of the vehicle, whatever side the head is mounted on
+  std::size_t begin = 0;      ///< lines [begin, end) of LoggedHead::pings
   std::size_t end = 0;
 };
 
@@ -22,6 +22,6 @@ int picture_bearing(const LoggedPing& line);
 
 /// By the bearings alone: a turn ends where the head has come round or turns back, with another length or
 /// number of bins, and after as many lines as there are bearings where it stands still. Every line is in one.
-std::vector<RecordedTurn> turns_of(const LoggedHead& head);
+std::vector<RecordedSweep> sweeps_of(const LoggedHead& head);
 
 }  // namespace sonard::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/info/recorded_turns.hpp"
+#include "server/info/recorded_sweeps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,9 @@ int shortest_turn(int from, int to) {
 }
 
 /// A turn as it grows.
-class GrowingTurn {
+class GrowingSweep {
  public:
-  GrowingTurn(const LoggedPing& line, std::size_t place)
+  GrowingSweep(const LoggedPing& line, std::size_t place)
       : first_(&line), begin_(place), end_(place + 1), left_(picture_bearing(line)), last_(left_) {}
 
   /// False when the line belongs to the next one.
@@ -46,20 +46,20 @@ class GrowingTurn {
     return true;
   }
 
-  RecordedTurn done() const {
-    RecordedTurn turn;
-    turn.begin = begin_;
-    turn.end = end_;
-    turn.shape.step = usual_step();
-    turn.shape.left = left_;
-    turn.shape.width = std::max(std::abs(way_), turn.shape.step);
-    turn.shape.bins = first_->settings.bins;
-    turn.shape.bin_m = first_->settings.bin_m;
-    if (turn.shape.full_circle()) {
-      turn.shape.left = 0;
-      turn.shape.width = picture::units_per_turn;
+  RecordedSweep done() const {
+    RecordedSweep sweep;
+    sweep.begin = begin_;
+    sweep.end = end_;
+    sweep.shape.step = usual_step();
+    sweep.shape.left = left_;
+    sweep.shape.width = std::max(std::abs(way_), sweep.shape.step);
+    sweep.shape.bins = first_->settings.bins;
+    sweep.shape.bin_m = first_->settings.bin_m;
+    if (sweep.shape.full_circle()) {
+      sweep.shape.left = 0;
+      sweep.shape.width = picture::units_per_turn;
     }
-    return turn;
+    return sweep;
   }
 
  private:
@@ -67,7 +67,7 @@ class GrowingTurn {
   int usual_step() const {
     const auto usual = std::ranges::max_element(steps_, {}, [](const auto& step) { return step.second; });
     const int step = usual == steps_.end() ? 0 : usual->first;
-    return step == 0 ? picture::TurnShape{}.step : std::min(step, most_step);
+    return step == 0 ? picture::SweepShape{}.step : std::min(step, most_step);
   }
 
   const LoggedPing* first_;
@@ -85,17 +85,17 @@ int picture_bearing(const LoggedPing& line) {
   return picture::turn_bearing(-line.bearing_rad);  // logs count to port
 }
 
-std::vector<RecordedTurn> turns_of(const LoggedHead& head) {
-  std::vector<RecordedTurn> turns;
-  GrowingTurn turn(head.pings.front(), 0);
+std::vector<RecordedSweep> sweeps_of(const LoggedHead& head) {
+  std::vector<RecordedSweep> sweeps;
+  GrowingSweep sweep(head.pings.front(), 0);
   for (std::size_t i = 1; i < head.pings.size(); ++i) {
-    if (!turn.take(head.pings[i])) {
-      turns.push_back(turn.done());
-      turn = GrowingTurn(head.pings[i], i);
+    if (!sweep.take(head.pings[i])) {
+      sweeps.push_back(sweep.done());
+      sweep = GrowingSweep(head.pings[i], i);
     }
   }
-  turns.push_back(turn.done());
-  return turns;
+  sweeps.push_back(sweep.done());
+  return sweeps;
 }
 
 }  // namespace sonard::server
