@@ -23,7 +23,7 @@ enum class GpuBinning {
   off,
 };
 
-/// As the key `backend` of a configuration spells it: "auto", "raster", "ray".
+/// The name under the key `backend` of a configuration: "auto", "raster", "ray".
 std::string_view name_of(Backend backend);
 
 struct RendererOptions {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one interface between the pipeline and whatever finds out what the sonar hears of its surroundings.
+// The interface between the pipeline and the engine that finds the echoes of the sonar's surroundings.
 #pragma once
 
 #include <cstddef>
@@ -43,7 +43,7 @@ class EchoEngine {
   EchoEngine(const EchoEngine&) = delete;
   EchoEngine& operator=(const EchoEngine&) = delete;
 
-  /// The same for the same world and request, whatever came before.
+  /// Renders the echo of a request. It depends on the world and the request alone, not on what came before.
   /// @param echo gets the result; what it holds is used as memory.
   /// @param statistics gets what it took, added to what it holds.
   /// @throws RequestError when the settings cannot be sampled.
@@ -53,14 +53,14 @@ class EchoEngine {
   /// @param body in the order of the world, and in it.
   virtual void set_body_pose(std::size_t body, const Pose& T_world_body) = 0;
 
-  /// Gives parts other meshes, with the attributes of those they had. Not for every ping: what is built of a
-  /// mesh is built anew.
+  /// Gives parts other meshes with the same attributes. Not for every ping: search trees of the mesh are
+  /// rebuilt.
   /// @throws RendererError when the engine itself fails.
   virtual void set_part_meshes(std::span<const PartMesh> changes) = 0;
 
-  /// From the next image on level rays sink by `bend_per_m` * x^2 over the horizontal distance x; 0, as at
-  /// the beginning: they are straight. Only where RendererOptions::ray_curvature_per_m is not 0.
-  virtual void set_ray_bend(double bend_per_m) = 0;
+  /// From the next image on level rays sink by `bend_per_m` * x^2 over the horizontal distance x; 0, the
+  /// default: they are straight. Only where RendererOptions::ray_curvature_per_m is not 0.
+  virtual void set_refraction(double bend_per_m) = 0;
 
   /// The engine and what it runs on, for logs: "raster, vendor / renderer / version".
   virtual const std::string& description() const = 0;

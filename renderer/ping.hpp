@@ -15,7 +15,7 @@
 namespace sonard::render {
 
 /// Mean echo intensity behind array and pulse, before speckle, noise and gain. Linear; mode `physical`: re
-/// the source intensity at 1 m, per beam and native line; mode `paper`: the paper's I_bin in [0, 1].
+/// the source intensity at 1 m, per beam and range bin; mode `paper`: the paper's I_bin in [0, 1].
 struct EchoImage {
   int beams = 0;
   int lines = 0;
@@ -32,7 +32,7 @@ struct PingSamples {
   int beams = 0;
   int lines = 0;                   ///< after range compression
   std::vector<std::uint8_t> u8;    ///< [line * beams + beam], when 8 bit were asked for
-  std::vector<std::uint16_t> u16;  ///< the same, when 16 bit were asked for
+  std::vector<std::uint16_t> u16;  ///< [line * beams + beam], when 16 bit were asked for
 };
 
 struct PingRequest {

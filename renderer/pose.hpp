@@ -9,7 +9,7 @@ namespace sonard::render {
 
 /// A rigid transform named T_a_b: it maps coordinates of frame b to frame a.
 /// World frame: right-handed, z up. Sonar frame: x along the acoustic axis, y to port, z up.
-/// `orientation` is a unit quaternion; whoever builds a Pose from outside data has checked that.
+/// `orientation` is a unit quaternion; check that before building a Pose from outside data.
 struct Pose {
   glm::dvec3 position_m{0.0};
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z

@@ -57,7 +57,7 @@ struct SkipRuleEntry {
 /// In the order of SkipRule.
 inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::nobody_listening, "nobody_listening",
-                  "the ping was cancelled before its turn to be rendered: surface gone, reboot, new settings",
+                  "the ping was cancelled before its turn to be rendered: topside gone, reboot, new settings",
                   "pings", 0},
     SkipRuleEntry{SkipRule::unchanged_scene, "unchanged_scene",
                   "sonar, bodies and all settings that enter the echo are those of the stream's last ping",
@@ -74,14 +74,14 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::absent_normal_map, "absent_normal_map", "the part has no normal map", "parts",
                   1e-4},
     SkipRuleEntry{SkipRule::coplanar_facets, "coplanar_facets",
-                  "facets that are heard flat and lie in one plane, within 1e-4 rad and 0.02 mm", "facets",
+                  "facets that echo as flat ones and lie in one plane, within 1e-4 rad and 0.02 mm", "facets",
                   1e-2},
     SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", "pings",
                   1e-6},
     SkipRuleEntry{
         SkipRule::facet_kernel, "facet_kernel",
         "the material has no facets, or they echo less than 0.1 % of its Lambert part at that incidence",
-        "pieces", 1e-3},
+        "segments", 1e-3},
     SkipRuleEntry{
         SkipRule::multipath, "multipath",
         "nothing in range mirrors more than -15 dB, R^2 exp(-P^2), at the least grazing angle it is "
@@ -116,16 +116,17 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::clear_water, "clear_water",
                   "volume scattering below -75 dB/m^3, or a range of less than 20 m", "pings", 0.1,
                   "of the highest output code over a bed"},
-    SkipRuleEntry{SkipRule::separate_beams, "separate_beams",
-                  "no beam would hear other beams, or lose to them, more than 1 % of the strongest echo",
-                  "pings", 1e-2},
+    SkipRuleEntry{
+        SkipRule::separate_beams, "separate_beams",
+        "no beam would receive from other beams, or lose to them, more than 1 % of the strongest echo",
+        "pings", 1e-2},
     SkipRuleEntry{SkipRule::even_lines, "even_lines",
-                  "per angle all beams hear the same of 32 neighbouring lines, within 1 %, or nothing",
+                  "per angle all beams receive the same from 32 neighbouring lines, within 1 %, or nothing",
                   "lines", 1e-2},
     SkipRuleEntry{SkipRule::perfect_elements, "perfect_elements",
                   "the elements of the array have no errors: beyond the lobes nothing leaks", "pings", 0},
     SkipRuleEntry{SkipRule::short_pulse, "short_pulse",
-                  "of an echo no more than 0.5 % is heard outside of its line", "pings", 1e-2},
+                  "of an echo no more than 0.5 % is received outside of its line", "pings", 1e-2},
     SkipRuleEntry{SkipRule::motion_within_ping, "motion_within_ping",
                   "while it listens the sonar turns by no more than half of a receive beam", "pings", 0.5,
                   "receive beamwidths of bearing"},

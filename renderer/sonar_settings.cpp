@@ -57,7 +57,7 @@ void check_array(const Aperture& aperture) {
   constexpr double quarter_turn_rad = std::numbers::pi / 2 + 1e-9;
   if (aperture.beam_edges_rad.front() > quarter_turn_rad ||
       aperture.beam_edges_rad.back() < -quarter_turn_rad) {
-    throw RequestError("aperture: a straight array hears no beams behind it");
+    throw RequestError("aperture: a straight array has no beams behind it");
   }
   if (aperture.fine_beams < 1 || aperture.fine_beams > most_fine_beams) {
     throw RequestError("aperture: " + std::to_string(aperture.fine_beams) + " fine beams, expected 1 to " +

@@ -18,22 +18,22 @@ struct Aperture {
   /// -3 dB full width of the vertical beam, one-way, in (0, pi).
   double vertical_beamwidth_rad = 0.349065850398866;  // 20 degrees
   /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern, `sinc_two_way`:
-  /// its square, where sending and hearing share the array's height (docs/physics.md 2.5); both are rendered
-  /// to 1.25 beamwidths on either side.
+  /// its square, for an array that sends and receives with one height (docs/physics.md 2.5); both are
+  /// rendered to 1.25 beamwidths on either side.
   enum class Elevation { top_hat, sinc, sinc_two_way } elevation = Elevation::top_hat;
-  /// -3 dB width of one receive beam at broadside; sets the grain of speckle and noise across beams, and with
-  /// Azimuth::array the pattern of the beams.
+  /// -3 dB width of one receive beam at broadside; sets the correlation of speckle and noise across beams,
+  /// and with Azimuth::array the pattern of the beams.
   double receive_beamwidth_rad = 0.0174532925199433;  // 1 degree
   /// Amplitude weights of the receive array's elements (docs/physics.md 2.5); `kaiser` has beta 2.5.
   enum class Taper { uniform, kaiser, hann, hamming } taper = Taper::hamming;
-  /// Mode `physical`, two beams or more. `ideal`: a beam hears all that lies between its edges and nothing
-  /// else. `array`: it hears what a straight array steered to its middle does, side lobes and all; the fan
+  /// Mode `physical`, two beams or more. `ideal`: a beam receives all that lies between its edges and nothing
+  /// else. `array`: it receives what a straight array steered to its middle does, side lobes and all; the fan
   /// lies within 90 degrees of the axis then.
   enum class Azimuth { ideal, array } azimuth = Azimuth::ideal;
   /// With `array`: a bearing is known to one part in this many of a beam; 1 to 16.
   int fine_beams = 2;
   /// With `array`: `planar` bearings are azimuths. A straight array measures `conical` ones, sin psi cos
-  /// theta: what lies off the horizontal is heard nearer to the axis.
+  /// theta: what lies off the horizontal appears nearer to the axis.
   enum class Bearing { planar, conical } bearing = Bearing::planar;
   /// With `array`: errors of the elements, which the seed and the stream draw. Standard deviations of the
   /// amplitude as a share of it, >= 0, and of the phase.
@@ -61,10 +61,10 @@ std::vector<double> equal_angle_edges(int beam_count, double width_rad);
 /// beam_count beams of equal sine over +-half_width_rad, as a multibeam head forms them.
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
-/// Native range lines: line i holds echoes from [i, i+1) * step_m. The output lines are averages (or peaks)
-/// of 2^compression_log2 native lines; a remainder is dropped, as the device does.
+/// The range bins of a ping: bin i holds echoes from [i, i+1) * step_m. The lines of the output are averages
+/// (or peaks) of 2^compression_log2 range bins; a remainder is dropped, as the device does.
 struct RangeLines {
-  int count = 1;             ///< native lines, >= 1
+  int count = 1;             ///< range bins, >= 1
   double step_m = 0.01;      ///< > 0
   int compression_log2 = 0;  ///< 0..4
   bool compression_peak = false;
@@ -114,7 +114,7 @@ struct PaperModel {
   }
 };
 
-/// A scanning head hears its own transducer after the pulse (docs/physics.md 2.16).
+/// A scanning head receives the ringing of its own transducer after the pulse (docs/physics.md 2.16).
 struct RingDown {
   bool on = false;
   double level_db = 6.0;  ///< intensity at the peak, re the source intensity at 1 m, before TVG
@@ -139,7 +139,7 @@ struct MultipathSettings {
   enum class Level {
     off,      ///< nothing
     surface,  ///< ghosts in the water surface (World::water_surface_z_m)
-    full,     ///< ghosts in every surface that mirrors, and glints of corners
+    full,     ///< ghosts in every surface that mirrors, and corner reflectors
   } level = Level::full;
   double wavelength_m = 0.0020833;  ///< at the middle of the band; > 0
   /// Rms height of the water surface: 0 is a mirror; rippled by a light breeze some 0.02; with wind it has no
@@ -184,7 +184,7 @@ struct PhysicalModel {
   RingDown ring_down;
   Interference interference;
   /// Whether receive beams turn with the sonar while echoes return (docs/physics.md 2.14). false: the whole
-  /// ping is heard from where it was sent.
+  /// ping is received where it was sent.
   bool motion_within_ping = true;
 
   bool operator==(const PhysicalModel&) const = default;
@@ -196,7 +196,7 @@ struct Sampling {
   enum class Preset {
     fast,       ///< 5 %
     normal,     ///< 1 %
-    reference,  ///< as close as it gets, for offline use
+    reference,  ///< the closest there is, for offline use
     grid,       ///< the grid below, whatever the error
   } preset = Preset::normal;
   // Only with `grid`:
@@ -232,14 +232,14 @@ struct SonarSettings {
 };
 
 /// Whether the beams are those of a straight array: mode `physical`, Azimuth::array, two beams or more.
-inline bool is_heard_by_array(const SonarSettings& settings) {
+inline bool has_array_beams(const SonarSettings& settings) {
   return settings.model == Model::physical && settings.aperture.azimuth == Aperture::Azimuth::array &&
          settings.aperture.beam_count() > 1;
 }
 
 /// Whether the beams are cones around a straight array.
 inline bool has_conical_beams(const SonarSettings& settings) {
-  return is_heard_by_array(settings) && settings.aperture.bearing == Aperture::Bearing::conical;
+  return has_array_beams(settings) && settings.aperture.bearing == Aperture::Bearing::conical;
 }
 
 }  // namespace sonard::render

@@ -14,10 +14,10 @@ namespace sonard::render {
 /// Runs independent jobs on all cores. Which thread runs which job is left open, so a job must write only
 /// what is its own; results are then the same for any number of threads. One caller at a time.
 ///
-/// A ping is a few loops shortly after one another, each a fraction of a millisecond. Whoever waits therefore
-/// spins for some tens of microseconds before it sleeps in the kernel: workers for the next loop, the caller
-/// for the end of this one. Between pings all workers sleep. A worker that wakes late costs nothing: the
-/// others have taken its share.
+/// A ping is a few loops shortly after one another, each a fraction of a millisecond. A thread that waits
+/// therefore spins for some tens of microseconds before it sleeps in the kernel: workers for the next loop,
+/// the caller for the end of this one. Between pings all workers sleep. A worker that wakes late costs
+/// nothing: the others have taken its share.
 class WorkerPool {
  public:
   /// @param threads total number of threads including the caller; 0: one per core.

@@ -203,20 +203,20 @@ void BeamPattern::add_band(const Aperture& aperture, int beam, const std::vector
   const double starboard_rad = aperture.beam_edges_rad[b + 1];
   const double axis = (std::sin(port_rad) + std::sin(starboard_rad)) / 2;
   const auto fine_beams = static_cast<std::size_t>(this->fine_beams());
-  // Of an echo that is even in angle this beam hears `heard` times c_b.
-  double heard = 0;
+  // Of an echo that is even in angle this beam receives `received` times c_b.
+  double received = 0;
   std::vector<double> over_floor(fine_beams);
   std::size_t first = fine_beams;
   std::size_t last = 0;
   for (std::size_t f = 0; f < fine_beams; ++f) {
     over_floor[f] = table.excess(sines[f + 1] - axis, sines[f] - axis);
-    heard += (over_floor[f] + table.floor()) / static_cast<double>(inverse_width_[f]);
+    received += (over_floor[f] + table.floor()) / static_cast<double>(inverse_width_[f]);
     if (over_floor[f] != 0) {
       first = std::min(first, f);
       last = f;
     }
   }
-  const double scale = (port_rad - starboard_rad) / heard;
+  const double scale = (port_rad - starboard_rad) / received;
   bands_.push_back({static_cast<int>(first), static_cast<int>(last - first + 1), weights_.size(),
                     static_cast<float>(scale * table.floor())});
   for (std::size_t f = first; f <= last; ++f) {
@@ -278,8 +278,8 @@ std::vector<BeamPattern::Span> BeamPattern::spans_of(const LineSums& sums, int l
   return spans;
 }
 
-void BeamPattern::hear(const EchoImage& fine, int beam, const Span& span, const float* leaks,
-                       float* out) const {
+void BeamPattern::receive(const EchoImage& fine, int beam, const Span& span, const float* leaks,
+                          float* out) const {
   const auto lines = static_cast<std::size_t>(fine.lines);
   const int count = span.end - span.begin;
   const auto row = [&](int f) {
@@ -325,7 +325,7 @@ void BeamPattern::apply(const EchoImage& fine, EchoImage& out, WorkerPool& worke
       float* const row =
           &out.intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(fine.lines)];
       for (const Span& span : spans) {
-        hear(fine, beam, span, no_leak ? nullptr : sums.sum.data(), row + span.begin);
+        receive(fine, beam, span, no_leak ? nullptr : sums.sum.data(), row + span.begin);
       }
     }
   });

@@ -16,7 +16,7 @@ namespace sonard::render {
 class PatternTable;
 
 /// Fine beams that are sampled beyond either end of the fan: with Bearing::conical what lies there off the
-/// horizontal is heard inside.
+/// horizontal appears nearer to the axis.
 int fine_beams_beyond(const Aperture& aperture);
 
 /// The edges of the fine beams that are sampled: each beam of the aperture in `fine_beams` parts of equal
@@ -26,7 +26,7 @@ std::vector<double> fine_beam_edges(const Aperture& aperture);
 /// Power pattern P of the receive array over fine beams, incoherent (docs/physics.md 2.5):
 ///   I'[b][k] = c_b (sum_f P(s_f - s_b) I[f][k] + L sum_f I[f][k]),
 /// s the sine of the bearing in the middle. The first sum runs over the directions in which a faultless array
-/// hears more than -40 dB, with the errors of this array's elements; L is their mean power elsewhere. c_b
+/// receives more than -40 dB, with the errors of this array's elements; L is their mean power elsewhere. c_b
 /// keeps the level of an echo that fills the fan evenly in angle.
 ///
 /// A fine beam wider than 2 / elements in sine is taken at several points: sums of a pattern over points no
@@ -39,10 +39,10 @@ class BeamPattern {
   BeamPattern(const Aperture& aperture, RandomKey elements);
 
   int fine_beams() const { return static_cast<int>(inverse_width_.size()); }
-  /// Share of the echo of fine beam f that beam b hears.
+  /// Share of the echo of fine beam f that beam b receives.
   double share(int beam, int fine_beam) const;
-  /// The largest sum, of any beam, over what it hears of each fine beam more or less than it would with ideal
-  /// edges: no bin changes by more than this times the strongest.
+  /// The largest sum, of any beam, over what it receives of each fine beam more or less than it would with
+  /// ideal edges: no bin changes by more than this times the strongest.
   double change() const { return change_; }
 
   /// @param fine echo of the fine beams
@@ -66,7 +66,7 @@ class BeamPattern {
   LineSums sum_lines(const EchoImage& fine, WorkerPool& workers) const;
   std::vector<Span> spans_of(const LineSums& sums, int lines, const SkipSwitches& skip,
                              SkipCounts& skipped) const;
-  void hear(const EchoImage& fine, int beam, const Span& span, const float* leaks, float* out) const;
+  void receive(const EchoImage& fine, int beam, const Span& span, const float* leaks, float* out) const;
 
   int fine_per_beam_ = 1;
   int beyond_ = 0;  ///< fine beams before those of the first beam

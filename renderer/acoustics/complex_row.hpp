@@ -10,7 +10,7 @@
 
 namespace sonard::render {
 
-/// Complex numbers of one line that belong to somebody else.
+/// Complex numbers of one line, owned elsewhere.
 struct Phasors {
   const float* real;
   const float* imaginary;

@@ -25,21 +25,21 @@ FieldReader::FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& 
   imaginary_.resize(rows);
 }
 
-Phasors FieldReader::line(int native) {
+Phasors FieldReader::line(int bin) {
   if (field_.beam.real != nullptr) {
-    return {field_.beam.real + native, field_.beam.imaginary + native};
+    return {field_.beam.real + bin, field_.beam.imaginary + bin};
   }
   const int reach = tables_.pulse_correlation.reach();
   if (reach == 0) {
     if (field_.kept != nullptr) {
-      evolve(native);
+      evolve(bin);
     }
     if (skips(SkipRule::long_lines)) {
-      return row(native);
+      return row(bin);
     }
   }
   for (int j = -reach; j <= reach; ++j) {
-    const Phasors one = row(native + j);
+    const Phasors one = row(bin + j);
     real_[static_cast<std::size_t>(j + reach)] = one.real;
     imaginary_[static_cast<std::size_t>(j + reach)] = one.imaginary;
   }
@@ -48,10 +48,10 @@ Phasors FieldReader::line(int native) {
   return {joined_.real(), joined_.imaginary()};
 }
 
-void FieldReader::evolve(int native) {
-  if (!field_.kept->is_current(place(native)) || !skips(SkipRule::unmoved_speckle)) {
-    const Phasors fresh = draw(native, drawn_[0].row);
-    field_.kept->evolve(place(native), fresh.real, fresh.imaginary);
+void FieldReader::evolve(int bin) {
+  if (!field_.kept->is_current(place(bin)) || !skips(SkipRule::unmoved_speckle)) {
+    const Phasors fresh = draw(bin, drawn_[0].row);
+    field_.kept->evolve(place(bin), fresh.real, fresh.imaginary);
   }
 }
 
@@ -62,26 +62,26 @@ bool FieldReader::skips(SkipRule rule) {
   return on;
 }
 
-Phasors FieldReader::row(int native) {
+Phasors FieldReader::row(int bin) {
   if (field_.kept != nullptr) {
-    return {field_.kept->real(place(native)), field_.kept->imaginary(place(native))};
+    return {field_.kept->real(place(bin)), field_.kept->imaginary(place(bin))};
   }
-  Drawn& drawn = drawn_[static_cast<std::size_t>(place(native)) % drawn_.size()];
-  if (drawn.native != native) {
-    drawn.phasors = draw(native, drawn.row);
-    drawn.native = native;
+  Drawn& drawn = drawn_[static_cast<std::size_t>(place(bin)) % drawn_.size()];
+  if (drawn.bin != bin) {
+    drawn.phasors = draw(bin, drawn.row);
+    drawn.bin = bin;
   }
   return drawn.phasors;
 }
 
-Phasors FieldReader::draw(int native, ComplexRow& row) {
+Phasors FieldReader::draw(int bin, ComplexRow& row) {
   const BeamFilter& filter = tables_.filter;
   if (copies_) {
     skipped_.add(SkipRule::narrow_aperture);
-    row.draw(field_.key, native);
+    row.draw(field_.key, bin);
     return {filter.middle(row.real()), filter.middle(row.imaginary())};
   }
-  white_.draw(field_.key, native);
+  white_.draw(field_.key, bin);
   row.filter(filter, white_);
   return {row.real(), row.imaginary()};
 }

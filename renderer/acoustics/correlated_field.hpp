@@ -13,11 +13,11 @@
 
 namespace sonard::render {
 
-/// CN(0, 1) per native line and beam.
+/// CN(0, 1) per range bin and beam.
 struct RandomFieldOfPing {
   RandomKey key;
-  SpeckleField* kept = nullptr;  ///< keeps it from ping to ping; null: it is drawn anew
-  /// Of a single beam: the whole field is there, line by line; null: it is not.
+  SpeckleField* kept = nullptr;  ///< the field kept from ping to ping; null: drawn for each ping
+  /// The whole field of a single beam, bin by bin; null for several beams.
   Phasors beam{nullptr, nullptr};
 };
 
@@ -30,17 +30,17 @@ class FieldReader {
               SkipCounts& skipped);
 
   /// The field in one line; good until the next call.
-  Phasors line(int native);
+  Phasors line(int bin);
   /// Brings a kept field up to date, from -reach of the pulse to as much beyond the last
   /// line.
-  void evolve(int native);
+  void evolve(int bin);
 
  private:
   bool skips(SkipRule rule);
   /// Correlated across beams alone.
-  Phasors row(int native);
-  Phasors draw(int native, ComplexRow& row);
-  int place(int native) const { return native + tables_.pulse_correlation.reach(); }
+  Phasors row(int bin);
+  Phasors draw(int bin, ComplexRow& row);
+  int place(int bin) const { return bin + tables_.pulse_correlation.reach(); }
 
   const ReceiverTables& tables_;
   const RandomFieldOfPing& field_;
@@ -52,7 +52,7 @@ class FieldReader {
   /// A row drawn for one line serves its neighbours too.
   struct Drawn {
     ComplexRow row;
-    int native;
+    int bin;
     Phasors phasors;
   };
   std::vector<Drawn> drawn_;

@@ -91,8 +91,8 @@ void EchoBlock::load(int first, int count) {
        static_cast<std::size_t>(count), rows_.data(), static_cast<std::size_t>(stride_));
 }
 
-float EchoBlock::strongest(int native) const {
-  return largest(line(native), echo_.beams);
+float EchoBlock::strongest(int bin) const {
+  return largest(line(bin), echo_.beams);
 }
 
 }  // namespace sonard::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A few native lines of an echo image, turned so that the beams of a line lie side by side.
+// A few range bins of an echo image, turned so that the beams of a line lie side by side.
 #pragma once
 
 #include "renderer/aligned_vector.hpp"
@@ -9,7 +9,7 @@ namespace sonard::render {
 
 class EchoBlock {
  public:
-  /// Native lines that fit.
+  /// Range bins that fit.
   static constexpr int most_lines = 32;
 
   explicit EchoBlock(const EchoImage& echo);
@@ -19,11 +19,11 @@ class EchoBlock {
 
   int beams() const { return echo_.beams; }
   /// Intensity of one of the loaded lines in each beam; starts on a cache line.
-  const float* line(int native) const {
-    return &rows_[static_cast<std::size_t>(native - first_) * static_cast<std::size_t>(stride_)];
+  const float* line(int bin) const {
+    return &rows_[static_cast<std::size_t>(bin - first_) * static_cast<std::size_t>(stride_)];
   }
   /// The strongest beam of the line; 0: there is no echo in any.
-  float strongest(int native) const;
+  float strongest(int bin) const;
 
  private:
   const EchoImage& echo_;

@@ -19,7 +19,7 @@ std::vector<double> taper_weights(Aperture::Taper taper, int elements);
 int element_count(const Aperture& aperture);
 
 /// Weights of all elements with their errors, divided by their sum without errors: a source on the axis of a
-/// faultless array is heard with amplitude 1.
+/// faultless array is received with amplitude 1.
 class LineArray {
  public:
   /// Without errors.
@@ -30,7 +30,7 @@ class LineArray {
   int elements() const { return static_cast<int>(weights_.size()); }
   /// Response to a source whose sine of bearing is `sine_offset` off that of the beam.
   std::complex<double> amplitude(double sine_offset) const;
-  /// The same as power.
+  /// The response as power.
   double power(double sine_offset) const { return std::norm(amplitude(sine_offset)); }
   /// Mean power, re the axis of a faultless array, that the errors of many such arrays leave in all
   /// directions (docs/physics.md 2.5); 0 without errors.

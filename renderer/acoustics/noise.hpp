@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Additive noise: its level, and what the array hears of itself and of others (docs/physics.md 2.9, 2.16).
+// Additive noise: its level, and what the array receives of itself and of others (docs/physics.md 2.9, 2.16).
 #pragma once
 
 #include <vector>
@@ -29,7 +29,7 @@ std::vector<float> noise_profile(const SonarSettings& settings);
 
 /// What interference does to the noise of one ping.
 struct InterferenceStreak {
-  int first_line = 0;   ///< native; all lines from here on are raised
+  int first_line = 0;   ///< all range bins from here on are raised
   float factor = 1.0F;  ///< of amplitude; 1: this ping is not hit
 
   float factor_at(int line) const { return raises(line) ? factor : 1.0F; }

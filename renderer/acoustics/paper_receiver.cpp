@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "renderer/acoustics/complex_row.hpp"
-#include "renderer/acoustics/receive_lines.hpp"
+#include "renderer/acoustics/receive_bins.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -28,26 +28,26 @@ void clamp_row(float gain, float codes, int beams, float* __restrict value) {
   }
 }
 
-/// Native lines one by one, in a thread of their own.
-class PaperLines {
+/// Range bins one by one, in a thread of their own.
+class PaperBins {
  public:
-  PaperLines(const PaperPing& ping, const EchoBlock& block)
+  PaperBins(const PaperPing& ping, const EchoBlock& block)
       : ping_(ping),
         block_(block),
         beams_(block.beams()),
         random_((beams_ + 1) / 2),
         value_(static_cast<std::size_t>(beams_)) {}
 
-  void add_native_line(int native, Quantizer& output) {
+  void add_range_bin(int bin, Quantizer& output) {
     const PaperModel& model = ping_.model;
-    if (!(model.speckle_floor > 0) && !(block_.strongest(native) > 0) &&
+    if (!(model.speckle_floor > 0) && !(block_.strongest(bin) > 0) &&
         ping_.skip.on(SkipRule::lines_without_echo)) {
       skipped_.add(SkipRule::lines_without_echo);
       return;
     }
-    std::copy_n(block_.line(native), beams_, value_.data());
+    std::copy_n(block_.line(bin), beams_, value_.data());
     if (model.speckle != PaperModel::Speckle::off) {
-      random_.draw(ping_.key, native);
+      random_.draw(ping_.key, bin);
       // Both parts of a complex number are used, each of variance 1/2: beams in the first half of the row get
       // real parts, the others imaginary ones.
       speckle_row(random_.real(), static_cast<float>(model.speckle_mean),
@@ -74,7 +74,7 @@ class PaperLines {
 
 PingSamples receive_paper(const EchoImage& echo, const PaperPing& ping, const SonarSettings& settings,
                           WorkerPool& workers, SkipCounts& skipped) {
-  return receive_lines<PaperLines>(echo, ping, settings, workers, skipped);
+  return receive_bins<PaperBins>(echo, ping, settings, workers, skipped);
 }
 
 }  // namespace sonard::render

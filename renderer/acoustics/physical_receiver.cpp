@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "renderer/acoustics/complex_row.hpp"
-#include "renderer/acoustics/receive_lines.hpp"
+#include "renderer/acoustics/receive_bins.hpp"
 #include "renderer/acoustics/texture.hpp"
 #include "renderer/simd.hpp"
 
@@ -39,10 +39,10 @@ void noise_envelope_row(float noise, const float* __restrict profile, const floa
   }
 }
 
-/// Native lines one by one, in a thread of their own.
-class PhysicalLines {
+/// Range bins one by one, in a thread of their own.
+class PhysicalBins {
  public:
-  PhysicalLines(const PhysicalPing& ping, const EchoBlock& block)
+  PhysicalBins(const PhysicalPing& ping, const EchoBlock& block)
       : ping_(ping),
         block_(block),
         beams_(ping.tables.filter.beams()),
@@ -56,19 +56,19 @@ class PhysicalLines {
     std::fill_n(still_.real(), beams_, 1.0F);
   }
 
-  void add_native_line(int native, Quantizer& output) {
+  void add_range_bin(int bin, Quantizer& output) {
     const ReceiverTables& tables = ping_.tables;
     // The device puts out exactly 0 in its near field.
-    const bool blanked = range_m(native) < tables.model.near_field_blank_m;
+    const bool blanked = range_m(bin) < tables.model.near_field_blank_m;
     if (blanked && skips(SkipRule::blanked_near_field)) {
       return;
     }
-    const float gain = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(native)];
-    const float strongest = block_.strongest(native);
-    const float ring_down = ring_down_at(native);
-    const float level = noise_level_at(native);
+    const float gain = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(bin)];
+    const float strongest = block_.strongest(bin);
+    const float ring_down = ring_down_at(bin);
+    const float level = noise_level_at(bin);
     const bool silent = level == 0 && skips(SkipRule::no_noise);
-    const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(native);
+    const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(bin);
     // No echo in any beam: speckle would multiply 0. Later images get other random
     // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
     if (!(strongest > 0) && ring_down == 0 && skips(SkipRule::lines_without_echo)) {
@@ -78,8 +78,8 @@ class PhysicalLines {
       noise_envelope_row(level, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
                          codes_.data());
     } else {
-      const Phasors phasors = speckle_of(native);
-      envelope_row(echo_of(native), phasors.real, phasors.imaginary, ring_down, level, tables.profile.data(),
+      const Phasors phasors = speckle_of(bin);
+      envelope_row(echo_of(bin), phasors.real, phasors.imaginary, ring_down, level, tables.profile.data(),
                    noise.real, noise.imaginary, gain, beams_, codes_.data());
     }
     output.add(codes_.data());
@@ -95,45 +95,45 @@ class PhysicalLines {
     return on;
   }
 
-  double range_m(int native) const { return (native + 0.5) * ping_.tables.range.step_m; }
+  double range_m(int bin) const { return (bin + 0.5) * ping_.tables.range.step_m; }
 
-  float ring_down_at(int native) {
+  float ring_down_at(int bin) {
     const ReceiverTables& tables = ping_.tables;
     if (!tables.rings) {
       return 0.0F;
     }
-    const bool over = native >= tables.ring_down_lines && skips(SkipRule::ring_down_over);
-    return over ? 0.0F : tables.ring_down[static_cast<std::size_t>(native)];
+    const bool over = bin >= tables.ring_down_lines && skips(SkipRule::ring_down_over);
+    return over ? 0.0F : tables.ring_down[static_cast<std::size_t>(bin)];
   }
 
   /// Amplitude before TVG.
-  float noise_level_at(int native) {
+  float noise_level_at(int bin) {
     const float level = ping_.tables.noise;
     if (!(ping_.tables.model.interference.probability > 0) ||
-        (!ping_.interference.raises(native) && skips(SkipRule::no_interference))) {
+        (!ping_.interference.raises(bin) && skips(SkipRule::no_interference))) {
       return level;
     }
-    return level * ping_.interference.factor_at(native);
+    return level * ping_.interference.factor_at(bin);
   }
 
-  Phasors speckle_of(int native) {
+  Phasors speckle_of(int bin) {
     const bool off = ping_.tables.model.speckle == PhysicalModel::Speckle::off;
-    return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(native);
+    return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(bin);
   }
 
   /// The echo behind its texture.
-  const float* echo_of(int native) {
+  const float* echo_of(int bin) {
     const PhysicalModel& model = ping_.tables.model;
-    const float* echo = block_.line(native);
+    const float* echo = block_.line(bin);
     if (!(model.texture_nu > 0) || model.speckle == PhysicalModel::Speckle::off) {
       return echo;
     }
-    const double scatterers = scatterers_at(model, range_m(native));
+    const double scatterers = scatterers_at(model, range_m(bin));
     if (scatterers > texture_ends_at_nu && skips(SkipRule::many_scatterers)) {
       return echo;
     }
     root_.set(scatterers);
-    root_.apply(echo, texture_.line(native).real, beams_, textured_.data());
+    root_.apply(echo, texture_.line(bin).real, beams_, textured_.data());
     return textured_.data();
   }
 
@@ -180,7 +180,7 @@ void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& sk
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
                              WorkerPool& workers, SkipCounts& skipped) {
   evolve_fields(ping, workers, skipped);
-  return receive_lines<PhysicalLines>(echo, ping, settings, workers, skipped);
+  return receive_bins<PhysicalBins>(echo, ping, settings, workers, skipped);
 }
 
 }  // namespace sonard::render

@@ -24,7 +24,7 @@ struct PhysicalPing {
 /// neighbours then. Elsewhere each line is brought up to date when it is read.
 void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped);
 
-/// @param echo mean echo, as the array hears it. @param skipped what was left out is added to it.
+/// @param echo mean echo, as the array receives it. @param skipped what was left out is added to it.
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
                              WorkerPool& workers, SkipCounts& skipped);
 

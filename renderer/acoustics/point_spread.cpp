@@ -12,7 +12,7 @@ void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int
   if (settings.model == Model::paper) {
     return;
   }
-  if (is_heard_by_array(settings)) {
+  if (has_array_beams(settings)) {
     prepare_pattern(settings, seed, stream, skip, skipped);
   }
   if (settings.physical.pulse != PhysicalModel::Pulse::point && settings.physical.range_cell_m > 0) {

@@ -118,7 +118,7 @@ namespace {
 
 constexpr int most_lines_each_side = 32;
 
-/// Amplitude that is heard `lines` away from an echo, of any scale; 0 beyond the main lobe.
+/// Amplitude received `lines` away from an echo, of any scale; 0 beyond the main lobe.
 double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
   const double cells = lines * line_cells;
   switch (pulse) {

@@ -13,7 +13,7 @@
 namespace sonard::render {
 
 /// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
-/// over the line, and over that in which it is heard (docs/physics.md 2.6). Chirps are followed out to 16
+/// over the line, and over that in which it is received (docs/physics.md 2.6). Chirps are followed out to 16
 /// cells to either side; of an echo nothing is lost.
 class PulseResponse {
  public:
@@ -26,26 +26,27 @@ class PulseResponse {
 
   /// Shares of an echo in its own line and the lines to one side of it; 0: nothing is spread.
   int taps() const { return static_cast<int>(share_.size()); }
-  /// Share that is heard `lines` away from where it is.
+  /// Share of an echo that is received `lines` away from it.
   double share(int lines) const { return static_cast<double>(share_[static_cast<std::size_t>(lines)]); }
 
-  /// Share that is heard outside of the line where the echo is.
+  /// Share of an echo that is received outside of its line.
   double share_outside() const { return share_.empty() ? 0.0 : 1 - share(0); }
 
-  /// What would be heard beyond the ends of the image is left out. What `out` holds is used as memory.
+  /// What would be received beyond the ends of the image is left out. What `out` holds is used as memory.
   void apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const;
 
  private:
   std::vector<float> share_;
 };
 
-/// Lines shorter than the pulse hear the same scatterers, and noise behind the same matched filter: their
-/// fields are a white one filtered with the amplitude of the pulse, sum of squares 1 (docs/physics.md 2.8).
+/// Lines shorter than the pulse hold echoes of the same scatterers, and noise behind the same matched filter:
+/// their fields are a white one filtered with the amplitude of the pulse, sum of squares 1
+/// (docs/physics.md 2.8).
 class PulseCorrelation {
  public:
   /// Lines share nothing.
   PulseCorrelation() = default;
-  /// Of a chirp the main lobe, of a tone its share of each line. @param cell_m PhysicalModel::range_cell_m;
+  /// Takes the main lobe of a chirp, the overlap of a tone. @param cell_m PhysicalModel::range_cell_m;
   /// 0: a pulse without length.
   PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m);
 

@@ -11,16 +11,16 @@ namespace sonard::render {
 PingSamples make_samples(const SonarSettings& settings);
 
 /// What amplitude 1 (full scale) is in codes of the output, or 1 where codes are decibels, shared among the
-/// native lines of a mean: amplitudes come to Quantizer multiplied with this.
+/// range bins of a mean: amplitudes come to Quantizer multiplied with this.
 float codes_per_amplitude(const SonarSettings& settings);
 
-/// Joins native lines to output lines. Each thread has one of its own; they share the samples.
+/// Joins range bins to output lines. Each thread has one of its own; they share the samples.
 class Quantizer {
  public:
   Quantizer(const SonarSettings& settings, PingSamples& samples);
 
   void begin();
-  /// @param codes amplitude of one native line in each beam, times codes_per_amplitude(). A line that is 0
+  /// @param codes amplitude of one range bin in each beam, times codes_per_amplitude(). A line that is 0
   /// throughout may be left out.
   void add(const float* codes);
   /// Quantises last, rounding to nearest and clamping: nothing wraps.

@@ -17,15 +17,15 @@ struct ReceiverTables {
   PhysicalModel model;
   bool sixteen_bit = false;
   OutputScale output_scale = OutputScale::linear;
-  bool rings = false;  ///< there is a ring-down to hear
+  bool rings = false;  ///< there is a ring-down
 
   BeamFilter filter;
   PulseCorrelation pulse_correlation;
-  std::vector<float> gain;       ///< per native line: amplitude to codes, TVG included
+  std::vector<float> gain;       ///< per range bin: amplitude to codes, TVG included
   std::vector<float> profile;    ///< per beam: noise amplitude relative to that away from broadside
   float noise = 0;               ///< amplitude before TVG; 0: off
-  std::vector<float> ring_down;  ///< per native line: amplitude before TVG
-  int ring_down_lines = 0;       ///< that the ring-down is heard in
+  std::vector<float> ring_down;  ///< per range bin: amplitude before TVG
+  int ring_down_lines = 0;       ///< lines that the ring-down reaches
 
   ReceiverTables() = default;
   explicit ReceiverTables(const SonarSettings& settings);

@@ -8,11 +8,11 @@
 
 namespace sonard::render {
 
-/// Amplitude of the ring-down per native line, before TVG: from nothing at half of the peak's range up to the
+/// Amplitude of the ring-down per range bin, before TVG: from nothing at half of the peak's range up to the
 /// peak as a half cosine, and from there by 80 dB down to the end, straight in dB and so on beyond.
 std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLines& range);
 
-/// The first native line beyond the end; 0: there is no ring-down.
+/// The first range bin beyond the end; 0: there is no ring-down.
 int ring_down_lines(const RingDown& ring_down, const RangeLines& range);
 
 }  // namespace sonard::render

@@ -8,7 +8,7 @@
 
 namespace sonard::render {
 
-/// Complex Gaussians CN(0, 1) per native line and beam, correlated across beams as the array makes them,
+/// Complex Gaussians CN(0, 1) per range bin and beam, correlated across beams as the array makes them,
 /// which fade as the sonar moves: an Ornstein-Uhlenbeck process (docs/physics.md 2.8). The kernel across
 /// beams is linear and the same for every ping, so the filtered field is kept and fades just as the white one
 /// would.

@@ -8,7 +8,7 @@
 
 namespace sonard::render {
 
-/// Spherical spreading and absorption, two ways, of every native line (docs/physics.md 2.1, equation 1).
+/// Spherical spreading and absorption, two ways, of every range bin (docs/physics.md 2.1, equation 1).
 struct TransmissionLoss {
   double step_m = 0.0;
   double absorption_db_per_m = 0.0;

@@ -8,7 +8,7 @@
 
 namespace sonard::render {
 
-/// Time-varying gain and gain setting of mode `physical` per native line, as amplitude.
+/// Time-varying gain and gain setting of mode `physical` per range bin, as amplitude.
 std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range);
 
 }  // namespace sonard::render

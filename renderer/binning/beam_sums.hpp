@@ -39,15 +39,15 @@ class BeamSums {
     const double b = static_cast<double>(patch.range_b_m) * lines_per_m_;
     const float smear_a = patch.smear_a_m * lines_per_m, smear_b = patch.smear_b_m * lines_per_m;
     if (!std::isfinite(a + b +
-                       static_cast<double>(smear_a + smear_b + patch.echo + patch.weight + patch.echo_tilt +
-                                           patch.weight_tilt))) {
+                       static_cast<double>(smear_a + smear_b + patch.echo + patch.weight +
+                                           patch.echo_gradient + patch.weight_gradient))) {
       ++invalid;
       return;
     }
     ++samples;
-    echo_.add(a, smear_a, b, smear_b, patch.echo, patch.echo_tilt);
+    echo_.add(a, smear_a, b, smear_b, patch.echo, patch.echo_gradient);
     if (weighs_) {
-      weight_.add(a, smear_a, b, smear_b, patch.weight, patch.weight_tilt);
+      weight_.add(a, smear_a, b, smear_b, patch.weight, patch.weight_gradient);
     }
   }
 
@@ -114,7 +114,7 @@ struct BeamSource {
 
 /// Fills every beam that is not empty, each in one job, and collects what it summed. A beam has one owner, so
 /// nothing depends on the number of threads.
-/// @param memory for BinningResult::echo, whatever it holds: a megabyte need not be found anew for every
+/// @param memory for BinningResult::echo, whatever it holds: saves allocating a megabyte for every
 /// ping.
 BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
                         WorkerPool& workers, std::vector<float> memory, const BeamSource& source);

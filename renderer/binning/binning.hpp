@@ -32,7 +32,7 @@ struct BinningResult {
   int beams = 0;
   int lines = 0;
   std::vector<float> echo;     ///< [beam * lines + line], as the image of MeanEcho
-  std::vector<float> open_sr;  ///< as that of MeanEcho
+  std::vector<float> open_sr;  ///< see MeanEcho::open_sr
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
   std::uint64_t saturated_samples = 0;  ///< of GpuBinner: echoes beyond what its sums hold, taken as that

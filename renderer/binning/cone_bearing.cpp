@@ -21,7 +21,7 @@ EchoPatch part_of(const EchoPatch& patch, float from, float to, float share) {
   const auto between = [](float a, float b, float at) { return a + (b - a) * at; };
   const float length = to - from;
   // Per metre echo and weight rise in a straight line.
-  const auto mean = [&](float tilt) { return 1 + tilt * (from + to - 1); };
+  const auto mean = [&](float gradient) { return 1 + gradient * (from + to - 1); };
   EchoPatch part = patch;
   part.range_a_m = between(patch.range_a_m, patch.range_b_m, from);
   part.range_b_m = between(patch.range_a_m, patch.range_b_m, to);
@@ -29,13 +29,13 @@ EchoPatch part_of(const EchoPatch& patch, float from, float to, float share) {
   part.smear_b_m = between(patch.smear_a_m, patch.smear_b_m, to);
   part.tangent_a = between(patch.tangent_a, patch.tangent_b, from);
   part.tangent_b = between(patch.tangent_a, patch.tangent_b, to);
-  part.echo = patch.echo * length * share * mean(patch.echo_tilt);
-  part.weight = patch.weight * length * share * mean(patch.weight_tilt);
-  const auto tilt_of_part = [&](float tilt) {
-    return mean(tilt) > 0 ? std::min(1.0F, std::max(-1.0F, tilt * length / mean(tilt))) : 0.0F;
+  part.echo = patch.echo * length * share * mean(patch.echo_gradient);
+  part.weight = patch.weight * length * share * mean(patch.weight_gradient);
+  const auto gradient_of_part = [&](float gradient) {
+    return mean(gradient) > 0 ? std::min(1.0F, std::max(-1.0F, gradient * length / mean(gradient))) : 0.0F;
   };
-  part.echo_tilt = tilt_of_part(patch.echo_tilt);
-  part.weight_tilt = tilt_of_part(patch.weight_tilt);
+  part.echo_gradient = gradient_of_part(patch.echo_gradient);
+  part.weight_gradient = gradient_of_part(patch.weight_gradient);
   return part;
 }
 
@@ -57,7 +57,7 @@ void ConeBearings::patches_of(int beam, std::vector<EchoPatch>& patches) const {
   const auto b = static_cast<std::size_t>(beam);
   const double port = edges_sine_[b];
   const double starboard = edges_sine_[b + 1];
-  // What lies off the horizontal is heard nearer to the axis.
+  // What lies off the horizontal appears nearer to the axis.
   const double farthest_port = port > 0 ? port / least_cosine_ : port;
   const double farthest_starboard = starboard < 0 ? starboard / least_cosine_ : starboard;
   patches.clear();

@@ -25,7 +25,7 @@ class ConeBearings {
   /// @param columns side by side in any order, within 90 degrees of the axis; they outlive this object
   ConeBearings(const Aperture& aperture, std::vector<PatchColumn> columns);
 
-  /// Replaces `patches` by what beam `beam` hears.
+  /// Replaces `patches` by what beam `beam` receives.
   void patches_of(int beam, std::vector<EchoPatch>& patches) const;
 
  private:

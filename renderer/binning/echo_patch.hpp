@@ -13,8 +13,8 @@ struct EchoPatch {
   float smear_a_m = 0.0F, smear_b_m = 0.0F;  ///< >= 0
   float echo = 0.0F;                         ///< response * solid angle * elevation pattern, steradians
   float weight = 0.0F;                       ///< solid angle * elevation pattern, steradians
-  /// Echo and weight per metre at end a and b are the mean times (1 - tilt) and (1 + tilt).
-  float echo_tilt = 0.0F, weight_tilt = 0.0F;
+  /// Echo and weight per metre at end a and b are the mean times (1 - gradient) and (1 + gradient).
+  float echo_gradient = 0.0F, weight_gradient = 0.0F;
   float tangent_a = 0.0F, tangent_b = 0.0F;  ///< of the elevations of the ends
 };
 

@@ -65,16 +65,16 @@ void add_smeared_step(double from, double smear, double density, double* differe
 void RangeProfile::reset(std::size_t lines, double largest) {
   lines_ = lines;
   difference_.assign(lines + static_cast<std::size_t>(vector_lines), 0.0);
-  if (is_bent_ || bend_.size() != lines) {
-    bend_.assign(lines, 0.0);
-    is_bent_ = false;
+  if (has_slope_ || slope_change_.size() != lines) {
+    slope_change_.assign(lines, 0.0);
+    has_slope_ = false;
   }
   units_ = largest > 0 ? std::exp2(std::floor(std::log2(total_units / largest))) : 1.0;
   open_density_ = 0.0;
 }
 
 void RangeProfile::add(double position_a, float smear_a, double position_b, float smear_b, float amount,
-                       float relative_tilt) {
+                       float relative_gradient) {
   // Two ends become one step where they are the same. The patch then begins where the last one ended, before
   // its spread is taken: moving an end afterwards would change the amount.
   const bool joined = open_density_ != 0.0 && std::abs(open_position_ - position_a) < least_spread &&
@@ -90,8 +90,8 @@ void RangeProfile::add(double position_a, float smear_a, double position_b, floa
   }
   // Negative where the far end comes first: the two steps then change places by themselves.
   const double mean = static_cast<double>(amount) * units_ / spread;
-  const bool tilted = relative_tilt != 0.0F && position_a >= 0 && position_b >= 0;
-  const double change = tilted ? mean * static_cast<double>(relative_tilt) : 0.0;
+  const bool has_gradient = relative_gradient != 0.0F && position_a >= 0 && position_b >= 0;
+  const double change = has_gradient ? mean * static_cast<double>(relative_gradient) : 0.0;
   const double density = rounded(mean - change);
   if (joined) {
     step(position_a, smear_a, density + open_density_);
@@ -102,28 +102,29 @@ void RangeProfile::add(double position_a, float smear_a, double position_b, floa
   open_position_ = position_b;
   open_smear_ = smear_b;
   open_density_ = -density;
-  if (tilted) {
-    open_density_ -= tilt(position_a, position_b, rounded(2 * change / spread));
+  if (has_gradient) {
+    open_density_ -= add_gradient(position_a, position_b, rounded(2 * change / spread));
   }
 }
 
 /// Lets the density rise from one position to the other.
 /// @return by how much, a whole number as everything that is added.
-double RangeProfile::tilt(double from, double to, double slope) {
-  is_bent_ = true;
-  return bend(from, slope) + bend(to, -slope) + slope * (std::floor(to) - std::floor(from));
+double RangeProfile::add_gradient(double from, double to, double slope) {
+  has_slope_ = true;
+  return add_slope_change(from, slope) + add_slope_change(to, -slope) +
+         slope * (std::floor(to) - std::floor(from));
 }
 
 /// From here on the density rises.
 /// @return what the n-th line after that of the position has beside slope * n.
-double RangeProfile::bend(double position, double slope) {
+double RangeProfile::add_slope_change(double position, double slope) {
   const double line = std::floor(position);
   const double left = line + 1 - position;
   const double in_line = rounded(slope * (0.5 * left * left));
   const double in_next = rounded(slope * (left + 0.5));
   const auto add = [&](double at, double amount) {
     if (at < static_cast<double>(lines_)) {
-      bend_[static_cast<std::size_t>(at)] += amount;
+      slope_change_[static_cast<std::size_t>(at)] += amount;
     }
   };
   add(line, in_line);
@@ -203,7 +204,7 @@ void RangeProfile::read(float* lines) const {
     lines[k] = sum > 0 ? static_cast<float>(sum * unit) : 0.0F;
   };
   double sum = 0.0;
-  if (!is_bent_) {
+  if (!has_slope_) {
     for (std::size_t k = 0; k < lines_; ++k) {
       write(k, sum += difference_[k]);
     }
@@ -211,7 +212,7 @@ void RangeProfile::read(float* lines) const {
   }
   double slope = 0.0;
   for (std::size_t k = 0; k < lines_; ++k) {
-    slope += bend_[k];
+    slope += slope_change_[k];
     write(k, sum += difference_[k] + slope);
   }
 }

@@ -18,10 +18,11 @@ class RangeProfile {
   void reset(std::size_t lines, double largest);
 
   /// Adds `amount` spread between two positions in range lines, of which each runs evenly over its smear, and
-  /// tilted (EchoPatch). Positions may lie outside the lines: what falls there is dropped. An amount that
-  /// begins within a thousandth of a line of where the last one ended begins there, so that the two share a
-  /// step. The rise of a tilt is not smeared; it is for spreads above 0.02 lines and no less than the smears.
-  void add(double position_a, float smear_a, double position_b, float smear_b, float amount, float tilt);
+  /// with a gradient (EchoPatch). Positions may lie outside the lines: what falls there is dropped. An amount
+  /// that begins within a thousandth of a line of where the last one ended begins there, so that the two
+  /// share a step. The gradient is not smeared; it is for spreads above 0.02 lines and no less than the
+  /// smears.
+  void add(double position_a, float smear_a, double position_b, float smear_b, float amount, float gradient);
   /// Adds `amount` to the one line it falls into.
   void add_point(double position, float amount);
   /// Adds what the last add() has kept back: an end that the next patch might have continued.
@@ -33,14 +34,14 @@ class RangeProfile {
  private:
   void step(double position, float smear, double density);
   void step_from_before(double from, double smear, double density);
-  double tilt(double from, double to, double slope);
-  double bend(double position, double slope);
+  double add_gradient(double from, double to, double slope);
+  double add_slope_change(double position, double slope);
 
   std::size_t lines_ = 0;
   std::vector<double> difference_;
-  std::vector<double> bend_;  ///< second difference
-  bool is_bent_ = false;      ///< whether that has anything but zeros
-  double units_ = 1.0;        ///< per unit of the amounts
+  std::vector<double> slope_change_;  ///< second difference
+  bool has_slope_ = false;            ///< whether that has anything but zeros
+  double units_ = 1.0;                ///< per unit of the amounts
   // The far end of the last patch. Where the next one begins at the same place the two make one step.
   double open_position_ = 0.0;
   float open_smear_ = 0.0F;

@@ -24,8 +24,8 @@ struct PathLimits {
   bool meshes_mirror = true;  ///< false: only the water surface does
 };
 
-/// A bit of echo and the beam it is heard in. EchoPatch::echo is, as that of what is seen directly, yet to be
-/// multiplied with spreading and absorption of its range.
+/// A part of the echo and the beam that receives it. EchoPatch::echo is, as that of what is seen directly,
+/// yet to be multiplied with spreading and absorption of its range.
 struct BeamPatch {
   int beam;
   EchoPatch patch;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether anything near the sonar is smooth enough to mirror sound: the numeric rule that spares all of
-// multipath where it would not be heard.
+// multipath where it would not show.
 #pragma once
 
 #include <cstddef>
@@ -56,7 +56,7 @@ class MirrorSurvey {
   std::vector<Part> parts_;
 };
 
-/// The same for the water surface, a plane above the sonar.
+/// Whether the water surface, a plane above the sonar, mirrors within range.
 bool water_surface_mirrors(const Mirror& surface, double depth_m, double range_m, double wavelength_m);
 
 }  // namespace sonard::render

@@ -25,7 +25,7 @@ bool is_finite(const EchoPatch& patch) {
 void add(const EchoPatch& patch, double step_m, RangeProfile& profile) {
   const double a = static_cast<double>(patch.range_a_m) / step_m;
   const double b = static_cast<double>(patch.range_b_m) / step_m;
-  if (a == b) {  // a glint is heard in one line, also where two meet
+  if (a == b) {  // a corner reflector echoes in one line, also where two meet
     profile.add_point(a, patch.echo);
     return;
   }
@@ -91,7 +91,7 @@ void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar
   }
   if (limits.meshes_mirror) {
     const GhostPaths::Result of_small_parts = search_small_parts(T_world_sonar, limits);
-    collect_glints(distinct_corners(results, of_small_parts, limits), settings, T_world_sonar, limits);
+    collect_corners(distinct_corners(results, of_small_parts, limits), settings, T_world_sonar, limits);
   }
 }
 
@@ -117,22 +117,23 @@ GhostPaths::Result Multipath::search_small_parts(const Pose& T_world_sonar, cons
   return GhostPaths::search(scene_, *fan_, T_world_sonar, limits, cells);
 }
 
-void Multipath::collect_glints(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
-                               const Pose& T_world_sonar, const PathLimits& limits) {
-  std::vector<CornerGlint> glints(corners.size());
+void Multipath::collect_corners(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
+                                const Pose& T_world_sonar, const PathLimits& limits) {
+  std::vector<CornerReflector> reflectors(corners.size());
   workers_.run(static_cast<int>(corners.size()), [&](int i) {
-    glints[static_cast<std::size_t>(i)] = corner_glint(scene_, corners[static_cast<std::size_t>(i)], limits);
+    reflectors[static_cast<std::size_t>(i)] =
+        corner_reflector(scene_, corners[static_cast<std::size_t>(i)], limits);
   });
   const glm::dquat R_sonar_world = glm::conjugate(T_world_sonar.orientation);
-  for (const CornerGlint& glint : glints) {
-    const glm::dvec3 p = R_sonar_world * glint.position_m;
+  for (const CornerReflector& reflector : reflectors) {
+    const glm::dvec3 p = R_sonar_world * reflector.position_m;
     const double range_m = glm::length(p);
-    if (!(glint.intensity > 0) || !fan_->contains(p)) {
+    if (!(reflector.intensity > 0) || !fan_->contains(p)) {
       continue;
     }
     EchoPatch patch;
     patch.range_a_m = patch.range_b_m = static_cast<float>(range_m);
-    patch.echo = static_cast<float>(glint.intensity * range_m * range_m *
+    patch.echo = static_cast<float>(reflector.intensity * range_m * range_m *
                                     settings.aperture.elevation_weight(std::asin(p.z / range_m)));
     patches_of_beam_[static_cast<std::size_t>(*fan_->beam_of(std::atan2(p.y, p.x)))].push_back(patch);
   }

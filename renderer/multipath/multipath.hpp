@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multipath: ghosts in smooth surfaces and glints of corners, added to the mean echo (docs/physics.md 2.11).
+// Multipath: ghosts in smooth surfaces and corner reflectors, added to the mean echo (docs/physics.md 2.11).
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "renderer/multipath/corner_glints.hpp"
+#include "renderer/multipath/corner_reflectors.hpp"
 #include "renderer/multipath/ghost_paths.hpp"
 #include "renderer/multipath/mirror_survey.hpp"
 #include "renderer/multipath/path_fan.hpp"
@@ -18,8 +18,8 @@
 
 namespace sonard::render {
 
-/// The same on every backend. It traces rays only where something mirrors: a world without mirrors never pays
-/// for search trees.
+/// Does not depend on the backend. It traces rays only where something mirrors: a world without mirrors needs
+/// no search trees.
 class Multipath {
  public:
   /// @param index where the world is moved; it outlives this object.
@@ -37,8 +37,8 @@ class Multipath {
   bool is_needed(const MultipathSettings& settings, double max_range_m, const Pose& T_world_sonar) const;
   void collect(const SonarSettings& settings, const Pose& T_world_sonar, const PathLimits& limits);
   GhostPaths::Result search_small_parts(const Pose& T_world_sonar, const PathLimits& limits) const;
-  void collect_glints(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
-                      const Pose& T_world_sonar, const PathLimits& limits);
+  void collect_corners(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
+                       const Pose& T_world_sonar, const PathLimits& limits);
   void sum(const RangeLines& range, std::vector<float>& echo);
 
   const World& world_;  // of the index: bodies are where they were last moved to

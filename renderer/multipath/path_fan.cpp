@@ -15,17 +15,17 @@ constexpr double highest_row_rad = 0.16 * degree;
 constexpr double low_weight = 0.25;  // of the elevation pattern
 
 /// Where the pattern has fallen to low_weight, between the axis and the end of the fan.
-double well_heard_rad(const Aperture& aperture) {
-  double heard = 0.0;
+double well_ensonified_rad(const Aperture& aperture) {
+  double ensonified = 0.0;
   double end = aperture.elevation_limit_rad();
   if (aperture.elevation_weight(end) >= low_weight) {
     return end;
   }
-  while (end - heard > highest_row_rad) {
-    const double middle = 0.5 * (heard + end);
-    (aperture.elevation_weight(middle) >= low_weight ? heard : end) = middle;
+  while (end - ensonified > highest_row_rad) {
+    const double middle = 0.5 * (ensonified + end);
+    (aperture.elevation_weight(middle) >= low_weight ? ensonified : end) = middle;
   }
-  return heard;
+  return ensonified;
 }
 }  // namespace
 
@@ -69,11 +69,11 @@ PathFan::PathFan(const Aperture& aperture, double coarseness) : aperture_(apertu
     }
   }
   const double limit = aperture.elevation_limit_rad();
-  const double heard = well_heard_rad(aperture);
+  const double ensonified = well_ensonified_rad(aperture);
   const double highest = coarseness * highest_row_rad;
-  add_rows(-limit, -heard, 2 * highest);
-  add_rows(-heard, heard, highest);
-  add_rows(heard, limit, 2 * highest);
+  add_rows(-limit, -ensonified, 2 * highest);
+  add_rows(-ensonified, ensonified, highest);
+  add_rows(ensonified, limit, 2 * highest);
   for (const Row& row : rows_) {
     diagonal_rad_ = std::max(diagonal_rad_, std::hypot(widest, row.height_rad));
   }

@@ -20,7 +20,7 @@ struct FanCell {
   double solid_angle() const;
   glm::dvec3 direction() const;     ///< unit
   glm::dvec3 along_width() const;   ///< by how much it changes from one side of the cell to the other
-  glm::dvec3 along_height() const;  ///< the same, from its lower to its upper end
+  glm::dvec3 along_height() const;  ///< from the lower to the upper end
   /// One of columns x rows parts of the cell.
   FanCell part(int column, int row, int columns, int rows) const;
 };
@@ -42,7 +42,7 @@ class PathFan {
 
   /// The beam of an azimuth; nullopt outside of the fan.
   std::optional<int> beam_of(double azimuth_rad) const;
-  /// Whether sound is sent and heard in this direction, in the sonar frame.
+  /// Whether sound is sent and received in this direction, in the sonar frame.
   bool contains(const glm::dvec3& direction) const;
   const Aperture& aperture() const { return aperture_; }
   double coarseness() const { return coarseness_; }

@@ -27,7 +27,7 @@ struct PathHit {
 };
 
 /// The meshes of the world and above them the water surface, if the world has one and the sonar is below it.
-/// place() comes from one thread while nobody traces.
+/// place() comes from one thread while no other traces.
 class PathScene {
  public:
   /// @param meshes outlives this object.
@@ -42,7 +42,7 @@ class PathScene {
   bool trace(const glm::dvec3& origin_m, const glm::dvec3& normal, const glm::dvec3& direction,
              double farthest_m, PathHit& hit) const;
 
-  /// The same for neighbouring directions from the sonar, which share the work.
+  /// Traces neighbouring directions from the sonar, which share the work.
   /// @param hits where nothing is met, the distance is 0
   using Directions = std::array<glm::dvec3, packet_size>;
   void trace_from_sonar(const Directions& directions, double farthest_m,
@@ -59,7 +59,7 @@ class PathScene {
   double lambert_mu(const PathHit& hit) const {
     return hit.surface == no_part ? 0.0 : surfaces_[hit.surface].lambert_mu;
   }
-  /// False where the facet stands for a piece of a curved surface: its vertex normals are not its own.
+  /// False where the facet stands for part of a curved surface: its vertex normals are not its own.
   bool is_flat(const PathHit& hit) const;
 
  private:

@@ -41,7 +41,7 @@ bool same_echo(const SonarSettings& a, const SonarSettings& b) {
 /// Whether the echo goes with the seed, as errors of elements do.
 bool has_random_array(const SonarSettings& settings) {
   const Aperture& aperture = settings.aperture;
-  return is_heard_by_array(settings) &&
+  return has_array_beams(settings) &&
          (aperture.element_amplitude_sd > 0 || aperture.element_phase_sd_rad > 0);
 }
 

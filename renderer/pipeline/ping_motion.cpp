@@ -28,12 +28,13 @@ std::vector<RangeSpan> range_spans(const Pose& at_transmission, const Pose& at_e
   for (int i = 0; i < count; ++i) {
     const int first = static_cast<int>(static_cast<long long>(lines) * i / count);
     const int end = static_cast<int>(static_cast<long long>(lines) * (i + 1) / count);
-    const double heard = 0.5 * (first + end) / lines;  // middle of the span, as a share of the ping's time
+    const double received = 0.5 * (first + end) / lines;  // middle of the span, as a share of the ping's time
     const glm::dvec3 way = at_end.position_m - at_transmission.position_m;
-    spans.push_back({first,
-                     end,
-                     {at_transmission.position_m + 0.5 * heard * way,
-                      glm::normalize(glm::slerp(at_transmission.orientation, at_end.orientation, heard))}});
+    spans.push_back(
+        {first,
+         end,
+         {at_transmission.position_m + 0.5 * received * way,
+          glm::normalize(glm::slerp(at_transmission.orientation, at_end.orientation, received))}});
   }
   return spans;
 }

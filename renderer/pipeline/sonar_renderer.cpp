@@ -16,8 +16,8 @@
 #include "renderer/multipath/multipath.hpp"
 #include "renderer/pipeline/echo_cache.hpp"
 #include "renderer/pipeline/ping_motion.hpp"
-#include "renderer/scene/ray_bend.hpp"
 #include "renderer/scene/refracted_world.hpp"
+#include "renderer/scene/refraction.hpp"
 #include "renderer/scene/terrain_levels.hpp"
 #include "renderer/spatial_index/spatial_index.hpp"
 #include "renderer/stopwatch.hpp"
@@ -27,7 +27,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int most_native_lines = 65535;  // multibeam heads count them in 16 bits
+constexpr int most_range_bins = 65535;  // multibeam heads count them in 16 bits
 constexpr int most_beams = 4096;
 constexpr double shortest_line_m = 1e-6;
 constexpr double longest_range_m = 1e5;
@@ -35,9 +35,9 @@ constexpr double longest_range_m = 1e5;
 void check(const SonarSettings& settings) {
   check_aperture(settings.aperture);
   const RangeLines& range = settings.range;
-  if (range.count < 1 || range.count > most_native_lines) {
+  if (range.count < 1 || range.count > most_range_bins) {
     throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " +
-                       std::to_string(most_native_lines));
+                       std::to_string(most_range_bins));
   }
   if (!(range.step_m >= shortest_line_m) || !(range.max_range_m() <= longest_range_m)) {
     throw RequestError("range: a line of " + std::to_string(range.step_m) + " m gives no usable range");
@@ -91,7 +91,7 @@ struct SonarRenderer::Impl {
         chosen(make_engine(index, workers, options)),
         multipath(index, workers, options.skip),
         terrain(world, options.skip,
-                ray_curvature_per_m == 0.0 ? 0.0F : bendable_edge_m(world, ray_curvature_per_m)),
+                ray_curvature_per_m == 0.0 ? 0.0F : refractable_edge_m(world, ray_curvature_per_m)),
         receiver(options.skip) {
     for (std::size_t body = 0; body < world.bodies.size(); ++body) {
       body_number[world.bodies[body].name] = body;
@@ -132,11 +132,12 @@ struct SonarRenderer::Impl {
   void bend_rays(const SonarSettings& settings) {
     double bend_per_m = settings.model == Model::physical ? ray_curvature_per_m / 2 : 0.0;
     if (bend_per_m != 0.0 && skip.on(SkipRule::straight_rays) &&
-        !bends_beams(bend_per_m, settings.range.max_range_m(), settings.aperture.vertical_beamwidth_rad)) {
+        !refraction_matters(bend_per_m, settings.range.max_range_m(),
+                            settings.aperture.vertical_beamwidth_rad)) {
       statistics.skipped.add(SkipRule::straight_rays);
       bend_per_m = 0.0;
     }
-    chosen.engine->set_ray_bend(bend_per_m);
+    chosen.engine->set_refraction(bend_per_m);
   }
 
   /// @param settings_and_seed of which the pose is not looked at
@@ -201,8 +202,8 @@ struct SonarRenderer::Impl {
     const glm::dvec3& start_m = motion.T_world_sonar.position_m;
     const double way_m = motion.at_end ? glm::length(motion.at_end->position_m - start_m) : 0.0;
     const std::vector<PartMesh> changes =
-        terrain.look({start_m, settings.range.sampled_range_m() + way_m, settings.range.step_m},
-                     index.world(), workers, statistics.skipped);
+        terrain.refine({start_m, settings.range.sampled_range_m() + way_m, settings.range.step_m},
+                       index.world(), workers, statistics.skipped);
     if (!changes.empty()) {
       index.set_part_meshes(changes);
       chosen.engine->set_part_meshes(changes);
@@ -210,7 +211,7 @@ struct SonarRenderer::Impl {
     statistics.visibility_s += watch.lap();
   }
 
-  /// Every line from the pose of its span. Nothing is blended, so a line is heard whole, and once.
+  /// Every line from the pose of its span. Nothing is blended: each line comes whole, from one span.
   void image_in_spans(const EchoRequest& request, const Pose& at_end, MeanEcho& joined) {
     SonarSettings up_to_end = request.settings;
     const int beams = up_to_end.aperture.beam_count();

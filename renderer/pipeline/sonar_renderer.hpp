@@ -27,7 +27,7 @@ class SonarRenderer {
 
   /// The backend in use: `raster` or `ray`.
   Backend backend() const;
-  /// The same and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
+  /// The backend and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
   const std::string& backend_description() const;
 
   /// Moves a body of the world. @return false when the world has no body of that name.
@@ -44,7 +44,7 @@ class SonarRenderer {
   PingSamples render_ping(const PingRequest& request, int stream = 0);
 
   /// Leaves all that this stream keeps from ping to ping as render_ping() would, for a fraction of its time:
-  /// whoever renders every n-th ping of a run gets the bytes of the whole run.
+  /// rendering every n-th ping of a run gives the bytes of the whole run.
   /// @return false, and nothing has happened, when that depends on the echo: where pulses are shorter than a
   /// line, speckle `ou` goes on only in lines with an echo. Then render_ping() it is.
   /// @throws RequestError

@@ -13,8 +13,8 @@ namespace sonard::render {
 class GridCache {
  public:
   /// Makes the grid that the settings ask for.
-  /// @param may_keep the one that is there will do, if it is the one.
-  /// @return whether it was; else what was made of it is to be made anew.
+  /// @param may_keep the cached grid may be used if it is equal.
+  /// @return whether it was used; otherwise rebuild what was made of it.
   /// @throws RequestError as make_sample_grid()
   bool prepare(const SonarSettings& settings, bool may_keep);
   const SampleGrid& grid() const { return grid_; }

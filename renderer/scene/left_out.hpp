@@ -18,9 +18,9 @@ class LeftOut {
   /// A shape of a kind that is not drawn, "polyline".
   void add_geometry(const std::string& kind, const std::string& path);
 
-  /// "lights (2): sun, lamp": nothing that could be heard.
+  /// "lights (2): sun, lamp": nothing that echoes.
   std::vector<std::string> silent() const { return lines(false); }
-  /// The same of what has a surface, or might have one.
+  /// What has a surface, or might have one, in the same form.
   std::vector<std::string> audible() const { return lines(true); }
 
  private:

@@ -34,7 +34,7 @@ glm::dvec3 area_normal(const std::vector<glm::vec3>& positions, const std::uint3
   return glm::cross(glm::dvec3(positions[corner[1]]) - a, glm::dvec3(positions[corner[2]]) - a);
 }
 
-Verdict judge(const std::vector<glm::vec3>& positions, const std::uint32_t* corner) {
+Verdict verdict_of(const std::vector<glm::vec3>& positions, const std::uint32_t* corner) {
   const glm::vec3& a = positions[corner[0]];
   const glm::vec3& b = positions[corner[1]];
   const glm::vec3& c = positions[corner[2]];
@@ -71,7 +71,7 @@ void check_shape(const TriangleMesh& mesh) {
 void drop_bad_triangles(TriangleMesh& mesh, MeshDiagnostics& diagnostics) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    switch (judge(mesh.positions, &mesh.indices[i])) {
+    switch (verdict_of(mesh.positions, &mesh.indices[i])) {
       case Verdict::degenerate:
         ++diagnostics.degenerate_triangles;
         break;

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/refraction.hpp"
 #include "renderer/scene/tessellation.hpp"
 
 namespace sonard::render {
@@ -32,7 +32,7 @@ double area_m2(const TriangleMesh& mesh) {
 
 }  // namespace
 
-float bendable_edge_m(const World& world, double ray_curvature_per_m) {
+float refractable_edge_m(const World& world, double ray_curvature_per_m) {
   double area = 0;
   for (const Body& body : world.bodies) {
     for (const BodyPart& part : body.parts) {
@@ -46,7 +46,7 @@ float bendable_edge_m(const World& world, double ray_curvature_per_m) {
 namespace {
 
 /// @param T_sonar_part with the axes of the world
-TriangleMesh bent_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, const RayBend& bend) {
+TriangleMesh refracted_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, const Refraction& bend) {
   TriangleMesh bent = mesh;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::vec3 p(T_sonar_part * glm::dvec3(mesh.positions[i]));
@@ -65,8 +65,8 @@ TriangleMesh bent_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, const
 
 }  // namespace
 
-World bendable(const World& world, double ray_curvature_per_m) {
-  const float edge_m = bendable_edge_m(world, ray_curvature_per_m);
+World refractable(const World& world, double ray_curvature_per_m) {
+  const float edge_m = refractable_edge_m(world, ray_curvature_per_m);
   World divided = world;
   std::map<const TriangleMesh*, std::shared_ptr<const TriangleMesh>> meshes;
   for (Body& body : divided.bodies) {
@@ -82,13 +82,13 @@ World bendable(const World& world, double ray_curvature_per_m) {
 }
 
 World refracted_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m) {
-  const RayBend bend{{0.0F, 0.0F, 1.0F}, static_cast<float>(bend_per_m)};
+  const Refraction bend{{0.0F, 0.0F, 1.0F}, static_cast<float>(bend_per_m)};
   World bent = world;
   for (Body& body : bent.bodies) {
     const Pose T_sonar_body{body.T_world_body.position_m - sonar_position_m, body.T_world_body.orientation};
     for (BodyPart& part : body.parts) {
-      part.mesh =
-          std::make_shared<const TriangleMesh>(bent_mesh(*part.mesh, T_sonar_body * part.T_body_part, bend));
+      part.mesh = std::make_shared<const TriangleMesh>(
+          refracted_mesh(*part.mesh, T_sonar_body * part.T_body_part, bend));
       part.T_body_part = {};
     }
     body.T_world_body = {};

@@ -9,17 +9,17 @@
 
 namespace sonard::render {
 
-/// The same world in facets so short that, moved at its corners, none is further than 0.25 mm from where it
+/// The world with facets so short that, moved at their corners, none is further than 0.25 mm from where it
 /// should be: a parabola of curvature k departs from a chord of length L by k L^2 / 8. Where that would take
 /// more than some two million facets they are longer. Meshes that parts share stay shared.
 /// @param ray_curvature_per_m RendererOptions::ray_curvature_per_m, not 0
-World bendable(const World& world, double ray_curvature_per_m);
+World refractable(const World& world, double ray_curvature_per_m);
 
 /// The longest edge in it.
-float bendable_edge_m(const World& world, double ray_curvature_per_m);
+float refractable_edge_m(const World& world, double ray_curvature_per_m);
 
-/// The bodies as they are seen from `sonar_position_m`, see RayBend, at poses without a turn in axes of the
-/// world around the sonar. For methods that cannot move corners themselves.
+/// The bodies as they are seen from `sonar_position_m`, see Refraction, at poses without a turn in axes of
+/// the world around the sonar. For methods that cannot move corners themselves.
 World refracted_world(const World& world, const glm::dvec3& sonar_position_m, double bend_per_m);
 
 }  // namespace sonard::render

@@ -100,8 +100,7 @@ class WorldBuilder {
       add_body(*root.Model());
     }
     if (world_.triangle_count() == 0) {
-      throw WorldError(
-          fmt::format("{}: the world has no triangles: there is nothing to hear", file_.string()));
+      throw WorldError(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
     }
     drop_repeated_warnings();
     tell_what_is_left_out(root.Element());

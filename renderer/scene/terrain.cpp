@@ -54,7 +54,7 @@ glm::vec3 Terrain::position(int x, int y) const {
 }
 
 /// Of the mean slope over a step to either side, or to one at the rim of the map: what a coarse level leaves
-/// out tilts no echo.
+/// out does not turn its normals.
 glm::vec3 Terrain::normal(int x, int y, int step_px) const {
   const int west = std::max(x - step_px, 0), east = std::min(x + step_px, picture_.width_px - 1);
   const int south = std::max(y - step_px, 0), north = std::min(y + step_px, picture_.height_px - 1);

@@ -82,8 +82,8 @@ TerrainLevels::Drawn TerrainLevels::detail_of(const Ground& ground, std::size_t 
                      shared(tile + columns < ground.level.size(), tile + columns)}};
 }
 
-std::vector<PartMesh> TerrainLevels::look(const TerrainView& view, const World& world, WorkerPool& workers,
-                                          SkipCounts& skipped) {
+std::vector<PartMesh> TerrainLevels::refine(const TerrainView& view, const World& world, WorkerPool& workers,
+                                            SkipCounts& skipped) {
   for (Ground& ground : grounds_) {
     measure(ground, view, world.bodies[ground.body].T_world_body);
   }

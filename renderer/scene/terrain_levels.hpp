@@ -25,8 +25,7 @@ struct TerrainView {
   double line_m = 0.0;
 };
 
-/// Keeps what every tile was last drawn with. What it chooses depends on the view alone, never on those
-/// before.
+/// Keeps the mesh of every tile. The choice depends on the view alone, not on earlier ones.
 class TerrainLevels {
  public:
   /// @param longest_edge_m of any triangle, where rays bend; 0: as they are.
@@ -34,8 +33,8 @@ class TerrainLevels {
 
   /// @param world the one it was made of, with its bodies where they are now.
   /// @return what has changed since the last call. SkipRule::terrain_detail counts triangles.
-  std::vector<PartMesh> look(const TerrainView& view, const World& world, WorkerPool& workers,
-                             SkipCounts& skipped);
+  std::vector<PartMesh> refine(const TerrainView& view, const World& world, WorkerPool& workers,
+                               SkipCounts& skipped);
 
  private:
   using Drawn = std::optional<TileDetail>;  ///< nullopt: not at all
@@ -49,7 +48,7 @@ class TerrainLevels {
     std::vector<int> level;
   };
   using MeshKey = std::tuple<std::size_t, std::size_t, int, std::array<int, 4>>;  ///< terrain, tile, detail
-  /// For as long as a sampler keeps them.
+  /// Meshes made so far, as long as a sampler keeps them.
   using Made = std::map<MeshKey, std::weak_ptr<const TriangleMesh>>;
   struct Change {
     std::size_t ground;

@@ -71,7 +71,7 @@ struct BodyPart {
   std::shared_ptr<const NormalMap> normal_map;  ///< null when the surface is smooth
 };
 
-/// What a part looks like from now on. Parts are counted through all bodies in the order of the world.
+/// The new mesh of a part. Parts are counted through all bodies in the order of the world.
 struct PartMesh {
   std::size_t part;
   std::shared_ptr<const TriangleMesh> mesh;  ///< may be without triangles; never null
@@ -120,13 +120,13 @@ struct World {
   MeshDiagnostics diagnostics;
   std::vector<WorldSonar> sonars;
   std::vector<std::string> warnings;  ///< one line each, naming the file
-  /// What the file has that no sonar hears ("lights (2): sun, lamp"), a line for each kind.
+  /// What the file has that gives no echo ("lights (2): sun, lamp"), a line for each kind.
   std::vector<std::string> left_out;
 
   /// Tiles of terrains as they are here.
   std::size_t triangle_count() const;
   bool is_terrain(std::size_t body, std::size_t part_of_body) const;
-  /// Of all bodies.
+  /// Number of parts of all bodies.
   std::size_t part_count() const;
   /// Null when no body has this name.
   const Body* find_body(const std::string& body_name) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The world in search trees, for whoever asks what a ray meets.
+// The world in search trees, to find what a ray meets.
 #pragma once
 
 #include <array>
@@ -26,11 +26,12 @@ struct SurfaceHit {
 };
 
 /// The world as it is now, and over it Embree's trees: one per mesh and, above them, one over the parts. They
-/// are built when place() is called for the first time, so whoever never traces never pays for them.
+/// are built when place() is called for the first time, so that a program that never traces never builds
+/// them.
 ///
 /// Rays and normals are in world axes with the sonar at the origin: world positions are subtracted in double,
 /// once per part and place, and the boxes of things that stand upright in the world stay tight however the
-/// sonar turns. place() and what changes the world come from one thread while nobody traces; all that is
+/// sonar turns. place() and what changes the world come from one thread while no other traces; all that is
 /// const may be called from any number of threads.
 class SpatialIndex {
  public:
@@ -67,7 +68,7 @@ class SpatialIndex {
   /// @param back_faces false: rays pass through triangles that they meet from behind.
   void trace(const RayPacket& rays, float max_depth, bool back_faces, RayHits& hits) const;
 
-  /// The same for rays of unit length, with normals in world axes.
+  /// Traces rays of unit length, with normals in world axes.
   /// @param hits of a ray that meets nothing, the part is no_part
   void trace(const RayPacket& rays, float farthest_m, std::array<SurfaceHit, packet_size>& hits) const;
 

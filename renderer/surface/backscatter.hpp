@@ -39,7 +39,7 @@ struct Backscatter {
   /// Echo per solid angle at unit range, s_b / cos phi, of the Lambert part.
   float lambert(float cosine) const { return lambert_mu * cosine; }
 
-  /// The same of the facets.
+  /// The response of the facets.
   /// @param added_variance of the slopes of a normal map, to be added to m^2
   float facets(float cosine, float added_variance = 0.0F) const {
     constexpr float as_good_as_none = 80.0F;  // exp(-80); keeps 0 / 0 out at grazing incidence

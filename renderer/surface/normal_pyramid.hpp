@@ -33,7 +33,7 @@ struct NormalPyramid {
   std::vector<Texel> texels;  ///< level after level, row 0 at v = 0
 
   explicit NormalPyramid(const NormalMap& map);
-  /// Of a surface without bumps; no map of 8 bits can say that exactly.
+  /// The pyramid of a surface without bumps, which no map of 8 bits can express exactly.
   static NormalPyramid straight();
 
   /// Mean normal around `uv` (repeated beyond [0, 1]) over 2^level texels, linear between texels and between

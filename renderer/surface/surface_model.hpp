@@ -38,7 +38,8 @@ inline float paper_response(const SurfaceModel& model, float reflectance, float 
 /// The model that the settings ask for. SkipRule::facet_kernel leaves weak facets out.
 SurfaceModel surface_model(const SonarSettings& settings, const SkipSwitches& skip);
 
-/// Of all surfaces of a world, in either model: mu <= 1/pi, and the sigmoid is at most 1.
+/// The largest response of all surfaces of a world, in either model: mu <= 1/pi, and the sigmoid is at
+/// most 1.
 float largest_response(const World& world);
 
 }  // namespace sonard::render

@@ -47,7 +47,7 @@ std::vector<PlannedReceiver> receivers() {
       {1000, "receiver_frozen_ms", many,
        [](PhysicalModel& model) { model.speckle = PhysicalModel::Speckle::frozen; }},
       {1000, "receiver_with_texture_ms", many, [](PhysicalModel& model) { model.texture_nu = 1; }},
-      {1000, "receiver_with_range_grain_ms", many,
+      {1000, "receiver_with_range_correlation_ms", many,
        [](PhysicalModel& model) {
          model.pulse = PhysicalModel::Pulse::tone;
          model.range_cell_m = 0.025;  // three lines

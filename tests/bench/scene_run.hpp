@@ -30,7 +30,7 @@ class SceneRun {
   /// the reference where there is one, and with itself (`repeatable`).
   void measure(const Point& point, const Reference* reference, const Repetition& repetition);
 
-  /// Times the whole `physical` receiver on `lines` native lines as `metric`.
+  /// Times the whole `physical` receiver on `lines` range bins as `metric`.
   /// @param change of the default settings
   void measure_receiver(const Point& point, int lines, const std::string& metric,
                         const Repetition& repetition,

@@ -13,7 +13,7 @@ namespace sonard::oracle {
 /// Bounding volume hierarchy, split by the surface area heuristic. As all rays start at the origin, a ray
 /// meets triangle ABC when it lies on one side of the three planes through the origin and its edges:
 /// d.(A x B), d.(B x C), d.(C x A) have one sign. A x B and B x A are negatives of each other to the last
-/// bit, so two triangles at one edge judge it alike and no ray slips between them.
+/// bit, so two triangles at one edge treat it alike and no ray slips between them.
 /// Keeps a reference to the facets. Of two facets at the same range the one with the lower index is hit.
 class Bvh : public Surface {
  public:

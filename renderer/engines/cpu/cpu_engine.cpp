@@ -15,8 +15,9 @@ namespace {
 
 std::unique_ptr<SpatialIndex> bendable_index(const World& world, WorkerPool& workers,
                                              double curvature_per_m) {
-  return curvature_per_m == 0.0 ? nullptr
-                                : std::make_unique<SpatialIndex>(bendable(world, curvature_per_m), workers);
+  return curvature_per_m == 0.0
+             ? nullptr
+             : std::make_unique<SpatialIndex>(refractable(world, curvature_per_m), workers);
 }
 
 /// Facets that were divided so that they bend with the rays are not to be merged again.
@@ -34,7 +35,7 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
     accuracy.first_in_five = true;
     accuracy.disagreement = 2.5e-2F;
     accuracy.shift_lines = 1.0F;
-    accuracy.bow_lines = 3e-3F;
+    accuracy.sagitta_lines = 3e-3F;
     accuracy.linearity = 0.15F;
     accuracy.change = 0.05F;
     accuracy.mapped_lines = 4.0F;
@@ -44,7 +45,7 @@ SliceAccuracy slice_accuracy(const SonarSettings& settings) {
     accuracy.slices_per_beam = 9;
     accuracy.disagreement = 1e-4F;
     accuracy.shift_lines = 0.02F;
-    accuracy.bow_lines = 5e-5F;
+    accuracy.sagitta_lines = 5e-5F;
     accuracy.linearity = 0.005F;
     accuracy.change = 0.001F;
     accuracy.facet_slopes = 0.03F;
@@ -78,9 +79,9 @@ void CpuEngine::set_part_meshes(std::span<const PartMesh> changes) {
   }
 }
 
-void CpuEngine::set_ray_bend(double bend_per_m) {
-  slices_.set_ray_bend(bend_per_m);
-  rays_.set_ray_bend(bend_per_m);
+void CpuEngine::set_refraction(double bend_per_m) {
+  slices_.set_refraction(bend_per_m);
+  rays_.set_refraction(bend_per_m);
 }
 
 void CpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {

@@ -33,16 +33,16 @@ inline float facets(float c2, float strength, float variance) {
 
 }  // namespace
 
-void FacetArrays::lay_out(const std::vector<VisiblePiece>& pieces, const std::vector<PartSurface>& parts,
+void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std::vector<PartSurface>& parts,
                           bool everywhere) {
-  if (pieces.size() > heard_.size()) {
-    for (auto* array : {&strength_, &variance_, &least_cosine_, &heard_, &slopes_per_t_, &slopes_across_,
-                        &mean_, &moment_, &rise_}) {
-      array->resize(pieces.size() + pieces.size() / 2);
+  if (visible.size() > responds_.size()) {
+    for (auto* array : {&strength_, &variance_, &least_cosine_, &responds_, &slopes_per_t_, &slopes_across_,
+                        &mean_, &moment_, &gradient_}) {
+      array->resize(visible.size() + visible.size() / 2);
     }
   }
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const PartSurface& part = parts[pieces[i].triangle->part];
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    const PartSurface& part = parts[visible[i].triangle->part];
     const bool never = part.normal_map || (!everywhere && !(part.backscatter.facet_strength > 0));
     strength_[i] = never ? 0.0F : part.backscatter.facet_strength;
     variance_[i] = std::min(part.backscatter.slope_variance, Backscatter::widest_variance);
@@ -51,20 +51,20 @@ void FacetArrays::lay_out(const std::vector<VisiblePiece>& pieces, const std::ve
 }
 
 /// From how direction d and normal n, both of unit length, change in the middle: off a mirror they differ by
-/// d - n or d + n. Incidences up to half of the turn away are heard too: cos(phi - a) <= cos phi + a sin phi.
+/// d - n or d + n. Incidences up to half of the turn away respond too: cos(phi - a) <= cos phi + a sin phi.
 SONARD_SIMD_CLONES
-void FacetArrays::find_turns(const PieceArrays& pieces, const NormalArrays& normals, float width_rad) {
-  const float* __restrict low = pieces.low.data();
-  const float* __restrict high = pieces.high.data();
+void FacetArrays::find_turns(const VisibleArrays& visible, const NormalArrays& normals, float width_rad) {
+  const float* __restrict low = visible.low.data();
+  const float* __restrict high = visible.high.data();
   const float* __restrict at_h = normals.at_h.data(), * __restrict at_s = normals.at_s.data(), * __restrict at_z = normals.at_z.data();
   const float* __restrict x_h = normals.h_per_x.data(), * __restrict x_s = normals.s_per_x.data(), * __restrict x_z = normals.z_per_x.data();
   const float* __restrict t_h = normals.h_per_t.data(), * __restrict t_s = normals.s_per_t.data(), * __restrict t_z = normals.z_per_t.data();
   const float* __restrict variance = variance_.data();
   const float* __restrict least_cosine = least_cosine_.data();
-  float* __restrict heard = heard_.data();
+  float* __restrict responds = responds_.data();
   float* __restrict slopes_per_t = slopes_per_t_.data();
   float* __restrict slopes_across = slopes_across_.data();
-  for (std::size_t i = 0; i < pieces.count; ++i) {
+  for (std::size_t i = 0; i < visible.count; ++i) {
     const float t = 0.5F * (low[i] + high[i]);
     const float n_h = at_h[i] + t_h[i] * t, n_s = at_s[i] + t_s[i] * t, n_z = at_z[i] + t_z[i] * t;
     const float per_d = 1 / std::sqrt(1 + t * t);
@@ -92,14 +92,14 @@ void FacetArrays::find_turns(const PieceArrays& pieces, const NormalArrays& norm
     const float sine2 = 1 - cosine * cosine;
     const float sine = std::sqrt(sine2 > 0 ? sine2 : 0.0F);
     const float half_turn = 0.5F * (along * (high[i] - low[i]) + across);
-    heard[i] = cosine + half_turn * sine > least_cosine[i] ? 1.0F : 0.0F;
+    responds[i] = cosine + half_turn * sine > least_cosine[i] ? 1.0F : 0.0F;
   }
 }
 
 SONARD_SIMD_CLONES
-void FacetArrays::hear(const PieceArrays& pieces, const NormalArrays& normals, float width_rad) {
-  const float* __restrict low = pieces.low.data();
-  const float* __restrict high = pieces.high.data();
+void FacetArrays::respond(const VisibleArrays& visible, const NormalArrays& normals, float width_rad) {
+  const float* __restrict low = visible.low.data();
+  const float* __restrict high = visible.high.data();
   const float* __restrict at_h = normals.at_h.data(), * __restrict at_s = normals.at_s.data(), * __restrict at_z = normals.at_z.data();
   const float* __restrict x_h = normals.h_per_x.data(), * __restrict x_s = normals.s_per_x.data(), * __restrict x_z = normals.z_per_x.data();
   const float* __restrict t_h = normals.h_per_t.data(), * __restrict t_s = normals.s_per_t.data(), * __restrict t_z = normals.z_per_t.data();
@@ -107,12 +107,12 @@ void FacetArrays::hear(const PieceArrays& pieces, const NormalArrays& normals, f
   const float* __restrict variance = variance_.data();
   float* __restrict mean = mean_.data();
   float* __restrict moment = moment_.data();
-  float* __restrict rise = rise_.data();
+  float* __restrict gradient = gradient_.data();
   // Gauss and Legendre's three points across, Simpson's along.
   constexpr float place = 0.38729833F, beside = 5.0F / 18, at_middle = 8.0F / 18;
   const float x = place * width_rad;
-  for (std::size_t i = 0; i < pieces.count; ++i) {
-    const auto look = [&](float off, float t) __attribute__((always_inline)) {
+  for (std::size_t i = 0; i < visible.count; ++i) {
+    const auto sample = [&](float off, float t) __attribute__((always_inline)) {
       const float n_h = at_h[i] + x_h[i] * off + t_h[i] * t;
       const float n_s = at_s[i] + x_s[i] * off + t_s[i] * t;
       const float n_z = at_z[i] + x_z[i] * off + t_z[i] * t;
@@ -121,15 +121,15 @@ void FacetArrays::hear(const PieceArrays& pieces, const NormalArrays& normals, f
       return facets(c2, strength[i], variance[i]);
     };
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
-    const float port1 = look(x, t1), port_m = look(x, tm), port2 = look(x, t2);
-    const float starboard1 = look(-x, t1), starboard_m = look(-x, tm), starboard2 = look(-x, t2);
-    const float mean1 = beside * (port1 + starboard1) + at_middle * look(0.0F, t1);
-    const float mean_m = beside * (port_m + starboard_m) + at_middle * look(0.0F, tm);
-    const float mean2 = beside * (port2 + starboard2) + at_middle * look(0.0F, t2);
+    const float port1 = sample(x, t1), port_m = sample(x, tm), port2 = sample(x, t2);
+    const float starboard1 = sample(-x, t1), starboard_m = sample(-x, tm), starboard2 = sample(-x, t2);
+    const float mean1 = beside * (port1 + starboard1) + at_middle * sample(0.0F, t1);
+    const float mean_m = beside * (port_m + starboard_m) + at_middle * sample(0.0F, tm);
+    const float mean2 = beside * (port2 + starboard2) + at_middle * sample(0.0F, t2);
     mean[i] = (mean1 + 4 * mean_m + mean2) * (1.0F / 6);
     moment[i] = beside * place * (1.0F / 6) *
                 ((port1 - starboard1) + 4 * (port_m - starboard_m) + (port2 - starboard2));
-    rise[i] = mean2 - mean1;
+    gradient[i] = mean2 - mean1;
   }
 }
 

@@ -48,7 +48,7 @@ void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Cor
 }
 
 /// Moves the vertices to where they are seen.
-void bend_corners(const RayBend& bend, std::uint32_t count, Corners& at) {
+void refract_corners(const Refraction& bend, std::uint32_t count, Corners& at) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 p = bend.point({at.x[i], at.y[i], at.z[i]});
     at.x[i] = p.x;
@@ -61,7 +61,7 @@ void bend_corners(const RayBend& bend, std::uint32_t count, Corners& at) {
 }
 
 /// Whether a cluster is wholly out of the fan, wherever its rays bend to.
-bool is_out(const Fan& fan, const RayBend& bend, const PlacedPart& part,
+bool is_out(const Fan& fan, const Refraction& bend, const PlacedPart& part,
             const MeshClusters::Cluster& cluster) {
   const glm::vec3 centre = part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m;
   return bend.straight()
@@ -71,7 +71,7 @@ bool is_out(const Fan& fan, const RayBend& bend, const PlacedPart& part,
 
 /// Whether all of a cluster lies to one side of the fan, by less than half a turn.
 SONARD_SIMD_CLONES
-bool lies_aside(const Fan& fan, std::uint32_t count, const Corners& at) {
+bool lies_outside(const Fan& fan, std::uint32_t count, const Corners& at) {
   const auto port = static_cast<float>(fan.edge_rad(0)) + azimuth_error_rad;
   const auto starboard = static_cast<float>(fan.edge_rad(fan.beam_count())) - azimuth_error_rad;
   const float* __restrict azimuth = at.azimuth.data();
@@ -159,7 +159,7 @@ std::uint64_t FanTriangles::clusters_culled() const {
   return culled;
 }
 
-void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend,
+void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend,
                         WorkerPool& workers, bool cull) {
   cull_ = cull;
   part_starts_.assign(1, 0);
@@ -183,7 +183,7 @@ void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, co
   workers.run(share_count, [&](int job) { list(shares_[static_cast<std::size_t>(job)]); });
 }
 
-void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend,
+void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend,
                            std::size_t begin, std::size_t end, Share& share) const {
   Corners at;
   Bounds bounds;
@@ -201,9 +201,9 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     }
     transform(part, cluster, at);
     if (!bend.straight()) {
-      bend_corners(bend, cluster.vertex_count, at);
+      refract_corners(bend, cluster.vertex_count, at);
     }
-    if (lies_aside(fan, cluster.vertex_count, at) && cull_) {
+    if (lies_outside(fan, cluster.vertex_count, at) && cull_) {
       ++share.culled;
       continue;
     }

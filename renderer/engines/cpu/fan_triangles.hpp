@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles of the world each beam has to look at.
+// The triangles of the world that may lie in each beam.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 #include "renderer/engines/cpu/fan.hpp"
 #include "renderer/engines/cpu/mesh_clusters.hpp"
-#include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/refraction.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -54,8 +54,8 @@ struct ListedTriangle {
 class FanTriangles {
  public:
   /// Lists are the same for any number of threads.
-  /// @param cull false: no cluster is dropped, all their triangles are looked at.
-  void find(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend, WorkerPool& workers,
+  /// @param cull false: no cluster is dropped, all their triangles are tested.
+  void find(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend, WorkerPool& workers,
             bool cull = true);
 
   /// In the order of the world, which decides between surfaces in the same place.
@@ -76,8 +76,8 @@ class FanTriangles {
     void add(const FanTriangle& triangle, Fan::BeamRange range);
   };
 
-  void collect(const std::vector<PlacedPart>& parts, const Fan& fan, const RayBend& bend, std::size_t begin,
-               std::size_t end, Share& share) const;
+  void collect(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend,
+               std::size_t begin, std::size_t end, Share& share) const;
   static void add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
                   Share& share);
   void make_room_for_lists(std::size_t beams);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals that shade pieces, as arrays, because loops over them are vectorised.
+// Normals that shade segments, as arrays, because loops over them are vectorised.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace sonard::render {
 
-/// What NormalRun says of each piece, an array for each number. Arrays never shrink: they may be longer than
-/// there are pieces.
+/// What NormalRun says of each segment, an array for each number. Arrays never shrink: they may be longer
+/// than there are segments.
 struct NormalArrays {
   std::vector<float> at_h, at_s, at_z;  ///< NormalRun::at
   std::vector<float> h_per_x, s_per_x, z_per_x, h_per_t, s_per_t, z_per_t;
 
-  /// @param original of each piece, which of `runs` is its own
+  /// @param original of each segment, which of `runs` is its own
   void lay_out(const std::vector<NormalRun>& runs, const std::vector<std::uint32_t>& original);
 };
 

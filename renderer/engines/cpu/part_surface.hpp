@@ -6,7 +6,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/refraction.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/surface/backscatter.hpp"
 #include "renderer/surface/normal_pyramid.hpp"
@@ -22,7 +22,7 @@ struct PartSurface {
   float reflectance = 0.0F;
   // For this ping:
   glm::mat3 R_part_sonar{1.0F};
-  RayBend bend_in_part;  ///< `up` in the axes of the part
+  Refraction refraction_in_part;  ///< `up` in the axes of the part
 };
 
 }  // namespace sonard::render

@@ -135,9 +135,9 @@ std::vector<const SurfaceSample*> RaySampler::sample(const Pose& T_world_sonar, 
     index_.place(T_world_sonar.position_m);
     trace_tiles(index_, surface, static_cast<float>(max_range_m));
   } else {
-    SpatialIndex bent(refracted_world(index_.world(), T_world_sonar.position_m, bend_per_m_), workers_);
-    bent.place(glm::dvec3(0.0));
-    trace_tiles(bent, surface, static_cast<float>(max_range_m));
+    SpatialIndex refracted(refracted_world(index_.world(), T_world_sonar.position_m, bend_per_m_), workers_);
+    refracted.place(glm::dvec3(0.0));
+    trace_tiles(refracted, surface, static_cast<float>(max_range_m));
   }
   std::vector<const SurfaceSample*> samples;
   for (const View& view : views_) {

@@ -19,7 +19,7 @@ namespace sonard::render {
 class RaySampler {
  public:
   /// @param index where the world is moved; it outlives the sampler.
-  /// @param workers outlives the sampler; nobody else uses it during a call.
+  /// @param workers outlives the sampler; used by no one else during a call.
   RaySampler(SpatialIndex& index, WorkerPool& workers);
 
   /// The samples of view i, row after row as SubView orders them. They stay valid until the next call.
@@ -27,9 +27,9 @@ class RaySampler {
   /// @throws RendererError when Embree fails or runs out of memory.
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m);
-  /// As of EchoEngine. The trees of the world are made anew for every ping then: several times the cost of a
-  /// ping.
-  void set_ray_bend(double bend_per_m) { bend_per_m_ = bend_per_m; }
+  /// See EchoEngine. With refraction the trees of the world are rebuilt for every ping: several times the
+  /// cost of a ping.
+  void set_refraction(double bend_per_m) { bend_per_m_ = bend_per_m; }
 
  private:
   /// Patch of packet_side x packet_side pixels, cut at the sides of the view.

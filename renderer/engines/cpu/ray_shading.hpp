@@ -21,7 +21,7 @@ struct alignas(64) SurfacePacket {
   Lanes<float> depth;  ///< 0: nothing up to the depth asked for
   /// Geometric normal in world axes, neither of unit length nor turned towards the sonar.
   Lanes<float> normal_x, normal_y, normal_z;
-  Lanes<float> response;  ///< as of SurfaceModel; may be not a number
+  Lanes<float> response;  ///< see SurfaceModel; may be not a number
 };
 
 /// Shades what rays meet of one part.

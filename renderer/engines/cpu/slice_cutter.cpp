@@ -236,8 +236,8 @@ bool SliceCutter::misses_thin_thing(const Slice& slice) const {
 }
 
 void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
-  for (auto* array : {&segments.low, &segments.high, &segments.w_at_0, &segments.w_slope, &segments.low_drift,
-                      &segments.high_drift, &segments.low_reach, &segments.high_reach}) {
+  for (auto* array : {&segments.low, &segments.high, &segments.w_at_0, &segments.w_slope, &segments.low_slope,
+                      &segments.high_slope, &segments.low_reach, &segments.high_reach}) {
     array->resize(padded_);
   }
   segments.kept.resize(padded_ + 1);
@@ -272,8 +272,8 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
   float* __restrict high = segments.high.data();
   float* __restrict at_0 = segments.w_at_0.data();
   float* __restrict slope = segments.w_slope.data();
-  float* __restrict low_drift = segments.low_drift.data();
-  float* __restrict high_drift = segments.high_drift.data();
+  float* __restrict low_slope = segments.low_slope.data();
+  float* __restrict high_slope = segments.high_slope.data();
   float* __restrict low_reach = segments.low_reach.data();
   float* __restrict high_reach = segments.high_reach.data();
   std::int32_t* __restrict fate = fate_.data();
@@ -308,8 +308,8 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
     high[i] = b;
     slope[i] = steepness;
     at_0[i] = wa - steepness * a;
-    low_drift[i] = p_low ? mp : mq;
-    high_drift[i] = p_low ? mq : mp;
+    low_slope[i] = p_low ? mp : mq;
+    high_slope[i] = p_low ? mq : mp;
     const float reach_a = p_low ? fp : fq, reach_b = p_low ? fq : fp;
     low_reach[i] = reach_a < 0 ? -reach_a : reach_a;
     high_reach[i] = reach_b < 0 ? -reach_b : reach_b;
@@ -364,7 +364,7 @@ void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i
   segments.high[i] = static_cast<float>(b);
   segments.w_slope[i] = static_cast<float>(steepness);
   segments.w_at_0[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
-  segments.low_drift[i] = segments.high_drift[i] = 0.0F;
+  segments.low_slope[i] = segments.high_slope[i] = 0.0F;
   segments.low_reach[i] = segments.high_reach[i] = 0.0F;
   fate_[i] = kept;
 }

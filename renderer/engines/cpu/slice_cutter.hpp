@@ -29,7 +29,7 @@ struct Slice {
 };
 
 /// Neighbouring slices are compared at so many t, evenly spaced over the elevation of the fan; the first and
-/// the last lie just inside its limits, where a beam that hears little hears it.
+/// the last lie just inside its limits, where a beam that receives little receives it.
 inline constexpr int side_probes = 256;
 inline constexpr double probe_reach = 0.999;  ///< of the tangent of the limit
 
@@ -42,20 +42,20 @@ struct UprightEdge {
   ProbeSet probes;  ///< at which it does
 };
 
-/// Of a segment, in radians of elevation: a shorter one says nothing of the slope of its surface, and is left
-/// out.
+/// Shortest segment, in radians of elevation: a shorter one says nothing of the slope of its surface and is
+/// left out.
 inline constexpr float shortest_rad = 1e-6F;
 
-/// How the end of a piece moves beside the slice, as the edge runs of which it is a point.
+/// How the end of a segment moves beside the slice, as the edge runs of which it is a point.
 struct EdgeRun {
-  float drift = 0.0F;  ///< dt / d azimuth
+  float slope = 0.0F;  ///< dt / d azimuth
   float reach = 0.0F;  ///< the edge ends after so much of t: within a wedge it moves no farther
 
-  /// As a straight line over a wedge of the fan. An end at `t` that drifts out of the fan stops there.
-  float drift_within(float t, float width_rad, float tan_limit) const {
+  /// The slope of a straight line over a wedge of the fan. An end at `t` that leaves the fan stops there.
+  float slope_within(float t, float width_rad, float tan_limit) const {
     const float rest = (tan_limit - (t < 0 ? -t : t)) * 2;
     const float most = (reach < rest ? reach : rest) / width_rad;
-    return drift > most ? most : (drift < -most ? -most : drift);
+    return slope > most ? most : (slope < -most ? -most : slope);
   }
 };
 
@@ -65,10 +65,10 @@ struct Segments {
   std::vector<std::int32_t> kept;
   std::vector<float> low, high;                                     ///< t at the two ends; low < high
   std::vector<float> w_at_0, w_slope;                               ///< 1 / h = w_at_0 + w_slope * t
-  std::vector<float> low_drift, high_drift, low_reach, high_reach;  ///< see EdgeRun
+  std::vector<float> low_slope, high_slope, low_reach, high_reach;  ///< see EdgeRun
 
-  EdgeRun low_run(std::size_t segment) const { return {low_drift[segment], low_reach[segment]}; }
-  EdgeRun high_run(std::size_t segment) const { return {high_drift[segment], high_reach[segment]}; }
+  EdgeRun low_run(std::size_t segment) const { return {low_slope[segment], low_reach[segment]}; }
+  EdgeRun high_run(std::size_t segment) const { return {high_slope[segment], high_reach[segment]}; }
   float w(int segment, float t) const {
     const auto s = static_cast<std::size_t>(segment);
     return w_at_0[s] + w_slope[s] * t;
@@ -91,7 +91,8 @@ class SliceCutter {
   /// not to its middle: the slice misses all of it.
   bool misses_thin_thing(const Slice& slice) const;
 
-  /// Those well inside the wedge, from port to starboard, but for the lowest if they are many.
+  /// Finds the upright edges well inside the wedge, from port to starboard; the highest ones if there are
+  /// many.
   void find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const;
 
   const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }

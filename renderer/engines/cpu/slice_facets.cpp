@@ -37,7 +37,7 @@ float FacetSight::range_slope(float t, float place) const {
 }
 
 FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
-  constexpr float even = 0.05F, nearly_even = 0.5F, looked_over = 2.5F;  // in rms slopes
+  constexpr float even = 0.05F, nearly_even = 0.5F, per_stride = 2.5F;  // in rms slopes
   constexpr float most_strides = 32.0F;
   const float middle = 0.5F * (wedge.from + wedge.to), width = wedge.to - wedge.from;
   const float slopes = slopes_across_ * width;
@@ -45,7 +45,7 @@ FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
     return {backscatter_.facets(cosine(middle * width_rad_, t)), 0.0F};
   }
   FacetResponse sum;
-  const auto look = [&](float place, float weight) {
+  const auto sample = [&](float place, float weight) {
     const float echo = weight * backscatter_.facets(cosine((middle + place) * width_rad_, t));
     sum.mean += echo;
     sum.moment += echo * place;
@@ -53,24 +53,25 @@ FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
   // Gauss and Legendre's two points, or three on each stride over which a bell is a smooth thing.
   if (slopes < nearly_even) {
     constexpr float off = 0.28867513F;
-    look(-off * width, 0.5F);
-    look(off * width, 0.5F);
+    sample(-off * width, 0.5F);
+    sample(off * width, 0.5F);
     return sum;
   }
   constexpr float off = 0.38729833F, at_middle = 8.0F / 18, beside = 5.0F / 18;
-  const float strides = std::clamp(std::ceil(slopes / looked_over), 1.0F, most_strides);
+  const float strides = std::clamp(std::ceil(slopes / per_stride), 1.0F, most_strides);
   for (float k = 0.5F; k < strides; ++k) {
     const float place = width * (k / strides - 0.5F), step = width / strides;
-    look(place - off * step, beside / strides);
-    look(place, at_middle / strides);
-    look(place + off * step, beside / strides);
+    sample(place - off * step, beside / strides);
+    sample(place, at_middle / strides);
+    sample(place + off * step, beside / strides);
   }
   return sum;
 }
 
-PieceFacets facets_of_piece(const FacetSight& sight, const VisiblePiece& piece, const WedgePart& wedge) {
-  const FacetResponse low = sight.response(piece.low, wedge), high = sight.response(piece.high, wedge);
-  const FacetResponse middle = sight.response(0.5F * (piece.low + piece.high), wedge);
+SegmentFacets facets_of_segment(const FacetSight& sight, const VisibleSegment& segment,
+                                const WedgePart& wedge) {
+  const FacetResponse low = sight.response(segment.low, wedge), high = sight.response(segment.high, wedge);
+  const FacetResponse middle = sight.response(0.5F * (segment.low + segment.high), wedge);
   return {(low.mean + 4 * middle.mean + high.mean) * (1.0F / 6),
           (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6), high.mean - low.mean};
 }

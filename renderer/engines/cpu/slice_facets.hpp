@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the facets of a surface are heard over one piece of a slice, and across the wedge of the slice.
+// The response of a surface's facets over one visible segment of a slice, and across the wedge of the slice.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -21,10 +21,10 @@ struct FacetResponse {
   float moment = 0.0F;  ///< mean of response * (place across the wedge, from the middle of the part)
 };
 
-/// Normals and directions over one piece. Beside the piece the surface goes on as its triangle does.
+/// Normals and directions over one segment. Beside the segment the surface goes on as its triangle does.
 class FacetSight {
  public:
-  /// @param middle_t of the piece
+  /// @param middle_t of the segment
   FacetSight(const Backscatter& backscatter, const NormalRun& normals, float width_rad, float middle_t);
 
   /// How the range of a surface that has these normals changes across the wedge at one elevation: r' / r, per
@@ -43,11 +43,12 @@ class FacetSight {
   float slopes_across_;  ///< by how many rms slopes m the direction of the echo turns across the wedge
 };
 
-/// Mean of a piece, and how it changes along it.
-struct PieceFacets {
+/// Mean of a segment, and how it changes along it.
+struct SegmentFacets {
   float mean = 0.0F, moment = 0.0F;  ///< FacetResponse
-  float rise = 0.0F;                 ///< from the low to the high end
+  float gradient = 0.0F;             ///< response at the high end less that at the low end
 };
-PieceFacets facets_of_piece(const FacetSight& sight, const VisiblePiece& piece, const WedgePart& wedge = {});
+SegmentFacets facets_of_segment(const FacetSight& sight, const VisibleSegment& segment,
+                                const WedgePart& wedge = {});
 
 }  // namespace sonard::render

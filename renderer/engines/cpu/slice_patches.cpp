@@ -14,19 +14,19 @@ namespace sonard::render {
 namespace {
 
 constexpr int pattern_steps = 1024;
-constexpr int most_divisions = 16;          // of a piece at once
-constexpr int most_rounds = 6;              // near a foot point the divided pieces are divided again
-constexpr float most_tilt = 1.1F;           // of a piece; 1 where the range turns round at one end
-constexpr float most_side_by_side = 16.0F;  // patches of a piece
+constexpr int most_divisions = 16;          // of a segment at once
+constexpr int most_rounds = 6;              // near a foot point the divided segments are divided again
+constexpr float most_gradient = 1.1F;       // of a segment; 1 where the range turns round at one end
+constexpr float most_side_by_side = 16.0F;  // patches of a segment
 
 /// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
 /// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
 /// nearly edge-on that the range is far from straight.
 /// @param h, s components of the normal over n . d
-inline float bow_of_plane(float h, float s, float width) {
+inline float sagitta_of_plane(float h, float s, float width) {
   const float turn = s * width;
-  const float bow = (1.0F / 24) * (h * width * width + 2 * turn * turn);
-  return turn * turn < 2.5e-3F && bow < 1e-3F && bow > -1e-3F ? bow : 0.0F;
+  const float sagitta = (1.0F / 24) * (h * width * width + 2 * turn * turn);
+  return turn * turn < 2.5e-3F && sagitta < 1e-3F && sagitta > -1e-3F ? sagitta : 0.0F;
 }
 
 }  // namespace
@@ -44,47 +44,47 @@ ElevationPattern::ElevationPattern(const Aperture& aperture, bool tabled_if_flat
 }
 
 std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
-  pieces_ = &request.pieces;
+  visible_ = &request.visible;
   see_normals(request);
   int rounds = 0;
   do {
     lay_out(request);
-    ends_.run_straight(*pieces_, request.slice.width_rad, request.tan_limit, seen_);
+    ends_.run_straight(*visible_, request.slice.width_rad, request.tan_limit, seen_);
     measure(request);
     if (!runs_.empty()) {
       measure_shading();
     }
     if (request.any_facets) {
-      facets_.lay_out(*pieces_, request.parts, request.surface.facets == Facets::everywhere);
+      facets_.lay_out(*visible_, request.parts, request.surface.facets == Facets::everywhere);
       facets_.find_turns(seen_, normals_, request.slice.width_rad);
     }
-    find_tilts(request);
+    find_gradients(request);
   } while (rounds++ < most_rounds && divide_uneven(request));
   if (request.any_facets) {
-    facets_.hear(seen_, normals_, request.slice.width_rad);
+    facets_.respond(seen_, normals_, request.slice.width_rad);
   }
   const std::uint64_t without_facets = shade(request);
-  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+  for (std::size_t i = 0; i < visible_->size(); ++i) {
     add_patches(request, i, patches);
   }
   return without_facets;
 }
 
-/// Normals of all pieces, if any of them is shaded by those of its corners. What a piece is divided into goes
-/// on with its own.
+/// Normals of all segments, if any of them is shaded by those of its corners. What a segment is divided into
+/// goes on with its own.
 void SlicePatcher::see_normals(const Request& request) {
   runs_.clear();
   original_.clear();
-  const auto is_shaded = [&](const VisiblePiece& piece) {
-    return request.parts[piece.triangle->part].vertex_normals && !is_mapped(request, piece);
+  const auto is_shaded = [&](const VisibleSegment& segment) {
+    return request.parts[segment.triangle->part].vertex_normals && !is_mapped(request, segment);
   };
-  const bool any = std::any_of(pieces_->begin(), pieces_->end(), is_shaded);
-  for (std::size_t i = 0; (any || request.any_facets) && i < pieces_->size(); ++i) {
-    const VisiblePiece& piece = (*pieces_)[i];
-    NormalRun run{{piece.normal_h, piece.normal_s, piece.normal_z}};
-    if (is_shaded(piece)) {
-      const NormalRun shading = interpolated_normals(request.parts[piece.triangle->part], *piece.triangle,
-                                                     request.slice, 0.5F * (piece.low + piece.high));
+  const bool any = std::any_of(visible_->begin(), visible_->end(), is_shaded);
+  for (std::size_t i = 0; (any || request.any_facets) && i < visible_->size(); ++i) {
+    const VisibleSegment& segment = (*visible_)[i];
+    NormalRun run{{segment.normal_h, segment.normal_s, segment.normal_z}};
+    if (is_shaded(segment)) {
+      const NormalRun shading = interpolated_normals(request.parts[segment.triangle->part], *segment.triangle,
+                                                     request.slice, 0.5F * (segment.low + segment.high));
       run = shading.is_finite() ? shading : run;
     }
     runs_.push_back(run);
@@ -95,29 +95,29 @@ void SlicePatcher::see_normals(const Request& request) {
 /// One, or several side by side where facets are much louder at one side of the wedge.
 void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const {
   const EchoPatch whole{
-      range_low_[i],   range_high_[i], smear_low_[i],  smear_high_[i], response_[i] * solid_angle_[i],
-      solid_angle_[i], echo_tilt_[i],  range_tilt_[i], seen_.low[i],   seen_.high[i]};
+      range_low_[i],   range_high_[i],    smear_low_[i],      smear_high_[i], response_[i] * solid_angle_[i],
+      solid_angle_[i], echo_gradient_[i], range_gradient_[i], seen_.low[i],   seen_.high[i]};
   patches.push_back(whole);
-  if (!request.any_facets || aside_[i] == 0.0F) {
+  if (!request.any_facets || centroid_offset_[i] == 0.0F) {
     return;
   }
   const float by_wedge_m = 0.5F * (by_azimuth_low_[i] + by_azimuth_high_[i]) * request.slice.width_rad;
   const float allowed_m = request.facet_lines * request.line_m;
-  if (std::abs(by_wedge_m * aside_[i]) < 0.25F * allowed_m &&
+  if (std::abs(by_wedge_m * centroid_offset_[i]) < 0.25F * allowed_m &&
       facets_.turn_across_rad(i) * range_mid_[i] * request.slice.width_rad < allowed_m) {
-    patches.back().range_a_m += by_wedge_m * aside_[i];
-    patches.back().range_b_m += by_wedge_m * aside_[i];
+    patches.back().range_a_m += by_wedge_m * centroid_offset_[i];
+    patches.back().range_b_m += by_wedge_m * centroid_offset_[i];
     return;
   }
   const float t = 0.5F * (seen_.low[i] + seen_.high[i]);
   const FacetSight sight = sight_of(request, i);
   const float wedge_m = range_mid_[i] * request.slice.width_rad;
-  const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * aside_[i];
-  // What moves a part, and by how much it is bent, fall with the square of their number.
+  const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * centroid_offset_[i];
+  // What moves a part, and by how much it is curved, fall with the square of their number.
   const float facets_share = 1 - response_without_facets_[i] / response_[i];
-  const float bowed_m =
+  const float sagitta_m =
       0.125F * wedge_m * facets_share * (sight.range_slope(t, 0.5F) - sight.range_slope(t, -0.5F));
-  const float off_m = std::max(std::abs(moved_m), std::abs(bowed_m));
+  const float off_m = std::max(std::abs(moved_m), std::abs(sagitta_m));
   const float wanted = std::sqrt(off_m / allowed_m);
   const float count = std::clamp(std::ceil(wanted), 1.0F, most_side_by_side);
   if (count == 1.0F) {
@@ -128,9 +128,9 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   patches.pop_back();
   for (float k = 0.0F; k < count; ++k) {
     const WedgePart part{k / count - 0.5F, (k + 1) / count - 0.5F};
-    const PieceFacets facets = facets_of_piece(sight, (*pieces_)[i], part);
+    const SegmentFacets facets = facets_of_segment(sight, (*visible_)[i], part);
     const float response = response_without_facets_[i] + facets.mean;
-    const float aside = response > 0 ? facets.moment / response : 0.0F;
+    const float centroid_offset = response > 0 ? facets.moment / response : 0.0F;
     EchoPatch patch = whole;
     patch.weight /= count;
     patch.echo = response * patch.weight;
@@ -138,12 +138,12 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
       const float place = 0.5F * (part.from + part.to);
       // From the azimuth of the slice, not from the mean over the wedge.
       const float n = seen_.normal_h[i] + seen_.normal_z[i] * end_t;
-      range_m /= 1 + bow_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
+      range_m /= 1 + sagitta_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
       const float wedge_there_m = range_m * request.slice.width_rad;
       const float slope = sight.range_slope(end_t, place);
       const float on_the_way =
           sight.range_slope(end_t, 0.0F) + 4 * sight.range_slope(end_t, 0.5F * place) + slope;
-      range_m += wedge_there_m * (place * on_the_way * (1.0F / 6) + slope * aside);
+      range_m += wedge_there_m * (place * on_the_way * (1.0F / 6) + slope * centroid_offset);
       smear_m = wedge_there_m * std::abs(slope) / count;
     };
     put(seen_.low[i], patch.range_a_m, patch.smear_a_m);
@@ -153,19 +153,19 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
 }
 
 void SlicePatcher::lay_out(const Request& request) {
-  seen_.lay_out(*pieces_);
+  seen_.lay_out(*visible_);
   if (seen_.size() > plain_.size()) {
     for (auto* array :
          {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
-          &response_, &plain_, &range_tilt_, &cosine_tilt_, &cosine_mid_, &echo_tilt_, &displaced_,
-          &by_azimuth_low_, &by_azimuth_high_, &aside_, &response_without_facets_}) {
+          &response_, &plain_, &range_gradient_, &cosine_gradient_, &cosine_mid_, &echo_gradient_,
+          &displaced_, &by_azimuth_low_, &by_azimuth_high_, &centroid_offset_, &response_without_facets_}) {
       array->resize(seen_.size());
     }
     mapped_.resize(seen_.size());
   }
   const bool as_cosine = request.surface.model == Model::physical;
   for (std::size_t i = 0; i < seen_.count; ++i) {
-    plain_[i] = as_cosine && !is_mapped(request, (*pieces_)[i]) ? 1.0F : 0.0F;
+    plain_[i] = as_cosine && !is_mapped(request, (*visible_)[i]) ? 1.0F : 0.0F;
   }
   if (!runs_.empty()) {
     normals_.lay_out(runs_, original_);
@@ -173,17 +173,17 @@ void SlicePatcher::lay_out(const Request& request) {
 }
 
 /// Ranges at both ends and in the middle, the smear of the ends, incidence and solid angle. On the plane n.p
-/// = D the ray (1, 0, t) has 1 / h = (n_h + n_z t) / D, and its range is sqrt(1 + t^2) h. An end that drifts
+/// = D the ray (1, 0, t) has 1 / h = (n_h + n_z t) / D, and its range is sqrt(1 + t^2) h. An end that moves
 /// by m = dt / d azimuth changes range by dr/d azimuth + m dr/dt (docs/physics.md 2.3, equation 2, along the
 /// edge).
 SONARD_SIMD_CLONES
 void SlicePatcher::measure(const Request& request) {
   const float width = request.slice.width_rad;
-  const auto count = pieces_->size();
+  const auto count = visible_->size();
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
-  const float* __restrict low_drift = seen_.low_drift.data();
-  const float* __restrict high_drift = seen_.high_drift.data();
+  const float* __restrict low_slope = seen_.low_slope.data();
+  const float* __restrict high_slope = seen_.high_slope.data();
   const float* __restrict w_at_0 = seen_.w_at_0.data();
   const float* __restrict w_slope = seen_.w_slope.data();
   const float* __restrict normal_h = seen_.normal_h.data();
@@ -198,7 +198,7 @@ void SlicePatcher::measure(const Request& request) {
   float* __restrict range_mid = range_mid_.data();
   float* __restrict cos_phi = cosine_.data();
   float* __restrict solid_angle = solid_angle_.data();
-  float* __restrict cosine_tilt = cosine_tilt_.data();
+  float* __restrict cosine_gradient = cosine_gradient_.data();
   float* __restrict cosine_mid = cosine_mid_.data();
   for (std::size_t i = 0; i < count; ++i) {
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
@@ -208,22 +208,22 @@ void SlicePatcher::measure(const Request& request) {
     const float g1 = std::sqrt(q1), g2 = std::sqrt(q2), gm = std::sqrt(qm);
     const float n1 = normal_h[i] + normal_z[i] * t1, n2 = normal_h[i] + normal_z[i] * t2,
                 nm = normal_h[i] + normal_z[i] * tm;
-    const float r1 = g1 / w1 * (1 + bow_of_plane(normal_h[i] / n1, normal_s[i] / n1, width));
-    const float r2 = g2 / w2 * (1 + bow_of_plane(normal_h[i] / n2, normal_s[i] / n2, width));
+    const float r1 = g1 / w1 * (1 + sagitta_of_plane(normal_h[i] / n1, normal_s[i] / n1, width));
+    const float r2 = g2 / w2 * (1 + sagitta_of_plane(normal_h[i] / n2, normal_s[i] / n2, width));
     const float by_azimuth1 = -r1 * normal_s[i] / n1, by_azimuth2 = -r2 * normal_s[i] / n2;
     const float by_t1 = r1 * (t1 / q1 - b / w1), by_t2 = r2 * (t2 / q2 - b / w2);
-    const float rm = gm / wm * (1 + bow_of_plane(normal_h[i] / nm, normal_s[i] / nm, width));
+    const float rm = gm / wm * (1 + sagitta_of_plane(normal_h[i] / nm, normal_s[i] / nm, width));
     range_low[i] = r1;
     range_mid[i] = rm;
     range_high[i] = r2;
-    by_azimuth_low[i] = by_azimuth1 + by_t1 * low_drift[i];
-    by_azimuth_high[i] = by_azimuth2 + by_t2 * high_drift[i];
+    by_azimuth_low[i] = by_azimuth1 + by_t1 * low_slope[i];
+    by_azimuth_high[i] = by_azimuth2 + by_t2 * high_slope[i];
     smear_low[i] = std::abs(by_azimuth_low[i]) * width;
     smear_high[i] = std::abs(by_azimuth_high[i]) * width;
     const float c1 = std::abs(n1) / g1, c2 = std::abs(n2) / g2, cm = std::abs(nm) / gm;
     const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
     cos_phi[i] = cosine < 1 ? cosine : 1.0F;
-    cosine_tilt[i] = 0.5F * (c2 - c1) / cosine;
+    cosine_gradient[i] = 0.5F * (c2 - c1) / cosine;
     cosine_mid[i] = cm;
     solid_angle[i] = (t2 / g2 - t1 / g1) * width;
   }
@@ -232,7 +232,7 @@ void SlicePatcher::measure(const Request& request) {
 /// Incidence on the normals that shade.
 SONARD_SIMD_CLONES
 void SlicePatcher::measure_shading() {
-  const auto count = pieces_->size();
+  const auto count = visible_->size();
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
   const float* __restrict at_h = normals_.at_h.data();
@@ -242,7 +242,7 @@ void SlicePatcher::measure_shading() {
   const float* __restrict s_per_t = normals_.s_per_t.data();
   const float* __restrict z_per_t = normals_.z_per_t.data();
   float* __restrict cos_phi = cosine_.data();
-  float* __restrict cosine_tilt = cosine_tilt_.data();
+  float* __restrict cosine_gradient = cosine_gradient_.data();
   float* __restrict cosine_mid = cosine_mid_.data();
   for (std::size_t i = 0; i < count; ++i) {
     const auto cosine_at = [&](float t) {
@@ -253,17 +253,17 @@ void SlicePatcher::measure_shading() {
     const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
     const bool is_direction = cosine >= 0;  // else the plane's is kept
     cos_phi[i] = is_direction ? (cosine < 1 ? cosine : 1.0F) : cos_phi[i];
-    cosine_tilt[i] = is_direction ? 0.5F * (c2 - c1) / cosine : cosine_tilt[i];
+    cosine_gradient[i] = is_direction ? 0.5F * (c2 - c1) / cosine : cosine_gradient[i];
     cosine_mid[i] = is_direction ? cm : cosine_mid[i];
   }
 }
 
-/// How the echo rises along the range, and what that leaves. The range is taken as quadratic in t, r = rm +
-/// half x + bow x^2 with x from -1 to 1. Per metre of it the echo goes as the solid angle, (1 + t^2)^(-3/2)
-/// dt, over dr: in first order it rises by the tilt (docs/physics.md 2.3).
+/// The gradient of the echo along the range, and what it leaves. The range is taken as quadratic in t, r = rm
+/// + half x + sagitta x^2 with x from -1 to 1. Per metre of it the echo goes as the solid angle, (1 +
+/// t^2)^(-3/2) dt, over dr: in first order this is the gradient (docs/physics.md 2.3).
 SONARD_SIMD_CLONES
-void SlicePatcher::find_tilts(const Request& request) {
-  const auto count = pieces_->size();
+void SlicePatcher::find_gradients(const Request& request) {
+  const auto count = visible_->size();
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
   const float* __restrict range_low = range_low_.data();
@@ -271,41 +271,41 @@ void SlicePatcher::find_tilts(const Request& request) {
   const float* __restrict range_high = range_high_.data();
   float* __restrict smear_low = smear_low_.data();
   float* __restrict smear_high = smear_high_.data();
-  const float* __restrict cosine_tilt = cosine_tilt_.data();
+  const float* __restrict cosine_gradient = cosine_gradient_.data();
   const float* __restrict plain = plain_.data();
-  float* __restrict range_tilt = range_tilt_.data();
+  float* __restrict range_gradient = range_gradient_.data();
   float* __restrict displaced = displaced_.data();
-  const float* __restrict low_drift = seen_.low_drift.data();
-  const float* __restrict high_drift = seen_.high_drift.data();
+  const float* __restrict low_slope = seen_.low_slope.data();
+  const float* __restrict high_slope = seen_.high_slope.data();
   const float width = request.slice.width_rad;
   const float furthest = request.max_range_m;
-  // A tilt moves the middle of the echo by a third of this.
-  const float least_tilted_m = 0.5F * request.linearity * request.line_m;
+  // A gradient moves the middle of the echo by a third of this.
+  const float least_gradient_m = 0.5F * request.linearity * request.line_m;
   for (std::size_t i = 0; i < count; ++i) {
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
     const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
     const float r1 = range_low[i], rm = range_mid[i], r2 = range_high[i];
-    const float half = 0.5F * (r2 - r1), bow = 0.5F * (r1 + r2) - rm;
+    const float half = 0.5F * (r2 - r1), sagitta = 0.5F * (r1 + r2) - rm;
     const float stretch = 0.5F * qm * std::sqrt(qm) * (1 / (q2 * std::sqrt(q2)) - 1 / (q1 * std::sqrt(q1)));
-    const float tilt = stretch - 2 * bow / half;
-    const float length = std::abs(half), steepness = std::abs(tilt);
-    // Ends whose smears differ by more than twice the spread cross within the wedge. They do where the piece
-    // shrinks to nothing, and its neighbour then makes up for it; but not where the range hardly changes
-    // along the piece, as on a wall.
-    const float shrinks = std::abs(high_drift[i] - low_drift[i]) * width / (t2 - t1);
+    const float gradient = stretch - 2 * sagitta / half;
+    const float length = std::abs(half), steepness = std::abs(gradient);
+    // Ends whose smears differ by more than twice the spread cross within the wedge. They do where the
+    // segment shrinks to nothing, and its neighbour then makes up for it; but not where the range hardly
+    // changes along the segment, as on a wall.
+    const float shrinks = std::abs(high_slope[i] - low_slope[i]) * width / (t2 - t1);
     const float smear = 0.5F * (smear_low[i] + smear_high[i]);
-    const float apart = 0.5F * (smear_high[i] - smear_low[i]);
-    const float most_apart = length * (2 + 1.5F * shrinks);
-    const float kept_apart = apart > most_apart ? most_apart : (apart < -most_apart ? -most_apart : apart);
-    smear_low[i] = smear - kept_apart;
-    smear_high[i] = smear + kept_apart;
-    const bool tilts = (steepness < most_tilt) & (smear < length);
-    const float with_cosine = std::abs(tilt + plain[i] * cosine_tilt[i]);
+    const float difference = 0.5F * (smear_high[i] - smear_low[i]);
+    const float most = length * (2 + 1.5F * shrinks);
+    const float kept = difference > most ? most : (difference < -most ? -most : difference);
+    smear_low[i] = smear - kept;
+    smear_high[i] = smear + kept;
+    const bool has_gradient = (steepness < most_gradient) & (smear < length);
+    const float with_cosine = std::abs(gradient + plain[i] * cosine_gradient[i]);
     const float steeper = with_cosine > steepness ? with_cosine : steepness;
-    range_tilt[i] = (tilts & (steeper * length > least_tilted_m)) ? tilt : 0.0F;
-    // What a tilt leaves is of third order. Spread evenly, the echo lies two thirds of the bow too far
-    // towards its thin end; as all pieces of a surface do so to the same side, that counts nine times.
-    const float left = (tilts & (plain[i] > 0)) ? bow * bow / length : 6 * std::abs(bow);
+    range_gradient[i] = (has_gradient & (steeper * length > least_gradient_m)) ? gradient : 0.0F;
+    // What a gradient leaves is of third order. Spread evenly, the echo lies two thirds of the sagitta too
+    // far towards its thin end; as all segments of a surface do so to the same side, that counts nine times.
+    const float left = (has_gradient & (plain[i] > 0)) ? sagitta * sagitta / length : 6 * std::abs(sagitta);
     // Where the range turns round inside, the halves overlap.
     const float both = std::abs(rm - r1) + std::abs(r2 - rm);
     const bool turns = (rm - r1) * (r2 - rm) < 0;
@@ -316,7 +316,7 @@ void SlicePatcher::find_tilts(const Request& request) {
 
 SONARD_SIMD_CLONES
 bool SlicePatcher::all_even(float allowed_m) const {
-  const auto count = pieces_->size();
+  const auto count = visible_->size();
   const float* __restrict displaced = displaced_.data();
   std::int32_t uneven = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -325,26 +325,27 @@ bool SlicePatcher::all_even(float allowed_m) const {
   return uneven == 0;
 }
 
-bool SlicePatcher::is_mapped(const Request& request, const VisiblePiece& piece) {
-  const NormalPyramid* map = request.parts[piece.triangle->part].normal_map.get();
+bool SlicePatcher::is_mapped(const Request& request, const VisibleSegment& segment) {
+  const NormalPyramid* map = request.parts[segment.triangle->part].normal_map.get();
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
-/// Into how many parts a piece is to be divided.
+/// Into how many parts a segment is to be divided.
 int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
   const float allowed_m = request.linearity * request.line_m;
   const float span_m = std::abs(range_mid_[i] - range_low_[i]) + std::abs(range_high_[i] - range_mid_[i]);
   float parts = 1.0F;
   if (displaced_[i] > allowed_m) {
     const bool turns = (range_mid_[i] - range_low_[i]) * (range_high_[i] - range_mid_[i]) < 0;
-    const bool tilts = plain_[i] > 0 && range_tilt_[i] != 0.0F;
-    // The displacement falls with the square of the length, and with the third power if the echo is tilted.
+    const bool has_gradient = plain_[i] > 0 && range_gradient_[i] != 0.0F;
+    // The displacement falls with the square of the length, and with the third power if the echo has a
+    // gradient.
     const float excess = displaced_[i] / allowed_m;
-    parts = turns ? 2.0F : 1.0F + std::floor(tilts ? std::cbrt(excess) : std::sqrt(excess));
+    parts = turns ? 2.0F : 1.0F + std::floor(has_gradient ? std::cbrt(excess) : std::sqrt(excess));
   }
   const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
   if (request.any_mapped && in_range && span_m > request.mapped_lines * request.line_m &&
-      is_mapped(request, (*pieces_)[i])) {
+      is_mapped(request, (*visible_)[i])) {
     parts = std::max(parts, 1.0F + std::floor(span_m / (request.mapped_lines * request.line_m)));
   }
   if (in_range && request.any_facets) {
@@ -357,7 +358,7 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
 }
 
 /// So that over each part the elevation pattern is nearly a straight line, or its mean well known where a
-/// part is heard in one place.
+/// part echoes in one place.
 float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
   const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
   const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
@@ -368,15 +369,15 @@ float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, flo
 /// So that over each part the echo of facets changes little: by less than would show if the part lies in one
 /// line, and by about as much as a straight line follows if it spreads over more.
 float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
-  if (!facets_.may_hear(i)) {
+  if (!facets_.may_respond(i)) {
     return 1.0F;
   }
-  const VisiblePiece& piece = (*pieces_)[i];
+  const VisibleSegment& segment = (*visible_)[i];
   const float share = span_m < 0.5F * request.line_m ? 1.0F : request.facet_slopes;
-  return std::ceil(facets_.slopes_per_t(i) * (piece.high - piece.low) / share);
+  return std::ceil(facets_.slopes_per_t(i) * (segment.high - segment.low) / share);
 }
 
-/// Divides the pieces whose echo runs otherwise in range than a patch can say.
+/// Divides the segments whose echo runs otherwise in range than a patch can say.
 bool SlicePatcher::divide_uneven(const Request& request) {
   if (!request.any_mapped && !request.any_facets && !request.pattern.varies() &&
       all_even(request.linearity * request.line_m)) {
@@ -385,10 +386,10 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   bool any = false;
   divided_.clear();
   divided_original_.clear();
-  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+  for (std::size_t i = 0; i < visible_->size(); ++i) {
     const int parts = parts_of(request, i);
     if (parts == 1) {
-      divided_.push_back((*pieces_)[i]);
+      divided_.push_back((*visible_)[i]);
     } else {
       divide(i, parts);
       any = true;
@@ -399,14 +400,14 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   }
   whole_.swap(divided_);
   original_.swap(divided_original_);
-  pieces_ = &whole_;
+  visible_ = &whole_;
   return any;
 }
 
 /// Puts its parts into `divided_`.
 void SlicePatcher::divide(std::size_t i, int parts) {
-  const VisiblePiece& whole = (*pieces_)[i];
-  VisiblePiece part = whole;
+  const VisibleSegment& whole = (*visible_)[i];
+  VisibleSegment part = whole;
   // A range that turns round inside does so where dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
   const float turn = seen_.w_slope[i] / seen_.w_at_0[i];
   const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
@@ -422,60 +423,60 @@ void SlicePatcher::divide(std::size_t i, int parts) {
   }
 }
 
-/// @return of how many pieces facets were not looked at.
+/// @return of how many segments facets were left out.
 std::uint64_t SlicePatcher::shade(const Request& request) {
   std::uint64_t without_facets = 0;
   const bool any_facets = request.any_facets;
-  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+  for (std::size_t i = 0; i < visible_->size(); ++i) {
     response_[i] = shade_plainly(request, i);
-    echo_tilt_[i] = cosine_tilt_[i] * plain_[i];
-    aside_[i] = 0.0F;
+    echo_gradient_[i] = cosine_gradient_[i] * plain_[i];
+    centroid_offset_[i] = 0.0F;
     without_facets += any_facets && add_facets(request, i) ? 0 : 1;
   }
   if (!request.pattern.flat()) {
     weigh_by_pattern(request.pattern);
   }
-  join_tilts();
+  join_gradients();
   return without_facets;
 }
 
 SONARD_SIMD_CLONES
-void SlicePatcher::join_tilts() {
-  const auto count = pieces_->size();
-  float* __restrict range_tilt = range_tilt_.data();
-  float* __restrict echo_tilt = echo_tilt_.data();
+void SlicePatcher::join_gradients() {
+  const auto count = visible_->size();
+  float* __restrict range_gradient = range_gradient_.data();
+  float* __restrict echo_gradient = echo_gradient_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const float both = range_tilt[i] + echo_tilt[i];
+    const float both = range_gradient[i] + echo_gradient[i];
     const float kept = both > 1 ? 1.0F : (both < -1 ? -1.0F : both);
-    echo_tilt[i] = range_tilt[i] != 0.0F ? kept : 0.0F;
-    range_tilt[i] = range_tilt[i] > 1 ? 1.0F : (range_tilt[i] < -1 ? -1.0F : range_tilt[i]);
+    echo_gradient[i] = range_gradient[i] != 0.0F ? kept : 0.0F;
+    range_gradient[i] = range_gradient[i] > 1 ? 1.0F : (range_gradient[i] < -1 ? -1.0F : range_gradient[i]);
   }
 }
 
-/// What a piece answers without facets.
+/// What a segment answers without facets.
 float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
-  const VisiblePiece& piece = (*pieces_)[i];
-  const PartSurface& part = request.parts[piece.triangle->part];
+  const VisibleSegment& segment = (*visible_)[i];
+  const PartSurface& part = request.parts[segment.triangle->part];
   float cosine = cosine_[i];
   if (part.normal_map) {
-    const float t = 0.5F * (piece.low + piece.high);
+    const float t = 0.5F * (segment.low + segment.high);
     const float h = 1.0F / (seen_.w_at_0[i] + seen_.w_slope[i] * t);
-    const PiecePlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
+    const SegmentPlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
     // In the middle; that the mean differs from the middle is a matter of geometry.
     const float middle = cosine_mid_[i];
     mapped_[i] = {middle, 1.0F};
     if (middle > 0) {
-      mapped_[i] = mapped_incidence(part, *piece.triangle, place, middle);
+      mapped_[i] = mapped_incidence(part, *segment.triangle, place, middle);
       cosine = mapped_[i].cosine * (cosine / middle);
     }
   }
   return surface_response(part, request.surface, cosine, range_mid_[i]);
 }
 
-/// @return false where they are not heard.
+/// @return false where there are none to add.
 bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
-  const VisiblePiece& piece = (*pieces_)[i];
-  const PartSurface& part = request.parts[piece.triangle->part];
+  const VisibleSegment& segment = (*visible_)[i];
+  const PartSurface& part = request.parts[segment.triangle->part];
   if (part.normal_map) {
     if (request.surface.facets != Facets::everywhere && !(part.backscatter.facet_strength > 0)) {
       return false;
@@ -485,37 +486,39 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
         part.backscatter.facets(std::min(mapped_[i].cosine / length, 1.0F), variance_of_mean_normal(length));
     return true;
   }
-  if (!facets_.may_hear(i)) {
+  if (!facets_.may_respond(i)) {
     return false;
   }
-  PieceFacets heard{facets_.mean(i), facets_.moment(i), facets_.rise(i)};
+  SegmentFacets facets{facets_.mean(i), facets_.moment(i), facets_.gradient(i)};
   if (facets_.is_wide(i)) {
-    heard = facets_of_piece(sight_of(request, i), piece);
+    facets = facets_of_segment(sight_of(request, i), segment);
   }
   response_without_facets_[i] = response_[i];
-  response_[i] += heard.mean;
+  response_[i] += facets.mean;
   if (response_[i] > 0) {
-    echo_tilt_[i] = (echo_tilt_[i] * response_without_facets_[i] + 0.5F * heard.rise) / response_[i];
-    aside_[i] = heard.moment / response_[i];
+    echo_gradient_[i] =
+        (echo_gradient_[i] * response_without_facets_[i] + 0.5F * facets.gradient) / response_[i];
+    centroid_offset_[i] = facets.moment / response_[i];
   }
   return true;
 }
 
 FacetSight SlicePatcher::sight_of(const Request& request, std::size_t i) const {
-  const VisiblePiece& piece = (*pieces_)[i];
-  return {request.parts[piece.triangle->part].backscatter, runs_[original_[i]], request.slice.width_rad,
-          0.5F * (piece.low + piece.high)};
+  const VisibleSegment& segment = (*visible_)[i];
+  return {request.parts[segment.triangle->part].backscatter, runs_[original_[i]], request.slice.width_rad,
+          0.5F * (segment.low + segment.high)};
 }
 
-/// Mean over the echo of each piece, and how it rises. Solid angle and response change along the piece too.
+/// Mean over the echo of each segment, and its gradient. Solid angle and response change along the segment
+/// too.
 SONARD_SIMD_CLONES
 void SlicePatcher::weigh_by_pattern(const ElevationPattern& pattern) {
-  const auto count = pieces_->size();
+  const auto count = visible_->size();
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
-  const float* __restrict echo_tilt = echo_tilt_.data();
+  const float* __restrict echo_gradient = echo_gradient_.data();
   float* __restrict solid_angle = solid_angle_.data();
-  float* __restrict range_tilt = range_tilt_.data();
+  float* __restrict range_gradient = range_gradient_.data();
   const float* __restrict table = pattern.table();
   const float per_t = pattern.steps_per_t(), at_0 = pattern.step_at_0(), last = 2 * at_0 - 1e-3F;
   for (std::size_t i = 0; i < count; ++i) {
@@ -529,13 +532,13 @@ void SlicePatcher::weigh_by_pattern(const ElevationPattern& pattern) {
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
     const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
     const float w1 = weight_at(t1), w2 = weight_at(t2), wm = weight_at(tm);
-    const float by_low = (1 - echo_tilt[i]) / (q1 * std::sqrt(q1));
+    const float by_low = (1 - echo_gradient[i]) / (q1 * std::sqrt(q1));
     const float by_middle = 4 / (qm * std::sqrt(qm));
-    const float by_high = (1 + echo_tilt[i]) / (q2 * std::sqrt(q2));
+    const float by_high = (1 + echo_gradient[i]) / (q2 * std::sqrt(q2));
     const float weight = (w1 * by_low + wm * by_middle + w2 * by_high) / (by_low + by_middle + by_high);
     solid_angle[i] *= weight;
-    const float steeper = range_tilt[i] + 0.5F * (w2 - w1) / weight;
-    range_tilt[i] = ((range_tilt[i] != 0.0F) & (weight > 0)) ? steeper : range_tilt[i];
+    const float steeper = range_gradient[i] + 0.5F * (w2 - w1) / weight;
+    range_gradient[i] = ((range_gradient[i] != 0.0F) & (weight > 0)) ? steeper : range_gradient[i];
   }
 }
 

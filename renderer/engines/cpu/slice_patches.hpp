@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible pieces of a slice -> echo patches.
+// Visible segments of a slice -> echo patches.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/engines/cpu/facet_arrays.hpp"
 #include "renderer/engines/cpu/part_surface.hpp"
-#include "renderer/engines/cpu/piece_arrays.hpp"
-#include "renderer/engines/cpu/piece_ends.hpp"
 #include "renderer/engines/cpu/slice_facets.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
+#include "renderer/engines/cpu/visible_arrays.hpp"
+#include "renderer/engines/cpu/visible_ends.hpp"
 #include "renderer/surface/surface_model.hpp"
 
 namespace sonard::render {
@@ -25,7 +25,7 @@ class ElevationPattern {
   bool flat() const { return weight_.empty(); }
   bool varies() const { return varies_; }
 
-  /// Of the elevation -tan_limit to tan_limit: weights at even steps of t, of which that at t is number
+  /// Weights at even steps of t from -tan_limit to tan_limit; the weight at t has the index
   /// step_at_0() + t * steps_per_t().
   const float* table() const { return weight_.data(); }
   float steps_per_t() const { return 0.5F * static_cast<float>(weight_.size() - 1) / tan_limit_; }
@@ -42,20 +42,20 @@ class SlicePatcher {
  public:
   struct Request {
     const Slice& slice;
-    const std::vector<VisiblePiece>& pieces;
+    const std::vector<VisibleSegment>& visible;
     const std::vector<PartSurface>& parts;
     const SurfaceModel& surface;
     const ElevationPattern& pattern;
     float tan_limit;  ///< of the fan's elevation
-    /// Within a piece the echo is taken as even in range, or as rising in a straight line. Pieces are divided
+    /// Within a segment the echo is taken as even in range, or as linear in it. Segments are divided
     /// until that displaces it by no more than this many lines.
     float linearity;
     bool any_mapped;  ///< whether any of the parts has a normal map
-    /// Under one, pieces are no longer than this many lines, so that its bumps appear at their ranges.
+    /// Under one, segments are no longer than this many lines, so that its bumps appear at their ranges.
     float mapped_lines;
-    bool any_facets;  ///< whether facets have to be looked at, of any of the parts
-    /// Pieces that spread over lines are divided until the direction of their echo, against that of a mirror,
-    /// turns by no more than this many rms slopes of their facets.
+    bool any_facets;  ///< whether any of the parts has facets
+    /// Segments that spread over lines are divided until the direction of their echo, against that of a
+    /// mirror, turns by no more than this many rms slopes of their facets.
     float facet_slopes;
     /// Where facets are louder at one side of the wedge than at the other, a patch lies that much nearer to
     /// that side. It is divided across until that is no more than this many lines.
@@ -65,19 +65,19 @@ class SlicePatcher {
   };
 
   /// @param patches is appended to.
-  /// @return of how many patches facets were not looked at (SkipRule::facet_kernel).
+  /// @return of how many patches facets were left out (SkipRule::facet_kernel).
   std::uint64_t make(const Request& request, std::vector<EchoPatch>& patches);
 
  private:
   void lay_out(const Request& request);
   void measure(const Request& request);
   void measure_shading();
-  void find_tilts(const Request& request);
+  void find_gradients(const Request& request);
   bool divide_uneven(const Request& request);
   void divide(std::size_t i, int parts);
   bool all_even(float allowed_m) const;
   int parts_of(const Request& request, std::size_t i) const;
-  static bool is_mapped(const Request& request, const VisiblePiece& piece);
+  static bool is_mapped(const Request& request, const VisibleSegment& segment);
   float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
   float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
   void see_normals(const Request& request);
@@ -87,28 +87,29 @@ class SlicePatcher {
   FacetSight sight_of(const Request& request, std::size_t i) const;
   void add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const;
   void weigh_by_pattern(const ElevationPattern& pattern);
-  void join_tilts();
+  void join_gradients();
 
-  /// Pieces after division, and what is known of each; arrays are as long as those of `seen_`.
-  const std::vector<VisiblePiece>* pieces_ = nullptr;  ///< the request's, or whole_
-  std::vector<VisiblePiece> whole_, divided_;
-  /// Of each piece of the request; empty where all are shaded by their planes and no facets are looked at.
+  /// Segments after division, and what is known of each; arrays are as long as those of `seen_`.
+  const std::vector<VisibleSegment>* visible_ = nullptr;  ///< the request's, or whole_
+  std::vector<VisibleSegment> whole_, divided_;
+  /// Normals of each segment of the request; empty where all are shaded by their planes and none has facets.
   std::vector<NormalRun> runs_;
-  std::vector<std::uint32_t> original_, divided_original_;  ///< of each piece, its number in `runs_`
-  NormalArrays normals_;                                    ///< `runs_` of each piece, if there are any
+  std::vector<std::uint32_t> original_, divided_original_;  ///< of each segment, its number in `runs_`
+  NormalArrays normals_;                                    ///< `runs_` of each segment, if there are any
   FacetArrays facets_;
-  PieceArrays seen_;
-  PieceEnds ends_;
+  VisibleArrays seen_;
+  VisibleEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
   std::vector<float> by_azimuth_low_, by_azimuth_high_;  ///< change of the ends' ranges with the azimuth
-  std::vector<float> plain_;        ///< 1 where the response is cosine_, which changes evenly; else 0
-  std::vector<float> range_tilt_;   ///< of the solid angle along the range, see EchoPatch; 0: not to be used
-  std::vector<float> cosine_tilt_;  ///< of cosine_, the mean of a piece
-  std::vector<float> cosine_mid_;   ///< in its middle
-  std::vector<float> echo_tilt_;    ///< of both
-  std::vector<float> displaced_;    ///< how far the echo may be from where it is taken to be, metres
+  std::vector<float> plain_;  ///< 1 where the response is cosine_, which changes evenly; else 0
+  std::vector<float>
+      range_gradient_;  ///< of the solid angle along the range, see EchoPatch; 0: not to be used
+  std::vector<float> cosine_gradient_;  ///< of cosine_, the mean of a segment
+  std::vector<float> cosine_mid_;       ///< in its middle
+  std::vector<float> echo_gradient_;    ///< of both
+  std::vector<float> displaced_;        ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_, response_without_facets_;
-  std::vector<float> aside_;             ///< where in its wedge the echo has its middle, 1/2 at the port side
+  std::vector<float> centroid_offset_;   ///< where in its wedge the echo has its middle, 1/2 at the port side
   std::vector<MappedIncidence> mapped_;  ///< in its middle
 };
 

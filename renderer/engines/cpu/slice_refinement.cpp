@@ -12,23 +12,22 @@ namespace sonard::render {
 
 namespace {
 
-// Odd, so that the part in the middle goes on with what the whole has seen. An edge is closed in on, a bow
-// falls with the square of the width.
+// Odd, so that the part in the middle goes on with what the whole has seen. An edge is closed in on, a
+// sagitta falls with the square of the width.
 constexpr int parts_at_edges = 5;
-constexpr int parts_of_bows = 3;
-constexpr float three_helps_by =
-    9.0F;  // what is in doubt falls with the width, and its share of a beam once more
-constexpr float bows_per_edge = 10.0F;  // what a bow displaces stays nearby, what an edge hides is gone
-constexpr float ends_per_edge = 1.0F;   // where the range ends, the smear of a slice is right in first order
+constexpr int parts_of_curves = 3;
+constexpr float three_helps_by = 9.0F;    // the error falls with the width, and its share of a beam once more
+constexpr float curves_per_edge = 10.0F;  // what a sagitta displaces stays nearby, what an edge hides is gone
+constexpr float ends_per_edge = 1.0F;  // where the range ends, the smear of a slice is right in first order
 constexpr std::size_t borders_per_job = 32;
-constexpr float least_heard = 0.5F / side_probes;
+constexpr float least_ensonified = 0.5F / side_probes;
 
 /// Compares neighbours. Ranges are secant / w: compared without dividing, and without those out of range in
 /// both.
 struct Comparison {
   const SideView& view;
-  float bow_m;
-  float divided_anyway;  ///< above such a share apart nobody asks for more
+  float most_sagitta_m;
+  float divided_anyway;  ///< above such a share of mismatch the rest is not needed
 
   SliceBorder operator()(const SliceCell& port, const SliceCell& starboard) const;
 
@@ -60,28 +59,29 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
   const float* __restrict ps = port_side.data();
   const float* __restrict sp = starboard_side.data();
   const float* __restrict ss = starboard.sides.starboard.data();
-  // A bow over a chord of width b is b^2 / 8 of the curvature, here the change of slope over the mean width.
+  // A sagitta over a chord of width b is b^2 / 8 of the curvature, here the change of slope over the mean
+  // width.
   const float* __restrict secant = view.secant.data();
-  const float line_m = view.line_m, furthest_m = view.max_range_m, bow = bow_m;
+  const float line_m = view.line_m, furthest_m = view.max_range_m, most_sagitta = most_sagitta_m;
   const float mean_width = 0.5F * (port.slice.width_rad + starboard.slice.width_rad);
   const float per_port = mean_width / (8 * port.slice.width_rad);
   const float per_starboard = mean_width / (8 * starboard.slice.width_rad);
-  std::int32_t apart = 0, bent = 0;
+  std::int32_t mismatched = 0, curved = 0;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float w_a = ps[i], w_b = sp[i], scale = secant[i];
     const float nearer = w_a > w_b ? w_a : w_b;
     const float product = w_a * w_b;
     const float difference = scale * (w_a > w_b ? w_a - w_b : w_b - w_a);
-    const float bends = scale * std::abs((pp[i] - w_a) * per_port - (w_b - ss[i]) * per_starboard);
+    const float sagitta = scale * std::abs((pp[i] - w_a) * per_port - (w_b - ss[i]) * per_starboard);
     const bool all_seen = (pp[i] > 0) & (product > 0) & (ss[i] > 0);
     const bool in_range = scale < furthest_m * nearer;
-    apart += (in_range & (difference > line_m * product)) ? 1 : 0;
-    const float displaced = bends > difference ? bends : difference;
-    bent += (in_range & all_seen & (displaced > bow * product)) ? 1 : 0;
+    mismatched += (in_range & (difference > line_m * product)) ? 1 : 0;
+    const float displaced = sagitta > difference ? sagitta : difference;
+    curved += (in_range & all_seen & (displaced > most_sagitta * product)) ? 1 : 0;
   }
-  const float share_apart = static_cast<float>(apart) / side_probes;
-  return {share_apart, static_cast<float>(bent) / side_probes,
-          share_apart > 0 && share_apart < divided_anyway ? shift_lines(port_side, starboard_side) : 0.0F};
+  const float mismatch = static_cast<float>(mismatched) / side_probes;
+  return {mismatch, static_cast<float>(curved) / side_probes,
+          mismatch > 0 && mismatch < divided_anyway ? shift_lines(port_side, starboard_side) : 0.0F};
 }
 
 /// One number for each probe.
@@ -113,8 +113,8 @@ float sum(const OfProbes& numbers) {
 }
 
 /// The echo of an elevation goes as cos(incidence) / r^2. With s the slope of the range along the slice, from
-/// one probe to the next, the cosine is taken as 1 / (1 + |s|), which is near enough to weigh what is in
-/// doubt and needs no root.
+/// one probe to the next, the cosine is taken as 1 / (1 + |s|), which is near enough to weigh the
+/// error and needs no root.
 SONARD_SIMD_CLONES
 float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& starboard_side) const {
   const float* __restrict wa = port_side.data();
@@ -130,21 +130,21 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
     const float cosine = next / (next + steps * (probes_per_t * scale * scale) + tiny);
     return scale < furthest_m * w ? cosine * w : 0.0F;
   };
-  OfProbes heard, moment, doubt, doubt_moment;
+  OfProbes echo, moment, error, error_moment;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float a = wa[i], b = wb[i], scale = secant[i], next_scale = secant[i + 1];
     const float moment_a = weight_of(a, wa[i + 1], scale, next_scale), echo_a = moment_a * a;
     const float moment_b = weight_of(b, wb[i + 1], scale, next_scale), echo_b = moment_b * b;
     const float nearer = a > b ? a : b;
     const float difference = scale * (a > b ? a - b : b - a);
-    const bool apart = (scale < furthest_m * nearer) & (difference > line_m * (a * b));
-    heard[i] = echo_a + echo_b;
+    const bool mismatched = (scale < furthest_m * nearer) & (difference > line_m * (a * b));
+    echo[i] = echo_a + echo_b;
     moment[i] = moment_a + moment_b;
-    doubt[i] = apart ? echo_a - echo_b : 0.0F;
-    doubt_moment[i] = apart ? moment_a - moment_b : 0.0F;
+    error[i] = mismatched ? echo_a - echo_b : 0.0F;
+    error_moment[i] = mismatched ? moment_a - moment_b : 0.0F;
   }
-  const float all = sum(heard);
-  return all > 0 ? std::abs(sum(doubt_moment) - sum(doubt) * (sum(moment) / all)) / (0.5F * all * line_m)
+  const float all = sum(echo);
+  return all > 0 ? std::abs(sum(error_moment) - sum(error) * (sum(moment) / all)) / (0.5F * all * line_m)
                  : 0.0F;
 }
 
@@ -163,38 +163,38 @@ void SliceSampler::compare_neighbours(const Setting& setting) {
       }
       const float lines = std::max(1.0F, std::min(port.sides.lines, starboard.sides.lines));
       const float narrower = std::min(setting.share_of_beam(port), setting.share_of_beam(starboard));
-      const Comparison compare{setting.side_view, setting.accuracy.bow_lines * lines * setting.line_m,
+      const Comparison compare{setting.side_view, setting.accuracy.sagitta_lines * lines * setting.line_m,
                                setting.accuracy.disagreement / narrower};
       port.to_starboard = compare(port, starboard);
     }
   });
 }
 
-/// At which share of its elevations each beam hears anything.
-std::vector<float> SliceSampler::heard_by_beams(const Setting& setting) const {
-  std::vector<float> heard(static_cast<std::size_t>(setting.fan.beam_count()), 0.0F);
+/// The share of its elevations at which each beam receives anything.
+std::vector<float> SliceSampler::ensonified_by_beam(const Setting& setting) const {
+  std::vector<float> ensonified(static_cast<std::size_t>(setting.fan.beam_count()), 0.0F);
   for (const std::size_t i : order_) {
     const SliceCell& cell = *cells_[i];
-    heard[static_cast<std::size_t>(cell.beam)] += setting.share_of_beam(cell) * cell.sides.heard;
+    ensonified[static_cast<std::size_t>(cell.beam)] += setting.share_of_beam(cell) * cell.sides.ensonified;
   }
-  for (float& share : heard) {
-    share = std::max(share, least_heard);
+  for (float& share : ensonified) {
+    share = std::max(share, least_ensonified);
   }
-  return heard;
+  return ensonified;
 }
 
-/// How many slices of each beam share in what is in doubt: by their squares, so that one much worse than the
+/// How many slices of each beam share in its error: by their squares, so that one much worse than the
 /// others counts alone.
-std::vector<float> SliceSampler::doubtful_slices(const Setting& setting) const {
+std::vector<float> SliceSampler::slices_in_error(const Setting& setting) const {
   const auto beams = static_cast<std::size_t>(setting.fan.beam_count());
   std::vector<float> squares(beams, 0.0F), fourths(beams, 0.0F);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const SliceCell& cell = *cells_[order_[i]];
-    const float port = i > 0 ? cells_[order_[i - 1]]->to_starboard.apart : 0.0F;
-    const float doubt = setting.share_of_beam(cell) * std::max(port, cell.to_starboard.apart);
+    const float port = i > 0 ? cells_[order_[i - 1]]->to_starboard.range_mismatch : 0.0F;
+    const float error = setting.share_of_beam(cell) * std::max(port, cell.to_starboard.range_mismatch);
     const auto b = static_cast<std::size_t>(cell.beam);
-    squares[b] += doubt * doubt;
-    fourths[b] += doubt * doubt * doubt * doubt;
+    squares[b] += error * error;
+    fourths[b] += error * error * error * error;
   }
   for (std::size_t b = 0; b < beams; ++b) {
     squares[b] = fourths[b] > 0 ? squares[b] * squares[b] / fourths[b] : 1.0F;
@@ -204,11 +204,11 @@ std::vector<float> SliceSampler::doubtful_slices(const Setting& setting) const {
 
 /// Into how many parts each slice is to be divided: those on both sides of every border at which they
 /// disagree too much, those that miss something thin, and those in which the range ends. All is measured by
-/// what the beam hears; errors of many slices add up as independent ones do.
+/// what the beam receives; errors of many slices add up as independent ones do.
 std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   compare_neighbours(setting);
-  const std::vector<float> heard = heard_by_beams(setting);
-  const std::vector<float> doubtful = doubtful_slices(setting);
+  const std::vector<float> ensonified = ensonified_by_beam(setting);
+  const std::vector<float> in_error = slices_in_error(setting);
   std::vector<int> parts(order_.size(), 1);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     SliceCell& cell = *cells_[order_[i]];
@@ -220,21 +220,21 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
     const SliceBorder port = i > 0 ? cells_[order_[i - 1]]->to_starboard : SliceBorder{};
     const SliceBorder starboard = cell.to_starboard;
     const auto beam = static_cast<std::size_t>(cell.beam);
-    const float most = setting.accuracy.disagreement * heard[beam] / width;
-    const float most_apart = most / std::sqrt(doubtful[beam]);
-    const float apart = std::max(port.apart, starboard.apart);
+    const float most = setting.accuracy.disagreement * ensonified[beam] / width;
+    const float most_mismatch = most / std::sqrt(in_error[beam]);
+    const float mismatch = std::max(port.range_mismatch, starboard.range_mismatch);
     const bool shifted =
         std::max(port.shift_lines, starboard.shift_lines) * width > setting.accuracy.shift_lines;
-    const float bent = std::max(port.bent, starboard.bent);
+    const float curvature = std::max(port.curvature, starboard.curvature);
     const float ending =
-        cell.sides.one_sided * cell.sides.one_sided / std::max(cell.sides.heard, least_heard);
-    if (cell.misses_something || apart > most_apart || shifted) {
+        cell.sides.one_sided * cell.sides.one_sided / std::max(cell.sides.ensonified, least_ensonified);
+    if (cell.misses_something || mismatch > most_mismatch || shifted) {
       const bool is_first = width * static_cast<float>(setting.accuracy.slices_per_beam) > 0.9F;
-      const bool three_will_do = !cell.misses_something && apart < three_helps_by * most_apart;
+      const bool three_will_do = !cell.misses_something && mismatch < three_helps_by * most_mismatch;
       parts[i] =
-          three_will_do && !(is_first && setting.accuracy.first_in_five) ? parts_of_bows : parts_at_edges;
-    } else if (bent > bows_per_edge * most || ending > ends_per_edge * most) {
-      parts[i] = parts_of_bows;
+          three_will_do && !(is_first && setting.accuracy.first_in_five) ? parts_of_curves : parts_at_edges;
+    } else if (curvature > curves_per_edge * most || ending > ends_per_edge * most) {
+      parts[i] = parts_of_curves;
     }
   }
   return parts;
@@ -263,7 +263,7 @@ void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::
     edge = last ? whole.edge_at_starboard : at_edges ? whole.edges[next].probes : ProbeSet();
     part.edge_at_starboard = edge;
     if (!at_edges && 2 * k + 1 == parts) {
-      part.pieces.swap(cells_[whole_number]->pieces);
+      part.visible.swap(cells_[whole_number]->visible);
       part.seen = true;
     }
     from = to;

@@ -134,7 +134,7 @@ void SliceSampler::place_parts(const Pose& T_world_sonar) {
     placed_[i].R_sonar_part = glm::mat3(glm::mat3_cast(T_sonar_part.orientation));
     placed_[i].t_sonar_part_m = glm::vec3(T_sonar_part.position_m);
     surfaces_[i].R_part_sonar = glm::transpose(placed_[i].R_sonar_part);
-    surfaces_[i].bend_in_part = {surfaces_[i].R_part_sonar * bend_.up, bend_.per_m};
+    surfaces_[i].refraction_in_part = {surfaces_[i].R_part_sonar * bend_.up, bend_.per_m};
   }
 }
 
@@ -238,7 +238,7 @@ void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& f
 void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell) {
   if (!cell.seen) {
     scratch.cutter.cut(cell.slice, setting.fan.tan_limit(), scratch.segments);
-    scratch.sweep.run(scratch.cutter, cell.slice, scratch.segments, setting.fan.tan_limit(), cell.pieces);
+    scratch.sweep.run(scratch.cutter, cell.slice, scratch.segments, setting.fan.tan_limit(), cell.visible);
     cell.seen = true;
   }
   if (setting.accuracy.most_divisions == 1) {
@@ -246,7 +246,7 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   }
   cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
   scratch.cutter.find_upright_edges(cell.slice, cell.edges);
-  scratch.expectation.find(cell.pieces, cell.slice.width_rad, setting.side_view, cell.sides);
+  scratch.expectation.find(cell.visible, cell.slice.width_rad, setting.side_view, cell.sides);
 }
 
 /// Of the slices that are left.
@@ -259,7 +259,7 @@ void SliceSampler::make_patches(const Setting& setting) {
       SliceCell& cell = *cells_[order_[i]];
       cell.patches.clear();
       cell.without_facets =
-          patcher.make({cell.slice, cell.pieces, setting.parts, setting.surface, setting.pattern,
+          patcher.make({cell.slice, cell.visible, setting.parts, setting.surface, setting.pattern,
                         setting.fan.tan_limit(), setting.accuracy.linearity, setting.any_mapped,
                         setting.accuracy.mapped_lines, setting.any_facets, setting.accuracy.facet_slopes,
                         setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},

@@ -14,32 +14,32 @@
 #include "renderer/engines/cpu/slice_sides.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/mesh_cache.hpp"
-#include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/refraction.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
-/// How closely slices follow the world: as it stands, within 1 %.
+/// How closely slices follow the world; the defaults keep within 1 %.
 struct SliceAccuracy {
   int slices_per_beam = 1;  ///< to begin with; wide and oblique beams get more
   /// No slice is narrower than a beam divided by this, unless it lies between upright edges; 1: the first
   /// slices stay.
   int most_divisions = 125;
-  /// A first slice at whose sides neighbours disagree is divided in five, even if three would do: where much
-  /// is left in doubt, the ends of shadows then still reach their lines.
+  /// A first slice at whose sides neighbours disagree is divided in five, even if three would do: with coarse
+  /// targets the ends of shadows then still reach their lines.
   bool first_in_five = false;
-  /// Where neighbouring slices disagree they are divided, until of the elevations at which a beam hears
-  /// anything this is the share in doubt: (share of elevations at which a slice disagrees) * (width / beam
-  /// width), summed over the beam as independent errors are.
+  /// Slices are divided until their range mismatch is at most this share of the elevations at which the beam
+  /// receives anything: (share of elevations at which neighbours disagree) * (width / beam width), summed
+  /// over the beam as independent errors are.
   float disagreement = 1.3e-3F;
-  /// A few elevations may hold much of an echo, far from its middle: they are in doubt too while they might
-  /// move the middle of the beam's echo by more than this.
+  /// Slices are divided too while the elevations at which they disagree might move the centroid of the beam's
+  /// echo by more than this: a few elevations may hold much of an echo.
   float shift_lines = 0.2F;
-  /// A slice that hears n range lines may be bent by this times n lines: what a bow displaces are the first
-  /// and last of them, the fewer there are the more it matters.
-  float bow_lines = 6e-4F;
+  /// A surface that spreads over n range lines may have a sagitta of this times n lines within a slice: it
+  /// displaces the first and last of them, and the fewer there are the more that matters.
+  float sagitta_lines = 6e-4F;
   float linearity = 0.03F;     ///< see SlicePatcher::Request
   float change = 0.005F;       ///< share by which a wall's echo may change within a first slice, RMS
   float mapped_lines = 2.0F;   ///< see SlicePatcher::Request
@@ -49,23 +49,22 @@ struct SliceAccuracy {
 
 /// Shares of the elevations at which neighbouring slices do not agree.
 struct SliceBorder {
-  float apart = 0.0F;  ///< they expect ranges more than a line apart on the border
-  float bent = 0.0F;   ///< their surfaces are bent, so that a straight line across one of them is too far off
-  /// By so many lines the echoes of either differ in their middle for what is apart.
-  float shift_lines = 0.0F;
+  float range_mismatch = 0.0F;  ///< they expect ranges on the border that differ by more than a line
+  float curvature = 0.0F;       ///< their surfaces curve too much for straight lines across the slices
+  float shift_lines = 0.0F;     ///< by how much the range mismatch may move the centroid of the echo
 };
 
 /// A wedge of the fan and what is seen in it.
 struct SliceCell {
   Slice slice;
   int beam = 0;
-  std::vector<VisiblePiece> pieces;  ///< seen along its azimuth, whatever its width
+  std::vector<VisibleSegment> visible;  ///< seen along its azimuth, whatever its width
   std::vector<EchoPatch> patches;
   SliceSides sides;
   SliceBorder to_starboard;                  ///< between this slice and the next one
   std::uint64_t without_facets = 0;          ///< patches, see SkipRule::facet_kernel
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
-  bool seen = false;                         ///< its pieces are known
+  bool seen = false;                         ///< `visible` is known
   bool fresh = true;                         ///< not yet compared with its neighbours
   std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard
   ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge for which the slice ends there
@@ -78,22 +77,23 @@ class SliceSampler {
  public:
   SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});
 
-  /// Cells from port to starboard; they stay valid until the next call. The same for any number of threads.
-  /// @param sampled_range_m at least that of the lines: how far surfaces are looked at.
+  /// Cells from port to starboard; they stay valid until the next call. The result does not depend on the
+  /// number of threads.
+  /// @param sampled_range_m at least that of the lines: how far surfaces are looked for.
   std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture,
                                        const RangeLines& range, double sampled_range_m,
                                        const SurfaceModel& surface, const SliceAccuracy& accuracy);
 
-  /// As EchoEngine::set_body_pose().
+  /// See EchoEngine::set_body_pose().
   void set_body_pose(std::size_t body, const Pose& T_world_body) { T_world_body_[body] = T_world_body; }
 
-  /// As EchoEngine::set_part_meshes().
+  /// See EchoEngine::set_part_meshes().
   void set_part_meshes(std::span<const PartMesh> changes);
 
-  /// As EchoEngine::set_ray_bend().
-  void set_ray_bend(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
+  /// See EchoEngine::set_refraction().
+  void set_refraction(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
 
-  /// Of the last call.
+  /// What the last call left out.
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
@@ -119,8 +119,8 @@ class SliceSampler {
 
   // slice_refinement.cpp
   void compare_neighbours(const Setting& setting);
-  std::vector<float> heard_by_beams(const Setting& setting) const;
-  std::vector<float> doubtful_slices(const Setting& setting) const;
+  std::vector<float> ensonified_by_beam(const Setting& setting) const;
+  std::vector<float> slices_in_error(const Setting& setting) const;
   std::vector<int> choose_parts(const Setting& setting);
   void divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
               std::vector<std::size_t>& fresh);
@@ -136,7 +136,7 @@ class SliceSampler {
   MeshCache<Replacement> replacements_;
   bool any_mapped_ = false;
   bool any_facets_ = false;  ///< whether any material has them
-  RayBend bend_;             ///< in the sonar frame of this ping
+  Refraction bend_;          ///< in the sonar frame of this ping
   FanTriangles triangles_;
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
   std::size_t cells_used_ = 0;

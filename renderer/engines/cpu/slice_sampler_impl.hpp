@@ -17,7 +17,7 @@ struct SliceSampler::Setting {
   const SliceAccuracy& accuracy;
   const std::vector<PartSurface>& parts;
   bool any_mapped;
-  bool any_facets;  ///< whether they have to be looked at
+  bool any_facets;  ///< whether any part has them
   float line_m;
   SideView side_view;
 

@@ -38,8 +38,8 @@ T interpolate(const std::vector<T>& values, const std::uint32_t* corner, const g
          values[corner[2]] * weights.y;
 }
 
-/// Level of the pyramid whose texels are as large as the smaller side of the piece's footprint, and how many
-/// of them lie along the larger side.
+/// Level of the pyramid whose texels are as large as the smaller side of the segment's footprint, and how
+/// many of them lie along the larger side.
 struct MapFootprint {
   float level;
   int taps;
@@ -47,7 +47,7 @@ struct MapFootprint {
 };
 
 MapFootprint footprint_on_map(const PartSurface& part, const SurfacePoint& surface,
-                              const std::uint32_t* corner, const PiecePlace& place) {
+                              const std::uint32_t* corner, const SegmentPlace& place) {
   constexpr int most_taps = 8;
   const float range = glm::length(surface.p);
   const glm::vec3 d = surface.p / range;
@@ -76,7 +76,7 @@ MapFootprint footprint_on_map(const PartSurface& part, const SurfacePoint& surfa
 
 /// Mean of the mapped normals over the footprint, not of unit length: see NormalPyramid.
 glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, const std::uint32_t* corner,
-                        const glm::vec2& weights, const glm::vec3& vertex_normal, const PiecePlace& place) {
+                        const glm::vec2& weights, const glm::vec3& vertex_normal, const SegmentPlace& place) {
   const glm::vec2 uv = interpolate(part.mesh->texcoords, corner, weights);
   const MapFootprint footprint = footprint_on_map(part, surface, corner, place);
   glm::vec3 m(0.0F);
@@ -135,7 +135,7 @@ NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& trian
   NormalRun run{at_sonar * depth.x + by_b * b_of.x + by_c * c_of.x,
                 at_sonar * depth.y + by_b * b_of.y + by_c * c_of.y,
                 at_sonar * depth.z + by_b * b_of.z + by_c * c_of.z};
-  const RayBend& bend = part.bend_in_part;
+  const Refraction& bend = part.refraction_in_part;
   if (!bend.straight()) {
     const glm::vec3 up_in_slice = in_slice(bend.up * part.R_part_sonar);
     const float nearness = depth.x + middle_t * depth.z;
@@ -149,15 +149,16 @@ NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& trian
 }
 
 MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
-                                 const PiecePlace& place, float geometric) {
+                                 const SegmentPlace& place, float geometric) {
   const SurfacePoint surface(triangle,
                              {place.h_m * place.slice.cosine, place.h_m * place.slice.sine, place.z_m});
   const glm::vec2 weights = surface.weights(surface.p - surface.corner);
   const std::uint32_t* corner = &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3];
   const glm::vec3 vertex_normal =
-      part.mesh->normals.empty() ? part.R_part_sonar * glm::normalize(surface.normal)
-                                 : part.bend_in_part.normal(interpolate(part.mesh->normals, corner, weights),
-                                                            part.R_part_sonar * surface.p);
+      part.mesh->normals.empty()
+          ? part.R_part_sonar * glm::normalize(surface.normal)
+          : part.refraction_in_part.normal(interpolate(part.mesh->normals, corner, weights),
+                                           part.R_part_sonar * surface.p);
   const glm::vec3 d = part.R_part_sonar * glm::normalize(surface.p);
   const glm::vec3 n = mapped_normal(part, surface, corner, weights, vertex_normal, place);
   const float product = glm::dot(n, d);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface answers at a piece of a slice: interpolated normals, normal maps, and the response laws.
+// What a surface answers at a segment of a slice: interpolated normals, normal maps, and the response laws.
 #pragma once
 
 #include <cmath>
@@ -20,17 +20,17 @@ struct MappedIncidence {
   float mean_length;  ///< of that mean
 };
 
-/// The middle of a piece in its slice, and its size.
-struct PiecePlace {
+/// The middle of a segment in its slice, and its size.
+struct SegmentPlace {
   float h_m, z_m;
   const Slice& slice;
   float range_extent_m;
 };
 
-/// In the middle of a piece of a part with a normal map.
+/// In the middle of a segment of a part with a normal map.
 /// @param geometric cos phi of the triangle itself; the answer where the shading normal is no direction.
 MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
-                                 const PiecePlace& place, float geometric);
+                                 const SegmentPlace& place, float geometric);
 
 /// The normal that shades the plane of a triangle, where the ray (1, x, t) of a slice meets it: at + per_x x
 /// + per_t t, of any length and sign. Components are along the slice, across it to port, and up. Weights of
@@ -44,7 +44,7 @@ struct NormalRun {
 };
 
 /// From the normals of its corners.
-/// @param middle_t where refraction turns it as it does here (RayBend)
+/// @param middle_t where refraction turns it as it does here (Refraction)
 NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
                                float middle_t);
 

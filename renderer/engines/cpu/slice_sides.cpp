@@ -27,13 +27,13 @@ void summarise(const SideView& view, SliceSides& sides) {
   const float* __restrict starboard = sides.starboard.data();
   const float* __restrict secant = view.secant.data();
   const float max_range_m = view.max_range_m;
-  std::int32_t heard_port = 0, heard_starboard = 0;
+  std::int32_t in_range_port = 0, in_range_starboard = 0;
   std::int32_t nearest = std::bit_cast<std::int32_t>(max_range_m), furthest = 0;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float range_p = secant[i] / port[i], range_s = secant[i] / starboard[i];
     const bool in_p = secant[i] < max_range_m * port[i], in_s = secant[i] < max_range_m * starboard[i];
-    heard_port += in_p ? 1 : 0;
-    heard_starboard += in_s ? 1 : 0;
+    in_range_port += in_p ? 1 : 0;
+    in_range_starboard += in_s ? 1 : 0;
     const auto low_p = std::bit_cast<std::int32_t>(in_p ? range_p : max_range_m);
     const auto low_s = std::bit_cast<std::int32_t>(in_s ? range_s : max_range_m);
     const auto high_p = std::bit_cast<std::int32_t>(in_p ? range_p : 0.0F);
@@ -43,8 +43,8 @@ void summarise(const SideView& view, SliceSides& sides) {
     nearest = low < nearest ? low : nearest;
     furthest = high > furthest ? high : furthest;
   }
-  sides.heard = static_cast<float>(heard_port + heard_starboard) / (2 * side_probes);
-  sides.one_sided = static_cast<float>(std::abs(heard_port - heard_starboard)) / side_probes;
+  sides.ensonified = static_cast<float>(in_range_port + in_range_starboard) / (2 * side_probes);
+  sides.one_sided = static_cast<float>(std::abs(in_range_port - in_range_starboard)) / side_probes;
   const float span_m = std::bit_cast<float>(furthest) - std::bit_cast<float>(nearest);
   sides.lines = span_m > 0 ? span_m / view.line_m : 0.0F;
 }
@@ -59,17 +59,17 @@ SideView::SideView(float tan_limit_, float max_range_m_, float line_m_)
   }
 }
 
-void SideExpectation::find(const std::vector<VisiblePiece>& pieces, float width_rad, const SideView& view,
+void SideExpectation::find(const std::vector<VisibleSegment>& visible, float width_rad, const SideView& view,
                            SliceSides& sides) {
-  lay_out(pieces);
+  lay_out(visible);
   follow(width_rad, view.tan_limit);
   profile(view.tan_limit, 0.5F * width_rad, sides.port);
   profile(view.tan_limit, -0.5F * width_rad, sides.starboard);
   summarise(view, sides);
 }
 
-void SideExpectation::lay_out(const std::vector<VisiblePiece>& pieces) {
-  seen_.lay_out(pieces);
+void SideExpectation::lay_out(const std::vector<VisibleSegment>& visible) {
+  seen_.lay_out(visible);
   if (seen_.size() > w_by_azimuth_.size()) {
     w_by_azimuth_.resize(seen_.size());
     first_probe_.resize(seen_.size());
@@ -77,14 +77,14 @@ void SideExpectation::lay_out(const std::vector<VisiblePiece>& pieces) {
   }
 }
 
-/// How each piece goes on beside the slice.
+/// How each segment goes on beside the slice.
 SONARD_SIMD_CLONES
 void SideExpectation::follow(float width_rad, float tan_limit) {
   const auto count = seen_.count;
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
-  float* __restrict low_drift = seen_.low_drift.data();
-  float* __restrict high_drift = seen_.high_drift.data();
+  float* __restrict low_slope = seen_.low_slope.data();
+  float* __restrict high_slope = seen_.high_slope.data();
   const float* __restrict low_reach = seen_.low_reach.data();
   const float* __restrict high_reach = seen_.high_reach.data();
   const float* __restrict w_at_0 = seen_.w_at_0.data();
@@ -94,15 +94,15 @@ void SideExpectation::follow(float width_rad, float tan_limit) {
   const float* __restrict normal_z = seen_.normal_z.data();
   float* __restrict w_by_azimuth = w_by_azimuth_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    low_drift[i] = EdgeRun{low_drift[i], low_reach[i]}.drift_within(low[i], width_rad, tan_limit);
-    high_drift[i] = EdgeRun{high_drift[i], high_reach[i]}.drift_within(high[i], width_rad, tan_limit);
+    low_slope[i] = EdgeRun{low_slope[i], low_reach[i]}.slope_within(low[i], width_rad, tan_limit);
+    high_slope[i] = EdgeRun{high_slope[i], high_reach[i]}.slope_within(high[i], width_rad, tan_limit);
     // On a plane n . p = D, 1 / h = (n_h + n_z t) / D changes with azimuth by n_s / D, wherever on it.
     const float t = 0.5F * (low[i] + high[i]);
     w_by_azimuth[i] = (w_at_0[i] + w_slope[i] * t) * normal_s[i] / (normal_h[i] + normal_z[i] * t);
   }
 }
 
-/// The probes of each piece, as they run if the piece goes on as it does in the middle.
+/// The probes of each segment, as they run if the segment goes on as it does in the middle.
 SONARD_SIMD_CLONES
 void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   const auto count = seen_.count;
@@ -110,14 +110,14 @@ void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   const auto end = static_cast<float>(side_probes);
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
-  const float* __restrict low_drift = seen_.low_drift.data();
-  const float* __restrict high_drift = seen_.high_drift.data();
+  const float* __restrict low_slope = seen_.low_slope.data();
+  const float* __restrict high_slope = seen_.high_slope.data();
   std::int32_t* __restrict first = first_probe_.data();
   std::int32_t* __restrict last = last_probe_.data();
   for (std::size_t i = 0; i < count; ++i) {
     // The first probe above t. Truncation is floor where it counts.
-    const float from = (low[i] + low_drift[i] * offset_rad - lowest) * probes_per_t + 1;
-    const float to = (high[i] + high_drift[i] * offset_rad - lowest) * probes_per_t + 1;
+    const float from = (low[i] + low_slope[i] * offset_rad - lowest) * probes_per_t + 1;
+    const float to = (high[i] + high_slope[i] * offset_rad - lowest) * probes_per_t + 1;
     first[i] = static_cast<std::int32_t>(from < 0 ? 0.0F : (from > end ? end : from));
     last[i] = static_cast<std::int32_t>(to < 0 ? 0.0F : (to > end ? end : to));
   }
@@ -136,7 +136,7 @@ void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& ou
     const float slope = seen_.w_slope[i] * step;
     const float w = seen_.w_at_0[i] + w_by_azimuth_[i] * offset_rad +
                     seen_.w_slope[i] * (first_probe(tan_limit) + static_cast<float>(first) * step);
-    // Most hold a probe or two. What is written too much the next piece writes again, or the end.
+    // Most hold a probe or two. What is written too much the next segment writes again, or the end.
     float* const at = &out[static_cast<std::size_t>(first)];
     for (std::int32_t k = 0; k < probe_padding; ++k) {
       at[k] = w + slope * static_cast<float>(k);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/engines/cpu/piece_arrays.hpp"
+#include "renderer/engines/cpu/visible_arrays.hpp"
 
 namespace sonard::render {
 
@@ -14,15 +14,15 @@ inline constexpr int probe_padding = 4;  ///< at the end of a profile; so many a
 /// 1 / horizontal distance at the probes of one side, 0 where nothing is seen.
 using SideProfile = std::array<float, side_probes + probe_padding>;
 
-/// Neighbours compare theirs.
+/// What a slice expects at both sides of its wedge; neighbours compare theirs.
 struct SliceSides {
   SideProfile port, starboard;
-  float heard = 0.0F;      ///< share of elevations at which something is expected within the range
-  float one_sided = 0.0F;  ///< the same, of one side only
-  float lines = 0.0F;      ///< over which that lies
+  float ensonified = 0.0F;  ///< share of elevations at which something is expected within the range
+  float one_sided = 0.0F;   ///< share of elevations at which only one side expects something
+  float lines = 0.0F;       ///< range lines over which the expected ranges spread
 };
 
-/// The elevations and the range in which sides are looked at, for one ping.
+/// The elevations and the range in which sides are compared, for one ping.
 struct SideView {
   SideView(float tan_limit, float max_range_m, float line_m);
 
@@ -33,16 +33,16 @@ struct SideView {
 /// One per thread; keeps its memory.
 class SideExpectation {
  public:
-  void find(const std::vector<VisiblePiece>& pieces, float width_rad, const SideView& view,
+  void find(const std::vector<VisibleSegment>& visible, float width_rad, const SideView& view,
             SliceSides& sides);
 
  private:
-  void lay_out(const std::vector<VisiblePiece>& pieces);
+  void lay_out(const std::vector<VisibleSegment>& visible);
   void follow(float width_rad, float tan_limit);
   void find_probes(float tan_limit, float offset_rad);
   void profile(float tan_limit, float offset_rad, SideProfile& out);
 
-  PieceArrays seen_;
+  VisibleArrays seen_;
   std::vector<float> w_by_azimuth_;
   std::vector<std::int32_t> first_probe_, last_probe_;
 };

@@ -21,15 +21,15 @@ constexpr float widest_gap_rad = 2 * shortest_rad;  // where segments were left 
 }  // namespace
 
 void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segments& segments, float tan_limit,
-                     std::vector<VisiblePiece>& pieces) {
+                     std::vector<VisibleSegment>& visible) {
   cutter_ = &cutter;
   segments_ = &segments;
-  pieces_ = &pieces;
+  visible_ = &visible;
   cosine_ = slice.cosine;
   sine_ = slice.sine;
   count_ = segments.kept.size();
   limit_ = tan_limit;
-  pieces.clear();
+  visible.clear();
   crossed_.clear();
   short_.clear();
   waiting_.clear();
@@ -50,9 +50,9 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
     const float end = std::min(segments.high[static_cast<std::size_t>(current_)], limit_);
     const float start = next_start();
     if (crossing_ < start && crossing_ < end) {
-      const std::size_t before = pieces.size();
+      const std::size_t before = visible.size();
       emit(crossing_, {});
-      if (pieces.size() > before) {
+      if (visible.size() > before) {
         crossed_.push_back(before);
       }
       std::swap(current_, waiting_[crosser_]);
@@ -71,37 +71,37 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
 void SliceSweep::close_gaps() {
   for (std::size_t k = short_.size(); k-- > 0;) {
     const std::size_t i = short_[k];
-    if (i == 0 || i + 1 >= pieces_->size()) {
+    if (i == 0 || i + 1 >= visible_->size()) {
       continue;
     }
-    const VisiblePiece& before = (*pieces_)[i - 1];
-    const VisiblePiece& piece = (*pieces_)[i];
-    const VisiblePiece& after = (*pieces_)[i + 1];
-    const float w = piece.w_at_0 + piece.w_slope * piece.low;
-    if (before.high == piece.low && piece.high == after.low &&
-        before.w_at_0 + before.w_slope * piece.low > w * (1 + touching) &&
-        after.w_at_0 + after.w_slope * piece.high > w * (1 + touching)) {
-      pieces_->erase(pieces_->begin() + static_cast<std::ptrdiff_t>(i));
+    const VisibleSegment& before = (*visible_)[i - 1];
+    const VisibleSegment& segment = (*visible_)[i];
+    const VisibleSegment& after = (*visible_)[i + 1];
+    const float w = segment.w_at_0 + segment.w_slope * segment.low;
+    if (before.high == segment.low && segment.high == after.low &&
+        before.w_at_0 + before.w_slope * segment.low > w * (1 + touching) &&
+        after.w_at_0 + after.w_slope * segment.high > w * (1 + touching)) {
+      visible_->erase(visible_->begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
 }
 
-/// Where two surfaces cross, their pieces end along the line in which their planes meet. Its direction e
+/// Where two surfaces cross, their segments end along the line in which their planes meet. Its direction e
 /// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
 void SliceSweep::follow_crossings() {
   for (const std::size_t i : crossed_) {
-    if (i + 1 >= pieces_->size()) {
+    if (i + 1 >= visible_->size()) {
       continue;
     }
-    VisiblePiece& before = (*pieces_)[i];
-    VisiblePiece& after = (*pieces_)[i + 1];
+    VisibleSegment& before = (*visible_)[i];
+    VisibleSegment& after = (*visible_)[i + 1];
     const float e_h = before.normal_s * after.normal_z - before.normal_z * after.normal_s;
     const float e_s = before.normal_z * after.normal_h - before.normal_h * after.normal_z;
     const float e_z = before.normal_h * after.normal_s - before.normal_s * after.normal_h;
-    const float drift = (e_z - before.high * e_h) / e_s;
-    // It moves no farther than the longer piece reaches.
+    const float slope = (e_z - before.high * e_h) / e_s;
+    // It moves no farther than the longer segment reaches.
     const float reach = std::max(before.high - before.low, after.high - after.low);
-    before.high_run = after.low_run = std::isfinite(drift) ? EdgeRun{drift, reach} : EdgeRun{};
+    before.high_run = after.low_run = std::isfinite(slope) ? EdgeRun{slope, reach} : EdgeRun{};
   }
 }
 
@@ -175,13 +175,13 @@ void SliceSweep::find_buckets(std::int32_t buckets) {
 void SliceSweep::emit(float until, const EdgeRun& run) {
   if (until > t_) {
     if (until - t_ < widest_gap_rad * (1 + t_ * t_)) {
-      short_.push_back(pieces_->size());
+      short_.push_back(visible_->size());
     }
     const auto s = static_cast<std::size_t>(current_);
     const float nx = cutter_->normal_x()[s], ny = cutter_->normal_y()[s];
-    pieces_->push_back({t_, until, run_, run, segments_->w_at_0[s], segments_->w_slope[s],
-                        nx * cosine_ + ny * sine_, ny * cosine_ - nx * sine_, cutter_->normal_z()[s],
-                        &cutter_->triangle(current_)});
+    visible_->push_back({t_, until, run_, run, segments_->w_at_0[s], segments_->w_slope[s],
+                         nx * cosine_ + ny * sine_, ny * cosine_ - nx * sine_, cutter_->normal_z()[s],
+                         &cutter_->triangle(current_)});
     t_ = until;
   }
   run_ = run;

@@ -10,7 +10,7 @@
 namespace sonard::render {
 
 /// Part of a triangle that the sonar sees in a slice, between two elevations.
-struct VisiblePiece {
+struct VisibleSegment {
   float low, high;  ///< t at the ends; low < high
   EdgeRun low_run, high_run;
   float w_at_0, w_slope;               ///< see Segments
@@ -18,15 +18,15 @@ struct VisiblePiece {
   const FanTriangle* triangle;
 };
 
-/// Finds the nearest segment at every elevation, without sampling elevations: pieces end exactly where a
+/// Finds the nearest segment at every elevation, without sampling elevations: segments end exactly where a
 /// segment ends, where a nearer one begins, or where two cross. One per thread; keeps its memory.
 class SliceSweep {
  public:
-  /// Pieces from -tan_limit to tan_limit in rising order; they do not overlap. Of segments in the same place
-  /// the earlier is seen.
+  /// Segments from -tan_limit to tan_limit in rising order; they do not overlap. Of segments in the same
+  /// place the earlier is seen.
   /// @param segments what `cutter` cut out of `slice` last.
   void run(const SliceCutter& cutter, const Slice& slice, const Segments& segments, float tan_limit,
-           std::vector<VisiblePiece>& pieces);
+           std::vector<VisibleSegment>& visible);
 
  private:
   void follow_crossings();
@@ -46,7 +46,7 @@ class SliceSweep {
 
   const SliceCutter* cutter_ = nullptr;
   const Segments* segments_ = nullptr;
-  std::vector<VisiblePiece>* pieces_ = nullptr;
+  std::vector<VisibleSegment>* visible_ = nullptr;
   float cosine_ = 1.0F, sine_ = 0.0F;  ///< of the azimuth
   float limit_ = 0.0F;
   std::size_t count_ = 0;            ///< of segments; arrays may be longer
@@ -58,12 +58,12 @@ class SliceSweep {
   std::size_t next_ = 0;               ///< in order_
   std::vector<std::int32_t> waiting_;  ///< begun, hidden by the current one, and possibly seen later
   int current_ = -1;
-  float t_ = 0.0F;         ///< the sweep is here; the current piece began here
+  float t_ = 0.0F;         ///< the sweep is here; the current segment began here
   EdgeRun run_;            ///< of that beginning
   float crossing_ = 0.0F;  ///< where a waiting segment comes before the current one
   std::size_t crosser_ = 0;
-  std::vector<std::size_t> short_;    ///< pieces that may lie in a gap
-  std::vector<std::size_t> crossed_;  ///< pieces that end where the next one crosses them
+  std::vector<std::size_t> short_;    ///< segments that may lie in a gap
+  std::vector<std::size_t> crossed_;  ///< segments that end where the next one crosses them
 };
 
 }  // namespace sonard::render

@@ -10,7 +10,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int most_looks = 5;
+constexpr int most_passes = 5;
 constexpr double most_samples_at_once = 0x1p23;  // what is drawn before it is read and binned
 
 }  // namespace
@@ -24,8 +24,8 @@ struct BeamRefinement::Ping {
   Result result;
 
   /// Samples some beams and bins them: in place of what the image has of them.
-  /// @param coarse the grid thinned; null: nobody will ask how exact these beams are.
-  void look(const SampleGrid& grid, const SampleGrid* coarse, const std::vector<BeamChoice>& choices) {
+  /// @param coarse the grid thinned; null: no error estimate is needed.
+  void sample_pass(const SampleGrid& grid, const SampleGrid* coarse, const std::vector<BeamChoice>& choices) {
     const auto begin = std::chrono::steady_clock::now();
     const auto views = sampler.sample(request.T_world_sonar, grid, request.surface, request.max_range_m);
     result.visibility_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -41,26 +41,28 @@ struct BeamRefinement::Ping {
     result.bins.samples += bins.samples;
     result.bins.invalid_samples += bins.invalid_samples;
     if (coarse != nullptr) {
-      judge(grid, views, bins, *coarse, choices);
+      estimate_beams(grid, views, bins, *coarse, choices);
     }
   }
 
-  void judge(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-             const BinningResult& bins, const SampleGrid& coarse, const std::vector<BeamChoice>& choices) {
+  void estimate_beams(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
+                      const BinningResult& bins, const SampleGrid& coarse,
+                      const std::vector<BeamChoice>& choices) {
     const RangeLines& range = request.settings.range;
     const ThinnedSamples thinned(grid, views, coarse);
     const BinningResult coarse_bins = bin_echoes(coarse, thinned.views(), range, request.binning, workers);
-    std::vector<JudgedBeam> judged = judge_beams(grid, views, range, request.line_weight, workers);
+    std::vector<BeamErrorEstimate> estimate =
+        estimate_errors(grid, views, range, request.line_weight, workers);
     const auto lines = static_cast<std::size_t>(bins.lines);
     for (std::size_t i = 0; i < choices.size(); ++i) {
       beams[static_cast<std::size_t>(choices[i].beam)] = {
-          choices[i].density, std::move(judged[i]),
+          choices[i].density, std::move(estimate[i]),
           bin_error(&bins.echo[i * lines], &coarse_bins.echo[i * lines], lines, request.line_weight)};
     }
   }
 
   /// A part of the runs at a time, so that the memory taken does not grow with their number.
-  void look_again(const std::vector<BeamChoice>& choices, bool judged) {
+  void refine_pass(const std::vector<BeamChoice>& choices, bool with_estimate) {
     const Aperture& aperture = request.settings.aperture;
     const std::vector<BeamRun> runs = beam_runs(aperture, choices);
     auto first = choices.begin();
@@ -74,11 +76,11 @@ struct BeamRefinement::Ping {
         part.push_back(*run++);
       } while (run != runs.end() && samples + run->samples() <= most_samples_at_once);
       const SampleGrid grid = make_sample_grid(aperture, part);
-      if (judged) {
+      if (with_estimate) {
         const SampleGrid coarse = make_sample_grid(aperture, thinned(part));
-        look(grid, &coarse, {first, last});
+        sample_pass(grid, &coarse, {first, last});
       } else {
-        look(grid, nullptr, {first, last});
+        sample_pass(grid, nullptr, {first, last});
       }
       first = last;
     }
@@ -93,7 +95,7 @@ const BeamRefinement::EvenGrid& BeamRefinement::even_grid(const Aperture& apertu
   return *even_;
 }
 
-BeamRefinement::Result BeamRefinement::look(const Request& request, bool keep_grid) {
+BeamRefinement::Result BeamRefinement::refine(const Request& request, bool keep_grid) {
   const SonarSettings& settings = request.settings;
   const Aperture& aperture = settings.aperture;
   const Sampling::Preset preset = settings.sampling.preset;
@@ -111,13 +113,13 @@ BeamRefinement::Result BeamRefinement::look(const Request& request, bool keep_gr
   for (std::size_t beam = 0; beam < beams; ++beam) {
     choices[beam] = {static_cast<int>(beam), density};
   }
-  ping.look(even.grid, &even.coarse, choices);
-  for (int look = 2; look <= most_looks; ++look) {
-    choices = beams_in_doubt(aperture, ping.beams, grid_targets(preset));
+  ping.sample_pass(even.grid, &even.coarse, choices);
+  for (int pass = 2; pass <= most_passes; ++pass) {
+    choices = beams_to_refine(aperture, ping.beams, grid_targets(preset));
     if (choices.empty()) {
       break;
     }
-    ping.look_again(choices, look < most_looks);
+    ping.refine_pass(choices, pass < most_passes);
   }
   return std::move(ping.result);
 }

@@ -16,37 +16,37 @@
 
 namespace sonard::render {
 
-/// Looks at the whole fan with an even grid, judges every beam by what it saw, and looks again at the beams
-/// that may miss the preset's targets. What it begins with and all that follows depend on the request alone,
-/// so the image does. One thread uses it.
+/// Samples the whole fan with an even grid, estimates the error of every beam, and samples those that may
+/// miss the preset's targets again. All passes depend on the request alone, so the image does. One thread
+/// uses it.
 class BeamRefinement {
  public:
   /// @param sampler, workers outlive this object.
   BeamRefinement(RasterSampler& sampler, WorkerPool& workers) : sampler_(sampler), workers_(workers) {}
 
-  /// What is the same in all looks of a ping.
+  /// What all passes of a ping share.
   struct Request {
     const Pose& T_world_sonar;
     const SonarSettings& settings;
     const SurfaceModel& surface;
     double max_range_m;
     const BinningOptions& binning;
-    /// Of every line, what the echo is yet to be multiplied with; empty: 1.
+    /// What the echo of each line is yet to be multiplied with; empty: 1.
     const std::vector<float>& line_weight;
   };
   struct Result {
-    BinningResult bins;         ///< `samples` and `invalid_samples` are those of all looks
+    BinningResult bins;         ///< `samples` and `invalid_samples` are those of all passes
     double visibility_s = 0.0;  ///< of the time taken
-    bool known_grid = false;    ///< the grid of the first look was that of the last ping
+    bool known_grid = false;    ///< the grid of the first pass was that of the last ping
   };
 
-  /// @param keep_grid the grid of the first look may be that of the last ping, if it is the one.
+  /// @param keep_grid the grid of the first pass may be that of the last ping, where it is equal.
   /// @throws RequestError when the aperture cannot be gridded.
   /// @throws RendererError as the sampler.
-  Result look(const Request& request, bool keep_grid);
+  Result refine(const Request& request, bool keep_grid);
 
  private:
-  /// The even grid of the first look, and the same thinned.
+  /// The even grid of the first pass, and that grid thinned.
   struct EvenGrid {
     Aperture aperture;
     BeamDensity density;

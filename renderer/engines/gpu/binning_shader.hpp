@@ -47,7 +47,7 @@ layout(rgba32f, binding = 0) readonly uniform image2D view;  // SurfaceSample
 layout(location = 3) uniform int first_part;       // of the view
 layout(location = 4) uniform float bottom;         // tangent of the lowest row's centre
 layout(location = 5) uniform float pixel_height;   // tangent units
-layout(location = 6) uniform vec3 lines_per_m;     // in three pieces, of 12, 12 and 24 bits
+layout(location = 6) uniform vec3 lines_per_m;     // in three parts, of 12, 12 and 24 bits
 layout(location = 7) uniform float units_per_sr;
 layout(location = 8) uniform float most_units;     // of one sample: so many of them cannot overflow
 layout(location = 9) uniform bool footprint;
@@ -68,7 +68,7 @@ Place normalised(float line, float part) {
   return Place(line + whole, part - whole);
 }
 
-// The product with lines_per_m from pieces so short that all products that matter are exact.
+// The product with lines_per_m from parts so short that all products that matter are exact.
 Place place_of(float range_m) {
   precise float coarse = uintBitsToFloat(floatBitsToUint(range_m) & 0xfffff000u);
   precise float fine = range_m - coarse;

@@ -64,7 +64,7 @@ GpuPart gpu_part(const SampleGrid& grid, const ColumnPart& part, int beam) {
 }
 
 /// `value` as a sum of three floats of which the first two have no more than 12 bits.
-std::array<float, 3> in_pieces(double value) {
+std::array<float, 3> in_three_parts(double value) {
   const auto twelve_bits = [](double number) {
     auto rounded = static_cast<float>(number);
     std::uint32_t bits = 0;
@@ -272,7 +272,7 @@ struct GpuBinner::Impl {
     linked(*splat).useProgram();
     set_image_uniforms();
     const double legacy = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
-    const std::array<float, 3> lines_per_m = in_pieces(legacy / range.step_m);
+    const std::array<float, 3> lines_per_m = in_three_parts(legacy / range.step_m);
     gl.glUniform3fv(at_lines_per_m, 1, lines_per_m.data());
     gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr));
     gl.glUniform1f(at_most_units, static_cast<float>(most_units));

@@ -30,7 +30,7 @@ class GpuBinner {
   void set_grid(const SampleGrid& grid);
 
   /// Makes room for images of the grid's beams and so many lines.
-  /// @return why it cannot be had, in one line; then bin_echoes() is to be used. Empty: it is there.
+  /// @return why it is not available, in one line: use bin_echoes() then. Empty: it is available.
   std::string make_room(int lines, const BinningOptions& options);
 
   /// @param textures what RasterSampler::draw() returned for the grid.

@@ -16,7 +16,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
     : skip_(options.skip),
       largest_response_(largest_response(world)),
       workers_(workers),
-      sampler_(options.ray_curvature_per_m == 0.0 ? world : bendable(world, options.ray_curvature_per_m)),
+      sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m)),
       description_(sampler_.description()),
       refinement_(sampler_, workers) {
   make_binner(options.gpu_binning);
@@ -47,8 +47,8 @@ void GpuEngine::set_part_meshes(std::span<const PartMesh> changes) {
   sampler_.set_part_meshes(changes);
 }
 
-void GpuEngine::set_ray_bend(double bend_per_m) {
-  sampler_.set_ray_bend(bend_per_m);
+void GpuEngine::set_refraction(double bend_per_m) {
+  sampler_.set_refraction(bend_per_m);
 }
 
 void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
@@ -105,9 +105,9 @@ void GpuEngine::image_by_refinement(const EchoRequest& request, const BinningOpt
   const SonarSettings& settings = request.settings;
   const SurfaceModel surface = surface_model(settings, skip_);
   BeamRefinement::Result found =
-      refinement_.look({request.T_world_sonar, settings, surface, settings.range.sampled_range_m(), options,
-                        request.line_weight},
-                       skip_.on(SkipRule::unchanged_settings));
+      refinement_.refine({request.T_world_sonar, settings, surface, settings.range.sampled_range_m(), options,
+                          request.line_weight},
+                         skip_.on(SkipRule::unchanged_settings));
   if (found.known_grid) {
     statistics.skipped.add(SkipRule::unchanged_settings);
   }

@@ -30,7 +30,7 @@ class GpuEngine final : public EchoEngine {
   void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
-  void set_ray_bend(double bend_per_m) override;
+  void set_refraction(double bend_per_m) override;
   const std::string& description() const override { return description_; }
 
  private:

@@ -11,7 +11,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double most_samples = 0x1p25;  // of a look; half a GiB of them, were they all kept
+constexpr double most_samples = 0x1p25;  // of a pass: half a GiB if all were kept
 constexpr double most_beam_samples = 0x1p18;
 constexpr int most_pixels = 8192;             // of a view in each direction; every OpenGL 4.5 can draw 16384
 constexpr int most_columns = 512;             // of a beam, or of its zone
@@ -23,18 +23,18 @@ constexpr int most_rows_factor = 16;
 // quarter of the samples.
 constexpr double bin_order = 0.6;
 constexpr double error_of_distance = 0.4;
-// What a beam is judged to be off by falls with the first power of the number of columns (or rows) where
+// The estimated error of a beam falls with the first power of the number of columns (or rows) where
 // there is one edge, faster where there are many; and the beam is hardly ever off by more than twice that.
 constexpr double beam_order = 4.0 / 3;
 constexpr double beam_safety = 2;
-constexpr double longest_stride = 8;  // in columns or rows; what is seen then may be judged better
+constexpr double longest_stride = 8;  // in columns or rows; a coarser estimate may do better
 constexpr double zone_stride = 32;
 constexpr double widest_zone = 0.5;  // of what was sampled before; else all of it is sampled again
 constexpr double zone_rest = 0.5;    // of a target, what lies outside of a zone may miss
 constexpr int most_columns_beside = 64;
 constexpr int thinnest_columns = 32;  // columns of a beam, to find what may be as thin
 
-constexpr double heard = 1e-2;  // of the beam's maximum: what errors are taken over
+constexpr double least_level = 1e-2;  // of the beam's maximum; errors are taken over bins above it
 
 /// At the coarsest: a row for every 0.16 degrees of elevation.
 int least_rows(const Aperture& aperture) {
@@ -96,7 +96,7 @@ int columns_beside(std::size_t had) {
 
 /// Where edges are few and near to each other: more columns only there. Without a zone where they are not.
 BeamDensity with_zone(const Aperture& aperture, int beam, const BeamState& state, const BeamError& target) {
-  const std::vector<ColumnError>& columns = state.judged.columns;
+  const std::vector<ColumnError>& columns = state.estimate.columns;
   // Trims both ends while what is left out stays small.
   std::size_t first = 0, last = columns.size();
   double rest = 0, within = 0;
@@ -137,13 +137,13 @@ BeamDensity capped(BeamDensity wanted, const BeamDensity& now, double most) {
   return wanted;
 }
 
-/// What a beam may be looked at with next; as it was, if it need not be or cannot be looked at again.
-class NextLook {
+/// The density with which a beam is sampled next; unchanged where another pass is not needed or not possible.
+class NextPass {
  public:
-  NextLook(const Aperture& aperture, const std::vector<BeamState>& beams, const GridTargets& targets)
+  NextPass(const Aperture& aperture, const std::vector<BeamState>& beams, const GridTargets& targets)
       : aperture_(aperture), targets_(targets) {
     for (const BeamState& beam : beams) {
-      if (beam.judged.thin && !beam.density.has_zone()) {
+      if (beam.estimate.thin && !beam.density.has_zone()) {
         least_columns_ = std::max(least_columns_, std::min(4 * beam.density.columns, thinnest_columns));
       }
     }
@@ -152,8 +152,8 @@ class NextLook {
   /// @param most samples that the beam may take.
   BeamDensity of(int beam, const BeamState& state, double most) const {
     const BeamDensity& now = state.density;
-    const double by_columns = miss(state.judged.by_columns, targets_.beam);
-    const double by_rows = miss(state.judged.by_rows, targets_.beam);
+    const double by_columns = miss(state.estimate.by_columns, targets_.beam);
+    const double by_rows = miss(state.estimate.by_rows, targets_.beam);
     const bool bins = state.bin_rms > targets_.bins;
     if (by_columns > 1 && by_rows <= 1 && !bins) {
       const BeamDensity zone = with_zone(aperture_, beam, state, targets_.beam);
@@ -288,7 +288,7 @@ double bin_error(const float* echo, const float* thinned, std::size_t lines,
   double squares = 0;
   double bins = 0;
   for (std::size_t k = 0; k < lines; ++k) {
-    if (weighted(k) > static_cast<float>(heard) * strongest) {
+    if (weighted(k) > static_cast<float>(least_level) * strongest) {
       const auto off = static_cast<double>(thinned[k] / echo[k] - 1);
       squares += off * off;
       bins += 1;
@@ -297,9 +297,9 @@ double bin_error(const float* echo, const float* thinned, std::size_t lines,
   return bins > 0 ? error_of_distance * std::sqrt(squares / bins) : 0.0;
 }
 
-std::vector<BeamChoice> beams_in_doubt(const Aperture& aperture, const std::vector<BeamState>& beams,
-                                       const GridTargets& targets) {
-  const NextLook next(aperture, beams, targets);
+std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
+                                        const GridTargets& targets) {
+  const NextPass next(aperture, beams, targets);
   std::vector<BeamChoice> choices;
   for (double most = most_beam_samples;; most /= 2) {
     choices.clear();

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/binning/binning.hpp"
-#include "renderer/engines/gpu/beam_judge.hpp"
+#include "renderer/engines/gpu/beam_error.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/sonar_settings.hpp"
 
@@ -30,7 +30,7 @@ struct GridTargets {
   BeamError beam;  ///< of the worst beam
 };
 
-/// Of `fast` and `normal`; `reference` has those of `normal`.
+/// The targets of `fast` and `normal`; `reference` has those of `normal`.
 GridTargets grid_targets(Sampling::Preset preset);
 
 /// The even grid that a preset begins with: fewer samples where it were more than 2^25.
@@ -40,7 +40,7 @@ BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset);
 /// All beams of the aperture in one run, without a zone.
 BeamRun whole_fan(const Aperture& aperture, const BeamDensity& density);
 
-/// A beam and how finely it is to be sampled.
+/// A beam and how finely it will be sampled.
 struct BeamChoice {
   int beam = 0;
   BeamDensity density;
@@ -51,7 +51,7 @@ struct BeamChoice {
 /// @param choices in the order of beams.
 std::vector<BeamRun> beam_runs(const Aperture& aperture, const std::vector<BeamChoice>& choices);
 
-/// The same runs with every second column and row.
+/// The runs with every second column and row only.
 std::vector<BeamRun> thinned(std::vector<BeamRun> runs);
 
 /// Every second column and row of the samples of a grid, as if the grid of the thinned runs had been sampled:
@@ -60,15 +60,15 @@ class ThinnedSamples {
  public:
   ThinnedSamples(const SampleGrid& fine, const std::vector<const SurfaceSample*>& samples,
                  const SampleGrid& coarse);
-  /// As RasterSampler::sample() returns them; they live as long as this object.
+  /// The samples in the form of RasterSampler::sample(); they live as long as this object.
   std::vector<const SurfaceSample*> views() const;
 
  private:
   std::vector<std::vector<SurfaceSample>> views_;
 };
 
-/// What the relative RMS error of a beam's bins above 1e-2 of its maximum may be, judged by how far its image
-/// of thinned samples is from it.
+/// Estimates the relative RMS error of a beam's bins above 1e-2 of its maximum from the difference between
+/// its image and that of thinned samples.
 /// @param echo, thinned `lines` values each.
 /// @param line_weight of every line, what the image is yet to be multiplied with; empty: 1.
 double bin_error(const float* echo, const float* thinned, std::size_t lines,
@@ -77,14 +77,14 @@ double bin_error(const float* echo, const float* thinned, std::size_t lines,
 /// What is known of a beam.
 struct BeamState {
   BeamDensity density;
-  JudgedBeam judged;
+  BeamErrorEstimate estimate;
   double bin_rms = 0.0;
 };
 
 /// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they
 /// take no more than 2^25 samples.
 /// @param beams all beams of the aperture.
-std::vector<BeamChoice> beams_in_doubt(const Aperture& aperture, const std::vector<BeamState>& beams,
-                                       const GridTargets& targets);
+std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
+                                        const GridTargets& targets);
 
 }  // namespace sonard::render

@@ -20,7 +20,7 @@
 #include "renderer/engines/gpu/surface_shader.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/scene/mesh_cache.hpp"
-#include "renderer/scene/ray_bend.hpp"
+#include "renderer/scene/refraction.hpp"
 
 namespace sonard::render {
 
@@ -53,7 +53,7 @@ struct ViewTarget {
   osg::ref_ptr<osgUtil::SceneView> scene_view;
   osg::ref_ptr<osg::Texture2D> texture;
   osg::ref_ptr<osg::Uniform> tan_half;
-  osg::ref_ptr<osg::Uniform> ray_bend;
+  osg::ref_ptr<osg::Uniform> refraction;
   std::vector<SurfaceSample> samples;
   std::uint64_t used = 0;  ///< number of the call that used it last
 
@@ -91,8 +91,8 @@ ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* stat
   osg::StateSet* state_set = target.scene_view->getGlobalStateSet();
   target.tan_half = new osg::Uniform("tan_half", osg::Vec2());
   state_set->addUniform(target.tan_half);
-  target.ray_bend = new osg::Uniform("ray_bend", osg::Vec4());
-  state_set->addUniform(target.ray_bend);
+  target.refraction = new osg::Uniform("refraction", osg::Vec4());
+  state_set->addUniform(target.refraction);
   state_set->addUniform(
       new osg::Uniform("pixels", osg::Vec2(static_cast<float>(columns), static_cast<float>(rows))));
   target.scene_view->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
@@ -101,14 +101,14 @@ ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* stat
 }
 
 /// @param bend in the sonar frame
-void aim(const ViewTarget& target, const SubView& view, const RayBend& bend) {
+void aim(const ViewTarget& target, const SubView& view, const Refraction& bend) {
   target.scene_view->getCamera()->setViewMatrix(view_matrix(view));
   target.scene_view->getCamera()->setProjectionMatrix(projection_matrix(view));
   target.tan_half->set(
       osg::Vec2(static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height)));
   const osg::Vec3 up =
       osg::Matrixd::transform3x3(osg::Vec3(bend.up.x, bend.up.y, bend.up.z), view_matrix(view));
-  target.ray_bend->set(osg::Vec4(up, bend.per_m));
+  target.refraction->set(osg::Vec4(up, bend.per_m));
   // Only the sides cull: there is no far plane, and small features are echoes too. Boxes are not bent, so
   // with refraction none of them is dropped; their ranges stay what they are.
   const osg::CullSettings::CullingMode culling =
@@ -222,7 +222,7 @@ struct RasterSampler::Impl {
   }
 
   /// A target for every view, aimed at it.
-  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views, const RayBend& bend) {
+  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views, const Refraction& bend) {
     ++calls;
     std::vector<ViewTarget*> found;
     for (const SubView& view : views) {
@@ -266,8 +266,8 @@ struct RasterSampler::Impl {
   std::vector<ViewTarget*> draw(const Pose& T_world_sonar, const SampleGrid& grid,
                                 const SurfaceModel& surface, double range_m) {
     make_current();
-    const RayBend bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
-                       bend_per_m};
+    const Refraction bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
+                          bend_per_m};
     std::vector<ViewTarget*> views = targets_for(grid.views, bend);
     set_surface(surface);
     max_range_m = static_cast<float>(range_m);
@@ -354,7 +354,7 @@ void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
   osg::flushAllDeletedGLObjects(impl_->context->getState()->getContextID());
 }
 
-void RasterSampler::set_ray_bend(double bend_per_m) {
+void RasterSampler::set_refraction(double bend_per_m) {
   impl_->bend_per_m = static_cast<float>(bend_per_m);
 }
 

@@ -37,12 +37,12 @@ class RasterSampler {
   // These three do what EchoEngine says.
   void set_body_pose(std::size_t body, const Pose& T_world_body);
   void set_part_meshes(std::span<const PartMesh> changes);
-  void set_ray_bend(double bend_per_m);
+  void set_refraction(double bend_per_m);
 
   /// "raster, vendor / renderer / version"
   const std::string& description() const;
 
-  /// As sample(), but what is seen stays on the GPU.
+  /// Like sample(), but the samples stay on the GPU.
   /// @return names of textures, one for every view: RGBA32F, a SurfaceSample each texel, row by row upwards.
   /// They stay valid until the next call of draw() or sample().
   std::vector<unsigned> draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,

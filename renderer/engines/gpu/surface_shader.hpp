@@ -7,7 +7,7 @@ namespace sonard::render {
 
 inline constexpr char surface_vertex_shader[] = R"glsl(#version 450 compatibility
 layout(location = 6) in vec4 tangent;  // xyz unit, w handedness
-uniform vec4 ray_bend;                 // RayBend in eye coordinates: up, per_m
+uniform vec4 refraction;                 // Refraction in eye coordinates: up, per_m
 out vec3 normal_eye;
 out vec4 tangent_eye;
 out vec2 texcoord;
@@ -15,13 +15,13 @@ out vec2 texcoord;
 void main() {
   gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
   normal_eye = gl_NormalMatrix * gl_Normal;
-  if (ray_bend.w != 0.0) {  // RayBend::point() and normal(), term by term
+  if (refraction.w != 0.0) {  // Refraction::point() and normal(), term by term
     vec3 p = (gl_ModelViewMatrix * gl_Vertex).xyz;
-    float height = dot(p, ray_bend.xyz);
+    float height = dot(p, refraction.xyz);
     float squared = dot(p, p);
-    vec3 lifted = p + ray_bend.xyz * (ray_bend.w * (squared - height * height));
+    vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
     gl_Position = gl_ProjectionMatrix * vec4(lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30)), 1.0);
-    normal_eye -= (p - ray_bend.xyz * height) * (2.0 * ray_bend.w * dot(normal_eye, ray_bend.xyz));
+    normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(normal_eye, refraction.xyz));
   }
   tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
   texcoord = gl_MultiTexCoord0.xy;
@@ -123,8 +123,8 @@ float variance_of_mean_normal(float mean_length) {
 float facet_response(vec3 n, float cos_phi) {
   float mean_length = shading == 2 ? length(n) : 1.0;
   float cosine = min(cos_phi / mean_length, 1.0);
-  bool heard = facets == 2 || (facets == 1 && (shading == 2 ? facet_strength > 0.0 : cosine > facets_least_cosine));
-  return heard ? facet_response(cosine, variance_of_mean_normal(mean_length)) : 0.0;
+  bool responds = facets == 2 || (facets == 1 && (shading == 2 ? facet_strength > 0.0 : cosine > facets_least_cosine));
+  return responds ? facet_response(cosine, variance_of_mean_normal(mean_length)) : 0.0;
 }
 
 void main() {

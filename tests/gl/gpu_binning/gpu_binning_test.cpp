@@ -332,7 +332,7 @@ TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
   }
 }
 
-/// Presets are as they were: they judge beams by samples on the CPU (docs/architecture.md).
+/// Presets are as they were: they estimate errors of beams on the CPU (docs/engines.md).
 TEST_F(GpuBinningTest, SaysWhereItBins) {
   const std::string told = "fixed grids are binned by it too";
   const auto description = [](GpuBinning where) {

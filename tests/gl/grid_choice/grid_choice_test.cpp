@@ -16,7 +16,7 @@ namespace {
 
 using Preset = Sampling::Preset;
 
-// ---- the first look
+// ---- the first pass
 
 Aperture fan(int beams, double width_rad) {
   Aperture aperture;
@@ -24,7 +24,7 @@ Aperture fan(int beams, double width_rad) {
   return aperture;
 }
 
-TEST(FirstLook, NoViewExceedsWhatCanBeDrawnAndNoGridTheMemory) {
+TEST(FirstPass, NoViewExceedsWhatCanBeDrawnAndNoGridTheMemory) {
   for (const auto& [beams, width_rad] :
        {std::pair{1, 0.05}, {1, 2.5}, {256, 2.0943951}, {512, 6.28}, {4096, 2.4}}) {
     for (const Preset preset : {Preset::fast, Preset::normal, Preset::reference}) {
@@ -42,14 +42,14 @@ TEST(FirstLook, NoViewExceedsWhatCanBeDrawnAndNoGridTheMemory) {
   }
 }
 
-TEST(FirstLook, IsFinerForSmallerErrors) {
+TEST(FirstPass, IsFinerForSmallerErrors) {
   const Aperture aperture = fan(256, 2.0943951);
   EXPECT_EQ(first_density(aperture, Preset::fast), (BeamDensity{2, 512, 0, 0, 0, 0}));
   EXPECT_EQ(first_density(aperture, Preset::normal), (BeamDensity{4, 512, 0, 0, 0, 0}));
   EXPECT_EQ(first_density(aperture, Preset::reference), (BeamDensity{32, 2048, 0, 0, 0, 0}));
 }
 
-TEST(FirstLook, RowsAreAsNarrowInATallFan) {
+TEST(FirstPass, RowsAreAsNarrowInATallFan) {
   Aperture tall = fan(64, 1);
   tall.vertical_beamwidth_rad *= 3;
   EXPECT_EQ(first_density(tall, Preset::fast).rows, 3 * first_density(fan(64, 1), Preset::fast).rows);
@@ -98,7 +98,7 @@ TEST(BeamRuns, ABeamWithAZoneHasAViewOfItAndOneOnEitherSide) {
   EXPECT_NEAR(solid_angle / expected, 1, 1e-5);
 }
 
-// ---- beams in doubt
+// ---- beams to refine
 
 constexpr GridTargets one_per_cent{0.01, {0.001, 0.05}};
 
@@ -109,12 +109,12 @@ BeamState sure(const Aperture& aperture, int beam, const BeamDensity& density) {
   const double port = aperture.beam_edges_rad[b];
   const double width = (port - aperture.beam_edges_rad[b + 1]) / density.columns;
   for (int i = 0; i < density.columns; ++i) {
-    state.judged.columns.push_back({port - i * width, port - (i + 1) * width, {}});
+    state.estimate.columns.push_back({port - i * width, port - (i + 1) * width, {}});
   }
   return state;
 }
 
-class BeamsInDoubt : public ::testing::Test {
+class BeamsToRefine : public ::testing::Test {
  protected:
   const Aperture aperture_ = fan(8, 0.08);
   const BeamDensity first_ = first_density(aperture_, Preset::normal);
@@ -127,43 +127,43 @@ class BeamsInDoubt : public ::testing::Test {
     }
     return beams;
   }
-  std::vector<BeamChoice> in_doubt() const { return beams_in_doubt(aperture_, beams_, one_per_cent); }
+  std::vector<BeamChoice> to_refine() const { return beams_to_refine(aperture_, beams_, one_per_cent); }
 };
 
-TEST_F(BeamsInDoubt, NoneWhereAllAgree) {
+TEST_F(BeamsToRefine, NoneWhereAllAgree) {
   for (BeamState& beam : beams_) {
     beam.bin_rms = 0.01;
-    beam.judged.by_rows = {0.0005, 0.025};
-    beam.judged.by_columns = {0.0005, 0.025};
+    beam.estimate.by_rows = {0.0005, 0.025};
+    beam.estimate.by_columns = {0.0005, 0.025};
   }
-  EXPECT_TRUE(in_doubt().empty());
+  EXPECT_TRUE(to_refine().empty());
 }
 
-TEST_F(BeamsInDoubt, MoreRowsWhereEdgesLieBetweenRows) {
-  beams_[3].judged.by_rows = {0.002, 0};
-  const auto choices = in_doubt();
+TEST_F(BeamsToRefine, MoreRowsWhereEdgesLieBetweenRows) {
+  beams_[3].estimate.by_rows = {0.002, 0};
+  const auto choices = to_refine();
   ASSERT_EQ(choices.size(), 1u);
   EXPECT_EQ(choices[0].beam, 3);
   EXPECT_EQ(choices[0].density.columns, first_.columns);
   EXPECT_EQ(choices[0].density.rows, 4 * first_.rows);
 }
 
-TEST_F(BeamsInDoubt, MoreOfBothWhereBinsAreOff) {
+TEST_F(BeamsToRefine, MoreOfBothWhereBinsAreOff) {
   beams_[5].bin_rms = 0.02;
-  const auto choices = in_doubt();
+  const auto choices = to_refine();
   ASSERT_EQ(choices.size(), 1u);
   EXPECT_EQ(choices[0].density, (BeamDensity{2 * first_.columns, 2 * first_.rows, 0, 0, 0, 0}));
 }
 
-TEST_F(BeamsInDoubt, ALoneEdgeIsLookedAtInAZone) {
+TEST_F(BeamsToRefine, ALoneEdgeIsLookedAtInAZone) {
   BeamState& beam = beams_[2];
-  beam.judged.columns[1].error = beam.judged.columns[2].error = {0.1, 0};
-  beam.judged.by_columns = {0.14, 0};
-  const auto choices = in_doubt();
+  beam.estimate.columns[1].error = beam.estimate.columns[2].error = {0.1, 0};
+  beam.estimate.by_columns = {0.14, 0};
+  const auto choices = to_refine();
   ASSERT_EQ(choices.size(), 1u);
   const BeamDensity& density = choices[0].density;
-  EXPECT_EQ(density.zone_port_rad, beam.judged.columns[1].port_rad);
-  EXPECT_EQ(density.zone_starboard_rad, beam.judged.columns[2].starboard_rad);
+  EXPECT_EQ(density.zone_port_rad, beam.estimate.columns[1].port_rad);
+  EXPECT_EQ(density.zone_starboard_rad, beam.estimate.columns[2].starboard_rad);
   EXPECT_GE(density.columns, 32 * 2);
   EXPECT_EQ(density.rows, first_.rows);
   EXPECT_EQ(density.port_columns, 2);
@@ -171,28 +171,28 @@ TEST_F(BeamsInDoubt, ALoneEdgeIsLookedAtInAZone) {
   EXPECT_LT(density.samples(), 20 * first_.samples());
 }
 
-TEST_F(BeamsInDoubt, ManyEdgesTakeColumnsInAllOfTheBeam) {
+TEST_F(BeamsToRefine, ManyEdgesTakeColumnsInAllOfTheBeam) {
   BeamState& beam = beams_[2];
-  for (ColumnError& column : beam.judged.columns) {
+  for (ColumnError& column : beam.estimate.columns) {
     column.error = {0.001, 0};
   }
-  beam.judged.by_columns = {0.002, 0};
-  const auto choices = in_doubt();
+  beam.estimate.by_columns = {0.002, 0};
+  const auto choices = to_refine();
   ASSERT_EQ(choices.size(), 1u);
   EXPECT_FALSE(choices[0].density.has_zone());
   EXPECT_EQ(choices[0].density.columns, 4 * first_.columns);
 }
 
-TEST_F(BeamsInDoubt, OneThinThingHasAllBeamsLookedAtWithMoreColumns) {
-  beams_[7].judged.thin = true;
-  const auto choices = in_doubt();
+TEST_F(BeamsToRefine, OneThinThingHasAllBeamsLookedAtWithMoreColumns) {
+  beams_[7].estimate.thin = true;
+  const auto choices = to_refine();
   ASSERT_EQ(choices.size(), 8u);
   for (const BeamChoice& choice : choices) {
     EXPECT_EQ(choice.density, (BeamDensity{4 * first_.columns, first_.rows, 0, 0, 0, 0}));
   }
 }
 
-TEST_F(BeamsInDoubt, AllTogetherTakeNoMoreThanTheMemoryAndEachIsFinerOrLeftOut) {
+TEST_F(BeamsToRefine, AllTogetherTakeNoMoreThanTheMemoryAndEachIsFinerOrLeftOut) {
   const Aperture wide = fan(2048, 2);
   const BeamDensity first = first_density(wide, Preset::normal);
   std::vector<BeamState> beams;
@@ -201,7 +201,7 @@ TEST_F(BeamsInDoubt, AllTogetherTakeNoMoreThanTheMemoryAndEachIsFinerOrLeftOut) 
     beams.back().bin_rms = 1;
   }
   double samples = 0;
-  for (const BeamChoice& choice : beams_in_doubt(wide, beams, one_per_cent)) {
+  for (const BeamChoice& choice : beams_to_refine(wide, beams, one_per_cent)) {
     EXPECT_GT(choice.density.samples(), first.samples());
     samples += choice.density.samples();
   }
@@ -209,12 +209,12 @@ TEST_F(BeamsInDoubt, AllTogetherTakeNoMoreThanTheMemoryAndEachIsFinerOrLeftOut) 
   EXPECT_LE(samples, 0x1p25);
 }
 
-TEST_F(BeamsInDoubt, WhatIsAsFineAsItGetsIsLeftAsItIs) {
+TEST_F(BeamsToRefine, WhatIsAsFineAsItGetsIsLeftAsItIs) {
   const BeamDensity finest{512, 2048, 0, 0, 0, 0};
   beams_[0] = sure(aperture_, 0, finest);
   beams_[0].bin_rms = 1;
-  beams_[0].judged.by_rows = {1, 1};
-  EXPECT_TRUE(in_doubt().empty());
+  beams_[0].estimate.by_rows = {1, 1};
+  EXPECT_TRUE(to_refine().empty());
 }
 
 // ---- thinned samples

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glints of corners (docs/physics.md 2.11; 3.2, T8).
+// Corner reflectors (docs/physics.md 2.11; 3.2, T8).
 #include <cmath>
 #include <complex>
 #include <glm/geometric.hpp>
@@ -14,22 +14,22 @@ using namespace test;
 class Corners : public PathTest {};
 INSTANTIATE_TEST_SUITE_P(Multipath, Corners, path_cases(), path_case_name);
 
-struct Glint {
+struct Reflector {
   int beam = -1, line = -1;
   double intensity = 0.0;
 };
 
 /// The strongest bin.
-Glint strongest(const EchoImage& image) {
-  Glint glint;
+Reflector strongest(const EchoImage& image) {
+  Reflector reflector;
   for (int beam = 0; beam < image.beams; ++beam) {
     for (int line = 0; line < image.lines; ++line) {
-      if (static_cast<double>(image.at(beam, line)) > glint.intensity) {
-        glint = {beam, line, static_cast<double>(image.at(beam, line))};
+      if (static_cast<double>(image.at(beam, line)) > reflector.intensity) {
+        reflector = {beam, line, static_cast<double>(image.at(beam, line))};
       }
     }
   }
-  return glint;
+  return reflector;
 }
 
 /// Three triangles with edges of `edge_m` from a common corner at the origin, open towards -x.
@@ -52,10 +52,10 @@ TEST_P(Corners, TrihedralIsAGlintAtItsApex) {
     PingRequest request = fan_request(255, 20, range_m + 5, 0.02);
     request.settings.physical.multipath.wavelength_m = wavelength_m;
     SonarRenderer renderer(world, options());
-    const Glint glint = strongest(renderer.render_echo(request));
-    EXPECT_EQ(glint.beam, 127);
-    EXPECT_NEAR(glint.line, range_m / 0.02, 1);
-    const double target_strength_db = decibels(glint.intensity * std::pow(range_m, 4));
+    const Reflector reflector = strongest(renderer.render_echo(request));
+    EXPECT_EQ(reflector.beam, 127);
+    EXPECT_NEAR(reflector.line, range_m / 0.02, 1);
+    const double target_strength_db = decibels(reflector.intensity * std::pow(range_m, 4));
     const double truth_db =
         decibels(std::pow(static_cast<double>(edge_m), 4) / (3 * wavelength_m * wavelength_m));
     std::printf("trihedral %.2f m at %.0f m: %.2f dB, L^4/(3 lambda^2): %.2f dB\n",
@@ -74,20 +74,20 @@ TEST_P(Corners, EdgeOfWallAndFloorIsAGlintAtItsRange) {
     PingRequest request = fan_request(255, 20, 12, 0.02);
     request.T_world_sonar.orientation = glm::angleAxis(yaw_deg * degree, glm::dvec3(0, 0, 1));
     SonarRenderer renderer(world, options());
-    const Glint glint = strongest(renderer.render_echo(request));
+    const Reflector reflector = strongest(renderer.render_echo(request));
     const double range_m = std::hypot(wall_m, altitude_m);
-    EXPECT_NEAR(glint.line, std::floor(range_m / 0.02), 1);
-    EXPECT_NEAR(glint.beam, 127 + yaw_deg / 120 * 255, 1);
+    EXPECT_NEAR(reflector.line, std::floor(range_m / 0.02), 1);
+    EXPECT_NEAR(reflector.beam, 127 + yaw_deg / 120 * 255, 1);
     // The two sines of the grazing angles are those of one right angle: their squares add up to 1.
     const double p = 2 * 2 * std::numbers::pi / request.settings.physical.multipath.wavelength_m * sigma_m;
     const double truth = std::pow(reflection, 4) * std::exp(-p * p) / (4 * range_m * range_m);
-    std::printf("dihedral, yaw %.0f: line %d (%.1f), %+.3f dB\n", yaw_deg, glint.line, range_m / 0.02,
-                decibels(glint.intensity / truth));
-    EXPECT_NEAR(decibels(glint.intensity / truth), 0, 0.5);
+    std::printf("dihedral, yaw %.0f: line %d (%.1f), %+.3f dB\n", yaw_deg, reflector.line, range_m / 0.02,
+                decibels(reflector.intensity / truth));
+    EXPECT_NEAR(decibels(reflector.intensity / truth), 0, 0.5);
 
     request.settings.physical.multipath.level = MultipathSettings::Level::off;
     const EchoImage& single = renderer.render_echo(request);
-    EXPECT_LT(static_cast<double>(single.at(glint.beam, glint.line)), 1e-2 * glint.intensity);
+    EXPECT_LT(static_cast<double>(single.at(reflector.beam, reflector.line)), 1e-2 * reflector.intensity);
   }
 }
 
@@ -99,7 +99,7 @@ TEST_P(Corners, ShortEdgeIsWeaker) {
                             smooth_body("wall", make_quad({8, -0.04F, -1}, {0, 0.08F, 0}, {0, 0, 2}))});
   const PingRequest request = fan_request(255, 20, 12, 0.02);
   SonarRenderer renderer(world, options());
-  const Glint glint = strongest(renderer.render_echo(request));
+  const Reflector reflector = strongest(renderer.render_echo(request));
   const double range_m = std::hypot(8, 1);
   const double wavelength_m = request.settings.physical.multipath.wavelength_m;
   std::complex<double> slit = 0.0;
@@ -110,8 +110,8 @@ TEST_P(Corners, ShortEdgeIsWeaker) {
   }
   const double share = std::norm(slit) / (wavelength_m * range_m / 2);
   const double truth = share / (4 * range_m * range_m);
-  std::printf("short edge: %+.3f dB\n", decibels(glint.intensity / truth));
-  EXPECT_NEAR(decibels(glint.intensity / truth), 0, 1.0);
+  std::printf("short edge: %+.3f dB\n", decibels(reflector.intensity / truth));
+  EXPECT_NEAR(decibels(reflector.intensity / truth), 0, 1.0);
 }
 
 // One degree off a right angle the corner sends sound past the sonar: 2 degrees at 8 m, 0.28 m.

@@ -19,7 +19,7 @@ using test::PlaneTruth;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double error_bound = 0.02;
 
-/// 256 beams over 120 x 20 degrees, native lines of 8.29 mm, no absorption.
+/// 256 beams over 120 x 20 degrees, range bins of 8.29 mm, no absorption.
 PingRequest gemini_request(int lines) {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);

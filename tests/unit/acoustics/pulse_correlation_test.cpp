@@ -58,7 +58,7 @@ PingRequest fine_request(int lines) {
 
 // 3000 lines of 256 beams hold some 20000 independent cells: standard error 0.007 where fields are
 // correlated.
-void expect_grain(const PingSamples& samples, double power) {
+void expect_correlation(const PingSamples& samples, double power) {
   for (int lag = 1; lag <= 8; ++lag) {
     EXPECT_NEAR(intensity_correlation(samples, lag), std::pow(field_correlation(lag), 2), 0.03) << lag;
   }
@@ -70,11 +70,11 @@ void expect_grain(const PingSamples& samples, double power) {
 }
 
 TEST(PulseCorrelation, SquaresOfItsWeightsAddUpToOne) {
-  const PulseCorrelation grain(chirp, cell_m, step_m);
-  EXPECT_EQ(grain.reach(), 3);
-  double sum = std::pow(grain.weight(0), 2);
+  const PulseCorrelation correlation(chirp, cell_m, step_m);
+  EXPECT_EQ(correlation.reach(), 3);
+  double sum = std::pow(correlation.weight(0), 2);
   for (int j = 1; j <= 3; ++j) {
-    sum += 2 * std::pow(grain.weight(j), 2);
+    sum += 2 * std::pow(correlation.weight(j), 2);
   }
   EXPECT_NEAR(sum, 1, 1e-6);
   EXPECT_EQ(PulseCorrelation(chirp, step_m, step_m).reach(), 0);
@@ -96,13 +96,13 @@ TEST(PulseCorrelation, EveryPulseHasItsShape) {
   EXPECT_EQ(PulseCorrelation(PhysicalModel::Pulse::point, 3 * step_m, step_m).reach(), 0);
 }
 
-TEST(PulseCorrelation, SpeckleOfShortLinesHasTheGrainOfThePulse) {
+TEST(PulseCorrelation, SpeckleOfShortLinesIsCorrelatedByThePulse) {
   WorkerPool workers;
   for (const auto kind :
        {PhysicalModel::Speckle::ou, PhysicalModel::Speckle::frozen, PhysicalModel::Speckle::per_ping}) {
     PingRequest request = fine_request(3000);
     request.settings.physical.speckle = kind;
-    expect_grain(Receiver().receive(even_echo(request, 0.01), request, 0, workers), 0.01);
+    expect_correlation(Receiver().receive(even_echo(request, 0.01), request, 0, workers), 0.01);
   }
 }
 
@@ -111,7 +111,7 @@ TEST(PulseCorrelation, NoiseOfShortLinesHasTheSame) {
   PingRequest request = fine_request(3000);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -20;
-  expect_grain(Receiver().receive(even_echo(request, 0), request, 0, workers), 0.01);
+  expect_correlation(Receiver().receive(even_echo(request, 0), request, 0, workers), 0.01);
 }
 
 TEST(PulseCorrelation, LinesOfACellShareNothing) {
@@ -123,8 +123,8 @@ TEST(PulseCorrelation, LinesOfACellShareNothing) {
               0.01);
 }
 
-// A field that is kept keeps its grain while it fades, also where there was no echo for a while.
-TEST(PulseCorrelation, KeptSpeckleKeepsItsGrainAsItFades) {
+// A field that is kept keeps its correlation while it fades, also where there was no echo for a while.
+TEST(PulseCorrelation, KeptSpeckleKeepsItsCorrelationAsItFades) {
   WorkerPool workers;
   Receiver receiver;
   PingRequest request = fine_request(3000);
@@ -133,7 +133,7 @@ TEST(PulseCorrelation, KeptSpeckleKeepsItsGrainAsItFades) {
     ++request.ping_number;
     request.T_world_sonar.position_m.x += 0.02;
   }
-  expect_grain(receiver.receive(even_echo(request, 0.01), request, 0, workers), 0.01);
+  expect_correlation(receiver.receive(even_echo(request, 0.01), request, 0, workers), 0.01);
 }
 
 TEST(PulseCorrelation, IsTheSameForAnyNumberOfThreads) {

@@ -235,7 +235,7 @@ TEST(Random, RowsDoNotDependOnTheirLength) {
 }
 
 // docs/physics.md 2.8: field correlation about .88 / .60 / .3 at lag 1 / 2 / 3 for 256 sine-spaced beams.
-TEST(BeamKernel, GivesTheGrainOfRealHeads) {
+TEST(BeamKernel, GivesTheCorrelationOfRealHeads) {
   Aperture aperture;
   aperture.beam_edges_rad = equal_sine_edges(256, 1.0471975511965976);
   const std::vector<float> kernel = receive_kernel(aperture);

@@ -64,12 +64,12 @@ void expect_rayleigh(const PingSamples& samples, double root_intensity) {
   EXPECT_NEAR(s.lag_correlation[3], 0.08, 0.04);
 }
 
-TEST(Receiver, SpeckleIsRayleighWithTheGrainOfTheArray) {
+TEST(Receiver, SpeckleIsRayleighAndCorrelatedByTheArray) {
   WorkerPool workers;
   expect_rayleigh(Receiver().receive(uniform_echo(1500, 0.01F), bare_request(1500), 0, workers), 0.1);
 }
 
-TEST(Receiver, NoiseFillsEmptyWaterWithTheSameGrain) {
+TEST(Receiver, NoiseFillsEmptyWaterWithTheSameCorrelation) {
   WorkerPool workers;
   PingRequest request = bare_request(1500);
   request.settings.physical.noise = true;
@@ -77,7 +77,7 @@ TEST(Receiver, NoiseFillsEmptyWaterWithTheSameGrain) {
   expect_rayleigh(Receiver().receive(uniform_echo(1500, 0), request, 0, workers), 0.1);
 }
 
-/// Amplitudes in full scale of every 8th beam: their grain has ended by then, so they are independent.
+/// Amplitudes in full scale of every 8th beam: they are not correlated over so many, so they are independent.
 std::vector<double> independent_amplitudes(const PingSamples& samples) {
   std::vector<double> amplitudes;
   for (std::size_t i = 0; i < samples.u16.size(); i += 8) {
@@ -152,7 +152,7 @@ double intensity_correlation(const PingSamples& first, const PingSamples& second
 
 // docs/physics.md 2.8: the field is correlated by .88 / .60 / .3 at lag 1 / 2 / 3 and white in range. About
 // 256 / 4 beams of a line are independent; bounds are four standard errors for 3000 lines.
-TEST(Receiver, FieldsHaveTheGrainOfTheArrayAcrossBeamsAndNoneInRange) {
+TEST(Receiver, FieldsAreCorrelatedByTheArrayAcrossBeamsAndNotInRange) {
   WorkerPool workers;
   PingRequest request = bare_request(3000);
   const PingSamples speckle = Receiver().receive(uniform_echo(3000, 0.01F), request, 0, workers);

@@ -33,7 +33,7 @@ class Scan {
  public:
   explicit Scan(const PingRequest& request = beam_request()) : request_(request) {}
 
-  std::vector<double> look(const Pose& T_world_sonar) {
+  std::vector<double> field_at(const Pose& T_world_sonar) {
     request_.T_world_sonar = T_world_sonar;
     ++request_.ping_number;
     return intensities_of(receiver_.receive(even_echo(request_, 0.01), request_, 0, workers_));
@@ -52,9 +52,9 @@ constexpr double bound = 0.08;  // five standard errors of 4000 lines
 TEST(ScannedSpeckle, BearingsAreCorrelatedByTheLawOfTheFan) {
   for (const double from_deg : {0.0, 33.3, 179.6, -90.1}) {
     Scan scan;
-    const std::vector<double> first = scan.look(looking(from_deg * degree));
+    const std::vector<double> first = scan.field_at(looking(from_deg * degree));
     for (const double apart_deg : {0.225, 0.45, 0.9, 1.8, 6.0}) {
-      EXPECT_NEAR(test::correlation(first, scan.look(looking((from_deg + apart_deg) * degree))),
+      EXPECT_NEAR(test::correlation(first, scan.field_at(looking((from_deg + apart_deg) * degree))),
                   std::exp(-2 * std::pow(apart_deg / 1.5, 2)), bound)
           << from_deg << ' ' << apart_deg;
     }
@@ -63,11 +63,11 @@ TEST(ScannedSpeckle, BearingsAreCorrelatedByTheLawOfTheFan) {
 
 TEST(ScannedSpeckle, ASweepLaterEchoesAreTheSame) {
   Scan scan;
-  const std::vector<double> first = scan.look(looking(0.3));
+  const std::vector<double> first = scan.field_at(looking(0.3));
   for (int step = 0; step < 400; ++step) {
-    scan.look(looking(0.3 + step * 0.9 * degree));
+    scan.field_at(looking(0.3 + step * 0.9 * degree));
   }
-  EXPECT_EQ(scan.look(looking(0.3)), first);
+  EXPECT_EQ(scan.field_at(looking(0.3)), first);
 }
 
 TEST(ScannedSpeckle, AmplitudesStayRayleigh) {
@@ -75,7 +75,7 @@ TEST(ScannedSpeckle, AmplitudesStayRayleigh) {
   double sum = 0, square = 0;
   int n = 0;
   for (double bearing = 0; bearing < 2; bearing += 0.23) {
-    for (const double intensity : scan.look(looking(bearing))) {
+    for (const double intensity : scan.field_at(looking(bearing))) {
       sum += intensity;
       square += intensity * intensity;
       ++n;
@@ -90,8 +90,8 @@ TEST(ScannedSpeckle, TurnsOfTheVehicleAboutTheAxisAreTurnsOfTheHead) {
   for (const glm::dvec3& axis : {glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0), glm::dvec3(0.6, 0, -0.8)}) {
     const Pose mounted{{1, 2, 3}, glm::angleAxis(0.7, axis)};
     Scan scan;
-    const std::vector<double> first = scan.look(looking(0.4, mounted));
-    const std::vector<double> again = scan.look(looking(0.4 - 0.2, looking(0.2, mounted)));
+    const std::vector<double> first = scan.field_at(looking(0.4, mounted));
+    const std::vector<double> again = scan.field_at(looking(0.4 - 0.2, looking(0.2, mounted)));
     EXPECT_NEAR(test::correlation(first, again), 1, 1e-6);
   }
 }
@@ -100,9 +100,9 @@ TEST(ScannedSpeckle, MotionOfTheVehicleFades) {
   for (const auto& [dx_m, tilt_rad, expected] :
        {std::tuple{0.02, 0.0, std::exp(-2 * 0.16)}, std::tuple{0.0, 0.75 * degree, std::exp(-2 * 0.25)}}) {
     Scan scan;
-    const std::vector<double> first = scan.look(looking(0.4));
+    const std::vector<double> first = scan.field_at(looking(0.4));
     const Pose moved{{dx_m, 0, 0}, glm::angleAxis(tilt_rad, glm::dvec3(std::sin(-0.4), std::cos(0.4), 0))};
-    EXPECT_NEAR(test::correlation(first, scan.look(looking(0.4, moved))), expected, bound);
+    EXPECT_NEAR(test::correlation(first, scan.field_at(looking(0.4, moved))), expected, bound);
   }
 }
 
@@ -110,17 +110,17 @@ TEST(ScannedSpeckle, FrozenSpeckleDoesNotFade) {
   PingRequest request = beam_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::frozen;
   Scan scan(request);
-  const std::vector<double> first = scan.look(looking(0.4));
-  EXPECT_EQ(scan.look(looking(0.4, {{5, 0, 0}, {1, 0, 0, 0}})), first);
+  const std::vector<double> first = scan.field_at(looking(0.4));
+  EXPECT_EQ(scan.field_at(looking(0.4, {{5, 0, 0}, {1, 0, 0, 0}})), first);
 }
 
 // sinc(x / cell) in its main lobe, as in PulseCorrelation.
-TEST(ScannedSpeckle, HasTheGrainOfThePulse) {
+TEST(ScannedSpeckle, IsCorrelatedByThePulse) {
   PingRequest request = beam_request();
   request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
   request.settings.physical.range_cell_m = 2 * request.settings.range.step_m;
   Scan scan(request);
-  const std::vector<double> field = scan.look(looking(0.4));
+  const std::vector<double> field = scan.field_at(looking(0.4));
   const double side = 2 / std::numbers::pi;
   const double expected = 2 * side / (1 + 2 * side * side);
   EXPECT_NEAR(test::correlation({field.begin(), field.end() - 1}, {field.begin() + 1, field.end()}),
@@ -131,9 +131,9 @@ TEST(ScannedSpeckle, TextureComesBackToo) {
   PingRequest request = beam_request();
   request.settings.physical.texture_nu = 1;
   Scan scan(request);
-  const std::vector<double> first = scan.look(looking(0.4));
-  EXPECT_LT(test::correlation(first, scan.look(looking(1.4))), 0.3);
-  EXPECT_EQ(scan.look(looking(0.4)), first);
+  const std::vector<double> first = scan.field_at(looking(0.4));
+  EXPECT_LT(test::correlation(first, scan.field_at(looking(1.4))), 0.3);
+  EXPECT_EQ(scan.field_at(looking(0.4)), first);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST_F(SmallCampaign, ComparesWithTheClosedForm) {
   EXPECT_EQ(find("point_4x256", "samples"), find("grid_4x256", "samples"));
 }
 
-TEST_F(SmallCampaign, ThePaperIsJudgedByItsHolesOnly) {
+TEST_F(SmallCampaign, ThePaperIsMeasuredByItsHolesOnly) {
   EXPECT_TRUE(find("paper", "hole_fraction"));
   EXPECT_FALSE(find("paper", "bin_rms"));
 }

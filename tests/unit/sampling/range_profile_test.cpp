@@ -26,7 +26,7 @@ struct Patch {
   float smear_a = 0.0F;
   double b = 0.0;
   float smear_b = 0.0F;
-  float tilt = 0.0F;
+  float gradient = 0.0F;
   float amount = 1.0F;
 
   double spread() const { return b - a; }
@@ -35,11 +35,11 @@ struct Patch {
 
 std::ostream& operator<<(std::ostream& out, const Patch& patch) {
   return out << "a " << patch.a << " +- " << patch.smear_a / 2 << ", b " << patch.b << " +- "
-             << patch.smear_b / 2 << ", tilt " << patch.tilt;
+             << patch.smear_b / 2 << ", gradient " << patch.gradient;
 }
 
 void add(RangeProfile& profile, const Patch& patch) {
-  profile.add(patch.a, patch.smear_a, patch.b, patch.smear_b, patch.amount, patch.tilt);
+  profile.add(patch.a, patch.smear_a, patch.b, patch.smear_b, patch.amount, patch.gradient);
 }
 
 std::vector<float> lines_of(const std::vector<Patch>& patches, std::size_t lines) {
@@ -62,16 +62,16 @@ double sum_of(const std::vector<float>& lines) {
   return std::accumulate(lines.begin(), lines.end(), 0.0);
 }
 
-/// Adds what is heard at one azimuth, from one end to the other. The echo per line has the same mean at all
+/// Adds the echo of one azimuth, from one end to the other. The echo per line has the same mean at all
 /// azimuths: where the ends come closer there is less to hear.
 void add_azimuth(const Patch& patch, double azimuth, double width, std::vector<double>& sums) {
   const double a = patch.a + azimuth * static_cast<double>(patch.smear_a);
   const double b = patch.b + azimuth * static_cast<double>(patch.smear_b);
   const double amount = static_cast<double>(patch.amount) * width * (b - a) / patch.spread();
-  const auto tilt = static_cast<double>(patch.tilt);
+  const auto gradient = static_cast<double>(patch.gradient);
   const auto share_to = [&](double line) {
     const double way = std::clamp((line - a) / (b - a), 0.0, 1.0);  // from end a
-    return way * (1 - tilt) + way * way * tilt;
+    return way * (1 - gradient) + way * way * gradient;
   };
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const auto line = static_cast<double>(k);
@@ -97,10 +97,10 @@ double bound_of(const Patch& patch) {
 
 /// The rise from end to end is not smeared. At an end, smearing a kink by w lines moves the density by
 /// slope * w / 8 and the sum by slope * w^2 / 24. Between ends of different smears it moves the density
-/// by no more than mean * tilt * (w / spread)^2 / 3.
-double tilted_bound_of(const Patch& patch) {
+/// by no more than mean * gradient * (w / spread)^2 / 3.
+double gradient_bound_of(const Patch& patch) {
   const auto w = static_cast<double>(std::max(patch.smear_a, patch.smear_b));
-  const double change = patch.mean() * std::abs(static_cast<double>(patch.tilt));
+  const double change = patch.mean() * std::abs(static_cast<double>(patch.gradient));
   const double way = w / std::abs(patch.spread());
   const double slope = 2 * change / std::abs(patch.spread());
   const double between = patch.smear_a == patch.smear_b ? 0.0 : change * way * way / 3;
@@ -145,38 +145,38 @@ TEST(RangeProfile, EndsComeInAnyOrder) {
   }
 }
 
-TEST(RangeProfile, TiltedEchoRisesFromEndToEnd) {
-  for (const float tilt : {0.3F, -0.7F, 1.0F}) {
-    for (const Patch& patch : {Patch{20.3, 0.0F, 27.9, 0.0F, tilt},
-                               {20, 0.0F, 23, 0.0F, tilt},
-                               {20.25, 0.0F, 20.5, 0.0F, tilt},
-                               {20.7, 0.0F, 21.2, 0.0F, tilt},
-                               {20.3, 0.5F, 27.9, 0.5F, tilt},
-                               {20.3, 3.5F, 27.9, 0.5F, tilt},
-                               {20.3, 0.2F, 27.9, 3.8F, tilt},
-                               {20.3, 0.5F, 21.3, 0.1F, tilt},
-                               {30.6, 20.0F, 71.1, 11.0F, tilt},
-                               {27.9, 0.0F, 20.3, 0.0F, tilt},
-                               {27.9, 1.0F, 20.3, 2.5F, tilt}}) {
-      expect_lines(patch, 100, tilted_bound_of(patch));
+TEST(RangeProfile, EchoWithAGradientRisesFromEndToEnd) {
+  for (const float gradient : {0.3F, -0.7F, 1.0F}) {
+    for (const Patch& patch : {Patch{20.3, 0.0F, 27.9, 0.0F, gradient},
+                               {20, 0.0F, 23, 0.0F, gradient},
+                               {20.25, 0.0F, 20.5, 0.0F, gradient},
+                               {20.7, 0.0F, 21.2, 0.0F, gradient},
+                               {20.3, 0.5F, 27.9, 0.5F, gradient},
+                               {20.3, 3.5F, 27.9, 0.5F, gradient},
+                               {20.3, 0.2F, 27.9, 3.8F, gradient},
+                               {20.3, 0.5F, 21.3, 0.1F, gradient},
+                               {30.6, 20.0F, 71.1, 11.0F, gradient},
+                               {27.9, 0.0F, 20.3, 0.0F, gradient},
+                               {27.9, 1.0F, 20.3, 2.5F, gradient}}) {
+      expect_lines(patch, 100, gradient_bound_of(patch));
     }
   }
 }
 
 /// Whether surfaces make such patches: their ends do not change places, and those whose ends run farther than
-/// half of their length are not tilted.
+/// half of their length have no gradient.
 bool is_possible(const Patch& patch) {
   const auto a = static_cast<double>(patch.smear_a), b = static_cast<double>(patch.smear_b);
   const bool crosses = std::abs(a - b) > 2 * std::max(patch.spread(), least);
-  return !crosses && (patch.tilt == 0.0F || (a + b) / 2 <= patch.spread() / 2);
+  return !crosses && (patch.gradient == 0.0F || (a + b) / 2 <= patch.spread() / 2);
 }
 
 TEST(RangeProfile, KeepsAllOfTheEcho) {
   for (const double spread : {0.0, 1e-6, 0.5, 3.0, 100.0}) {
     for (const float smear_a : {0.0F, 1e-3F, 2.0F, 20.0F}) {
       for (const float smear_b : {0.0F, 1e-3F, 2.0F, 20.0F}) {
-        for (const float tilt : {0.0F, 0.3F, -0.7F}) {
-          const Patch patch{150.37, smear_a, 150.37 + spread, smear_b, tilt, 0.37F};
+        for (const float gradient : {0.0F, 0.3F, -0.7F}) {
+          const Patch patch{150.37, smear_a, 150.37 + spread, smear_b, gradient, 0.37F};
           if (is_possible(patch)) {
             EXPECT_NEAR(sum_of(lines_of({patch}, 300)) / static_cast<double>(patch.amount), 1.0, 1e-6)
                 << patch;
@@ -187,7 +187,7 @@ TEST(RangeProfile, KeepsAllOfTheEcho) {
   }
 }
 
-// Pieces of one surface: each begins where the last one ends.
+// Patches of one surface: each begins where the last one ends.
 TEST(RangeProfile, PatchesThatContinueEachOtherAddUp) {
   const std::vector<Patch> chain{{10.2, 1.5F, 14.7, 0.5F, 0.2F, 1.0F},
                                  {14.7, 0.5F, 17.1, 0.5F, -0.4F, 0.2F},
@@ -200,7 +200,7 @@ TEST(RangeProfile, PatchesThatContinueEachOtherAddUp) {
   for (const Patch& patch : chain) {
     const std::vector<double> one = brute_force(patch, truth.size());
     std::transform(one.begin(), one.end(), truth.begin(), truth.begin(), std::plus<>());
-    bound += tilted_bound_of(patch);
+    bound += gradient_bound_of(patch);
   }
   // The last one is moved to the end it continues.
   bound += 0.0004 * chain.back().mean();
@@ -209,12 +209,12 @@ TEST(RangeProfile, PatchesThatContinueEachOtherAddUp) {
   }
 }
 
-/// All of it between lines 0 and 300. Some are very narrow; those are not tilted, as no piece of surface is
+/// All of it between lines 0 and 300. Some are very narrow; those have no gradient, as no visible segment is
 /// that cannot move its echo by a fiftieth of a line.
-std::vector<Patch> random_patches(std::size_t count, bool tilted) {
+std::vector<Patch> random_patches(std::size_t count, bool with_gradient) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> position(20, 280);
-  std::uniform_real_distribution<float> smear(0.0F, 30.0F), amount(0.0F, 1.0F), tilt(-0.8F, 0.8F);
+  std::uniform_real_distribution<float> smear(0.0F, 30.0F), amount(0.0F, 1.0F), gradient(-0.8F, 0.8F);
   std::uniform_real_distribution<double> shift(-5, 5);
   std::bernoulli_distribution is_narrow(0.2);
   std::vector<Patch> patches(count);
@@ -224,15 +224,15 @@ std::vector<Patch> random_patches(std::size_t count, bool tilted) {
     patch.smear_a = smear(random);
     patch.smear_b = smear(random);
     patch.amount = amount(random);
-    patch.tilt = tilted && std::abs(patch.spread()) > 0.03 ? tilt(random) : 0.0F;
+    patch.gradient = with_gradient && std::abs(patch.spread()) > 0.03 ? gradient(random) : 0.0F;
   }
   return patches;
 }
 
 TEST(RangeProfile, OrderOfPatchesChangesNoBit) {
   std::mt19937 random(8);
-  for (const bool tilted : {false, true}) {
-    std::vector<Patch> patches = random_patches(5000, tilted);
+  for (const bool with_gradient : {false, true}) {
+    std::vector<Patch> patches = random_patches(5000, with_gradient);
     const std::vector<float> lines = lines_of(patches, 250);
     for (int time = 0; time < 5; ++time) {
       std::shuffle(patches.begin(), patches.end(), random);
@@ -262,11 +262,11 @@ void expect_nothing_beyond(const std::vector<Patch>& patches) {
 }
 
 TEST(RangeProfile, NothingIsLeftWhereEverythingHasEnded) {
-  for (const bool tilted : {false, true}) {
+  for (const bool with_gradient : {false, true}) {
     for (const std::size_t count : {std::size_t{1}, std::size_t{50}, std::size_t{100000}}) {
-      expect_nothing_beyond(random_patches(count, tilted));
+      expect_nothing_beyond(random_patches(count, with_gradient));
     }
-    for (const Patch& patch : random_patches(500, tilted)) {
+    for (const Patch& patch : random_patches(500, with_gradient)) {
       expect_nothing_beyond({patch});
     }
   }
@@ -290,20 +290,20 @@ TEST(RangeProfile, WhatLiesOutsideIsDropped) {
 }
 
 // No end lies before line 0, a range that is negative: only its smear does.
-TEST(RangeProfile, WhatLiesOutsideIsDroppedOfTiltedPatchesToo) {
+TEST(RangeProfile, WhatLiesOutsideIsDroppedOfPatchesWithAGradientToo) {
   constexpr std::size_t lines = 40;
-  for (const float tilt : {0.3F, -0.7F}) {
-    for (const Patch& patch : {Patch{36.2, 0.0F, 47.7, 0.0F, tilt},
-                               {36.2, 2.0F, 47.7, 5.0F, tilt},
-                               {47.7, 0.0F, 36.2, 0.0F, tilt},
-                               {39.6, 0.0F, 40.9, 0.0F, tilt},
-                               {38.3, 0.0F, 39.9, 0.0F, tilt},
-                               {43, 1.0F, 49, 1.0F, tilt},
-                               {0.0, 0.0F, 7.6, 0.0F, tilt},
-                               {0.7, 4.0F, 10.2, 2.0F, tilt},
-                               {10.2, 2.0F, 0.7, 4.0F, tilt},
-                               {0.7, 2.0F, 57.1, 5.0F, tilt}}) {
-      expect_lines(patch, lines, tilted_bound_of(patch));
+  for (const float gradient : {0.3F, -0.7F}) {
+    for (const Patch& patch : {Patch{36.2, 0.0F, 47.7, 0.0F, gradient},
+                               {36.2, 2.0F, 47.7, 5.0F, gradient},
+                               {47.7, 0.0F, 36.2, 0.0F, gradient},
+                               {39.6, 0.0F, 40.9, 0.0F, gradient},
+                               {38.3, 0.0F, 39.9, 0.0F, gradient},
+                               {43, 1.0F, 49, 1.0F, gradient},
+                               {0.0, 0.0F, 7.6, 0.0F, gradient},
+                               {0.7, 4.0F, 10.2, 2.0F, gradient},
+                               {10.2, 2.0F, 0.7, 4.0F, gradient},
+                               {0.7, 2.0F, 57.1, 5.0F, gradient}}) {
+      expect_lines(patch, lines, gradient_bound_of(patch));
     }
   }
 }
@@ -313,8 +313,8 @@ TEST(RangeProfile, IsNeverNegativeAndAlwaysFinite) {
     for (const double spread : {0.0, 1e-9, 2.5, -70.0, 1e9}) {
       for (const float smear_a : {0.0F, 3.0F, 511.0F, 1e9F}) {
         for (const float smear_b : {0.0F, 1e9F}) {
-          for (const float tilt : {0.0F, 0.5F}) {
-            const Patch patch{a, smear_a, a + spread, smear_b, tilt};
+          for (const float gradient : {0.0F, 0.5F}) {
+            const Patch patch{a, smear_a, a + spread, smear_b, gradient};
             const std::vector<float> lines = lines_of({patch}, 100);
             EXPECT_TRUE(std::all_of(lines.begin(), lines.end(), [](float line) {
               return std::isfinite(line) && line >= 0.0F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/multipath/corner_glints.hpp"
+#include "renderer/multipath/corner_reflectors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -146,7 +146,8 @@ class CornerView {
 
 }  // namespace
 
-CornerGlint corner_glint(const PathScene& scene, const CornerCandidate& candidate, const PathLimits& limits) {
+CornerReflector corner_reflector(const PathScene& scene, const CornerCandidate& candidate,
+                                 const PathLimits& limits) {
   const CornerView view(scene, candidate, limits);
   const double r = view.range_m();
   const double pressure = std::abs(view.integral(view.find_aperture())) / (limits.wavelength_m * r * r);

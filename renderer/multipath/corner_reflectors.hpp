@@ -13,7 +13,7 @@
 namespace sonard::render {
 
 /// What a corner sends back.
-struct CornerGlint {
+struct CornerReflector {
   glm::dvec3 position_m{0.0};  ///< relative to the sonar, in world axes
   double intensity = 0.0;      ///< at the sonar, re that of the source at 1 m; no absorption, no patterns
 };
@@ -28,7 +28,8 @@ struct CornerGlint {
 /// A corner small against sqrt(lambda r / 2) has the target strength A^2 / lambda^2: of a trihedral of three
 /// triangles with edges L, A = L^2 / sqrt(3), so L^4 / (3 lambda^2). One large against it returns the image
 /// of the source in a mirror, 1 / (2 r) in pressure.
-CornerGlint corner_glint(const PathScene& scene, const CornerCandidate& candidate, const PathLimits& limits);
+CornerReflector corner_reflector(const PathScene& scene, const CornerCandidate& candidate,
+                                 const PathLimits& limits);
 
 /// The candidates without repetitions, in the order in which they first occur: two images nearer to one
 /// another than their own inaccuracy are the same.

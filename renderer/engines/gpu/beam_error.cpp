@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/gpu/beam_judge.hpp"
+#include "renderer/engines/gpu/beam_error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ struct Echo {
   }
 };
 
-/// What is heard of a pixel.
-struct Heard {
+/// What a pixel adds to its beam.
+struct PixelEcho {
   Echo echo;
   float share = 1.0F;  ///< of the pixel that counts
 };
@@ -43,7 +43,7 @@ class EchoOfSample {
         line_weight_(line_weight) {}
 
   /// @param width, height of the pixel, or of its part in the beam: tangent units.
-  Heard operator()(const SurfaceSample& sample, float width, float height, float solid_angle) const {
+  PixelEcho operator()(const SurfaceSample& sample, float width, float height, float solid_angle) const {
     const float line = sample.range_m * lines_per_m_;
     const float half =
         0.5F * lines_per_m_ * (std::abs(sample.range_dx) * width + std::abs(sample.range_dy) * height);
@@ -77,7 +77,7 @@ class Jumps {
   explicit Jumps(const Echo& all) : all_(all), centroid_(all.moment / all.sum) {}
 
   /// @param before, here, after three neighbours.
-  /// @param width of the strip that is judged by them, in their unit.
+  /// @param width of the strip whose error is estimated from them, in their unit.
   /// @return what the strip may be off by: a lone jump is met twice, and the edge lies within half a strip of
   /// where it is taken to be.
   BeamError error(const Strip& before, const Strip& here, const Strip& after, double width) const {
@@ -124,26 +124,26 @@ class Strips {
       for (int row = part.row_begin; row < part.row_end; ++row) {
         const float weight = grid_.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)];
         const float height = height_of(part, row, view);
-        const Heard heard =
+        const PixelEcho pixel =
             echo_of(column[static_cast<std::ptrdiff_t>(row) * view.columns], part.width, height, weight);
-        columns_[p].echo.add(heard.echo);
-        rows[static_cast<std::size_t>(row)].echo.add(heard.echo);
-        rows[static_cast<std::size_t>(row)].width += static_cast<double>(part.width * height * heard.share);
+        columns_[p].echo.add(pixel.echo);
+        rows[static_cast<std::size_t>(row)].echo.add(pixel.echo);
+        rows[static_cast<std::size_t>(row)].width += static_cast<double>(part.width * height * pixel.share);
       }
     }
   }
 
-  JudgedBeam judge(std::size_t beam) const {
-    JudgedBeam judged;
+  BeamErrorEstimate estimate(std::size_t beam) const {
+    BeamErrorEstimate estimate;
     Echo all;
     for (std::size_t p = begin(beam); p < end(beam); ++p) {
       all.add(columns_[p].echo);
     }
     if (all.sum > 0) {
-      judge_columns(beam, all, judged);
-      judge_rows(rows_[beam], all, judged);
+      estimate_columns(beam, all, estimate);
+      estimate_rows(rows_[beam], all, estimate);
     }
-    return judged;
+    return estimate;
   }
 
  private:
@@ -168,7 +168,7 @@ class Strips {
   double port_of(const ColumnPart& part) const { return azimuth_of(part, 1, -0.5); }
   double starboard_of(const ColumnPart& part) const { return azimuth_of(part, 1, 0.5); }
 
-  void judge_columns(std::size_t beam, const Echo& all, JudgedBeam& judged) const {
+  void estimate_columns(std::size_t beam, const Echo& all, BeamErrorEstimate& estimate) const {
     const Jumps jumps(all);
     for (std::size_t p = begin(beam); p < end(beam); ++p) {
       // At the end of what was sampled, as from the column before it.
@@ -179,14 +179,14 @@ class Strips {
       const Strip& after = columns_[neighbour(middle, 1)];
       const ColumnPart& part = grid_.parts[p];
       const BeamError error = jumps.error(before, here, after, columns_[p].width);
-      judged.columns.push_back({port_of(part), starboard_of(part), error});
-      add(error, judged.by_columns);
+      estimate.columns.push_back({port_of(part), starboard_of(part), error});
+      add(error, estimate.by_columns);
       const double beside = std::max(before.density().sum, after.density().sum);
-      judged.thin |= !first && !last && here.density().sum > 2 * beside;
+      estimate.thin |= !first && !last && here.density().sum > 2 * beside;
     }
   }
 
-  static void judge_rows(const std::vector<Strip>& rows, const Echo& all, JudgedBeam& judged) {
+  static void estimate_rows(const std::vector<Strip>& rows, const Echo& all, BeamErrorEstimate& estimate) {
     const Jumps jumps(all);
     for (std::size_t j = 1; j + 1 < rows.size(); ++j) {
       // Rows that the elevation limit or the last line leaves little of tell nothing.
@@ -197,7 +197,7 @@ class Strips {
           row.centre = static_cast<double>(i) * rows[j].width;
           return row;
         };
-        add(jumps.error(at(j - 1), at(j), at(j + 1), rows[j].width), judged.by_rows);
+        add(jumps.error(at(j - 1), at(j), at(j + 1), rows[j].width), estimate.by_rows);
       }
     }
   }
@@ -226,18 +226,19 @@ class Strips {
 
 }  // namespace
 
-std::vector<JudgedBeam> judge_beams(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                                    const RangeLines& range, const std::vector<float>& line_weight,
-                                    WorkerPool& workers) {
+std::vector<BeamErrorEstimate> estimate_errors(const SampleGrid& grid,
+                                               const std::vector<const SurfaceSample*>& views,
+                                               const RangeLines& range, const std::vector<float>& line_weight,
+                                               WorkerPool& workers) {
   const EchoOfSample echo_of(range, line_weight);
   Strips strips(grid);
   workers.run(grid.beam_count(),
               [&](int beam) { strips.add_beam(static_cast<std::size_t>(beam), views, echo_of); });
-  std::vector<JudgedBeam> judged(static_cast<std::size_t>(grid.beam_count()));
+  std::vector<BeamErrorEstimate> estimate(static_cast<std::size_t>(grid.beam_count()));
   workers.run(grid.beam_count(), [&](int beam) {
-    judged[static_cast<std::size_t>(beam)] = strips.judge(static_cast<std::size_t>(beam));
+    estimate[static_cast<std::size_t>(beam)] = strips.estimate(static_cast<std::size_t>(beam));
   });
-  return judged;
+  return estimate;
 }
 
 }  // namespace sonard::render

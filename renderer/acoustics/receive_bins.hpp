@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Native lines of a ping, shared among the threads.
+// Range bins of a ping, shared among the threads.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 namespace sonard::render {
 
 /// Shares blocks of lines among the threads. `Lines` is made once per thread, for its buffers, and takes
-/// native lines one by one.
+/// range bins one by one.
 template <class Lines, class Ping>
-PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
-                          WorkerPool& workers, SkipCounts& skipped) {
+PingSamples receive_bins(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
+                         WorkerPool& workers, SkipCounts& skipped) {
   PingSamples samples = make_samples(settings);
   const int looks_log2 = settings.range.compression_log2;
   const int lines_per_block = EchoBlock::most_lines >> looks_log2;
@@ -35,8 +35,8 @@ PingSamples receive_lines(const EchoImage& echo, const Ping& ping, const SonarSe
       block.load(begin << looks_log2, (end - begin) << looks_log2);
       for (int line = begin; line < end; ++line) {
         output.begin();
-        for (int native = line << looks_log2; native < (line + 1) << looks_log2; ++native) {
-          lines.add_native_line(native, output);
+        for (int bin = line << looks_log2; bin < (line + 1) << looks_log2; ++bin) {
+          lines.add_range_bin(bin, output);
         }
         output.end(line);
       }

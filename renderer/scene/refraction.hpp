@@ -13,7 +13,7 @@ namespace sonard::render {
 /// Instead of the rays the world is bent, the other way: a point is lifted by as much, and keeps its distance
 /// from the sonar. Rays stay straight then, so whatever finds surfaces does so unchanged, and the elevation
 /// at which it finds one is that at which the sound left. Coordinates have the sonar at their origin.
-struct RayBend {
+struct Refraction {
   glm::vec3 up{0.0F, 0.0F, 1.0F};  ///< the world's vertical, unit, in the axes of the caller
   float per_m = 0.0F;              ///< 0: rays are straight
 
@@ -41,7 +41,7 @@ struct RayBend {
 
 /// Whether refraction matters: over the whole range a ray turns aside by more than a quarter of the vertical
 /// beam, g R^2 / 2c >= 0.25 R theta3.
-inline bool bends_beams(double bend_per_m, double max_range_m, double vertical_beamwidth_rad) {
+inline bool refraction_matters(double bend_per_m, double max_range_m, double vertical_beamwidth_rad) {
   return std::abs(bend_per_m) * max_range_m >= 0.25 * vertical_beamwidth_rad;
 }
 

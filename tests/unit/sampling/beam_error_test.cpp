@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the judge says of images whose error can be written down.
-#include "renderer/engines/gpu/beam_judge.hpp"
+// The error estimates of images whose error can be written down.
+#include "renderer/engines/gpu/beam_error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,11 @@ namespace {
 constexpr double step_m = 0.02;
 
 /// Three beams of half a degree, sampled evenly in one view; what is said of "the beam" is of the middle one.
-class Judged : public ::testing::Test {
+class BeamErrorTest : public ::testing::Test {
  protected:
   static constexpr int columns_per_beam = 8;
 
-  Judged() {
+  BeamErrorTest() {
     for (int i = 0; i < 4; ++i) {
       aperture_.beam_edges_rad.push_back(0.0135 - 0.009 * i);
     }
@@ -31,8 +31,8 @@ class Judged : public ::testing::Test {
   }
 
   /// @param what is seen at an azimuth and the tangent of an elevation.
-  JudgedBeam judge(const std::function<SurfaceSample(double psi, double y)>& what,
-                   const RangeLines& range = {1000, step_m, 0, false}) {
+  BeamErrorEstimate estimate_of(const std::function<SurfaceSample(double psi, double y)>& what,
+                                const RangeLines& range = {1000, step_m, 0, false}) {
     const SubView& view = grid_.views[0];
     std::vector<SurfaceSample> samples;
     for (int j = 0; j < view.rows; ++j) {
@@ -41,10 +41,10 @@ class Judged : public ::testing::Test {
         samples.push_back(what(-std::atan(x), -view.tan_half_height + (j + 0.5) * view.pixel_height()));
       }
     }
-    return judge_beams(grid_, {samples.data()}, range, {}, workers_)[1];
+    return estimate_errors(grid_, {samples.data()}, range, {}, workers_)[1];
   }
 
-  /// What is heard of the middle beam where columns see only what lies in their centres: share of the beam to
+  /// The echo of the middle beam where columns see only what lies in their centres: share of the beam to
   /// port of an upright edge.
   double sampled_share(double edge_rad) const {
     double share = 0;
@@ -62,12 +62,12 @@ class Judged : public ::testing::Test {
   WorkerPool workers_{1};
 };
 
-TEST_F(Judged, AnUprightEdgeMayBeAnywhereBetweenTwoColumns) {
+TEST_F(BeamErrorTest, AnUprightEdgeMayBeAnywhereBetweenTwoColumns) {
   // To port an echo of 1 at 5 m, to starboard one of 0.25 at 10 m.
   const double column_rad = 0.009 / columns_per_beam;
   double worst = 0;
   for (double edge = -0.0044; edge < 0.0044; edge += 0.0001) {
-    const JudgedBeam judged = judge([&](double psi, double) {
+    const BeamErrorEstimate estimate = estimate_of([&](double psi, double) {
       return psi > edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{10, 0.25F, 0, 0};
     });
     const double share = (0.0045 - edge) / 0.009;
@@ -76,23 +76,23 @@ TEST_F(Judged, AnUprightEdgeMayBeAnywhereBetweenTwoColumns) {
     // A jump to a column of the next beam is met once only.
     const double allowed = std::abs(edge) > 0.0045 - column_rad / 2 ? std::numbers::sqrt2 : 1.0;
     const double error = std::abs(found - total) / found;
-    EXPECT_LE(error, 1.02 * allowed * judged.by_columns.total) << edge;
-    worst = std::max(worst, error / judged.by_columns.total);
-    EXPECT_LE(judged.by_columns.total * found, 0.75 * column_rad / 0.009) << "as if it were nowhere";
+    EXPECT_LE(error, 1.02 * allowed * estimate.by_columns.total) << edge;
+    worst = std::max(worst, error / estimate.by_columns.total);
+    EXPECT_LE(estimate.by_columns.total * found, 0.75 * column_rad / 0.009) << "as if it were nowhere";
     const auto lines = [](double part, double all) { return (250 * part + 500 * 0.25 * (1 - part)) / all; };
     const double centroid_error = std::abs(lines(sampled_share(edge), found) - lines(share, total));
-    EXPECT_LE(centroid_error, 1.1 * allowed * judged.by_columns.centroid_lines) << edge;
-    EXPECT_LT(judged.by_rows.total, 1e-5);
+    EXPECT_LE(centroid_error, 1.1 * allowed * estimate.by_columns.centroid_lines) << edge;
+    EXPECT_LT(estimate.by_rows.total, 1e-5);
   }
   EXPECT_GT(worst, 0.8) << "no more than it may be";
 }
 
-TEST_F(Judged, TheEdgeIsInTheColumnsThatAreSaidToBeOff) {
+TEST_F(BeamErrorTest, TheEdgeIsInTheColumnsThatAreSaidToBeOff) {
   const double edge = 0.001;
-  const JudgedBeam judged = judge([&](double psi, double) {
+  const BeamErrorEstimate estimate = estimate_of([&](double psi, double) {
     return psi > edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{};
   });
-  for (const ColumnError& column : judged.columns) {
+  for (const ColumnError& column : estimate.columns) {
     const double column_rad = column.port_rad - column.starboard_rad;
     const bool near =
         column.port_rad + 0.5 * column_rad > edge && column.starboard_rad - 0.5 * column_rad < edge;
@@ -100,11 +100,11 @@ TEST_F(Judged, TheEdgeIsInTheColumnsThatAreSaidToBeOff) {
   }
 }
 
-TEST_F(Judged, ALevelEdgeMayBeAnywhereBetweenTwoRows) {
+TEST_F(BeamErrorTest, ALevelEdgeMayBeAnywhereBetweenTwoRows) {
   const double half = std::tan(aperture_.elevation_limit_rad());
   const SubView& view = grid_.views[0];
   for (double edge = -0.9 * half; edge < 0.9 * half; edge += 0.013 * half) {
-    const JudgedBeam judged = judge([&](double, double y) {
+    const BeamErrorEstimate estimate = estimate_of([&](double, double y) {
       return y < edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.5F, 0, 0};
     });
     // Nearly: rows of equal tangent.
@@ -112,36 +112,36 @@ TEST_F(Judged, ALevelEdgeMayBeAnywhereBetweenTwoRows) {
     const double rows = std::floor((edge + view.tan_half_height) / view.pixel_height() + 0.5);
     const double found = (rows * view.pixel_height() - view.tan_half_height + half) / (2 * half);
     const double error = 0.5 * std::abs(found - share) / (0.5 + 0.5 * found);
-    EXPECT_LE(error, 1.1 * judged.by_rows.total) << edge;
-    EXPECT_LE(judged.by_rows.total, 0.6 / 64 / (0.5 + 0.5 * found)) << edge;
-    EXPECT_LT(judged.by_columns.total, 1e-6);
+    EXPECT_LE(error, 1.1 * estimate.by_rows.total) << edge;
+    EXPECT_LE(estimate.by_rows.total, 0.6 / 64 / (0.5 + 0.5 * found)) << edge;
+    EXPECT_LT(estimate.by_columns.total, 1e-6);
   }
 }
 
-TEST_F(Judged, WhatGoesOnIsNoEdge) {
+TEST_F(BeamErrorTest, WhatGoesOnIsNoEdge) {
   // A wall seen at a slant: echo and range change by a third over the three beams.
-  const JudgedBeam judged = judge([](double psi, double y) {
+  const BeamErrorEstimate estimate = estimate_of([](double psi, double y) {
     return SurfaceSample{static_cast<float>(8 + 60 * psi + 2 * y), static_cast<float>(1 + 6 * psi + y), -60,
                          2};
   });
-  EXPECT_LT(judged.by_columns.total, 2e-4);
-  EXPECT_LT(judged.by_columns.centroid_lines, 0.01);
-  EXPECT_LT(judged.by_rows.total, 2e-4);
-  EXPECT_LT(judged.by_rows.centroid_lines, 0.02);
-  EXPECT_FALSE(judged.thin);
+  EXPECT_LT(estimate.by_columns.total, 2e-4);
+  EXPECT_LT(estimate.by_columns.centroid_lines, 0.01);
+  EXPECT_LT(estimate.by_rows.total, 2e-4);
+  EXPECT_LT(estimate.by_rows.centroid_lines, 0.02);
+  EXPECT_FALSE(estimate.thin);
 }
 
-TEST_F(Judged, TheLastLineIsNoEdge) {
+TEST_F(BeamErrorTest, TheLastLineIsNoEdge) {
   // A surface that leaves the range half way up the beam.
   const auto slope = [](double, double y) {
     return SurfaceSample{static_cast<float>(20 + 20 * y), 1, 0, 20};
   };
-  const JudgedBeam within = judge(slope, {2000, step_m, 0, false});
-  const JudgedBeam cut = judge(slope, {1000, step_m, 0, false});
+  const BeamErrorEstimate within = estimate_of(slope, {2000, step_m, 0, false});
+  const BeamErrorEstimate cut = estimate_of(slope, {1000, step_m, 0, false});
   EXPECT_LT(within.by_rows.total, 1e-3);
   EXPECT_LT(cut.by_rows.total, 1e-3);
   // But a body before what lies out of range has one.
-  const JudgedBeam body = judge(
+  const BeamErrorEstimate body = estimate_of(
       [&](double psi, double) {
         return psi > 0.001 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{90, 1, 0, 0};
       },
@@ -149,18 +149,18 @@ TEST_F(Judged, TheLastLineIsNoEdge) {
   EXPECT_GT(body.by_columns.total, 0.05);
 }
 
-TEST_F(Judged, AnEdgeBetweenTwoBeamsIsNoticedByBoth) {
+TEST_F(BeamErrorTest, AnEdgeBetweenTwoBeamsIsNoticedByBoth) {
   // 0.0045 is the port edge of the middle beam. The last column of the beam to port sees the wall.
   make_grid(4, 64);
-  const JudgedBeam judged = judge([&](double psi, double) {
+  const BeamErrorEstimate estimate = estimate_of([&](double psi, double) {
     return psi > 0.0044 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.5F, 0, 0};
   });
-  EXPECT_GT(judged.by_columns.total, 1e-4 / 0.009);
+  EXPECT_GT(estimate.by_columns.total, 1e-4 / 0.009);
 }
 
-TEST_F(Judged, WhatOneColumnHearsAloneIsThin) {
+TEST_F(BeamErrorTest, AnEchoInOneColumnAloneIsThin) {
   const auto thing = [&](double width_rad) {
-    return judge([=](double psi, double) {
+    return estimate_of([=](double psi, double) {
       return std::abs(psi) < width_rad / 2 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.2F, 0, 0};
     });
   };
@@ -169,19 +169,19 @@ TEST_F(Judged, WhatOneColumnHearsAloneIsThin) {
   EXPECT_FALSE(thing(0.0035).thin);
 }
 
-TEST_F(Judged, SilenceIsNotJudged) {
-  const JudgedBeam judged = judge([](double, double) { return SurfaceSample{}; });
-  EXPECT_TRUE(judged.columns.empty());
-  EXPECT_EQ(judged.by_columns.total, 0);
-  EXPECT_EQ(judged.by_rows.centroid_lines, 0);
+TEST_F(BeamErrorTest, SilenceHasNoEstimate) {
+  const BeamErrorEstimate estimate = estimate_of([](double, double) { return SurfaceSample{}; });
+  EXPECT_TRUE(estimate.columns.empty());
+  EXPECT_EQ(estimate.by_columns.total, 0);
+  EXPECT_EQ(estimate.by_rows.centroid_lines, 0);
 }
 
-TEST_F(Judged, SamplesThatAreNoNumbersDoNotCount) {
-  const JudgedBeam judged = judge([](double psi, double) {
+TEST_F(BeamErrorTest, SamplesThatAreNoNumbersDoNotCount) {
+  const BeamErrorEstimate estimate = estimate_of([](double psi, double) {
     return SurfaceSample{5, std::abs(psi) < 0.0005 ? NAN : 1.0F, 0, 0};
   });
-  EXPECT_TRUE(std::isfinite(judged.by_columns.total));
-  EXPECT_TRUE(std::isfinite(judged.by_columns.centroid_lines));
+  EXPECT_TRUE(std::isfinite(estimate.by_columns.total));
+  EXPECT_TRUE(std::isfinite(estimate.by_columns.centroid_lines));
 }
 
 }  // namespace
