@@ -11,7 +11,7 @@ namespace sonard::server {
 
 struct CheckReport {
   std::vector<std::string> problems;  ///< one line each: file, line, key, what is wrong
-  std::vector<std::string> warnings;  ///< the same form
+  std::vector<std::string> warnings;  ///< in the form of `problems`
   std::vector<std::string> summary;   ///< what was found, for people
   DaemonConfig config;                ///< with what it takes from its world
 };

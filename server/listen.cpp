@@ -73,7 +73,7 @@ std::string likely_cause(const PoseSource& source) {
 }
 
 void print_input(const PoseSource& source, const PoseStatistics& statistics, TimePoint now) {
-  fmt::print("{}{}{}\n", source.description(), source.heard().empty() ? "" : " ", source.heard());
+  fmt::print("{}{}{}\n", source.description(), source.received().empty() ? "" : " ", source.received());
   print_names("names   ", source.entities());
   if (statistics.newest()) {
     fmt::print("  {}\n", to_string(statistics.in_all(now)));
@@ -99,9 +99,9 @@ int listen_to_poses(const PoseConfig& poses, std::chrono::nanoseconds duration) 
   }
   boost::asio::io_context io;
   const SteadyClock clock;
-  bool heard = false;
+  bool any = false;
   try {
-    PoseInputs inputs(io, poses, clock, [&](const pose::PoseSample&, TimePoint) { heard = true; });
+    PoseInputs inputs(io, poses, clock, [&](const pose::PoseSample&, TimePoint) { any = true; });
     inputs.start();
     fmt::print("listening for {:.1f} s\n", seconds(duration));
     io.run_for(duration);
@@ -114,7 +114,7 @@ int listen_to_poses(const PoseConfig& poses, std::chrono::nanoseconds duration) 
     fmt::print(stderr, "{}\n", error.what());
     return exit_network;
   }
-  return heard ? exit_clean : exit_config;
+  return any ? exit_clean : exit_config;
 }
 
 }  // namespace sonard::server

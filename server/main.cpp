@@ -36,10 +36,10 @@ namespace {
 
 constexpr const char* exit_code_help =
     "Exit codes:\n"
-    "  0   ended by SIGINT or SIGTERM or with the recording, or nothing to complain about\n"
-    "  2   configuration, world, trajectory or log cannot be used, or check --listen heard no pose\n"
+    "  0   success: ended by SIGINT, SIGTERM or the end of the recording, or no problem found\n"
+    "  2   configuration, world, trajectory or log cannot be used, or check --listen received no pose\n"
     "  3   an address or port cannot be used\n"
-    "  4   the backend asked for cannot be had, failed self-test, or the renderer failed while serving\n"
+    "  4   the backend is not available or failed its self-test, or the renderer failed while serving\n"
     "  5   a file or folder to write to cannot be used\n"
     "  64  wrong command line\n"
     "  70  a defect of this program";
@@ -221,19 +221,19 @@ int main_program(int argc, char** argv) {
   CLI::App* run_command =
       app.add_subcommand("run", "Serve the heads of a configuration until SIGINT or SIGTERM");
   run_command->add_option("CONFIG", arguments.config, "YAML file (docs/configuration.md)")->required();
-  run_command->add_option("--log-level", arguments.log_level, "Instead of the one in CONFIG")
+  run_command->add_option("--log-level", arguments.log_level, "Log level; overrides the one in CONFIG")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
 
   CLI::App* check_command =
       app.add_subcommand("check", "Validate a configuration with its world, trajectory and addresses");
   check_command->add_option("CONFIG", arguments.config, "YAML file (docs/configuration.md)")->required();
   check_command->add_flag("--no-network", arguments.no_network,
-                          "Do not try whether the addresses can be bound here");
+                          "Do not test whether the addresses can be bound here");
   check_command
       ->add_option(
           "--listen", arguments.listen_s,
-          "Then listen to the pose inputs for this many seconds and say what arrives; exit code 0 when a "
-          "pose of the vehicle does")
+          "Then listen to the pose inputs for this many seconds and report what arrives; exit code 0 when "
+          "a pose of the vehicle did")
       ->check(CLI::Range(0.1, 86'400.0));
 
   CLI::App* render_command = app.add_subcommand(
@@ -241,7 +241,7 @@ int main_program(int argc, char** argv) {
   OfflineArguments offline(*render_command);
 
   CLI::App* selftest_command = app.add_subcommand(
-      "selftest", "Show the backend in use and compare one known scene with its closed form");
+      "selftest", "Show the backend in use and compare one scene with its closed form");
   selftest_command->add_option("--backend", arguments.backend, "auto, raster or ray")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},
@@ -260,33 +260,32 @@ int main_program(int argc, char** argv) {
           ->capture_default_str();
   replay_command
       ->add_flag("--as-fast-as-asked", arguments.timing.as_asked,
-                 "The next ping whenever the client wants one, whatever the times of the recording")
+                 "Send the next ping whenever a client wants one; ignore the times of the recording")
       ->excludes(speed);
   replay_command->add_flag("--loop", arguments.timing.loop,
-                           "From the start again after the last ping, until SIGINT or SIGTERM");
+                           "Start again after the last ping, until SIGINT or SIGTERM");
   bool start_now = false;
   replay_command
       ->add_option_function<std::string>(
           "--start", [&start_now](const std::string& when) { start_now = when == "now"; },
-          "ping: time runs from the first ping that a client wants, and waits for clients; now: it runs from "
-          "the "
-          "start, and pings are skipped that nobody wants in time")
+          "ping: time starts with the first ping that a client wants, and waits for clients; now: it starts "
+          "at once, and pings that no client wants in time are skipped")
       ->check(CLI::IsMember({"ping", "now"}))
       ->default_str("ping");
-  replay_command->add_option("--log-level", arguments.log_level, "Least severe events shown")
+  replay_command->add_option("--log-level", arguments.log_level, "Log level")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
 
-  CLI::App* info_command = app.add_subcommand("info", "Say what is in a .glf, .dat, .mcap or .pcapng");
+  CLI::App* info_command = app.add_subcommand("info", "Show what is in a .glf, .dat, .mcap or .pcapng");
   info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
-  info_command->add_flag("--json", arguments.info.json, "For programs");
+  info_command->add_flag("--json", arguments.info.json, "Print JSON");
   CLI::Option* pictures = info_command->add_option("--png", arguments.info.pictures,
-                                                   "Folder for a picture of each ping, or turn");
-  info_command->add_option("--every", arguments.info.every, "Pictures of each N-th ping only")
+                                                   "Folder for a picture of each ping or sweep");
+  info_command->add_option("--every", arguments.info.every, "Pictures of every N-th ping only")
       ->needs(pictures)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
   info_command
       ->add_option("--utc-offset", arguments.info.utc_offset_h,
-                   "Hours that the clock of a .glf was ahead of UTC; without it those of this machine's zone")
+                   "Hours that the clock of a .glf was ahead of UTC; default: this machine's time zone")
       ->check(CLI::Range(-14.0, 14.0));
 
   for (CLI::App* command :

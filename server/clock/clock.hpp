@@ -33,7 +33,7 @@ inline std::chrono::nanoseconds unix_time_offset() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(wall) - (before + (after - before) / 2);
 }
 
-/// The same instant for an Asio steady_timer.
+/// Converts to the time type of an Asio steady_timer.
 inline std::chrono::steady_clock::time_point to_steady(TimePoint time) {
   return std::chrono::steady_clock::time_point{time};
 }

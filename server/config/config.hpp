@@ -99,7 +99,7 @@ struct IgnitionPoseInput {
 
 /// What a head does when the newest pose is older than the extrapolation limit.
 enum class StalePolicy {
-  hold,     ///< goes on pinging from the last pose
+  hold,     ///< continues to ping from the last pose
   silence,  ///< sends status packets only, until a pose arrives
 };
 
@@ -107,7 +107,7 @@ enum class StalePolicy {
 enum class PingClock {
   wall,       ///< the time of this machine
   source,     ///< that of the stamps of the poses; a ping that would come too late to keep up is left out
-  lock_step,  ///< the same, but every ping is made, however long it takes: publishers by TCP have to wait
+  lock_step,  ///< like `source`, but no ping is left out: publishers by TCP have to wait
 };
 
 struct PoseConfig {

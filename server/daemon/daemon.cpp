@@ -162,8 +162,8 @@ class Daemon {
   void end(int exit_code);
 
   SteadyClock clock_;
-  asio::io_context lifetime_;                          // of main: signals, and the wish to end
-  asio::posix::stream_descriptor signals_{lifetime_};  // see hear_signals()
+  asio::io_context lifetime_;                          // of main: signals, and the request to end
+  asio::posix::stream_descriptor signals_{lifetime_};  // see catch_signals()
   std::uint8_t signal_ = 0;                            // read last
   int exit_code_ = exit_clean;                         // of main
   asio::io_context io_;
@@ -274,7 +274,7 @@ std::optional<std::chrono::nanoseconds> Daemon::pose_lead() const {
 }
 
 int Daemon::run() {
-  signals_.assign(hear_signals(std::chrono::seconds{1}));
+  signals_.assign(catch_signals(std::chrono::seconds{1}));
   wait_for_signal();
   auto io_work = asio::make_work_guard(io_);
   std::thread io_thread(&Daemon::run_io, this);
@@ -309,7 +309,7 @@ void Daemon::wait_for_signal() {
           return;
         }
         if (signal_ == SIGHUP) {
-          spdlog::info("SIGHUP changes nothing: the configuration is read at the start only");
+          spdlog::info("SIGHUP ignored: the configuration is read at the start only");
           wait_for_signal();
         } else {
           spdlog::info("signal {}: ending", signal_);
@@ -324,7 +324,7 @@ void Daemon::end_when_played() {
     return;
   }
   if (playback_->finished(clock_.now())) {
-    spdlog::info("the recording is over");
+    spdlog::info("the recording has ended");
     end(exit_clean);
     return;
   }

@@ -42,7 +42,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config);
 /// @throws StartError, render::RendererError, render::RequestError, std::system_error before it is ready
 int run_daemon(DaemonConfig config);
 
-/// The same with a world already loaded and any renderer; run_daemon() without rendering, for tests.
+/// Runs the daemon with a loaded world and any renderer; for replay, and for tests without rendering.
 /// @param playback what heads play back that are told to; the daemon ends when it is finished. May be null.
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
           Playback* playback = nullptr);

@@ -29,18 +29,18 @@ std::int64_t monotonic_ns() {
 
 extern "C" void on_signal(int signal) {
   const int error = errno;
-  bool heard = true;
+  bool passed_on = true;
   if (signal != SIGHUP) {
     std::int64_t deadly_from = 0;
     const std::int64_t now = monotonic_ns();
-    heard = deadly_from_ns.compare_exchange_strong(deadly_from, now + grace_ns);
-    if (!heard && now >= deadly_from) {
+    passed_on = deadly_from_ns.compare_exchange_strong(deadly_from, now + grace_ns);
+    if (!passed_on && now >= deadly_from) {
       std::signal(signal, SIG_DFL);
       std::raise(signal);  // takes effect when this handler returns
     }
   }
   const auto number = static_cast<std::uint8_t>(signal);
-  if (heard && ::write(write_end, &number, 1) != 1) {
+  if (passed_on && ::write(write_end, &number, 1) != 1) {
     // Full: there are enough bytes to read.
   }
   errno = error;
@@ -62,7 +62,7 @@ void ignore_broken_pipes_and_hang_ups() {
   std::signal(SIGHUP, SIG_IGN);
 }
 
-int hear_signals(std::chrono::nanoseconds grace) {
+int catch_signals(std::chrono::nanoseconds grace) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
     throw std::system_error(errno, std::generic_category(), "cannot make a pipe for signals");

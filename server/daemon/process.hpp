@@ -11,15 +11,15 @@ namespace sonard::server {
 void open_standard_descriptors();
 
 /// SIGPIPE is ignored for the rest of the process (a peer that goes is an error of the write), SIGHUP until
-/// hear_signals(). For a daemon that starts: SIGINT and SIGTERM still end it at once.
+/// catch_signals(). For a daemon that starts: SIGINT and SIGTERM still end it at once.
 void ignore_broken_pipes_and_hang_ups();
 
 /// From here on, for the rest of the process, each SIGINT, SIGTERM and SIGHUP is a byte, its number, to be
 /// read without waiting. An order to end that comes within `grace` of the first one is that one once more
 /// (`timeout` sends two, a terminal one to each process) and no byte; a later one kills at once, whatever
-/// hangs. When called again all begins anew.
+/// hangs. A second call starts over.
 /// @return the descriptor to read from, which belongs to the caller
 /// @throws std::system_error
-int hear_signals(std::chrono::nanoseconds grace);
+int catch_signals(std::chrono::nanoseconds grace);
 
 }  // namespace sonard::server

@@ -29,7 +29,7 @@ class io_context;
 namespace sonard::server {
 
 /// A device joined with its transport, as a Head runs it. Belongs to the I/O thread; constructor and
-/// destructor to the thread that owns the io_context while nobody runs it.
+/// destructor to the thread that owns the io_context while it does not run.
 class ConnectedDevice {
  public:
   ConnectedDevice() = default;
@@ -66,7 +66,7 @@ class DeviceKind : public HeadKind {
 
   /// The users of such heads know .glf logs.
   virtual bool writes_glf() const { return false; }
-  /// As HeadToRecord::glf_status.
+  /// See HeadToRecord::glf_status.
   virtual std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> /*message*/) const {
     return std::nullopt;
   }
@@ -83,7 +83,7 @@ class DeviceKind : public HeadKind {
   virtual std::vector<std::string> played_wrongly(const LoggedHead& /*logged*/) const { return {}; }
   /// A head at an address of loopback that plays this log.
   virtual HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const = 0;
-  /// The same head, keeping to the times of a log.
+  /// The head's configuration, changed to keep the times of a log.
   virtual HeadConfig held_to_recording(HeadConfig head) const = 0;
 
   // ---- Rendering without serving

@@ -37,10 +37,10 @@ struct HeadServices {
   std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
 };
 
-/// The same for every kind of device: events go to Device::step(), and what it answers is done. While the
-/// transport is blocked events wait, so that a device does not talk faster than it is heard.
+/// Passes events to Device::step() and carries out its actions, for every kind of device alike. While the
+/// transport is blocked events wait, so that a device does not send faster than the transport does.
 ///
-/// Constructor and destructor belong to the thread that owns the io_context while nobody runs it; everything
+/// Constructor and destructor belong to the thread that owns the io_context while it does not run; everything
 /// else to the I/O thread. At most one render job is outstanding.
 ///
 /// Shutdown: stop() closes the transport and cancels the timers. Handlers that are still queued, and an image

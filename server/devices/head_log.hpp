@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head says of itself in the log of the program.
+// The lines of one head in the program's log.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace sonard::server {
 
-/// What there is to count of a head at one moment.
+/// All counts of a head at one moment.
 struct HeadCounts {
   RenderCounters rendering;
   PingProgress pings;
@@ -20,7 +20,7 @@ struct HeadCounts {
   std::vector<Counter> transport;
 };
 
-/// Each function may be called as often as one likes: only what is new is logged, at level info and above.
+/// Logs what is new since the last call, at level info and above, however often it is called.
 class HeadLog {
  public:
   explicit HeadLog(std::string head) : head_(std::move(head)) {}
@@ -38,8 +38,8 @@ class HeadLog {
   void warn_of(const std::vector<Counter>& before, const std::vector<Counter>& now) const;
 
   std::string head_;
-  PeerLog notices_, setting_changes_;  // a client may cause them as often as it likes
-  std::vector<Setting> settings_;      ///< as they were said last
+  PeerLog notices_, setting_changes_;  // limited: a client can cause any number
+  std::vector<Setting> settings_;      ///< as they were logged last
   HeadCounts reported_;
 };
 

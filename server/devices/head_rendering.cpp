@@ -139,7 +139,7 @@ void log_skipped(const std::string& head, const render::SkipCounts& skipped) {
     }
   }
   if (!text.empty()) {
-    spdlog::info("head={} skipped:{}", head, text);
+    spdlog::debug("head={} skipped:{}", head, text);
   }
 }
 

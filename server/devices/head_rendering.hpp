@@ -37,7 +37,7 @@ struct HeadPing {
   TimePoint pose_time{};          ///< of the transmission, as PoseHistory takes it
   std::uint64_t transmit_us = 0;  ///< of the clock of the head
   render::Pose T_world_sonar;
-  std::optional<render::Pose> T_world_sonar_at_end;  ///< when the last echo is heard; nullopt: not known
+  std::optional<render::Pose> T_world_sonar_at_end;  ///< when the last echo returns; nullopt: not known
   render::SonarSettings settings;
 };
 
@@ -47,15 +47,15 @@ class HeadRendering {
   HeadRendering(const HeadConfig& config, int stream, const HeadServices& services);
 
   /// The time of a ping's poses, as PoseHistory takes it, that is transmitted at a time of the head's own:
-  /// this, or what PingTimes said when it was permitted.
+  /// this, or what PingTimes said when it was granted.
   TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
 
-  /// By the clock of the source: whether the ping that the head wants, if it does, may begin. Then it does.
+  /// With pings by the clock of the source: begins `next` if its poses are there. Returns whether it did.
   bool begin_ping(TimePoint now, const std::optional<NextPing>& next);
-  /// By the clock of the source: nobody wants pings.
+  /// With pings by the clock of the source: no client wants pings.
   void rest();
-  /// A client that asks for one ping after the other may take so long between two; after that nobody wants
-  /// any.
+  /// Longest time between two requests of a client that asks for one ping after the other; after that no ping
+  /// is wanted.
   static constexpr std::chrono::seconds longest_pause{3};
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
@@ -64,7 +64,7 @@ class HeadRendering {
   /// there is no pose, or only a stale one that is not to be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
 
-  /// The same, with all that a log keeps of it, as of a ping that is transmitted at `transmit_time`.
+  /// All poses that a log keeps of a ping transmitted at `transmit_time`.
   std::shared_ptr<const PosesUsed> poses_used(TimePoint transmit_time) const;
 
   void submit(HeadPing ping, RenderService::Done done);
@@ -94,7 +94,7 @@ class HeadRendering {
   PeerLog errors_;
 };
 
-/// "head=NAME skipped: rule=count ..." of every rule that has skipped something.
+/// At level debug: "head=NAME skipped: rule=count ..." of every rule that has skipped something.
 void log_skipped(const std::string& head, const render::SkipCounts& skipped);
 /// Milliseconds of a mean ping between two states of the counters; 0 when there was none.
 double mean_render_ms(const RenderCounters& before, const RenderCounters& now);

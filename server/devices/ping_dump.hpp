@@ -24,7 +24,7 @@ std::uint32_t samples_crc32(const render::PingSamples& samples);
 /// only. A file that cannot be written is logged, once, and costs nothing else.
 class PingDump {
  public:
-  /// Makes the folder and starts the CSV file anew.
+  /// Makes the folder and truncates the CSV file.
   /// @throws std::runtime_error naming the path
   PingDump(std::filesystem::path folder, std::string head);
 

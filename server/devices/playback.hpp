@@ -20,7 +20,7 @@ class Playback {
   virtual void started(int stream, const PingJob& job) = 0;
   /// What a head has done so far, whenever it has done something.
   virtual void progress(int stream, TimePoint now, const PingProgress& done) = 0;
-  /// Everything is sent, and whoever wanted lost messages again has had the time to ask.
+  /// Everything is sent, and clients have had the time to ask for lost messages.
   virtual bool finished(TimePoint now) const = 0;
 };
 

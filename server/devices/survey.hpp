@@ -42,7 +42,7 @@ class Survey {
 
   /// Length of a bin as a client has it, which counts ranges in the speed of sound that it has set.
   virtual double client_bin_m() const = 0;
-  /// Of a multibeam head: bearings of its beams, positive to starboard; of a scanning one nothing.
+  /// Bearings of the beams of a multibeam head, positive to starboard; empty for a scanning one.
   virtual std::vector<double> bearings_rad() const { return {}; }
 
   struct Sector {
@@ -50,7 +50,7 @@ class Survey {
     double width_rad = 0.0;  ///< clockwise; a whole turn: all round
     double step_rad = 0.0;   ///< from ping to ping
   };
-  /// Of a scanning head.
+  /// The sector of a scanning head.
   virtual Sector sector() const { return {}; }
 
   /// What frames are made with, as members of a JSON object, but for the period.

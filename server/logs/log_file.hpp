@@ -17,7 +17,7 @@ struct LogError : std::runtime_error {
 
 enum class LogKind {
   glf,     ///< packed (docs/logs.md 1)
-  dat,     ///< the same, bare
+  dat,     ///< the records of a .glf without its archive
   mcap,    ///< sonard's own
   pcapng,  ///< packets
 };
@@ -25,7 +25,7 @@ enum class LogKind {
 /// ".glf", ".dat", ".mcap", ".pcapng".
 std::string_view name_of(LogKind kind);
 
-/// Read-only; the bytes stay where they are as long as the object lives. A file that somebody cuts meanwhile
+/// Read-only; the bytes stay where they are as long as the object lives. A file that is cut meanwhile
 /// ends the program, as every mapped file does: logs that are still being written only grow.
 class LogFile {
  public:

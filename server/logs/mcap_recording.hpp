@@ -31,7 +31,7 @@ class McapRecording final : public Recording {
 
   const LogFile& file_;
   mcap::Reader reader_;
-  /// Of a ping, a view of the file.
+  /// The message of a ping, a view of the file.
   struct Message {
     std::span<const std::uint8_t> bytes;
     bool is_line = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pings of a log, whatever its format: for replay, `sonard info` and whoever looks at them.
+// The pings of a log, whatever its format, for replay and `sonard info`.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct LoggedPing {
   RecordedSettings settings;
   double bearing_rad = 0.0;        ///< of the beam of a scanning head: 0 ahead, positive to port
   int bits_per_bin = 8;            ///< 8: samples are 0..255; 4: 0..15
-  std::vector<std::uint8_t> wire;  ///< as it travelled, without samples; empty: the log does not say
+  std::vector<std::uint8_t> wire;  ///< the message without samples; empty: the log does not have it
   std::size_t place = 0;           ///< of the Recording's own
 };
 
@@ -38,7 +38,8 @@ struct LoggedHead {
   std::uint16_t device_id = 0;
   bool scanning = false;          ///< a ping is a line of one beam
   std::vector<LoggedPing> pings;  ///< at least one, in the order of their times
-  /// Of the first ping of a multibeam head: one for each beam in the order of samples, positive to port.
+  /// Bearings in the first ping of a multibeam head: one for each beam in the order of samples, positive to
+  /// port.
   std::vector<double> bearings_rad;
 };
 

@@ -26,7 +26,7 @@ struct Cidr {
 /// Whom a socket listens to. A datagram or connection from elsewhere is counted and dropped.
 using AllowList = std::vector<Cidr>;
 
-/// True when one of the blocks contains the address; an empty list allows nobody.
+/// True when one of the blocks contains the address; an empty list allows no one.
 bool allows(const AllowList& list, Ipv4 address);
 
 std::optional<Ipv4> parse_ipv4(std::string_view text);

@@ -13,7 +13,7 @@
 
 namespace sonard::server {
 
-/// Faults put on datagrams of one direction, each drawn anew for each datagram.
+/// Faults put on datagrams of one direction, each drawn for each datagram.
 struct LinkFaults {
   double loss = 0.0;                   ///< probability, [0, 1]
   double duplicate = 0.0;              ///< probability that a second copy goes too, [0, 1]
@@ -52,7 +52,7 @@ class FaultyLink {
 
   /// A datagram enters the link. `now` never goes backwards.
   void push(TimePoint now, Datagram datagram);
-  /// Those that come out at or before `now`, in the order in which they do.
+  /// Takes the datagrams that come out at or before `now`, in that order.
   std::vector<Datagram> take_due(TimePoint now);
   /// When take_due() has something next; nullopt: the link is empty.
   std::optional<TimePoint> next_due() const;

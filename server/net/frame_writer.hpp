@@ -30,7 +30,7 @@ inline bool count_frame(FrameFate fate, std::size_t bytes, SerialPortCounters& c
 }
 
 /// Stream is a non-blocking tcp::socket or posix::stream_descriptor that outlives the writer. Errors of the
-/// stream are left to whoever reads from it: they end the session there.
+/// stream are left to the reader of the stream: they end the session there.
 template <typename Stream>
 class FrameWriter {
  public:

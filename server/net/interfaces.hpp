@@ -16,7 +16,7 @@ struct InterfaceAddress {
   Ipv4 netmask = 0;
 };
 
-/// Of all interfaces that are up. Empty when the OS does not tell.
+/// Addresses of all interfaces that are up. Empty when the OS does not tell.
 std::vector<InterfaceAddress> interface_addresses();
 
 /// The entry this address belongs to: the one that is this address, or, as all of 127.0.0.0/8 is local, the

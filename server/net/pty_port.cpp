@@ -88,7 +88,7 @@ void make_link(const fs::path& link, const std::string& target) {
           "cannot make the link {}: what stands there is no link to a pseudo terminal, and is not replaced",
           link.string()));
     }
-    spdlog::info("serial pty: {} led to {} and leads to {} now", link.string(), before, target);
+    spdlog::info("serial pty: {} now leads to {} (before: {})", link.string(), target, before);
     fs::remove(link, error);
     fs::create_symlink(target, link, error);
   }
@@ -105,7 +105,7 @@ struct PtyPort::Impl : std::enable_shared_from_this<PtyPort::Impl> {
       : config(std::move(port_config)), master(io, open_master()), writer(master), look_timer(io) {}
 
   void open();
-  void look();
+  void check_client();
   void wait_readable();
   void on_readable();
   void leave();
@@ -136,7 +136,7 @@ void PtyPort::Impl::open() {
 }
 
 /// Waits for somebody to open the slave.
-void PtyPort::Impl::look() {
+void PtyPort::Impl::check_client() {
   pollfd state{master.native_handle(), POLLIN, 0};
   poll(&state, 1, /*timeout=*/0);
   // Who has written and closed again since the last look was there too.
@@ -150,7 +150,7 @@ void PtyPort::Impl::look() {
   look_timer.expires_after(look_again);
   look_timer.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error && self->master.is_open()) {
-      self->look();
+      self->check_client();
     }
   });
 }
@@ -196,7 +196,7 @@ void PtyPort::Impl::leave() {
   }
   events.left("pty " + path);
   if (master.is_open()) {
-    look();
+    check_client();
   }
 }
 
@@ -231,7 +231,7 @@ PtyPort::~PtyPort() {
 
 void PtyPort::start(SerialPortEvents events) {
   impl_->events = std::move(events);
-  impl_->look();
+  impl_->check_client();
 }
 
 void PtyPort::stop() {

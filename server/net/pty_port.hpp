@@ -42,7 +42,7 @@ class PtyPort final : public SerialPort {
   std::string description() const override;
   SerialPortCounters counters() const override;
 
-  /// Of the slave.
+  /// Path of the slave.
   const std::string& path() const;
 
  private:

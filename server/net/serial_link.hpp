@@ -22,7 +22,7 @@ namespace sonard::server {
 struct SerialLinkCounters {
   SerialPortCounters ports;             ///< of all ports together
   std::vector<SerialPortReport> each;   ///< in the order of the configuration
-  std::uint64_t frames_unheard = 0;     ///< discarded: nobody was connected
+  std::uint64_t frames_unheard = 0;     ///< discarded: no client was connected
   std::uint64_t frames_overflowed = 0;  ///< dropped: SerialLink::most_waiting_bytes were waiting for the line
   std::uint64_t bytes_overrun = 0;      ///< from clients, dropped for the same reason
 };
@@ -34,20 +34,20 @@ struct SerialAddresses {
   std::vector<std::string> pty;  ///< paths of the slaves
 };
 
-/// All clients share one line, as on RS485: each hears every frame, and what they send comes in the order in
-/// which it was read. A client that is not there when a frame is sent never gets it.
+/// All clients share one line, as on RS485: each receives every frame, and what they send comes in the order
+/// in which it was read. A client that is not there when a frame is sent never gets it.
 ///
 /// With a line speed (SerialLinkConfig::baud) bytes take their time in both directions, see LinePacer, and
 /// still arrive in one piece: a frame of n bytes n * 10 / baud seconds after send() at the earliest, a read
-/// of n bytes as much after it came. The speed delays whoever asks and waits, by 1.2 ms for a command of 14
-/// bytes and 38.6 ms for a reply of 445 bytes at 115200 baud, and it bounds the rate. Without it nothing is
-/// added.
+/// of n bytes as much after it came. The speed delays a client that asks and waits, by 1.2 ms for a command
+/// of 14 bytes and 38.6 ms for a reply of 445 bytes at 115200 baud, and it bounds the rate. Without it
+/// nothing is added.
 ///
-/// Nothing here blocks or grows: whoever reads too slowly loses whole frames (SerialPort::send()), and
+/// Nothing here blocks or grows: a client that reads too slowly loses whole frames (SerialPort::send()), and
 /// what a line cannot carry in time is dropped and counted.
 ///
 /// Belongs to the I/O thread, as every handler of its does; constructor and destructor to the thread that
-/// owns the io_context while nobody runs it. After stop() no callback is called; it, and the destructor, may
+/// owns the io_context while it does not run. After stop() no callback is called; it, and the destructor, may
 /// be called from within one. Handlers that are still queued find the inner state stopped or gone.
 class SerialLink {
  public:
@@ -59,14 +59,14 @@ class SerialLink {
   /// A client has left, after all that came of it: a command that it began will not be finished.
   using Left = std::function<void(const std::string& peer)>;
 
-  /// Opens everything; clients are heard from start() on.
+  /// Opens everything; it reads from clients from start() on.
   /// @throws SocketError naming the address or path
   SerialLink(boost::asio::io_context& io, const SerialLinkConfig& config, const Clock& clock);
   ~SerialLink();
   SerialLink(const SerialLink&) = delete;
   SerialLink& operator=(const SerialLink&) = delete;
 
-  /// @param passed, ended as SerialPortEvents has them, of all ports; empty: nobody is told
+  /// @param passed, ended as SerialPortEvents has them, of all ports; may be empty
   void start(Receive receive, Left left, decltype(SerialPortEvents::passed) passed = {},
              decltype(SerialPortEvents::ended) ended = {});
   void stop();

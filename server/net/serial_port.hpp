@@ -57,16 +57,16 @@ struct SerialPortCounters {
   std::uint64_t frames_lost = 0;     ///< the other end was gone, or the OS refused
 };
 
-/// Of one port, for the log.
+/// The report of one port, for the log.
 struct SerialPortReport {
   std::string description;  ///< SerialPort::description()
   SerialPortCounters counters;
 };
 
-/// What a port says of its clients. `peer` names one as long as it is there, "tcp 127.0.0.1:50312".
+/// Events of a port. `peer` names one as long as it is there, "tcp 127.0.0.1:50312".
 struct SerialPortEvents {
   std::function<void(std::span<const std::uint8_t> bytes, const std::string& peer)> received;
-  /// The client is gone; what it had begun to say will not be finished.
+  /// The client is gone; the rest of a message that it had begun will not come.
   std::function<void(const std::string& peer)> left;
   /// Optional. Bytes have passed the socket or terminal, before they wait for anything here; a frame that a
   /// client takes in two parts is told once, with the first.
@@ -76,7 +76,7 @@ struct SerialPortEvents {
 };
 
 /// Belongs to the I/O thread, as every handler of its does. The constructors open what they serve and throw
-/// SocketError; from start() on clients are heard. After stop() no event is called; it may be called from
+/// SocketError; from start() on it reads from clients. After stop() no event is called; it may be called from
 /// within one.
 class SerialPort {
  public:

@@ -18,13 +18,13 @@ struct TransportEvents {
   std::function<void()> writable;  ///< blocked() is false again
   std::function<void(Notice)> notice;
 
-  // For a recording; empty: nobody is told.
-  std::function<void(WirePassed)> passed;      ///< as it passed the sockets
+  // For a recording; may be empty.
+  std::function<void(WirePassed)> passed;      ///< called for all that passes the sockets
   std::function<void(const WireEnds&)> ended;  ///< a stream is over
 };
 
 /// Belongs to the I/O thread, as every handler of its does; constructor and destructor to the thread that
-/// owns the io_context while nobody runs it. The constructors open what they serve and throw SocketError.
+/// owns the io_context while it does not run. The constructors open what they serve and throw SocketError.
 /// Nothing here waits.
 class Transport {
  public:
@@ -33,11 +33,11 @@ class Transport {
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
 
-  /// Clients are heard from here on.
+  /// Begins to read from clients.
   virtual void start(TransportEvents events) = 0;
   virtual void stop() = 0;
   virtual void send(std::vector<Outgoing> messages) = 0;
-  /// True while something that was to be sent waits for the OS: a head that goes on talking would pile it up.
+  /// True while something to send waits for the OS: a head that continues to send would pile it up.
   virtual bool blocked() const { return false; }
 
   /// One for each way by which clients come, for the log: "tcp 127.0.0.1:4001".

@@ -10,8 +10,8 @@
 
 namespace sonard::server {
 
-/// Each frame goes out as one datagram, to the peer that was heard last, from
-/// the address at which that peer sent to us. A peer has left when another is heard. UDP tells of no other
+/// Each frame goes out as one datagram, to the peer that sent last, from
+/// the address at which that peer sent to us. A peer has left when another sends. UDP tells of no other
 /// departure: the last peer counts as connected for good.
 class UdpPort final : public SerialPort {
  public:

@@ -28,7 +28,7 @@ std::string npy_header(std::string_view dtype, int rows, int columns);
 /// The whole file. Requires rows * columns samples.
 std::string npy_bytes(const NpyTable& table);
 
-/// The same back: of a file with exactly that header and as many samples as it says.
+/// Parses a file with exactly that header and as many samples as it says.
 /// @return nullopt for any other file
 std::optional<NpyTable> parse_npy(std::string_view file, int rows, int columns, bool sixteen_bit);
 

@@ -18,21 +18,21 @@ namespace sonard::server {
 namespace {
 
 /// Frames of the vehicle, by what they are good for.
-struct Heard {
+struct Received {
   std::uint64_t odometry = 0;
   std::uint64_t position = 0;
   std::uint64_t attitude = 0;
   std::uint64_t other = 0;
 };
 
-std::uint64_t& counter_of(const mavlink::Message& message, Heard& heard) {
+std::uint64_t& counter_of(const mavlink::Message& message, Received& received) {
   if (std::holds_alternative<mavlink::Odometry>(message)) {
-    return heard.odometry;
+    return received.odometry;
   }
   if (std::holds_alternative<mavlink::LocalPositionNed>(message)) {
-    return heard.position;
+    return received.position;
   }
-  return std::holds_alternative<std::monostate>(message) ? heard.other : heard.attitude;
+  return std::holds_alternative<std::monostate>(message) ? received.other : received.attitude;
 }
 
 }  // namespace
@@ -57,12 +57,12 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   std::optional<Endpoint> publisher;  // of the newest pose
   MavlinkPoses poses;
   mavlink::FrameCounters frames;
-  Heard heard;
+  Received received;
   std::uint64_t wrong_system = 0;
   std::uint64_t wrong_component = 0;
   std::uint64_t broken_datagrams = 0;
   std::bitset<256> systems_said, components_said;
-  std::optional<TimePoint> first_heard;
+  std::optional<TimePoint> first_received;
   bool missing_said = false;
   PoseSourceCounters counters;
 };
@@ -88,7 +88,7 @@ void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arriva
     ++counters.malformed;
     return;
   }
-  ++counter_of(*message, heard);
+  ++counter_of(*message, received);
   const std::optional<pose::PoseSample> sample = poses.take(*message, arrival);
   counters.bad_value = poses.counters().bad_value;
   if (sample) {
@@ -123,16 +123,16 @@ bool MavlinkPoseSource::Impl::is_ours(const mavlink::Frame& frame) {
 }
 
 void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
-  first_heard = first_heard.value_or(arrival);
-  if (missing_said || counters.samples > 0 || arrival - *first_heard < patience) {
+  first_received = first_received.value_or(arrival);
+  if (missing_said || counters.samples > 0 || arrival - *first_received < patience) {
     return;
   }
   missing_said = true;
   spdlog::warn(
       "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, ATTITUDE or "
       "ATTITUDE_QUATERNION {}, others {} (expected the first, or the second and the third)",
-      listener->description(), input.system_id, patience.count(), heard.odometry, heard.position,
-      heard.attitude, heard.other);
+      listener->description(), input.system_id, patience.count(), received.odometry, received.position,
+      received.attitude, received.other);
 }
 
 void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
@@ -188,20 +188,21 @@ std::string MavlinkPoseSource::details() const {
       poses.without_attitude, poses.not_wanted, poses.clock_restarts);
 }
 
-std::string MavlinkPoseSource::heard() const {
+std::string MavlinkPoseSource::received() const {
   return impl_->publisher ? fmt::format("from {} system {} component {}", endpoint_text(*impl_->publisher),
                                         impl_->input.system_id, impl_->input.component_id)
                           : std::string();
 }
 
 std::string MavlinkPoseSource::silence_hint() const {
-  const Heard& heard = impl_->heard;
-  if (heard.odometry + heard.position + heard.attitude + heard.other > 0) {
-    return "the vehicle is heard, but does not say where it is: ask it for positions and attitudes "
+  const Received& received = impl_->received;
+  if (received.odometry + received.position + received.attitude + received.other > 0) {
+    return "messages of the vehicle arrive, but none says where it is: ask it for positions and attitudes "
            "(docs/simulators/ardusub.md)";
   }
   if (impl_->wrong_system + impl_->wrong_component > 0) {
-    return "other systems or components are heard: is poses.mavlink.system_id that of the vehicle?";
+    return "messages arrive from other systems or components only: is poses.mavlink.system_id that of the "
+           "vehicle?";
   }
   return PoseSource::silence_hint();
 }

@@ -271,7 +271,7 @@ bool MavlinkPoses::observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint
   const bool restarted = back_ns > PoseHistory::reset_threshold.count();
   clock.newest_ns = restarted ? stamp_ns : std::max(clock.newest_ns, stamp_ns);
   if (restarted && std::has_single_bit(++counters_.clock_restarts)) {
-    spdlog::warn("mavlink: the vehicle began its clock again, {:.3f} s back ({} so far)",
+    spdlog::warn("mavlink: the vehicle's clock restarted, {:.3f} s back ({} so far)",
                  1e-9 * static_cast<double>(back_ns), counters_.clock_restarts);
   }
   return restarted;

@@ -22,7 +22,7 @@ struct MavlinkPoseCounters {
   std::uint64_t unknown_frame = 0;     ///< ODOMETRY whose frame_id has no place in the world
   std::uint64_t without_attitude = 0;  ///< LOCAL_POSITION_NED that no attitude was near enough to
   std::uint64_t not_wanted = 0;        ///< of the kind that is not configured, or gives way to ODOMETRY
-  std::uint64_t clock_restarts = 0;    ///< the vehicle began its clock again
+  std::uint64_t clock_restarts = 0;    ///< the vehicle's clock restarted
 };
 
 /// The messages of one vehicle, one by one; reads no clock and no socket.

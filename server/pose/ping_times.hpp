@@ -21,7 +21,7 @@ struct PingTimesCounters {
 
 /// The times of one head's pings, on the publisher's clock. A ping is due one period after the last one, the
 /// first one at a whole number of periods; and it may begin when every pose until its last echo is there, so
-/// that nothing of it is a guess. Which pings there are, and what they show, follows from the stamps alone.
+/// that no pose is extrapolated. Which pings there are, and what they show, follows from the stamps alone.
 ///
 /// Belongs to the I/O thread; reads no clock.
 class PingTimes {
@@ -32,11 +32,11 @@ class PingTimes {
   /// The transmit time of a ping that is wanted, which is then taken to begin; nullopt: its poses are not
   /// there yet. `period` > 0, `listening` >= 0.
   std::optional<TimePoint> begin(std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
-  /// Nobody wants pings any more: the next one is a first one.
+  /// No pings are wanted any more: the next one counts as the first.
   void rest();
 
   /// By how much the poses there are exceed what the next ping needs, if it is like the last one that was
-  /// wanted; negative: it has to wait for poses. nullopt: nobody wants pings.
+  /// wanted; negative: it has to wait for poses. nullopt: no pings are wanted.
   std::optional<std::chrono::nanoseconds> lead() const;
 
   const PingTimesCounters& counters() const { return counters_; }

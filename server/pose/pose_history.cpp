@@ -59,7 +59,7 @@ void PoseHistory::restart_if_clock_went_back(std::int64_t time_ns) {
   ++counters_.clock_restarts;
   if (std::has_single_bit(counters_.clock_restarts)) {
     const double back_s = 1e-9 * static_cast<double>(vehicle_.newest().time_ns - time_ns);
-    spdlog::warn("the clock of the pose stream went back by {:.3f} s; older poses are forgotten ({} so far)",
+    spdlog::warn("the clock of the pose stream went back by {:.3f} s: older poses dropped ({} so far)",
                  back_s, counters_.clock_restarts);
   }
   clock_.restart();

@@ -87,7 +87,7 @@ class PoseHistory {
   /// yet.
   std::optional<TimePoint> known_from(TimePoint time) const;
 
-  /// Every named body heard of since the last clock restart, at a time. Bodies have no twist: past their
+  /// Every named body received since the last clock restart, at a time. Bodies have no twist: past their
   /// newest pose they rest. They never get stale.
   std::vector<PosedBody> bodies_at(TimePoint time) const;
 
@@ -98,8 +98,8 @@ class PoseHistory {
   /// ones.
   static constexpr std::size_t vehicle_points = 256;
   static constexpr std::size_t body_points = 64;
-  /// Of each by the clock of the source, as pings come after the poses; and in lock-step, where they may come
-  /// long after: 40 s at 100 Hz.
+  /// Points kept of each body with pings by the clock of the source, which come after the poses, in lock-step
+  /// possibly long after: 40 s at 100 Hz.
   static constexpr std::size_t source_points = 512;
   static constexpr std::size_t lock_step_points = 4096;
   /// Whole-world pose lists of a simulator fit.

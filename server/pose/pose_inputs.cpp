@@ -64,7 +64,7 @@ void PoseInputs::report() {
     const PoseStatistics::Summary recent = statistics_[i]->take(clock_.now());
     const bool silent = recent.poses == 0;
     if (!silent || !told_silent_[i]) {
-      const std::string from = sources_[i]->heard();
+      const std::string from = sources_[i]->received();
       spdlog::info("{}: {}{}{}", sources_[i]->description(), from, from.empty() ? "" : " ",
                    to_string(recent));
     }

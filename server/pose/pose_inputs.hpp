@@ -14,8 +14,8 @@
 
 namespace sonard::server {
 
-/// Belongs to the I/O thread, as its sources do; made and destroyed by whoever owns the io_context while
-/// nobody runs it. Every `report_period`, and when it is stopped, it logs a line for each source; a source
+/// Belongs to the I/O thread, as its sources do; made and destroyed by the owner of the io_context while it
+/// does not run. Every `report_period`, and when it is stopped, it logs a line for each source; a source
 /// that stays silent is told of once.
 class PoseInputs {
  public:

@@ -18,7 +18,7 @@ void PoseIntake::take(const pose::PoseSample& sample, TimePoint arrival) {
   }
   if (waiting_.size() == most_waiting) {
     if (std::has_single_bit(++lost_)) {
-      spdlog::warn("poses are lost: too many wait for pings of before the clock went back ({} so far)",
+      spdlog::warn("poses dropped: too many wait for pings from before the clock went back ({} so far)",
                    lost_);
     }
     return;

@@ -25,7 +25,7 @@ class PoseIntake {
   struct Hooks {
     std::function<void()> changed;  ///< the history has one more
     /// By how much the poses there are exceed what the head needs that is furthest behind, for its next ping;
-    /// negative: all heads wait for poses. nullopt: nobody wants pings.
+    /// negative: all heads wait for poses. nullopt: no pings are wanted.
     std::function<std::optional<std::chrono::nanoseconds>()> lead;
   };
   /// `poses` outlives it.

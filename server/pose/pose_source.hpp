@@ -61,7 +61,7 @@ class PoseSource {
   virtual std::string details() const { return {}; }
   /// Who gave the newest pose: "from 127.0.0.1:41234"; empty while there is none, and where it is known
   /// anyway.
-  virtual std::string heard() const { return {}; }
+  virtual std::string received() const { return {}; }
   /// What a simulator names, whether or not it has a part here: the first 256 names that came.
   virtual std::vector<std::string> entities() const { return {}; }
   /// What to look at when nothing at all has arrived, in one line.

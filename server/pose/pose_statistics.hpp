@@ -38,12 +38,12 @@ class PoseStatistics {
 
   void observe(const pose::PoseSample& sample, TimePoint arrival);
 
-  /// Of the time since this was last called, or since the first pose.
+  /// Summary since the last call, or since the first pose.
   Summary take(TimePoint now);
-  /// Of all the time since the first pose.
+  /// Summary since the first pose.
   Summary in_all(TimePoint now) const { return summary(all_, now); }
 
-  /// As it came last; nullopt: none has.
+  /// The last pose; nullopt: none has come.
   const std::optional<pose::PoseSample>& newest() const { return newest_; }
 
  private:

@@ -42,7 +42,7 @@ class PoseTrack {
   /// The pose at a time; must not be empty. Between two points by interpolation, unless the body would have
   /// gone faster than teleport_mps: it has then been put elsewhere, and stays where it was until the time of
   /// the later point. After the newest point along its twist for at most `limit_ns`, at rest without a twist.
-  /// Before the oldest point it is there.
+  /// Before the oldest point: the pose of that point.
   pose::Transform at(std::int64_t time_ns, std::int64_t limit_ns) const;
 
   /// The earliest time from `time_ns` on that is at a point, or between two that are at most `gap_ns` apart;

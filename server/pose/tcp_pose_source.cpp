@@ -326,7 +326,7 @@ const PoseSourceCounters& TcpPoseSource::counters() const {
   return impl_->counters;
 }
 
-std::string TcpPoseSource::heard() const {
+std::string TcpPoseSource::received() const {
   return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
 }
 

@@ -16,7 +16,7 @@ namespace sonard::server {
 /// While `hold` says so nothing is read, so that a publisher waits in its own send() before long.
 class TcpPoseSource final : public PoseSource {
  public:
-  /// `hold` may be empty: nobody waits then.
+  /// `hold` may be empty: publishers do not wait then.
   TcpPoseSource(boost::asio::io_context& io, TcpPoseInput input, const Clock& clock, PoseSink sink,
                 PoseHold hold = {}, std::chrono::milliseconds message_timeout = std::chrono::seconds{5});
   ~TcpPoseSource() override;
@@ -25,7 +25,7 @@ class TcpPoseSource final : public PoseSource {
   void stop() override;
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
-  std::string heard() const override;
+  std::string received() const override;
   /// Where it listens, once started.
   Endpoint local_endpoint() const;
   /// Publishers connected now.

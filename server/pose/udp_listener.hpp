@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A UDP socket that hears whoever may publish.
+// A UDP socket that receives from those who may publish.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ class UdpListener : public std::enable_shared_from_this<UdpListener> {
   void close();
   bool is_open() const { return socket_.is_open(); }
 
-  /// Where it listens; what it is to be bound to, until it is.
+  /// Where it listens, or will listen.
   const Endpoint& local() const { return local_; }
   /// Who has sent the datagram that is handled, or the last one.
   Endpoint peer() const;

@@ -76,7 +76,7 @@ const PoseSourceCounters& UdpPoseSource::counters() const {
   return impl_->counters;
 }
 
-std::string UdpPoseSource::heard() const {
+std::string UdpPoseSource::received() const {
   return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
 }
 

@@ -17,7 +17,7 @@ class UdpPoseSource final : public PoseSource {
   void stop() override;
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
-  std::string heard() const override;
+  std::string received() const override;
   /// Where it listens, once started.
   Endpoint local_endpoint() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of the log that somebody outside can cause as often as they like.
+// Log lines that a peer can cause, limited in rate.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log on standard error, which never waits for whoever reads it.
+// The log on standard error, which never waits for its reader.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class StderrSink final : public spdlog::sinks::base_sink<std::mutex> {
     file,    ///< a write never waits
     socket,  ///< each write says that it must not wait
     own,     ///< a pipe or terminal, opened again so that only our writes do not wait
-    polled,  ///< the same where it cannot be: asked for room first
+    polled,  ///< where that is not possible: polled for room first
   };
 
   void sink_it_(const spdlog::details::log_msg& message) override;

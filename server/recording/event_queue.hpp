@@ -39,7 +39,7 @@ class EventQueue {
 
   /// Waits until something was pushed, wake() was called or the time is over.
   void wait(std::chrono::milliseconds longest) { static_cast<void>(news_.try_acquire_for(longest)); }
-  /// Everything that is there, in the order in which it was pushed. Its memory counts until done().
+  /// Takes all events in the order in which they were pushed. Their memory counts until done().
   std::vector<RecordingEvent> take();
   /// An event that was taken is worked off, and makes room.
   void done(const RecordingEvent& event);

@@ -21,7 +21,7 @@ struct PosesUsed {
   TimePoint time{};  ///< of the transmission
   render::Pose T_world_vehicle;
   render::Pose T_world_sonar;     ///< of the mount
-  std::vector<PosedBody> bodies;  ///< those that were heard of
+  std::vector<PosedBody> bodies;  ///< those received so far
 };
 
 /// A ping goes onto the wire.

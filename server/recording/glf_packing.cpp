@@ -130,7 +130,7 @@ bool GlfPacking::give_up(const std::string& why) {
   glf_.close();
   std::error_code ignored;
   fs::remove(unfinished_glf_path(dat_path_.parent_path(), stem_), ignored);
-  spdlog::error("recording: cannot pack {}: {}; it stays as it is", dat_path_.string(), why);
+  spdlog::error("recording: cannot pack {}: {}; kept unpacked", dat_path_.string(), why);
   return false;
 }
 

@@ -16,9 +16,9 @@
 
 namespace sonard::server {
 
-/// Of a .dat that nobody writes any more, finished or not: what follows its last whole record is cut off, and
-/// the terminator put behind it. The .glf has its own name only when all of it is on the disk; the .dat goes
-/// after that. So a power cut, or kill -9, at any moment leaves one of the two.
+/// Packs a .dat that is no longer written, finished or not. What follows its last whole record is cut off,
+/// and the terminator put behind it. The .glf has its own name only when all of it is on the disk; the .dat
+/// goes after that. So a power cut, or kill -9, at any moment leaves one of the two.
 ///
 /// Where the .glf cannot be written, that is logged and the .dat stays: it is a log too, and packed when the
 /// daemon starts the next time.
@@ -27,7 +27,7 @@ class GlfPacking {
   /// Nothing happens before the first step().
   GlfPacking(std::filesystem::path dat, RecordingSync sync) : dat_path_(std::move(dat)), sync_(sync) {}
 
-  /// Goes on with it for one slice: at most slice_bytes are copied and, unless RecordingSync::never, waited
+  /// Packs one more slice: at most slice_bytes are copied and, unless RecordingSync::never, waited
   /// for, which takes about as long as a disk takes for that. @return false when it is done or given up.
   bool step();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of a .glf log (docs/logs.md 1.4, 1.5), made of what any multibeam head sends. Pure: whoever has
-// a ping, serving, rendering a trajectory or playing a log back, gets the same record.
+// The records of a .glf log (docs/logs.md 1.4, 1.5), made of what any multibeam head sends. Pure: a caller
+// that has a ping, serving, rendering a trajectory or playing a log back, gets the same record.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct GlfLogOrigin {
 /// @param transmit_unix_ns when the pulse left
 glf::ImageRecord glf_image(PingRecord ping, std::int64_t transmit_unix_ns, const GlfLogOrigin& origin);
 
-/// Of a record at this time.
+/// The origin of a record at this time.
 glf::Origin glf_origin(std::int64_t unix_ns, const GlfLogOrigin& origin);
 
 }  // namespace sonard::server

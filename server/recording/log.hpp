@@ -29,7 +29,7 @@ struct HeadToRecord {
   std::function<std::optional<glf::StatusRecord>(std::span<const std::uint8_t>)> glf_status;
 };
 
-/// The same for all logs that begin together. Both clocks are read when they begin and hold for all of them,
+/// Shared by all logs that begin together. Both clocks are read when they begin and hold for all of them,
 /// so that times in a log never jump.
 struct LogSetting {
   const RecordingConfig& config;

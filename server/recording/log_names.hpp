@@ -21,7 +21,7 @@ std::filesystem::path glf_path(const std::filesystem::path& directory, const std
 /// What a .glf is called until it is whole.
 std::filesystem::path unfinished_glf_path(const std::filesystem::path& directory, const std::string& stem);
 
-/// Of a .dat; empty when the file is not called as one of ours.
+/// Stem of a .dat's name; empty when the file is not named as ours are.
 std::string stem_of_dat(const std::filesystem::path& path);
 
 }  // namespace sonard::server

@@ -185,7 +185,7 @@ void Recorder::Impl::look_after_logs() {
 void Recorder::Impl::begin_set(TimePoint now) {
   const bool room = has_room(config.directory);
   if (!room && !without_room) {
-    spdlog::error("recording: {} has no room for new logs; nothing is recorded, serving goes on",
+    spdlog::error("recording: {} has no room for new logs: nothing is recorded, serving continues",
                   config.directory.string());
   }
   without_room = !room;
@@ -215,7 +215,7 @@ void Recorder::Impl::report_drops() {
   const DroppedEvents dropped = queue.dropped();
   if (dropped.total() > drops_reported) {
     drops_reported = dropped.total();
-    spdlog::warn("recording: too slow, dropped so far: images={} wire_pieces={} others={}", dropped.images,
+    spdlog::warn("recording: disk too slow, dropped so far: images={} wire_pieces={} others={}", dropped.images,
                  dropped.pieces, dropped.others);
   }
 }

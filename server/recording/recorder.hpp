@@ -28,7 +28,7 @@ struct RecorderCounters {
 };
 
 /// The thread has a lower priority than those that serve. It takes events off the queue, encodes and
-/// compresses them, and writes; nobody waits for it. What does not fit the queue is dropped, counted, and
+/// compresses them, and writes; no thread waits for it. What does not fit the queue is dropped, counted, and
 /// shown in the log.
 ///
 /// All logs of a daemon begin and end together, so that files of one name cover the same time. When one is
@@ -40,14 +40,14 @@ struct RecorderCounters {
 /// logs begin only where there is room for them; until then events are taken and thrown away.
 class Recorder {
  public:
-  /// Free space without which no logs are begun.
+  /// Free space below which no logs begin.
   static constexpr std::uint64_t least_room_bytes = std::uint64_t{16} << 20;
 
   /// Makes the folder, locks it against other daemons and recovers what is in it (recovery.hpp), then starts
   /// the thread.
   /// @throws RecordingError
   Recorder(const RecordingConfig& config, std::vector<HeadToRecord> heads);
-  /// As stop().
+  /// Calls stop().
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

@@ -58,7 +58,7 @@ void keep_as_damaged(const fs::path& path, std::uint64_t whole_size) {
     spdlog::error("recording: cannot recover {}: {}", path.string(), error.message());
     return;
   }
-  spdlog::warn("recording: {} is damaged after byte {} and kept as {}", path.string(), whole_size,
+  spdlog::warn("recording: {} is damaged after byte {}, kept as {}", path.string(), whole_size,
                damaged.string());
 }
 

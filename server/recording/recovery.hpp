@@ -7,7 +7,7 @@
 
 namespace sonard::server {
 
-/// Looks through a folder of logs that nobody writes into. MCAP and pcapng files that do not end as they
+/// Repairs the logs of a folder that no program writes into. MCAP and pcapng files that do not end as they
 /// should are cut after their last whole record and ended; .dat files are returned, for GlfPacking. Where
 /// what is to be cut off is not just a record that was being written, the file is kept as it was under its
 /// name with ".damaged" behind it, and what was whole goes into a new one. Each file that was touched gets a

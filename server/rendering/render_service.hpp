@@ -32,7 +32,7 @@ class PingRenderer {
   /// ping.
   /// @throws as render_ping()
   virtual void warm_up(const render::PingRequest& /*request*/, int /*stream*/) {}
-  /// Of the last render_ping().
+  /// Statistics of the last render_ping().
   virtual render::PingStatistics last_statistics() const = 0;
 };
 
@@ -44,14 +44,14 @@ struct RenderJob {
   int stream = 0;                 ///< one per head, 0, 1, 2, ...
   std::string head;               ///< name of the head, for logs and dumps
   std::uint64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
-  std::int64_t pose_ns = 0;       ///< the same on the clock of the poses, for dumps
+  std::int64_t pose_ns = 0;       ///< transmit time on the clock of the poses, for dumps
   render::PingRequest request;
   std::vector<PosedBody> bodies;  ///< moved before the ping is rendered
 };
 
 struct RenderResult {
   render::PingSamples samples;  ///< empty when `error` is not
-  std::string error;            ///< why this ping cannot be made; the service goes on
+  std::string error;            ///< why this ping cannot be made; the service continues
   render::PingStatistics statistics;
 };
 
@@ -61,7 +61,7 @@ using Post = std::function<void(std::function<void()>)>;
 struct RenderServiceHooks {
   Post post;  ///< to the I/O thread
   /// Called once, on the I/O thread, when the renderer fails for good. Nothing is rendered after that: a
-  /// daemon that goes on would serve zeros.
+  /// daemon that continued would serve zeros.
   std::function<void(const std::string& what)> on_failure;
   /// Optional; sees each rendered ping on the render thread before it is handed back.
   std::function<void(const RenderJob&, const render::PingSamples&)> observe;
@@ -72,7 +72,7 @@ struct RenderServiceHooks {
 ///
 /// Jobs wait in a queue of `stream_count` places: each head has at most one job outstanding, so it cannot
 /// overflow. Shutdown: stop() forgets the waiting jobs, lets the ping being rendered finish, and joins.
-/// Results already posted may still arrive after stop(); whoever submitted must bear that.
+/// Results already posted may still arrive after stop(); the submitter must tolerate that.
 class RenderService {
  public:
   using Done = std::function<void(RenderResult)>;
@@ -88,7 +88,7 @@ class RenderService {
   /// @throws whatever that threw; std::future_error when the service is stopped before
   void warm_up(const render::PingRequest& request, int stream);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
-  /// @throws std::logic_error when the queue is full: somebody submits more than one job per stream
+  /// @throws std::logic_error when the queue is full: more than one job per stream was submitted
   void submit(RenderJob job, Done done);
   /// Forgets the waiting job of a stream; its `done` is never called. @return false when none is waiting: it
   /// has been begun, and is answered as always.

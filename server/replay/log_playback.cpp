@@ -121,11 +121,11 @@ void LogPlayback::log_totals() const {
       text += fmt::format(" {}={}", kind, pings);
     }
     if (!text.empty()) {
-      spdlog::info("head={} pings that differed from what was asked for:{}", head.played.name, text);
+      spdlog::info("head={} pings that differ from what was asked for:{}", head.played.name, text);
     }
   }
   if (schedule_.skipped() > 0) {
-    spdlog::info("{} pings of the recording were skipped: nobody wanted them in time", schedule_.skipped());
+    spdlog::info("{} pings of the recording were skipped: no client wanted them in time", schedule_.skipped());
   }
 }
 

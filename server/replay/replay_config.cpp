@@ -63,12 +63,12 @@ void check_span(const std::vector<PlayedHead>& played, const LogFile& file) {
 /// Adds a head that plays `logged`, if that is anything, to the heads that are served.
 void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file, ReplayConfig& replay) {
   if (logged == nullptr) {
-    spdlog::warn("head={} is not served: {} has nothing of it", head.name, file.path().string());
+    spdlog::warn("head={} is not served: {} has no pings of it", head.name, file.path().string());
     return;
   }
   const DeviceKind& kind = kind_of(head);
   if (logged->device_id != kind.device_id(head)) {
-    spdlog::warn("head={} plays number {} under its own ID {}", head.name, logged->device_id,
+    spdlog::warn("head={} replays sonar {} under its own ID {}", head.name, logged->device_id,
                  kind.device_id(head));
   }
   if (const std::optional<std::string> reason = kind.why_not_played(*logged)) {

@@ -13,18 +13,19 @@
 namespace sonard::server {
 
 struct ReplayTiming {
-  double speed = 1.0;      ///< > 0; 2: twice as fast as recorded
-  bool as_asked = false;   ///< times of the recording do not matter: a ping for each that a client wants
-  bool loop = false;       ///< from the start again after the last ping; a recording of one lasts a second
-  bool start_now = false;  ///< the clock runs from the start, whoever listens; else from the first ping on
+  double speed = 1.0;     ///< > 0; 2: twice as fast as recorded
+  bool as_asked = false;  ///< ignores the times of the recording: a ping for each that a client wants
+  bool loop = false;      ///< from the start again after the last ping; a recording of one lasts a second
+  bool start_now =
+      false;  ///< the clock runs from the start, with or without clients; else from the first ping on
 };
 
 /// Keeps the heads of a recording in step.
 ///
 /// The clock starts at the first ping that a client wants and waits for clients: a ping wanted late leaves
 /// late, the next ones catch up, and where it was more than `most_behind` late the clock goes on from there,
-/// so nothing is left out. With `start_now` it runs whoever listens, and what nobody wanted before the next
-/// ping was due, or for `most_behind`, is skipped.
+/// so nothing is left out. With `start_now` it runs without clients too, and a ping that none wanted before
+/// the next was due, or for `most_behind`, is skipped.
 class ReplaySchedule {
  public:
   static constexpr std::chrono::nanoseconds most_behind = std::chrono::seconds{1};
@@ -43,7 +44,7 @@ class ReplaySchedule {
   /// The ping that next() named leaves at `transmit_time`.
   void started(std::size_t head, TimePoint transmit_time);
 
-  /// Nothing is left of any head at `now`.
+  /// True when no ping of any head is left at `now`.
   bool over(TimePoint now);
   std::uint64_t skipped() const { return skipped_; }
 

@@ -36,14 +36,14 @@ struct GeminiConfig final : DeviceSettings {
   Ipv4 bind_address = 0x7F000002;
   std::uint16_t command_port = 52901;  ///< the head listens here and sends from here
   StatusDestination status;
-  AllowList allow;  ///< surfaces that are served; status packets are not affected
+  AllowList allow;  ///< clients that are served; status packets are not affected
 
   LinkConfig link;
   /// A UDP socket whose every datagram counts as one edge of the external trigger (run mode 2).
   std::optional<Endpoint> trigger;
 };
 
-/// Of a head of this type.
+/// The configuration of a head of this type.
 inline const GeminiConfig& gemini_config(const HeadConfig& head) {
   return static_cast<const GeminiConfig&>(*head.device);
 }

@@ -57,7 +57,7 @@ class ConnectedGemini final : public ConnectedDevice {
       return;
     }
     const gemini::DeviceAddresses before = std::exchange(addresses_, current);
-    log_.info("head={} answers on {} mask {} from now on", name_, address_text(current.alternate),
+    log_.info("head={} now answers on {} mask {}", name_, address_text(current.alternate),
               address_text(current.netmask));
     if (current.alternate != before.alternate && transport_.local_endpoint().address == before.alternate) {
       move_from(before.alternate);
@@ -70,7 +70,7 @@ class ConnectedGemini final : public ConnectedDevice {
     try {
       transport_.rebind({addresses_.alternate, config_.command_port});
     } catch (const SocketError& error) {
-      log_.error("head={} stays on {}: {}", name_, address_text(before), error.what());
+      log_.error("head={} cannot change its address, stays on {}: {}", name_, address_text(before), error.what());
     }
   }
 
@@ -79,7 +79,7 @@ class ConnectedGemini final : public ConnectedDevice {
     const auto owner = owner_of(addresses_.alternate, interface_addresses());
     std::vector<Endpoint> hosts;
     for (const Ipv4 host : status_hosts(config_.status, addresses_.alternate, addresses_.netmask)) {
-      hosts.push_back({host, config_.device.surface_port});
+      hosts.push_back({host, config_.device.topside_port});
     }
     // Where status packets come from. On a socket bound to one address the kernel knows; on one bound to all
     // it must be told, or a limited broadcast would leave by the interface of the default route.
@@ -87,7 +87,7 @@ class ConnectedGemini final : public ConnectedDevice {
     transport_.set_everybody(std::move(hosts), bound_to_all && owner ? addresses_.alternate : 0);
     transport_.set_own_address(addresses_.alternate);
     if (!owner) {
-      log_.warn("head={} reports the address {}, which this machine does not have: clients will send there",
+      log_.warn("head={} reports the address {}, which this machine does not have: clients will send there in vain",
                 name_, address_text(addresses_.alternate));
     } else if (owner->netmask != addresses_.netmask) {
       log_.warn("head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",

@@ -22,7 +22,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr Ipv4 loopback_surface = 0x7F000001;
+constexpr Ipv4 loopback_topside = 0x7F000001;
 constexpr double bearing_tolerance_rad = 1e-3;
 
 double worst_bearing_error_rad(const LoggedHead& head) {
@@ -204,7 +204,7 @@ class GeminiKind final : public DeviceKind {
     config->device.alternate_address = address;
     config->device.netmask = 0xFF000000;
     config->bind_address = address;
-    config->status = {StatusDestination::Mode::unicast, {loopback_surface}};
+    config->status = {StatusDestination::Mode::unicast, {loopback_topside}};
     config->allow = {{0x7F000000, 8}};
     head.device = std::move(config);
     head.name = logged.name.empty() ? fmt::format("gemini-{}", logged.device_id) : logged.name;
@@ -244,7 +244,7 @@ render::SonarSettings gemini_acoustics() {
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
   // About one cell in a hundred is saturated where a bed fills the fan, as in recordings (the same).
   acoustics.physical.gain_db = 54.0;
-  // Whether what sends and what hears share their height is not published: the pattern is taken once
+  // Whether transmitter and receiver share their height is not published: the pattern is taken once
   // (docs/physics.md 2.5).
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
   return acoustics;

@@ -95,7 +95,7 @@ void read_network(YamlSection& section, GeminiConfig& config, std::vector<Config
                      address_text(device.alternate_address), address_text(config.bind_address))});
   }
   section.integer("command_port", config.command_port, 1, 65535);
-  section.integer("surface_port", device.surface_port, 1, 65535);
+  section.integer("surface_port", device.topside_port, 1, 65535);
 
   const std::uint16_t id = device.sonar_id;
   device.mac = {
@@ -118,7 +118,7 @@ void read_network(YamlSection& section, GeminiConfig& config, std::vector<Config
 void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
   section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms));
   section.duration("min_ping_period_ms", device.min_ping_period, Range::from(1.0, minute_ms));
-  section.duration("surface_timeout_ms", device.surface_timeout, Range::from(10.0, 3600.0 * 1000.0));
+  section.duration("surface_timeout_ms", device.topside_timeout, Range::from(10.0, 3600.0 * 1000.0));
   section.duration("reboot_time_ms", device.reboot_time, Range::from(0.0, minute_ms));
   section.duration("line_period_us", device.line_period, Range::from(1.0, 10'000.0));
   section.integer("burst_lines", device.burst_lines, 1, 1024);

@@ -11,7 +11,7 @@ namespace sonard::server {
 /// Renderer settings of one ping.
 /// @return the acoustics of the head with the beams of a 720i (docs/protocols/gemini.md 6.5) as the water
 ///   steers them, the range bins, the sample size and the length of the pulse of the job, and the gain moved
-///   by the job's. A head that only listens hears no echo.
+///   by the job's. A head that only listens receives no echo.
 render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig& head);
 
 }  // namespace sonard::server

@@ -11,7 +11,7 @@ namespace sonard::server {
 /// In the order of cmake/devices.cmake, from which the build writes this function.
 std::span<const DeviceKind* const> device_kinds();
 
-/// The same, as the loader of configurations knows them.
+/// The kinds for the loader of configurations.
 std::span<const HeadKind* const> head_kinds();
 
 /// The kind of a type of head; null where there is none.

@@ -17,7 +17,7 @@ struct MicronConfig final : DeviceSettings {
   double chirp_bandwidth_hz = 100'000.0;  ///< sets the range cell; 0: a pulse without length
 };
 
-/// Of a head of this type.
+/// The configuration of a head of this type.
 inline const MicronConfig& micron_config(const HeadConfig& head) {
   return static_cast<const MicronConfig&>(*head.device);
 }

@@ -147,7 +147,8 @@ render::SonarSettings micron_acoustics() {
   acoustics.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
   acoustics.aperture.receive_beamwidth_rad = 3 * degree;
   acoustics.aperture.vertical_beamwidth_rad = 35 * degree;
-  acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // one transducer sends and hears
+  acoustics.aperture.elevation =
+      render::Aperture::Elevation::sinc_two_way;  // one transducer sends and receives
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::chirp;
   acoustics.physical.gain_db = -9.0;
