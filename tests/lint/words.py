@@ -11,9 +11,9 @@ from tree import matches
 def read_rows(text):
     rows = yaml.safe_load(text)
     for row in rows:
-        unknown = set(row) - {"word", "use", "allowed", "left"}
+        unknown = set(row) - {"word", "use", "within", "allowed", "left"}
         if unknown or not {"word", "use"} <= set(row):
-            raise ValueError(f"words.yaml: a row needs word and use, and may have allowed and left: {row}")
+            raise ValueError(f"words.yaml: a row needs word and use, and may have within, allowed and left: {row}")
     return rows
 
 
@@ -22,6 +22,8 @@ def uses_of(tree, row, own):
     pattern = re.compile(row["word"])
     for path in tree.texts():
         if path in ("CHANGELOG.md", own) or matches(path, row.get("allowed", ())):
+            continue
+        if not matches(path, row.get("within", ("*",))):
             continue
         if pattern.search(path):
             yield f"{path}: its name"
