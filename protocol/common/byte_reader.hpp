@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads fields out of bytes whose length and content nobody vouches for.
+// Reads fields out of bytes whose length and content are not trusted.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ class ByteReader {
 
   /// Latches an error at the present offset unless there is one already.
   void fail(WireErrorReason reason, std::string_view field) { fail_at(offset_, reason, field); }
-  /// The same for a field that lies elsewhere, for example a count that was read before.
+  /// Fails for a field that lies elsewhere, for example a count that was read before.
   void fail_at(std::size_t offset, WireErrorReason reason, std::string_view field) {
     if (!error_) {
       error_ = WireError{reason, offset, field};

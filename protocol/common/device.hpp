@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every emulated head is: a state machine that takes events at points in time and says what to do.
-// It knows no sockets, clocks or threads.
+// The interface of every emulated head: a state machine that takes events and answers with actions. It knows
+// no sockets, clocks or threads.
 #pragma once
 
 #include <cstdint>
@@ -32,15 +32,15 @@ struct BytesReceived {
   Peer from;
   SharedBytes bytes;
 };
-/// A client has gone: what it had begun to say will not be finished.
+/// A client has gone: the rest of a message that it had begun will not come.
 struct ClientGone {
   Peer who;
 };
-/// The image of the job that is out. It is counted and dropped where that ping was cancelled meanwhile.
+/// The image of the outstanding job. It is counted and dropped if that ping was cancelled meanwhile.
 struct PingRendered {
   PingImage image;
 };
-/// The job that is out cannot be rendered, or was withdrawn: the head goes on without this ping.
+/// The outstanding job cannot be rendered, or was withdrawn: the head continues without this ping.
 struct PingNotRendered {
   std::uint64_t number = 0;
 };
@@ -50,14 +50,14 @@ struct TriggerEdge {};
 struct WaterChanged {
   bool out_of_water = false;
 };
-/// For a device that plays back: the ping to send when a client next wants one, in place of the one fed
-/// before. It is gone when its job is out; without one no ping begins.
+/// Feeds a device that plays back: the ping to send when a client next wants one. It replaces the one fed
+/// before and is used up by one job; without one no ping begins.
 struct PingFed {
   std::optional<RecordedPing> ping;
 };
-/// For a device that waits for grants: Actions::next_ping begins now. It is not sent before NextPing::from.
+/// Grants Actions::next_ping to a device that waits for grants. It is not sent before NextPing::from.
 struct PingGranted {};
-/// Nothing but time: Actions::wake_at has come.
+/// Actions::wake_at has come, and nothing else has happened.
 struct TimePassed {};
 
 using Event = std::variant<TimePassed, BytesReceived, ClientGone, PingRendered, PingNotRendered, TriggerEdge,
@@ -76,36 +76,36 @@ struct Outgoing {
   SharedBytes bytes;
 };
 
-/// A line for the log, in words: "surface 192.168.2.5 connected".
+/// A line for the program's log: "topside 192.168.2.5 connected".
 struct Notice {
   enum class Level : std::uint8_t { info, warning };
   Level level = Level::info;
   std::string text;
 };
 
-/// The answer to one event. The lists belong to that event; the rest is how things stand after it.
+/// The answer to one event. The lists belong to that event; the other members are the state after it.
 struct Actions {
   std::vector<Outgoing> send;  ///< in order
-  /// A ping to render. Each is answered once, by PingRendered or PingNotRendered: the next waits for that, so
-  /// at most one is out.
+  /// A ping to render. Each is answered once, by PingRendered or PingNotRendered, and the next waits for
+  /// that: at most one job is outstanding.
   std::optional<PingJob> render;
   std::optional<PingRecord> record;  ///< a ping goes onto the wire
   std::vector<Notice> notices;
 
-  /// The job that is out though nobody wants its image any more. It must still be answered; PingNotRendered
-  /// without rendering it will do.
+  /// The outstanding job, where its image is no longer wanted. It must still be answered, by PingNotRendered
+  /// without rendering if possible.
   std::optional<std::uint64_t> cancelled;
   std::optional<NextPing> next_ping;  ///< for a device that waits for grants
-  bool nobody_there = false;          ///< a client has just gone, or none is known: nobody wants pings
+  bool nobody_there = false;          ///< no client wants pings: it has just gone, or none is known
   /// When to step next without another event; later than this step. nullopt: only after an event.
   std::optional<TimePoint> wake_at;
 };
 
-/// Something that a device or its transport counts, for the log. It only grows.
+/// A count of a device or its transport, for the log. It only grows.
 struct Counter {
   enum class Shown : std::uint8_t {
     at_end,  ///< in the totals
-    often,   ///< in the lines about rates, too, where it has grown
+    often,   ///< also in the lines about rates, where it has grown
     warns,   ///< in the totals, and as a warning with the text below where it has grown
   };
   std::string name;  ///< "lines_resent"; empty: it is not among the totals
@@ -129,7 +129,7 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// Takes an event and runs everything that is due. A call that comes late is made up for as the device can.
+  /// Takes an event and runs everything that is due. After a late call the device catches up as it can.
   virtual Actions step(TimePoint now, const Event& event) = 0;
 
   virtual PingProgress progress() const = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping, between the device that decides when and with what settings to ping, and whoever renders it.
+// One ping, on its way from the device, which decides when and with what settings to ping, to the renderer.
 #pragma once
 
 #include <chrono>
@@ -32,7 +32,7 @@ struct PingJob {
   /// Counts the jobs of a head: 0, 1, 2, ... Jobs that came to nothing leave gaps.
   std::uint64_t number = 0;
   TimePoint transmit_time{};      ///< when the pulse leaves; a device says how far from now it may be
-  std::uint64_t transmit_us = 0;  ///< the same by the clock of the head
+  std::uint64_t transmit_us = 0;  ///< transmit time by the clock of the head
   std::chrono::nanoseconds listening_time{};  ///< until the echo of the last range bin is back
 
   /// Axis of the beam of a scanning head about the head's vertical: 0 ahead, positive to starboard, in
@@ -44,7 +44,7 @@ struct PingJob {
   bool sixteen_bit = false;   ///< width of the samples that are asked for; false: 8 bits
 
   double sound_speed_mps = 0.0;  ///< true speed in the water
-  /// What the head reckons with and forms its beams by; 0: it forms none.
+  /// The speed that the head is set to and forms its beams by; 0: it forms none.
   double assumed_sound_speed_mps = 0.0;
   double pulse_s = 0.0;        ///< duration of a tone; 0: the pulse is none, or the kind of device knows
   bool transmit = true;        ///< false: the head only listens, there are no echoes but there is noise
@@ -71,7 +71,7 @@ struct PingImage {
   std::vector<std::uint16_t> u16;
 };
 
-/// The ping that a head would begin next, were it granted.
+/// The ping that a head begins next if it is granted.
 struct NextPing {
   std::chrono::nanoseconds from{};       ///< not before this, on the clock that the head is given
   std::chrono::nanoseconds period{};     ///< from the last ping to this one, in whatever time rules

@@ -13,8 +13,8 @@ namespace sonard::glf {
 /// @param utc_offset_s of local time, positive east of Greenwich; 0 for logs in UTC
 double glf_time_s(std::int64_t unix_ns, std::int32_t utc_offset_s);
 
-/// The same back, to about a quarter of a microsecond. nullopt for what is no time: not a number, or more
-/// than 64 bits of nanoseconds.
+/// Time since the Unix epoch, to about a quarter of a microsecond. nullopt for what is no time: not a number,
+/// or more than 64 bits of nanoseconds.
 std::optional<std::int64_t> unix_ns(double glf_time_s, std::int32_t utc_offset_s);
 
 /// A date and a time of day as a log's clock shows it, cut to whole seconds.

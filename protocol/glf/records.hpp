@@ -24,7 +24,7 @@ struct Origin {
 
 enum class SonarType : std::uint8_t { mk1_imager = 0, mk1_profiler = 1, mk2_imager = 2 };
 
-/// As readers name them; logs may hold others.
+/// Platforms under the names that readers use; logs may hold others.
 enum class Platform : std::uint8_t { gemini_720i = 0, gemini_720is = 1, gemini_720ik = 2, gemini_1200ik = 4 };
 
 /// Bits of ImageRecord::ping_flags.

@@ -32,8 +32,8 @@ Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_
 /// one that has to be unpacked.
 std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry);
 
-/// As much of the first .dat as there is in an archive whose end is missing, with its directory. Only a .dat
-/// in stored blocks whose local header has its size can be found so; nullopt where there is none.
+/// Finds what is left of the first .dat in an archive whose end and directory are missing. Works for a .dat
+/// in stored blocks whose local header has its size; nullopt where there is none.
 std::optional<PiecewiseBytes> cut_dat(std::span<const std::uint8_t> archive);
 
 /// Unpacks an entry of at most `max_size` bytes and holds it to its CRC.

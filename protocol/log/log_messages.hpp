@@ -15,7 +15,7 @@
 
 namespace sonard::log {
 
-/// Of schemas and of messages, as MCAP's list of well-known encodings names it.
+/// The encoding of schemas and messages, named as in MCAP's list of well-known encodings.
 inline constexpr std::string_view encoding_name = "protobuf";
 
 /// What the MCAP schema of a message holds: its file and all that this imports, imported files first, as a

@@ -8,8 +8,8 @@
 
 namespace sonard::mavlink {
 
-/// Of `bytes` followed by `seed`, which stands for the definition of the message: two programs that lay out a
-/// message differently do not accept each other's.
+/// Checksum of `bytes` followed by `seed`, which stands for the definition of the message: two programs that
+/// lay out a message differently do not accept each other's.
 std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint8_t seed);
 
 }  // namespace sonard::mavlink

@@ -64,7 +64,7 @@ std::optional<Candidate> candidate_at_front(std::span<const std::uint8_t> bytes)
 
 enum class Verdict { good, bad_checksum, unknown_flags, no_frame };
 
-Verdict judge(const Candidate& candidate, std::span<const std::uint8_t> bytes) {
+Verdict verdict_of(const Candidate& candidate, std::span<const std::uint8_t> bytes) {
   if ((candidate.incompatible_flags & ~flag_signed) != 0) {
     return Verdict::unknown_flags;
   }
@@ -81,7 +81,7 @@ Verdict judge(const Candidate& candidate, std::span<const std::uint8_t> bytes) {
 std::optional<Frame> FrameReader::next() {
   while (!rest_.empty()) {
     const std::optional<Candidate> candidate = candidate_at_front(rest_);
-    const Verdict verdict = candidate ? judge(*candidate, rest_) : Verdict::no_frame;
+    const Verdict verdict = candidate ? verdict_of(*candidate, rest_) : Verdict::no_frame;
     if (verdict == Verdict::good) {
       rest_ = rest_.subspan(candidate->size);
       ++counters_.frames;

@@ -87,7 +87,7 @@ struct Odometry {
 /// monostate: a message that says nothing about a pose.
 using Message = std::variant<std::monostate, Attitude, AttitudeQuaternion, LocalPositionNed, Odometry>;
 
-/// Of a frame that FrameReader handed out. Zeros that version 2 cut off are put back; bytes beyond the fields
+/// Decodes a frame from FrameReader. Zeros that version 2 cut off are put back; bytes beyond the fields
 /// that are read (extensions) are ignored. An error only for a frame of version 1 that is shorter than its
 /// message.
 Result<Message, WireError> decode(const Frame& frame);

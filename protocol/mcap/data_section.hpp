@@ -25,15 +25,15 @@ struct Chunk {
   std::uint64_t records_size = 0;
 };
 
-/// Of an uncompressed chunk, what stands before its records.
+/// Bytes of an uncompressed chunk before its records.
 inline constexpr std::size_t chunk_start_size = record_prefix_size + 8 + 8 + 8 + 4 + 4 + 8;
-/// Of a chunk that is open: it may still grow, and what it says of its length may be of before.
+/// Checksum field of an open chunk, which may still grow and whose length field may be out of date.
 inline constexpr std::uint32_t no_crc = 0;
 
 /// Requires record.is(Opcode::chunk). A compressed chunk is an error: sonard writes none.
 Result<Chunk, WireError> read_chunk(const Record& record);
 
-/// The same of the records in a chunk. Offsets in errors are those of `records`.
+/// Reads the records in a chunk. Offsets in errors are relative to `records`.
 Result<Chunk, WireError> read_chunk_records(ByteView records);
 
 /// The whole records of the open chunk that begins at `offset`, however long it says that it is; nullopt when

@@ -47,7 +47,7 @@ Result<Value, WireError> read_content(const Record& record, Read read) {
 }  // namespace
 
 std::uint32_t crc32(ByteView bytes, std::uint32_t before) {
-  // zlib takes a null pointer for the wish to start anew.
+  // zlib takes a null pointer as a request to start anew.
   return bytes.empty() ? before : static_cast<std::uint32_t>(::crc32_z(before, bytes.data(), bytes.size()));
 }
 

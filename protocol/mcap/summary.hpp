@@ -27,7 +27,7 @@ struct Summary {
   bool operator==(const Summary&) const = default;
 };
 
-/// Adds it unless its id is there already.
+/// Adds it unless its id is known.
 void add_once(Summary& summary, Schema schema);
 void add_once(Summary& summary, Channel channel);
 

@@ -14,7 +14,7 @@
 
 namespace sonard::mcap {
 
-/// What is to be done to the file, in this order.
+/// Changes to make to the file, in this order.
 struct Piece {
   Bytes append;  ///< whole records; perhaps none
   /// Takes the place of bytes that are in the file since an earlier piece; empty: of none.
@@ -27,7 +27,7 @@ struct Piece {
 /// says how long it is so far, and is written over as it grows. An open chunk has no CRC (0), by which it is
 /// told from one that is closed.
 ///
-/// Whoever does to a file what each piece says loses, when killed, what was not flushed and the piece that
+/// A program that makes the changes of each piece and is killed loses what was not flushed and the piece that
 /// was being appended; recover() finishes what is there. Schemas and channels stand in the chunk that was
 /// open when they were added, so a file needs no summary to be read. Not thread-safe; holds one chunk and
 /// what has not been taken.
@@ -56,7 +56,7 @@ class Writer {
   /// Closes the open chunk and writes the end of the file. Nothing may be added afterwards.
   void finish();
 
-  /// What is to be done since the last call.
+  /// The changes since the last call.
   Piece take();
 
   /// With what waits to be taken.

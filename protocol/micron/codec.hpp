@@ -16,7 +16,7 @@ namespace sonard::micron {
 /// A frame from a host, as FrameBuffer gives it. Lengths and counts inside are not looked at, only what is
 /// there; bytes beyond the message are ignored, and fields at its end that a head can do without may be
 /// absent (layout.hpp). A type that a head does not serve gives Unknown; a frame too short for its type, or a
-/// head command of a form that nobody sends, gives an error.
+/// head command of a form that no client sends, gives an error.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> frame);
 
 /// A frame from a head, by the same rules; user blocks must have one of their two lengths.

@@ -162,7 +162,7 @@ void Device::Impl::read_frames(TimePoint now) {
       input_.reject();
     }
     if (booting(now)) {
-      input_.clear();  // what came behind the order to reboot is not heard
+      input_.clear();  // bytes behind the order to reboot are lost
     }
   }
   counters_.dropped_bytes = input_.dropped();
@@ -397,12 +397,12 @@ std::vector<Counter> Device::counts() const {
       {"pings_failed", count.pings_failed},
       {"pings_cancelled", count.pings_cancelled},
       {"commands", count.commands},
-      {"dropped_bytes", count.dropped_bytes, Shown::warns, "{} bytes from clients were part of no command"},
-      {"bad_frames", count.bad_frames, Shown::warns, "{} commands made no sense"},
+      {"dropped_bytes", count.dropped_bytes, Shown::warns, "{} bytes from clients belonged to no command"},
+      {"bad_frames", count.bad_frames, Shown::warns, "{} commands could not be decoded"},
       {"cut_frames", count.cut_frames},
       {"wrong_node", count.wrong_node, Shown::warns, "{} commands were for another node"},
       {"unknown_type", count.unknown_type},
-      {"not_ready", count.not_ready, Shown::warns, "{} requests came before any parameters"},
+      {"not_ready", count.not_ready, Shown::warns, "{} requests came before the parameters"},
       {"requests_beyond_cap", count.requests_beyond_cap},
       {"boots", count.boots}};
 }

@@ -25,8 +25,8 @@ enum class HeadState : std::uint8_t {
 /// "booting", "centring", "without_parameters", "ready", "scanning".
 std::string_view to_string(HeadState state);
 
-/// One head on one line that all clients share. It runs on whether anybody listens or not: what it says while
-/// nobody is connected is the caller's to throw away. Every message it sends is one whole frame for
+/// One head on one line that all clients share. It runs whether a client listens or not: the caller discards
+/// what it sends while none is connected. Every message it sends is one whole frame for
 /// everybody, to be written in one go. A job's transmit time is up to 50 ms before now where the caller is
 /// late.
 class Device final : public sonard::Device {
@@ -40,7 +40,7 @@ class Device final : public sonard::Device {
   PingProgress progress() const override;
   std::vector<Counter> counts() const override;
 
-  /// Power fails and comes back: like a reboot that nobody asked for.
+  /// Power fails and comes back: a reboot without a command.
   void power_cycle(TimePoint now);
   /// The motor loses its step: lines say so until new parameters come.
   void lose_step();

@@ -39,7 +39,7 @@ struct DeviceConfig {
   bool mounted_inverted = false;  ///< boot down; right only if the host sets the invert bit (7.6)
 
   std::chrono::nanoseconds boot_time{700'000'000};  ///< deaf and dumb; >= 0, < 1 s (7.1)
-  /// Of centring, also of a head that stands at its centre; 0..15 s (7.4).
+  /// Least time of centring, even for a head at its centre; 0..15 s (7.4).
   std::chrono::nanoseconds least_centring_time{500'000'000};
   double seek_speed_rad_s = 1.5707963267948966;          ///< while centring, > 0 (7.4)
   std::chrono::nanoseconds alive_period{1'000'000'000};  ///< > 0 (7.1)
@@ -67,7 +67,7 @@ struct DeviceConfig {
   /// The head sends the lines that it is fed (PingFed), and no others.
   bool plays_back = false;
   /// A ping begins when it is granted (PingGranted), as soon as one is owed, and its line leaves when it is
-  /// there: whoever grants it keeps to NextPing. For pings that follow a simulated time.
+  /// there: the grant comes by NextPing. For pings that follow a simulated time.
   bool waits_for_permission = false;
 };
 

@@ -51,7 +51,7 @@ std::vector<std::uint8_t> frame_from_head(std::uint8_t head_node, std::uint8_t t
 ///   n > 0  a frame of n bytes starts here
 ///   n < 0  drop -n bytes: they start no frame
 ///   0      more bytes are needed
-/// Of what looks like a frame and is none, one byte is dropped: a true frame may start inside.
+/// Drops one byte of what looks like a frame and is none: a true frame may start inside.
 std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_size);
 
 /// Gathers a stream, in pieces of any size, into frames. Holds less than one frame and what came with its

@@ -28,7 +28,7 @@ struct HostConfig {
 /// What a head has said of itself.
 struct HeadIdentity {
   std::optional<VersionData> version;
-  std::optional<BBUserData> user_blocks;  ///< nothing: it was asked in vain
+  std::optional<BBUserData> user_blocks;  ///< nullopt: the request was not answered
   std::optional<Alive> alive;             ///< the newest
 };
 
@@ -66,9 +66,9 @@ class Host {
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
 
   /// Scans with these parameters (1..1500 bins, ad_interval >= 1), at once or as soon as the head is known;
-  /// replaces what was going on. Ends after `lines` delivered lines; 0: goes on until stop().
+  /// replaces what was running. Ends after `lines` delivered lines; 0: continues until stop().
   void start(TimePoint now, const HeadCommand& parameters, std::uint64_t lines);
-  /// Changes gain and window of a scan that goes on; nothing before start().
+  /// Changes gain and window of a running scan; does nothing before start().
   void set_gain(const GainBlock& values);
   /// Turns the scan about; nothing before start().
   void reverse();
@@ -126,9 +126,9 @@ class Host {
   HeadIdentity head_;
   Phase phase_ = Phase::meeting;
   std::optional<TimePoint> due_;  ///< when what the phase waits for is given up
-  int tries_ = 0;                 ///< user blocks: asked in vain; configuring: alives without effect;
-                                  ///< scanning: requests without a line
-  bool asked_ = false;            ///< meeting: the head was asked something
+  int tries_ = 0;       ///< user blocks: requests without an answer; configuring: alives without effect;
+                        ///< scanning: requests without a line
+  bool asked_ = false;  ///< meeting: the head was asked something
   std::optional<Programme> programme_;
   bool stopped_ = false;
   int expected_ = 0;  ///< lines asked for

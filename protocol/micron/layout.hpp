@@ -141,7 +141,7 @@ struct sonard::WireSize<sonard::micron::PortSettings> : std::integral_constant<s
 
 namespace sonard::micron {
 
-/// As far as older heads and a DST agree.
+/// The fields on which older heads and a DST agree.
 template <>
 struct Layout<BBUserData> : WholeLayout<100> {
   static constexpr auto fields = std::tuple{

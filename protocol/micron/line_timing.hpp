@@ -21,12 +21,12 @@ struct LineTiming {
   std::chrono::nanoseconds turn{};    ///< to the next bearing
   std::chrono::nanoseconds send{};    ///< of the line, on the link
 
-  /// From one transmission to the next, if nobody waits. In full duplex a line travels while the next ping
+  /// From one transmission to the next, without any wait. In full duplex a line travels while the next ping
   /// listens; in half duplex one comes after the other.
   std::chrono::nanoseconds period(const DeviceConfig& config) const;
 };
 
-/// Of a line after which the head turns by `units`.
+/// Timing of a line after which the head turns by `units`.
 LineTiming line_timing(const HeadCommand& command, const DeviceConfig& config, int units);
 
 }  // namespace sonard::micron

@@ -18,7 +18,7 @@ class Motor {
     begin_ = begin;
     end_ = end;
   }
-  /// Stands at `bearing`: the way from line to line, of which nobody sees the middle.
+  /// Jumps to `bearing`: a step from line to line, whose middle is not visible from outside.
   void place(int bearing) {
     from_ = bearing;
     way_ = 0;

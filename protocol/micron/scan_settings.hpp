@@ -18,7 +18,7 @@ struct ScanSettings {
   double range_m = 10.0;                            ///< > 0
   int bins = 400;                                   ///< 1..1500
   int step = 32;                                    ///< 1/16 gradian, 1..255
-  std::optional<ScanSector> sector = std::nullopt;  ///< nothing: all round
+  std::optional<ScanSector> sector = std::nullopt;  ///< nullopt: all round
   bool clockwise = true;                            ///< of a sector: at first
   double gain_percent = 50.0;                       ///< 0..100
   bool eight_bit = true;                            ///< false: two bins to a byte, of the window below

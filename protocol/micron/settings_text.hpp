@@ -11,10 +11,10 @@
 
 namespace sonard::micron {
 
-/// Of a ping with these parameters: how far it reaches, how it is amplified, how the head scans.
+/// Settings of a ping with these parameters for the log: range, gain, and how the head scans.
 std::vector<Setting> settings_of(const PingJob& job, const HeadCommand& parameters,
                                  const DeviceConfig& config);
-/// Of a recorded ping, which said `line` when it travelled.
+/// Settings of a recorded ping, from the header of its `line` on the wire.
 std::vector<Setting> settings_of(const PingJob& job, const HeadData& line);
 
 /// What in such parameters is most likely not what the client means. Each is said once.

@@ -32,7 +32,7 @@ class Sweep {
 
   int bearing() const { return wrapped(sector_.left + offset_); }
   SweepCode code() const;
-  /// Goes on to the next bearing and returns how far that is, in units. At a limit the scan turns round.
+  /// Moves to the next bearing and returns how far that is, in units. At a limit the scan reverses.
   int step();
   /// The scan turns round from its next step.
   void reverse() { clockwise_ = !clockwise_; }

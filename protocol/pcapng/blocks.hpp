@@ -19,7 +19,7 @@ namespace sonard::pcapng {
 inline constexpr std::uint16_t link_type_raw = 101;
 inline constexpr std::size_t max_packet_size = 65'535;  ///< an IPv4 packet
 
-/// Writes blocks to append to a file. A file is good after every whole block, so whoever is killed loses only
+/// Writes blocks to append to a file. A file is good after every whole block, so a killed program loses only
 /// the one that was being written. Not thread-safe.
 class Writer {
  public:
@@ -34,7 +34,7 @@ class Writer {
   /// max_packet_size bytes.
   void add_packet(std::uint32_t interface, std::uint64_t time_ns, ByteView packet);
 
-  /// What is to be appended to the file since the last call: whole blocks, perhaps none.
+  /// The blocks to append to the file since the last call: whole ones, perhaps none.
   Bytes take();
 
  private:

@@ -60,7 +60,7 @@ std::string to_string(const PoseError& error);
 /// A message without framing, as in a UDP datagram. Converted to enu_flu; never throws.
 Result<PoseSample, PoseError> decode(std::span<const std::uint8_t> message);
 
-/// The same way back, always in enu_flu.
+/// Encodes a sample, always in enu_flu.
 std::vector<std::uint8_t> encode(const PoseSample& sample);
 /// encode() behind its length as a varint: one frame of the TCP stream.
 std::vector<std::uint8_t> encode_frame(const PoseSample& sample);

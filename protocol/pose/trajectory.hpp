@@ -54,7 +54,7 @@ class Trajectory {
 /// @throws TrajectoryError for anything else: a bad number, a number too many or too few, NaN, no rotation,
 /// time that does not rise, no point at all.
 Trajectory parse_trajectory(std::string_view text, const std::string& file, Axes axes = Axes::enu_flu);
-/// The same from a file.
+/// Reads a trajectory from a file.
 /// @throws TrajectoryError also when the file cannot be read.
 Trajectory load_trajectory(const std::filesystem::path& file, Axes axes = Axes::enu_flu);
 

@@ -60,7 +60,7 @@ struct Velocity {
 };
 
 /// Position on the straight line, orientation on the shortest arc. `fraction` in [0, 1]. What rests keeps
-/// every bit, so that whoever compares poses finds it at rest.
+/// every bit, so that comparing poses shows it at rest.
 Transform interpolate(const Transform& from, const Transform& to, double fraction);
 
 /// Where a body is after moving with a constant twist for `seconds` (which may be negative): a helix. A twist
@@ -70,7 +70,7 @@ Transform advance(const Transform& T_world_body, const Velocity& twist, double s
 /// T_enu_flu of a pose given as T_ned_frd: world axes (north, east, down) become (east, north, up), body
 /// axes (forward, right, down) become (forward, left, up).
 Transform enu_flu_from_ned_frd(const Transform& T_ned_frd);
-/// The same twist, given in axes (forward, right, down), in axes (forward, left, up).
+/// Converts a twist from axes (forward, right, down) to axes (forward, left, up).
 Velocity flu_from_frd(const Velocity& twist_frd);
 
 /// Why a transform from outside was refused; `none` when it was not.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A log played back and recorded again is the same log: what a head sends for a recorded image, put together
-// as a surface does or as the head itself tells a recorder, and written down as the recorder writes it, is
+// as a topside does or as the head itself tells a recorder, and written down as the recorder writes it, is
 // that image.
 #include <cmath>
 #include <deque>
@@ -23,7 +23,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint16_t sonar_id = 513;
-constexpr Ipv4 surface = 0x7F000001;
+constexpr Ipv4 topside = 0x7F000001;
 constexpr GlfLogOrigin origin{.device_id = sonar_id};
 
 std::int64_t transmit_unix_ns(int number) {
@@ -72,8 +72,8 @@ std::vector<std::uint8_t> dat_of(const std::vector<glf::ImageRecord>& images) {
   return dat;
 }
 
-BytesReceived from_surface(const gemini::Command& command) {
-  return {{0, {surface, gemini::surface_port}, 0}, SharedBytes(gemini::encode(command))};
+BytesReceived from_topside(const gemini::Command& command) {
+  return {{0, {topside, gemini::topside_port}, 0}, SharedBytes(gemini::encode(command))};
 }
 
 /// A continuous client that asks for something else altogether.
@@ -86,7 +86,7 @@ BytesReceived request() {
   config.rle_threshold = 40;
   config.sound_speed = 15000;
   config.velocimeter_mode = 1;
-  return from_surface(config);
+  return from_topside(config);
 }
 
 struct Received {
@@ -125,7 +125,7 @@ Played played(const GlfRecording& recording) {
   std::deque<Event> events{request()};
   for (TimePoint now = 0ns; !playback.finished(now) && now < 60s; now += 1ms) {
     if (now % 1s == 0s) {
-      events.emplace_back(from_surface(gemini::StatusRequest{{.sonar_id = sonar_id}}));
+      events.emplace_back(from_topside(gemini::StatusRequest{{.sonar_id = sonar_id}}));
     }
     events.emplace_back(PingFed{playback.next_ping(0, now)});
     for (; !events.empty(); events.pop_front()) {

@@ -12,7 +12,7 @@ DeviceConfig waiting() {
   return config;
 }
 
-struct Permission : ::testing::Test {
+struct PingGrant : ::testing::Test {
   Bench bench{waiting()};
 
   /// Grants what the head would begin by now, as a server does.
@@ -26,7 +26,7 @@ struct Permission : ::testing::Test {
   }
 };
 
-TEST_F(Permission, NothingIsWishedForUntilLinesAreOwed) {
+TEST_F(PingGrant, NoLineIsNextUntilLinesAreOwed) {
   EXPECT_FALSE(bench.last.next_ping);
   bench.make_ready(all_round());
   EXPECT_FALSE(bench.last.next_ping);
@@ -34,7 +34,7 @@ TEST_F(Permission, NothingIsWishedForUntilLinesAreOwed) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(Permission, NothingIsSentWithoutIt) {
+TEST_F(PingGrant, NothingIsSentWithoutIt) {
   bench.make_ready(all_round());
   bench.command(SendData{});
   bench.run_for(5s);
@@ -43,7 +43,7 @@ TEST_F(Permission, NothingIsSentWithoutIt) {
   EXPECT_GE(bench.all<Alive>().size(), 4U) << "the head lives on in its own time";
 }
 
-TEST_F(Permission, TheWishSaysHowLinesFollow) {
+TEST_F(PingGrant, TheNextPingSaysHowLinesFollow) {
   bench.make_ready(all_round());
   bench.command(SendData{});
   ASSERT_TRUE(bench.last.next_ping);
@@ -52,7 +52,7 @@ TEST_F(Permission, TheWishSaysHowLinesFollow) {
   EXPECT_EQ(bench.last.next_ping->listening, timing.listen);
 }
 
-TEST_F(Permission, LinesAreTheSameAndInOrderHoweverFast) {
+TEST_F(PingGrant, LinesAreTheSameAndInOrderHoweverFast) {
   bench.make_ready(all_round());
   std::vector<HeadData> lines;
   for (int line = 0; line < 20; ++line) {
@@ -72,15 +72,15 @@ TEST_F(Permission, LinesAreTheSameAndInOrderHoweverFast) {
   }
 }
 
-TEST_F(Permission, ALinePeriodOfNothingStillListens) {
+TEST_F(PingGrant, ALinePeriodOfNothingStillListens) {
   DeviceConfig config = waiting();
   config.line_period = 0ns;
   Bench as_fast_as_rendered(config);
   as_fast_as_rendered.make_ready(all_round());
   as_fast_as_rendered.command(SendData{});
-  const auto wish = as_fast_as_rendered.last.next_ping;
-  ASSERT_TRUE(wish);
-  EXPECT_EQ(wish->period, wish->listening);
+  const auto next = as_fast_as_rendered.last.next_ping;
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->period, next->listening);
 }
 
 }  // namespace
