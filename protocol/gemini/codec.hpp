@@ -17,7 +17,7 @@ namespace sonard::gemini {
 /// ID before it spends time on the rest.
 Result<Header, WireError> decode_header(std::span<const std::uint8_t> datagram);
 
-/// A datagram from a surface. Bytes beyond the message are ignored; a type that no surface sends gives
+/// A datagram from a topside. Bytes beyond the message are ignored; a type that no topside sends gives
 /// Unknown; a datagram too short for its type or with a count that does not fit gives an error.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> datagram);
 
@@ -28,7 +28,7 @@ Result<Report, WireError> decode_report(std::span<const std::uint8_t> datagram);
 std::vector<std::uint8_t> encode(const Command& command);
 std::vector<std::uint8_t> encode(const Report& report);
 
-/// The same, appended to `out`: no allocation when its capacity is enough. This is the path of ping lines.
+/// Appends the bytes to `out`: no allocation when its capacity is enough. Ping lines take this path.
 void encode(const Command& command, std::vector<std::uint8_t>& out);
 void encode(const Report& report, std::vector<std::uint8_t>& out);
 

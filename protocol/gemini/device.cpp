@@ -39,7 +39,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   require(config.gain.reference_spreading > 0.0, "gain.reference_spreading must be positive");
   require(config.status_period > nanoseconds{0}, "status_period must be positive");
   require(config.min_ping_period > nanoseconds{0}, "min_ping_period must be positive");
-  require(config.surface_timeout > nanoseconds{0}, "surface_timeout must be positive");
+  require(config.topside_timeout > nanoseconds{0}, "topside_timeout must be positive");
   require(config.reboot_time >= nanoseconds{0}, "reboot_time must not be negative");
   require(config.line_period > nanoseconds{0}, "line_period must be positive");
   require(config.burst_lines >= 1 && config.burst_lines <= 1024, "burst_lines must be 1..1024");
@@ -116,7 +116,7 @@ class Device::Impl {
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& datagram);
   void take(TimePoint, const ClientGone&) {
-  }  // it was never there: the surface is whoever sent the last command
+  }  // it was never there: the topside is whoever sent the last command
   void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
   void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
   void take(TimePoint now, const TriggerEdge&);
@@ -129,7 +129,7 @@ class Device::Impl {
   std::uint64_t clock_us(TimePoint now) const;
 
   const DeviceCounters& counters() const { return counters_; }
-  Ipv4 surface() const { return surface_; }
+  Ipv4 topside() const { return topside_; }
   DeviceAddresses addresses() const { return addresses_; }
 
  private:
@@ -137,8 +137,8 @@ class Device::Impl {
   bool rebooting(TimePoint now) const { return now < boot_time_; }
   std::optional<TimePoint> next_deadline() const;
   void connect(TimePoint now, const Peer& from);
-  void notice_surface();
-  void check_surface(TimePoint now);
+  void notice_topside();
+  void check_topside(TimePoint now);
   void send_status(TimePoint now);
   Status make_status(TimePoint now) const;
 
@@ -174,11 +174,11 @@ class Device::Impl {
   template <class Message>
   void reply(Message message) {
     message.header.sonar_id = config_.sonar_id;
-    send_to_surface(SharedBytes(encode(Report{message})));
+    send_to_topside(SharedBytes(encode(Report{message})));
   }
-  void send_to_surface(SharedBytes bytes) {
+  void send_to_topside(SharedBytes bytes) {
     actions_.send.push_back(
-        {Outgoing::To::peer, {0, {surface_, config_.surface_port}, reply_from_}, std::move(bytes)});
+        {Outgoing::To::peer, {0, {topside_, config_.topside_port}, reply_from_}, std::move(bytes)});
   }
   void reply_with_flash(std::uint32_t address) {
     FlashReadback readback;
@@ -194,8 +194,8 @@ class Device::Impl {
   DeviceAddresses addresses_;
   bool out_of_water_ = false;
 
-  Ipv4 surface_ = 0;
-  Ipv4 noticed_surface_ = 0;  ///< that the last notice was about
+  Ipv4 topside_ = 0;
+  Ipv4 noticed_topside_ = 0;  ///< that the last notice was about
   Ipv4 reply_from_ = 0;
   TimePoint last_command_{};
 
@@ -212,7 +212,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
   if (rebooting(now)) {
     return;
   }
-  check_surface(now);
+  check_topside(now);
   const std::span<const std::uint8_t> bytes(datagram.bytes.data(), datagram.bytes.size());
   const auto header = decode_header(bytes);
   if (!header || datagram.from.remote.address == 0) {
@@ -229,7 +229,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
     return;
   }
   if (std::holds_alternative<Unknown>(*command)) {
-    ++counters_.unknown_type;  // taken in silence: it says nothing, not even that a surface is there
+    ++counters_.unknown_type;  // taken in silence: it says nothing, not even that a topside is there
     return;
   }
   ++counters_.commands;
@@ -249,14 +249,14 @@ void Device::Impl::take(TimePoint, const WaterChanged& water) {
 }
 
 void Device::Impl::connect(TimePoint now, const Peer& from) {
-  if (surface_ != 0 && surface_ != from.remote.address) {
-    ++counters_.surface_changes;  // the newest wins; what is on the wire goes on to it
+  if (topside_ != 0 && topside_ != from.remote.address) {
+    ++counters_.topside_changes;  // the newest wins; what is on the wire goes on to it
   }
-  surface_ = from.remote.address;
+  topside_ = from.remote.address;
   reply_from_ = from.local;
   last_command_ = now;
   pinger_.resume(now);
-  notice_surface();
+  notice_topside();
 }
 
 void Device::Impl::handle(TimePoint now, const StatusRequest&) {
@@ -311,7 +311,7 @@ void Device::Impl::handle(TimePoint now, const Reboot& command) {
   ++counters_.reboots;
   boot_time_ = now + config_.reboot_time;
   next_status_ = boot_time_;
-  surface_ = 0;
+  topside_ = 0;
   reply_from_ = 0;
   pinger_.reset(boot_time_);
   apply_programmed_addresses();
@@ -337,10 +337,10 @@ std::uint64_t Device::Impl::clock_us(TimePoint now) const {
   return now < boot_time_ ? 0 : static_cast<std::uint64_t>((now - boot_time_) / std::chrono::microseconds{1});
 }
 
-void Device::Impl::check_surface(TimePoint now) {
-  if (surface_ != 0 && now - last_command_ >= config_.surface_timeout) {
-    ++counters_.surface_timeouts;
-    surface_ = 0;
+void Device::Impl::check_topside(TimePoint now) {
+  if (topside_ != 0 && now - last_command_ >= config_.topside_timeout) {
+    ++counters_.topside_timeouts;
+    topside_ = 0;
     reply_from_ = 0;
     pinger_.suspend();
   }
@@ -362,7 +362,7 @@ Status Device::Impl::make_status(TimePoint now) const {
   status.fixed_ip = addresses_.fixed;
   status.alternate_ip = addresses_.alternate;
   status.subnet_mask = addresses_.netmask;
-  status.surface_ip = surface_;
+  status.surface_ip = topside_;
   status.mac.octets = config_.mac;
   status.clock_us = clock_us(now);
   if (out_of_water_) {
@@ -378,42 +378,42 @@ void Device::Impl::advance(TimePoint now) {
   if (rebooting(now)) {
     return;
   }
-  check_surface(now);
+  check_topside(now);
   send_status(now);
   ping_datagrams_.clear();
   pinger_.advance(now, ping_datagrams_);
   for (SharedBytes& bytes : ping_datagrams_) {
-    send_to_surface(std::move(bytes));
+    send_to_topside(std::move(bytes));
   }
 }
 
 Actions Device::Impl::actions() {
-  notice_surface();
+  notice_topside();
   Actions actions = std::exchange(actions_, {});
   actions.record = pinger_.take_record();
   actions.render = pinger_.take_job();
   actions.cancelled = pinger_.cancelled();
   actions.next_ping = pinger_.next_ping();
-  actions.nobody_there = surface_ == 0;
+  actions.nobody_there = topside_ == 0;
   actions.wake_at = next_deadline();
   return actions;
 }
 
-void Device::Impl::notice_surface() {
-  if (noticed_surface_ == surface_) {
+void Device::Impl::notice_topside() {
+  if (noticed_topside_ == topside_) {
     return;
   }
   actions_.notices.push_back(
-      {Notice::Level::info, surface_ != 0 ? "surface " + address_text(surface_) + " connected"
-                                          : "surface " + address_text(noticed_surface_) +
+      {Notice::Level::info, topside_ != 0 ? "topside " + address_text(topside_) + " connected"
+                                          : "topside " + address_text(noticed_topside_) +
                                                 " lost: no command for the time-out, or reboot"});
-  noticed_surface_ = surface_;
+  noticed_topside_ = topside_;
 }
 
 std::optional<TimePoint> Device::Impl::next_deadline() const {
   TimePoint next = next_status_;
-  if (surface_ != 0) {
-    next = std::min(next, last_command_ + config_.surface_timeout);
+  if (topside_ != 0) {
+    next = std::min(next, last_command_ + config_.topside_timeout);
   }
   return std::min(next, pinger_.next_deadline().value_or(next));
 }
@@ -453,20 +453,20 @@ std::vector<Counter> Device::counts() const {
       {"retries_dropped", count.retries_dropped},
       {"commands", count.commands},
       {"wrong_id", count.wrong_id, Shown::warns, "{} commands were for another sonar ID"},
-      {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were no commands of a Gemini 720i"},
+      {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were not Gemini 720i commands"},
       {"unknown_type", count.unknown_type},
       {"unsupported_data", count.unsupported_data, Shown::warns,
        "{} ping configurations asked for data that is not made here (I/Q, channels) or for run mode 3"},
-      {"surface_changes", count.surface_changes},
-      {"surface_timeouts", count.surface_timeouts},
+      {"topside_changes", count.topside_changes},
+      {"topside_timeouts", count.topside_timeouts},
       {"reboots", count.reboots}};
 }
 
 const DeviceCounters& Device::counters() const {
   return impl_->counters();
 }
-Ipv4 Device::surface() const {
-  return impl_->surface();
+Ipv4 Device::topside() const {
+  return impl_->topside();
 }
 DeviceAddresses Device::addresses() const {
   return impl_->addresses();

@@ -38,8 +38,8 @@ class Device final : public sonard::Device {
   std::vector<Counter> counts() const override;
 
   const DeviceCounters& counters() const;
-  /// The connected surface; 0 when none is.
-  Ipv4 surface() const;
+  /// The connected topside; 0 when none is.
+  Ipv4 topside() const;
   /// What the head answers on. Changes when a reboot applies an address that a client has programmed
   /// (3.7, 3.9); the server then moves its sockets while the head is still silent.
   DeviceAddresses addresses() const;

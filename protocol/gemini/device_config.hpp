@@ -22,7 +22,7 @@ struct DeviceConfig {
   Ipv4 netmask = 0xFFFFFF00;  ///< the real mask of the interface served, or later clients stay silent
   std::array<std::uint8_t, 6> mac{0x00, 0x12, 0x34, 0x00, 0x02, 0x01};
   bool accept_id_zero = false;         ///< also take commands with header ID 0
-  std::uint16_t surface_port = 52900;  ///< every reply goes to this port of the surface (1.1)
+  std::uint16_t topside_port = 52900;  ///< every reply goes to this port of the topside (1.1)
 
   /// True speed of sound at the head; 0: the water has the speed of the ping configuration, so that the
   /// client's ranges are true (6.7). Otherwise > 0.
@@ -32,7 +32,7 @@ struct DeviceConfig {
 
   std::chrono::nanoseconds status_period{std::chrono::seconds{1}};    ///< > 0 (1.3)
   std::chrono::nanoseconds min_ping_period{33'300'000};               ///< start to start, > 0 (8.4)
-  std::chrono::nanoseconds surface_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
+  std::chrono::nanoseconds topside_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
   std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};      ///< of silence, >= 0 (3.9)
 
   std::chrono::nanoseconds line_period{27'000};     ///< least mean distance of ping datagrams, > 0 (8.5)
@@ -47,7 +47,7 @@ struct DeviceConfig {
 
   /// The head sends the pings that it is fed (PingFed), and no others.
   bool plays_back = false;
-  /// A ping begins when it is granted (PingGranted), and at no time of the head's own: whoever grants it
+  /// A ping begins only when it is granted (PingGranted), not at the head's own time: whoever grants it
   /// keeps to NextPing. For pings that follow a simulated time.
   bool waits_for_permission = false;
 };

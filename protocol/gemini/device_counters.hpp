@@ -12,15 +12,15 @@ struct DeviceCounters {
   std::uint64_t bad_datagrams = 0;    ///< too short, or with contents that mean nothing
   std::uint64_t wrong_id = 0;         ///< for another head
   std::uint64_t unknown_type = 0;     ///< for this head, of a type it does not know
-  std::uint64_t surface_changes = 0;  ///< a command came from another address while one was connected
-  std::uint64_t surface_timeouts = 0;
+  std::uint64_t topside_changes = 0;  ///< a command came from another address while one was connected
+  std::uint64_t topside_timeouts = 0;
   std::uint64_t reboots = 0;
 
   std::uint64_t pings_started = 0;  ///< handed out for rendering
   std::uint64_t pings_sent = 0;     ///< to their original tail
   std::uint64_t pings_failed = 0;   ///< could not be rendered, or the image had the wrong size
   std::uint64_t pings_cancelled =
-      0;  ///< given up before their tail: surface gone, reboot, overtaken by a command
+      0;  ///< given up before their tail: topside gone, reboot, overtaken by a command
   std::uint64_t pings_suppressed =
       0;  ///< not started: out of the water, or a trigger edge that came too early
   std::uint64_t configs_replaced = 0;  ///< single pings asked for that a newer configuration replaced

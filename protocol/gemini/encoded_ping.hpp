@@ -31,7 +31,7 @@ class EncodedPing {
   /// In the order of sending: 0 is the head, 1.. the lines, the last one the tail.
   SharedBytes datagram(int index) const;
 
-  /// The same with the mark of a repetition: bit 8 of the ping ID, bit 15 of the line number, bit 7 of the
+  /// The ping's head marked as a repetition: bit 8 of the ping ID, bit 15 of the line number, bit 7 of the
   /// tail flags.
   SharedBytes resent_head() const;
   SharedBytes resent_line(int number) const;

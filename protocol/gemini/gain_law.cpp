@@ -30,7 +30,7 @@ double gain_percent(std::uint16_t spreading) {
 double spreading_gain_db(std::uint16_t spreading, const GainLaw& law) {
   // Why this law: both client libraries offer a linear slider in percent and a user expects equal steps of it
   // to sound equal, so dB is taken as linear in percent. `spreading` is all that travels, and the two
-  // libraries disagree about what 50 percent is in it; the head cannot tell them apart and hears the same
+  // libraries disagree about what 50 percent is in it; the head cannot tell them apart and gets the same
   // value alike.
   const double audible = std::clamp<double>(spreading, spreading_at_0_percent, spreading_at_100_percent);
   const double percent_above_reference = percent_per_neper * std::log(audible / law.reference_spreading);

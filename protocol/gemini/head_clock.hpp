@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface knows of the clock of a head.
+// What a topside knows of the clock of a head.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace sonard::gemini {
 
-/// Turns the surface's time into the least time that the clock of the head can show, from stamped datagrams:
+/// Turns the topside's time into the least time that the clock of the head can show, from stamped datagrams:
 /// a stamp is never younger than its arrival. Tells a ping that was transmitted before a configuration left
 /// from one that answers it, however late it arrives.
 class HeadClock {
@@ -46,7 +46,7 @@ class HeadClock {
   /// A hundred years, which nanoseconds can still hold.
   static constexpr std::uint64_t most_us = 3'153'600'000'000'000;
 
-  std::array<std::chrono::nanoseconds, 8> behind_{};  ///< surface time less head time, ring
+  std::array<std::chrono::nanoseconds, 8> behind_{};  ///< topside time less head time, ring
   std::size_t next_ = 0;
   std::size_t count_ = 0;
 };

@@ -110,7 +110,7 @@ struct Layout<TestResultRequest> : WholeLayout<12> {
 template <>
 struct Layout<ProductionTest> {
   static constexpr std::size_t size = 24;
-  static constexpr std::size_t minimum = 20;  // surfaces built for 32 bits end here
+  static constexpr std::size_t minimum = 20;  // 32-bit clients end here
   static constexpr auto fields = std::tuple{
       Field{8, "seed", &ProductionTest::seed},
       Field{16, "flags", &ProductionTest::flags},
@@ -141,7 +141,7 @@ struct Layout<RetryRequest> : WholeLayout<16> {
 template <>
 struct Layout<NetworkConfig> {
   static constexpr std::size_t size = 22;
-  static constexpr std::size_t minimum = 20;  // early surfaces end here
+  static constexpr std::size_t minimum = 20;  // early clients end here
   static constexpr auto fields = std::tuple{
       Field{8, "ethernet_ifg", &NetworkConfig::ethernet_ifg},
       Field{9, "vdsl_ifg", &NetworkConfig::vdsl_ifg},

@@ -3,7 +3,7 @@
 // Source: docs/protocols/gemini.md, section numbers beside each struct. Members keep the device's own
 // integers and units, so that decode and encode lose nothing; member functions and helpers give them a
 // meaning. Members not sent by any known peer (spare fields) are written as zero and skipped when read.
-// "Surface" is the computer of the vehicle; "head" is the sonar. Multi-byte integers travel little-endian.
+// "Topside" is the computer of the vehicle; "head" is the sonar. Multi-byte integers travel little-endian.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace sonard::gemini {
 
-inline constexpr std::uint16_t surface_port =
+inline constexpr std::uint16_t topside_port =
     52900;                                         ///< everything from the head goes to this UDP port (1.1)
 inline constexpr std::uint16_t head_port = 52901;  ///< every command goes to this UDP port (1.1)
 
@@ -74,8 +74,8 @@ struct Header {
   std::uint16_t sonar_id = 0;        ///< of the addressed or sending head
   std::uint8_t version = 1;          ///< of the data link
   std::uint16_t packet_latency = 0;  ///< never implemented; 0
-  std::uint8_t destination = 0;      ///< sub-device; later surfaces send 2
-  std::uint8_t source = 0;           ///< sub-device; later surfaces send 1, a 720i sends 0
+  std::uint8_t destination = 0;      ///< sub-device; later clients send 2
+  std::uint8_t source = 0;           ///< sub-device; later clients send 1, a 720i sends 0
 
   bool operator==(const Header&) const = default;
 };
@@ -95,7 +95,7 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// ---- Surface -> head
+// ---- Topside -> head
 
 /// 0x20, 8 bytes: stay-alive. Answered by Acknowledge (3.2).
 struct StatusRequest {
@@ -278,7 +278,7 @@ struct TestResultRequest {
   bool operator==(const TestResultRequest&) const = default;
 };
 
-/// 0x2D, 24 bytes, 20 from 32-bit surfaces (3.10). No answer until TestResultRequest.
+/// 0x2D, 24 bytes, 20 from 32-bit clients (3.10). No answer until TestResultRequest.
 struct ProductionTest {
   static constexpr MessageType type = MessageType::production_test;
   Header header{};
@@ -317,7 +317,7 @@ struct RetryRequest {
   bool operator==(const RetryRequest&) const = default;
 };
 
-/// 0x31, 22 bytes, 20 from early surfaces (3.6). No answer.
+/// 0x31, 22 bytes, 20 from early clients (3.6). No answer.
 struct NetworkConfig {
   static constexpr MessageType type = MessageType::network_config;
   Header header{};
@@ -330,7 +330,7 @@ struct NetworkConfig {
   std::uint16_t inter_packet_gap = 0;  ///< least distance of ping datagrams in units of 8 ns
   std::uint16_t serial_routing = 0;
   std::optional<std::uint16_t>
-      extension;  ///< only in the 22-byte form, meaning unknown; later surfaces send 10000
+      extension;  ///< only in the 22-byte form, meaning unknown; later clients send 10000
 
   bool operator==(const NetworkConfig&) const = default;
 };
@@ -371,7 +371,7 @@ struct GpioRead {
   bool operator==(const GpioRead&) const = default;
 };
 
-/// 0x36, 12 bytes (3.11). Answered by Diagnostic; later surfaces ask until they get it.
+/// 0x36, 12 bytes (3.11). Answered by Diagnostic; later clients ask until they get it.
 struct DiagnosticRequest {
   static constexpr MessageType type = MessageType::diagnostic_request;
   Header header{};
@@ -379,7 +379,7 @@ struct DiagnosticRequest {
   bool operator==(const DiagnosticRequest&) const = default;
 };
 
-/// 0xC8, 10 bytes: the surface stops listening (8.2). A head stops pinging. No answer.
+/// 0xC8, 10 bytes: the topside stops listening (8.2). A head stops pinging. No answer.
 struct GoingOffline {
   static constexpr MessageType type = MessageType::going_offline;
   Header header{};
@@ -387,7 +387,7 @@ struct GoingOffline {
   bool operator==(const GoingOffline&) const = default;
 };
 
-// ---- Head -> surface
+// ---- Head -> topside
 
 /// Sensor of a board as sent in Status: bit 15 present, bits 9..0 two's complement in 0.25 degC (3.3).
 /// Clamps to -128 .. +127.75; rounds to the nearest step. "Not fitted" is plain 0.
@@ -420,7 +420,7 @@ struct Status {
   std::uint16_t firmware_version = 0x0119;
   std::uint16_t sonar_id = 0;           ///< equals header.sonar_id
   std::uint32_t fixed_ip = 0x0A3D13C8;  ///< first octet most significant
-  std::uint32_t alternate_ip = 0;       ///< non-zero and reachable, or later surfaces send nothing
+  std::uint32_t alternate_ip = 0;       ///< non-zero and reachable, or later clients send nothing
   std::uint32_t surface_ip = 0;         ///< 0 when none is connected
   std::uint16_t flags = 0;              ///< high byte: product code, 0 = 720i
   std::uint16_t vcc_int = 341;          ///< raw monitor code, 1.0 V
@@ -436,7 +436,7 @@ struct Status {
   std::uint16_t psu2_temperature = 0;
   std::uint64_t clock_us = 0;              ///< head clock, microseconds since boot
   std::uint16_t transducer = 1;            ///< 1 = 723 kHz, 0 = 868 kHz
-  std::uint32_t subnet_mask = 0xFFFFFF00;  ///< must equal the mask of the surface's interface
+  std::uint32_t subnet_mask = 0xFFFFFF00;  ///< must equal the mask of the topside's interface
   std::uint16_t tx1_temperature = 0;
   std::uint16_t tx2_temperature = 0;
   std::uint16_t tx3_temperature = 0;
@@ -472,7 +472,7 @@ inline constexpr std::uint16_t sound_speed_from_config = 0x8000;
 struct PingHead {
   static constexpr MessageType type = MessageType::ping_head;
   Header header{};
-  std::uint16_t ping_id = 0;           ///< 0..255; later surfaces discard other values (6.3)
+  std::uint16_t ping_id = 0;           ///< 0..255; later clients discard other values (6.3)
   std::uint16_t ext_mode = 0;          ///< echo of the configuration
   std::uint64_t transmit_time_us = 0;  ///< head clock
   std::uint16_t start_range = 0;
@@ -487,8 +487,8 @@ struct PingHead {
   std::uint16_t velocimeter_readings = 1;
   std::uint16_t tx_angle = 0;
   std::uint16_t sound_speed_used = 0;  ///< bits 14..0 in 0.1 m/s; bit 15: sound_speed_from_config
-  std::uint8_t rle_threshold = 0;      ///< as applied: 0, or 3..255
-  std::uint8_t range_compression = 0;  ///< as applied: 0..4
+  std::uint8_t rle_threshold = 0;      ///< applied by the head: 0, or 3..255
+  std::uint8_t range_compression = 0;  ///< applied by the head: 0..4
   std::uint8_t decimation = 0;         ///< 0 on a 720i; absent from 46-byte heads
 
   bool eight_bit() const { return (ext_mode & ext_bits::eight_bit) != 0; }
@@ -653,7 +653,7 @@ struct Diagnostic {
   bool operator==(const Diagnostic&) const = default;
 };
 
-/// Everything a surface says.
+/// Everything a topside says.
 using Command = std::variant<StatusRequest, PingConfig, FlashWrite, FlashRead, InfoBlockWrite, InfoBlockRead,
                              SerialTransmit, Reboot, TestResultRequest, ProductionTest, PowerOnSelfTest,
                              AbortProductionTest, RetryRequest, NetworkConfig, MdioCommands, TxDriveTest,

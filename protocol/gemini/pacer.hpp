@@ -18,7 +18,7 @@ namespace sonard::gemini {
 /// see wake_batch()), and beyond that it delays the rest of the ping by as much: the 100 Mbit/s link of a
 /// real head could not make up for it either.
 ///
-/// The interPacketGap of the surface is a least distance, not an average: when it is long enough to matter,
+/// The interPacketGap of the topside is a least distance, not an average: when it is long enough to matter,
 /// datagrams leave one by one.
 class Pacer {
  public:
@@ -26,7 +26,7 @@ class Pacer {
     set_gap({});
   }
 
-  /// Least distance as asked for by the surface. A host needs a few microseconds to hand over a datagram, so
+  /// Least distance as asked for by the topside. A host needs a few microseconds to hand over a datagram, so
   /// shorter gaps are met within a burst.
   void set_gap(std::chrono::nanoseconds gap) {
     period_ = std::max(configured_period_, gap);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping as it comes together at the surface: head, lines and tail in any order, some twice, some never.
+// One ping as it comes together at the topside: head, lines and tail in any order, some twice, some never.
 // Source: docs/protocols/gemini.md 6, 7.
 #pragma once
 
@@ -27,7 +27,7 @@ struct PingSamples {
   std::vector<std::uint16_t> u16;
 };
 
-/// Whether a surface can make an image of what this head announces: beam magnitudes, at least one line, and
+/// Whether a topside can make an image of what this head announces: beam magnitudes, at least one line, and
 /// sizes that fit the line numbers (15 bits) and datagrams of the protocol.
 bool is_receivable(const PingHead& head);
 

@@ -33,7 +33,7 @@ std::chrono::nanoseconds acoustic_time(int native_lines);
 ///
 /// Limits of a head that stands for the real one: fewer than 32 native lines count as 32, more than the
 /// libraries ever ask for (20000 of 8 bit, 10000 of 16 bit) as that; the ping head then reports what is
-/// really sent, so that the surface expects the right number. Speeds of sound outside 1400..1588.8 m/s are
+/// really sent, so that the topside expects the right number. Speeds of sound outside 1400..1588.8 m/s are
 /// moved inside. Everything not named in PingPlan has no effect on a 720i or on this model of it.
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device);
 

@@ -54,12 +54,12 @@ TimePoint PingTransmission::available_at(int index) const {
   }
   const int lines = ping_.line_count();
   const int line = std::min(index - 1, lines - 1);  // the tail is there with the last line
-  const TimePoint heard = transmit_time_ + acoustic_time((line + 1) << compression_log2_);
+  const TimePoint line_received = transmit_time_ + acoustic_time((line + 1) << compression_log2_);
   if (line < lines - final_lines) {
-    return heard;
+    return line_received;
   }
-  const TimePoint all_heard = transmit_time_ + acoustic_time(lines << compression_log2_);
-  return std::max(heard, all_heard - final_window);
+  const TimePoint all_received = transmit_time_ + acoustic_time(lines << compression_log2_);
+  return std::max(line_received, all_received - final_window);
 }
 
 }  // namespace sonard::gemini

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping on its way to the surface, in the order and at the times at which a head sends it.
+// One ping on its way to the topside, in the order and at the times at which a head sends it.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 namespace sonard::gemini {
 
 /// Three rules say when a datagram leaves (docs/protocols/gemini.md 8.5): never before the sound of its range
-/// is back; paced by the Pacer; and the last 36 lines and the tail close together, because surfaces take slow
+/// is back; paced by the Pacer; and the last 36 lines and the tail close together, because clients take slow
 /// last lines for a lost tail. After the tail it stays as the copy that retries are served from.
 class PingTransmission {
  public:

@@ -42,7 +42,7 @@ void Pinger::configure(TimePoint now, const PingConfig& config) {
   programme_.reset();
   pings_out_of_water_ = config.pings_out_of_water();
   if (acquisition_ && acquisition_->transmit_time > now) {
-    // Rendered ahead of its time. For the surface it has not begun, so the new settings come first.
+    // Rendered ahead of its time. For the topside it has not begun, so the new settings come first.
     earliest_start_ = acquisition_->earliest_start_before;
     cancel_acquisition();
   }
@@ -230,7 +230,7 @@ void Pinger::on_image(TimePoint now, const PingImage& image) {
     return;
   }
   PingHead head = acquisition_->plan.head;
-  head.ping_id = static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later surfaces want 0..255 (6.3)
+  head.ping_id = static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later clients want 0..255 (6.3)
   head.transmit_time_us = clock_us(acquisition_->transmit_time);
   acquisition_->encoded.emplace(head, acquisition_->plan.line_scale, image);
   acquisition_->record = record_of(head, image);
@@ -262,8 +262,8 @@ void Pinger::cancel_acquisition() {
 // ---- On the wire
 // ------------------------------------------------------------------------------------------------
 
-// The new head is held back for a surface that is still repairing the last ping (7.3): while requests wait,
-// and for a while after the last one. A surface that asked for its next single ping after its last request is
+// The new head is held back for a topside that is still repairing the last ping (7.3): while requests wait,
+// and for a while after the last one. A topside that asked for its next single ping after its last request is
 // done with the old one; only what it has already asked for is served first.
 std::optional<TimePoint> Pinger::head_due() const {
   if (!acquisition_ || !acquisition_->encoded || sending()) {
@@ -285,7 +285,7 @@ std::optional<TimePoint> Pinger::head_due() const {
 }
 
 void Pinger::put_on_wire() {
-  // Requests carry no ping ID: one for the old ping, served now, would make the surface ask for all of the
+  // Requests carry no ping ID: one for the old ping, served now, would make the topside ask for all of the
   // new one.
   drop_retries(acquisition_->encoded->line_count());
   last_retry_arrival_.reset();
@@ -317,7 +317,7 @@ void Pinger::on_retry(TimePoint now, const RetryRequest& request) {
 }
 
 void Pinger::serve_retries(TimePoint now, std::vector<SharedBytes>& out) {
-  // A tail sent again in the middle of a ping would make the surface ask for all lines still to come.
+  // A tail sent again in the middle of a ping would make the topside ask for all lines still to come.
   if (!transmission_ || sending()) {
     return;
   }

@@ -20,7 +20,7 @@
 
 namespace sonard::gemini {
 
-/// The part of a Device that pings. It knows no addresses: what it sends goes to the surface that is
+/// The part of a Device that pings. It knows no addresses: what it sends goes to the topside that is
 /// connected.
 ///
 /// A ping goes through three stages. *Wanted*: a configuration, the interval or a trigger edge asks for it.
@@ -44,9 +44,9 @@ class Pinger {
   std::optional<NextPing> next_ping() const;
   void grant() { granted_ = true; }
 
-  /// The surface goes offline: no further pings. One that is on the wire is finished.
+  /// The topside goes offline: no further pings. One that is on the wire is finished.
   void stop();
-  /// The surface has gone silent: sends nothing more; a continuous or triggered programme waits for resume().
+  /// The topside has gone silent: sends nothing more; a continuous or triggered programme waits for resume().
   void suspend();
   void resume(TimePoint now);
   /// The head reboots: forgets everything but the job that is still to be answered, and the count of pings.
@@ -76,8 +76,8 @@ class Pinger {
     TimePoint transmit_time{};
     TimePoint asked_at{};
     TimePoint earliest_start_before{};  ///< earliest_start_ as it was, should this ping never begin
-    double gain_percent = 0.0;          ///< for logs; below 0: nobody knows
-    std::optional<EncodedPing> encoded = std::nullopt;  ///< once the image is there
+    double gain_percent = 0.0;          ///< for logs; below 0: unknown
+    std::optional<EncodedPing> encoded = std::nullopt;  ///< set when the image has come
     PingRecord record = {};                             ///< from then on
     TimePoint ready_at{};                               ///< when it came
   };

@@ -10,7 +10,7 @@
 
 namespace sonard::gemini {
 
-/// The record of an image that leaves under `head`, which is complete. Samples are as a surface has them
+/// The record of an image that leaves under `head`, which is complete. Samples are as a topside has them
 /// after decoding: where beams below a threshold travel as zeros they are zeros, and of 16 bits the high ones
 /// are kept. Number, time and gain are left out.
 PingRecord record_of(const PingHead& head, const PingImage& image);

@@ -22,7 +22,7 @@ class ResponseTime {
 
   explicit ResponseTime(const Limits& limits) : limits_(limits) {}
 
-  /// Of a question asked once; the answer to a repeated question says nothing.
+  /// Takes the response time of a question asked once; that of a repeated question says nothing.
   void sample(Duration took) {
     if (!mean_) {
       mean_ = took;

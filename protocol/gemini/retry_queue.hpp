@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the surface wants to have again of the last ping (docs/protocols/gemini.md 7.3).
+// What the topside wants to have again of the last ping (docs/protocols/gemini.md 7.3).
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class RetryQueue {
   void reset(int line_count);
 
   /// False when the request is not kept: the queue is full, or the ping has no such thing. A request that
-  /// says the same as the last one waiting, or goes on where it ends, joins it.
+  /// says the same as the last one waiting, or begins where it ends, joins it.
   bool push(const RetryRequest& request);
 
   /// The next datagram to send; nullopt when there is none. Lines that went out too often are passed over.

@@ -28,9 +28,9 @@ using sonard::fuzz::Script;
 
 constexpr std::uint16_t sonar_id = 601;
 constexpr Ipv4 alternate_address = 0xC0A802C9;
-constexpr Ipv4 surfaces[] = {0xC0A80205, 0xC0A80206};
+constexpr Ipv4 topsides[] = {0xC0A80205, 0xC0A80206};
 
-/// Kinds of events. The first two carry datagrams, one for each surface.
+/// Kinds of events. The first two carry datagrams, one for each topside.
 enum Kind { datagram_kinds = 2, trigger = 2, toggle_water = 3, image = 4, image_failed = 5 };
 
 class Bench {
@@ -55,7 +55,7 @@ class Bench {
         break;
       default:
         if (event.kind < datagram_kinds) {
-          const sonard::Peer from{0, {surfaces[event.kind], 52900}, alternate_address};
+          const sonard::Peer from{0, {topsides[event.kind], 52900}, alternate_address};
           step(sonard::BytesReceived{from, SharedBytes(event.datagram)});
         }
     }

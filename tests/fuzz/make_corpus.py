@@ -3,8 +3,8 @@
 """Writes the fuzzing seeds in corpus/ from the byte examples in tests/data, and logs made here.
 
 gemini/datagrams/  one example each, as it is
-gemini/device/     scripts for fuzz_gemini_device: what a surface sends to a head, with time between
-gemini/surface/    scripts for fuzz_gemini_surface: what a head sends to a surface
+gemini/device/     scripts for fuzz_gemini_device: what a topside sends to a head, with time between
+gemini/topside/    scripts for fuzz_gemini_topside: what a head sends to a topside
 micron/frames/     one example each, and streams of some
 micron/device/     scripts for fuzz_micron_device: what a host sends to a head
 micron/host/       scripts for fuzz_micron_host: what a head sends to a host
@@ -72,7 +72,7 @@ def device_scripts():
     yield "trigger", event(FROM_A, single[:16] + b"\x02\x00" + single[18:]) + event(TRIGGER) + event(IMAGE)
     yield "out_of_water", event(WATER) + event(FROM_A, single[:18] + b"\x04\x00" + single[20:]) + event(WATER) + ping
     yield "failed_image", event(FROM_A, single) + event(IMAGE_FAILED) + ping
-    yield "two_surfaces", ping + event(FROM_B, single) + event(IMAGE) + event(FROM_A, example("status_request"))
+    yield "two_topsides", ping + event(FROM_B, single) + event(IMAGE) + event(FROM_A, example("status_request"))
     yield "reboot", event(FROM_A, example("observed_info_block_write")) + event(FROM_A, example("observed_reboot")) + event(
         PAUSE, delay=250) + ping
     yield "session", b"".join(
@@ -105,7 +105,7 @@ def ping_datagrams(lines, resent=()):
         yield example("ping_tail_resent")
 
 
-def surface_scripts():
+def topside_scripts():
     meet = event(FROM_HEAD, example("status")) + event(FROM_HEAD, example("status"))
 
     def ping(*args, **kwargs):
@@ -356,7 +356,7 @@ def main():
     write("micron/frames", "stream", b"@\n@0008".join(
         example(path.stem, "micron") for path in sorted((EXAMPLES / "micron").glob("*.hex"))
         if path.stat().st_size < 100))
-    for folder, scripts in (("gemini/device", device_scripts()), ("gemini/surface", surface_scripts()),
+    for folder, scripts in (("gemini/device", device_scripts()), ("gemini/topside", topside_scripts()),
                             ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
                             ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses for tests that need the device's fixed ports, and a surface made of one socket.
+// Addresses for tests that need the device's fixed ports, and a topside made of one socket.
 #pragma once
 
 #include <unistd.h>

@@ -19,7 +19,7 @@ using Row = std::map<std::string, std::string>;
 std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
                          const std::vector<std::string>& options = {});
 
-/// A datagram between a surface and a head on the ports of the Gemini.
+/// A datagram between a topside and a head on the ports of the Gemini.
 pcapng::Bytes to_head(pcapng::ByteView payload);
 pcapng::Bytes from_head(pcapng::ByteView payload);
 

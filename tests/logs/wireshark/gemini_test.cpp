@@ -47,7 +47,7 @@ const std::vector<Expectation> expectations{
       {"ping_config.tx_mark", "29"},
       {"ping_config.velocimeter_tx_mark", "17"},
       {"ping_config.idents", "0,0,0,0"}}},
-    {"ping_config_later_surface",
+    {"ping_config_later_client",
      "ping_config",
      {{"header.destination", "2"},
       {"header.source", "1"},

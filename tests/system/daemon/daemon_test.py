@@ -48,7 +48,7 @@ GEMINI = """
     network:
       alternate_address: 127.0.77.2
       netmask: 255.0.0.0
-      surface_port: {surface_port}
+      surface_port: {topside_port}
       status: [127.0.0.1]
 """
 
@@ -220,15 +220,15 @@ class Signals(DaemonCase):
         """As `timeout` sends them: to its child, and to the whole process group."""
         directory = os.path.join(self.folder.name, "logs")
         os.mkdir(directory)
-        surface = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.addCleanup(surface.close)
-        surface.bind(("127.0.0.1", 0))
+        topside = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(topside.close)
+        topside.bind(("127.0.0.1", 0))
         daemon = self.start(more=f"recording: {{directory: {directory}}}",
-                            heads=GEMINI.format(surface_port=surface.getsockname()[1]))
+                            heads=GEMINI.format(topside_port=topside.getsockname()[1]))
         client = self.client()
         self.configured(client)
         self.lines(client, 20)
-        self.ping_gemini(surface)
+        self.ping_gemini(topside)
         daemon.signal(signal.SIGTERM)
         for _ in range(20):
             time.sleep(0.001)
@@ -242,19 +242,19 @@ class Signals(DaemonCase):
         self.assertTrue(any(name.endswith(".glf") for name in names), names)
         self.assertFalse(any(name.endswith(".dat") for name in names), f"left unpacked: {names}")
 
-    def ping_gemini(self, surface):
+    def ping_gemini(self, topside):
         """One ping, so that there is a log to pack."""
         config = bytearray(example("gemini", "ping_config"))
         config[2:4] = (513).to_bytes(2, "little")
         deadline = Deadline(PATIENCE_S)
-        surface.settimeout(1.0)
+        topside.settimeout(1.0)
         while not deadline.over():
             try:
-                got = surface.recv(2048)
+                got = topside.recv(2048)
             except TimeoutError:
                 continue
             if got[0] == 0x40:
-                surface.sendto(bytes(config), ("127.0.77.2", 52901))
+                topside.sendto(bytes(config), ("127.0.77.2", 52901))
             if got[0] == 0x43:
                 return
         self.fail("no ping of the Gemini")
@@ -314,7 +314,7 @@ class Micron(DaemonCase):
             self.lines(client, 2)
         daemon.wait_for_line(r"gain=80\.0dB .* scan=stares at=179\.94deg inverted=yes$", PATIENCE_S)
         client.write(b"@noise@")
-        daemon.wait_for_line(r"head=stern \d bytes from clients were part of no command", PATIENCE_S)
+        daemon.wait_for_line(r"head=stern \d bytes from clients belonged to no command", PATIENCE_S)
         for once in ("equal limits", "gain byte 232", "left and right are swapped"):
             self.assertEqual(daemon.output().count(once), 1, daemon.output())
 

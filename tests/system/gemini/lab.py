@@ -16,9 +16,9 @@ import threading
 import time
 
 HEAD_ADDRESS = "10.61.19.200"
-SURFACE_ADDRESS = "10.61.19.10"
+TOPSIDE_ADDRESS = "10.61.19.10"
 SECOND_HEAD_ADDRESS = "10.61.19.201"
-SECOND_SURFACE_ADDRESS = "10.61.19.11"
+SECOND_TOPSIDE_ADDRESS = "10.61.19.11"
 COMMAND_PORT = 52901
 REPORT_PORT = 52900
 
@@ -96,16 +96,16 @@ def _enter(namespace_fd):
 
 
 class Lab:
-    """A head machine and one or two surface machines on one Ethernet. `with Lab() as lab: ...`"""
+    """A head machine and one or two topside machines on one Ethernet. `with Lab() as lab: ...`"""
 
     _count = 0
 
-    def __init__(self, surfaces=1):
+    def __init__(self, topsides=1):
         Lab._count += 1
         self._prefix = f"sonard-{os.getpid()}-{Lab._count}"
         self._namespaces = []
         self._programs = []
-        self._wanted_surfaces = surfaces
+        self._wanted_topsides = topsides
 
     def __enter__(self):
         try:
@@ -125,21 +125,21 @@ class Lab:
 
     def _build(self):
         self.head = self._add("head")
-        self.surfaces = [self._add(f"surface{i}") for i in range(self._wanted_surfaces)]
-        self.surface = self.surfaces[0]
+        self.topsides = [self._add(f"topside{i}") for i in range(self._wanted_topsides)]
+        self.topside = self.topsides[0]
         # One wire, or a switch (a bridge, which is then the interface of the head machine).
-        switched = self._wanted_surfaces > 1
+        switched = self._wanted_topsides > 1
         if switched:
             self.head.ip("link", "add", "eth0", "type", "bridge")
-        for i, surface in enumerate(self.surfaces):
+        for i, topside in enumerate(self.topsides):
             head_end = f"port{i}" if switched else "eth0"
-            self.head.ip("link", "add", head_end, "type", "veth", "peer", "name", "eth0", "netns", surface.name)
+            self.head.ip("link", "add", head_end, "type", "veth", "peer", "name", "eth0", "netns", topside.name)
             if switched:
                 self.head.ip("link", "set", head_end, "master", "eth0")
                 self.head.ip("link", "set", head_end, "up")
-            address = [SURFACE_ADDRESS, SECOND_SURFACE_ADDRESS][i]
-            surface.ip("address", "add", f"{address}/24", "brd", "+", "dev", "eth0")
-            surface.ip("link", "set", "eth0", "up")
+            address = [TOPSIDE_ADDRESS, SECOND_TOPSIDE_ADDRESS][i]
+            topside.ip("address", "add", f"{address}/24", "brd", "+", "dev", "eth0")
+            topside.ip("link", "set", "eth0", "up")
         for address in (HEAD_ADDRESS, SECOND_HEAD_ADDRESS):
             self.head.ip("address", "add", f"{address}/24", "brd", "+", "dev", "eth0")
         self.head.ip("link", "set", "eth0", "up")

@@ -21,7 +21,7 @@ import unittest
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 import glf_writer
 import wire
-from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, SURFACE_ADDRESS, Deadline, Lab, need,
+from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, TOPSIDE_ADDRESS, Deadline, Lab, need,
                  receive)
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
@@ -91,8 +91,8 @@ class LinkTest(unittest.TestCase):
 
     # ---- Set-up ----
 
-    def make_lab(self, surfaces=1):
-        lab = Lab(surfaces)
+    def make_lab(self, topsides=1):
+        lab = Lab(topsides)
         lab.__enter__()
         self.addCleanup(lab.__exit__)
         return lab
@@ -129,9 +129,9 @@ class LinkTest(unittest.TestCase):
             self.assertIn(crc, written[at:])
             at = written.index(crc, at) + 1
 
-    def start_viewer(self, lab, *options, surface=None, range_m=4):
-        namespace = surface or lab.surface
-        address = SURFACE_ADDRESS if namespace is lab.surface else "10.61.19.11"
+    def start_viewer(self, lab, *options, topside=None, range_m=4):
+        namespace = topside or lab.topside
+        address = TOPSIDE_ADDRESS if namespace is lab.topside else "10.61.19.11"
         return lab.start(namespace, os.path.join(PROGRAMS, "sonarview"), "--surface-address", address, "--log-pings",
                          "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S), "--range", str(range_m), *options)
 
@@ -211,7 +211,7 @@ class Pings(LinkTest):
                 self.run_pings(options, count=20)
 
 
-class Surfaces(LinkTest):
+class Topsides(LinkTest):
     """Clients that come, go, fall silent and share the wire."""
 
     def test_killed_in_the_middle_of_a_ping_and_started_again(self):
@@ -228,12 +228,12 @@ class Surfaces(LinkTest):
         self.check_pings(viewer, 20)
         self.end_daemon(daemon)
 
-    def test_two_heads_at_once_for_two_surfaces(self):
-        lab = self.make_lab(surfaces=2)
+    def test_two_heads_at_once_for_two_topsides(self):
+        lab = self.make_lab(topsides=2)
         daemon = self.start_daemon(lab, self.head_config(),
                                    self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
-        viewers = [self.start_viewer(lab, "--sonar-id", str(513 + i), "--pings", "60", surface=surface)
-                   for i, surface in enumerate(lab.surfaces)]
+        viewers = [self.start_viewer(lab, "--sonar-id", str(513 + i), "--pings", "60", topside=topside)
+                   for i, topside in enumerate(lab.topsides)]
         for viewer, name in zip(viewers, ("bow", "stern")):
             self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
             self.check_pings(viewer, 60, name)
@@ -251,14 +251,14 @@ class Surfaces(LinkTest):
         self.assertIn("head=bow ends: pings_sent=", daemon.output())
 
 
-class RawSurface:
-    """A surface made of two sockets and the bytes of the document."""
+class RawTopside:
+    """A topside made of two sockets and the bytes of the document."""
 
     def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS):
         self.sonar_id = sonar_id
         self.head = head
-        self.reports = lab.surface.udp_socket("0.0.0.0", REPORT_PORT)
-        self.commands = lab.surface.udp_socket(SURFACE_ADDRESS, COMMAND_PORT)
+        self.reports = lab.topside.udp_socket("0.0.0.0", REPORT_PORT)
+        self.commands = lab.topside.udp_socket(TOPSIDE_ADDRESS, COMMAND_PORT)
 
     def close(self):
         self.reports.close()
@@ -303,15 +303,15 @@ class Wire(LinkTest):
     def start(self, *heads, **keywords):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, *heads, **keywords)
-        surface = RawSurface(lab)
-        self.addCleanup(surface.close)
-        return lab, daemon, surface
+        topside = RawTopside(lab)
+        self.addCleanup(topside.close)
+        return lab, daemon, topside
 
     def test_status_is_broadcast_once_a_second(self):
-        _, _, surface = self.start(self.head_config())
+        _, _, topside = self.start(self.head_config())
         arrivals = []
         for _ in range(4):
-            datagram, sender = surface.next_of(wire.STATUS)
+            datagram, sender = topside.next_of(wire.STATUS)
             arrivals.append(time.monotonic())
             status = wire.Status(datagram)
             self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
@@ -319,15 +319,15 @@ class Wire(LinkTest):
             self.assertEqual(status.fixed, wire.address("10.61.19.200"))
             self.assertEqual(status.alternate, wire.address(HEAD_ADDRESS))
             self.assertEqual(status.netmask, wire.address("255.255.255.0"))
-            self.assertEqual(status.surface, 0)
+            self.assertEqual(status.topside, 0)
             self.assertNotEqual(status.boot & 0x1FF, 0x001)
         # The first may have waited in the socket's queue.
         self.assertAlmostEqual(arrivals[3] - arrivals[1], 2.0, delta=0.5)
 
     def test_target_to_port_is_in_the_low_beams(self):
-        _, _, surface = self.start(self.head_config(noisy=False))
-        surface.send(wire.ping_config(513, lines=483, spreading=293))
-        ping = surface.next_ping()
+        _, _, topside = self.start(self.head_config(noisy=False))
+        topside.send(wire.ping_config(513, lines=483, spreading=293))
+        ping = topside.next_ping()
         self.assertEqual((ping.count, ping.beams), (483, 256))
         energy = [sum(ping.lines[i][beam] for i in range(ping.count)) for beam in range(256)]
         self.assertGreater(sum(energy[:128]), 0)
@@ -347,7 +347,7 @@ class Wire(LinkTest):
         return math.degrees(sum(wire.bearing_rad(beam) for beam in beams) / len(beams))
 
     def test_poses_move_the_vehicle_and_the_bodies(self):
-        lab, _, surface = self.start(self.head_config(noisy=False))
+        lab, _, topside = self.start(self.head_config(noisy=False))
         poses = lab.head.udp_socket("127.0.0.1", 0)
         self.addCleanup(poses.close)
 
@@ -355,8 +355,8 @@ class Wire(LinkTest):
             message = wire.pose_update(time.monotonic_ns(), *arguments, **keywords)
             poses.sendto(message, ("127.0.0.1", 14600))
             time.sleep(0.2)  # poses and commands come by different sockets
-            surface.send(wire.ping_config(513, lines=483, spreading=293))
-            return surface.next_ping()
+            topside.send(wire.ping_config(513, lines=483, spreading=293))
+            return topside.next_ping()
 
         # The sphere is 33.69 degrees to port of the x axis. Turned 60 degrees to port, the sonar has it 26.31 degrees to
         # starboard.
@@ -368,11 +368,11 @@ class Wire(LinkTest):
         self.assertAlmostEqual(self.place_of_target(moved), 33.69, delta=1.0)
 
     def test_link_slower_than_the_head_loses_nothing(self):
-        lab, daemon, surface = self.start(self.head_config())
+        lab, daemon, topside = self.start(self.head_config())
         # 20 Mbit/s, where the head sends 80: the queue of the socket fills up and the head has to wait.
         lab.tc(lab.head, "qdisc", "add", "dev", "eth0", "root", "tbf", "rate", "20mbit", "burst", "5kb", "limit", "50mb")
-        surface.send(wire.ping_config(513, lines=10000))
-        ping = surface.next_ping()
+        topside.send(wire.ping_config(513, lines=10000))
+        ping = topside.next_ping()
         self.assertEqual(ping.crc32(), int(self.rendered()[ping.transmit_us], 16))
         self.end_daemon(daemon)
         socket_line = key_values(daemon.wait_for_line("head=bow transport: ", PATIENCE_S))
@@ -380,41 +380,41 @@ class Wire(LinkTest):
         self.assertEqual((socket_line["send_failed"], socket_line["overflowed"]), ("0", "0"))
 
     def test_silence_for_three_seconds_suspends_and_any_command_resumes(self):
-        _, daemon, surface = self.start(self.head_config())
-        surface.send(wire.ping_config(513, lines=64, continuous_ms=100))
-        surface.next_ping()
+        _, daemon, topside = self.start(self.head_config())
+        topside.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        topside.next_ping()
         asked = time.monotonic()
         last_ping = asked
         while time.monotonic() - last_ping < 1.5:  # 15 periods without a ping: it has stopped
-            self.assertLess(time.monotonic() - asked, 30, "went on pinging without a surface")
-            if surface.next_of(wire.PING_HEAD, seconds=0.2):
+            self.assertLess(time.monotonic() - asked, 30, "went on pinging without a topside")
+            if topside.next_of(wire.PING_HEAD, seconds=0.2):
                 last_ping = time.monotonic()
         # The configuration was the last command: 3 s, and what a busy machine adds.
         self.assertGreater(last_ping - asked, 1.5)
         self.assertLess(last_ping - asked, 6.0)
-        daemon.wait_for_line(f"surface {SURFACE_ADDRESS} lost", PATIENCE_S)
-        surface.drain()
-        self.assertEqual(wire.Status(surface.next_of(wire.STATUS)[0]).surface, 0)
-        surface.send(wire.status_request(513))
-        self.assertIsNotNone(surface.next_of(wire.ACKNOWLEDGE))
-        surface.next_ping()
-        surface.drain()
-        self.assertEqual(wire.Status(surface.next_of(wire.STATUS)[0]).surface, wire.address(SURFACE_ADDRESS))
+        daemon.wait_for_line(f"topside {TOPSIDE_ADDRESS} lost", PATIENCE_S)
+        topside.drain()
+        self.assertEqual(wire.Status(topside.next_of(wire.STATUS)[0]).topside, 0)
+        topside.send(wire.status_request(513))
+        self.assertIsNotNone(topside.next_of(wire.ACKNOWLEDGE))
+        topside.next_ping()
+        topside.drain()
+        self.assertEqual(wire.Status(topside.next_of(wire.STATUS)[0]).topside, wire.address(TOPSIDE_ADDRESS))
 
     def test_commands_for_another_id_are_dropped(self):
-        _, _, surface = self.start(self.head_config())
-        surface.send(wire.status_request(600))
-        surface.send(wire.status_request(513))
-        self.assertIsNotNone(surface.next_of(wire.ACKNOWLEDGE))
-        self.assertIsNone(surface.next_of(wire.ACKNOWLEDGE, seconds=1.0))
+        _, _, topside = self.start(self.head_config())
+        topside.send(wire.status_request(600))
+        topside.send(wire.status_request(513))
+        self.assertIsNotNone(topside.next_of(wire.ACKNOWLEDGE))
+        self.assertIsNone(topside.next_of(wire.ACKNOWLEDGE, seconds=1.0))
 
     def test_answers_come_from_the_address_that_was_addressed(self):
-        _, _, surface = self.start(self.head_config(bind="0.0.0.0"))
+        _, _, topside = self.start(self.head_config(bind="0.0.0.0"))
         for address in (HEAD_ADDRESS, SECOND_HEAD_ADDRESS):
-            surface.send(wire.status_request(513), to=address)
-            _, sender = surface.next_of(wire.ACKNOWLEDGE)
+            topside.send(wire.status_request(513), to=address)
+            _, sender = topside.next_of(wire.ACKNOWLEDGE)
             self.assertEqual(sender, (address, COMMAND_PORT))
-        _, sender = surface.next_of(wire.STATUS)
+        _, sender = topside.next_of(wire.STATUS)
         self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
 
 
@@ -422,50 +422,50 @@ class StalePoses(LinkTest):
     def start(self, stale):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config(), stale=stale)
-        surface = RawSurface(lab)
-        self.addCleanup(surface.close)
+        topside = RawTopside(lab)
+        self.addCleanup(topside.close)
         self.poses = lab.head.udp_socket("127.0.0.1", 0)
         self.addCleanup(self.poses.close)
-        return daemon, surface
+        return daemon, topside
 
-    def send_poses(self, surface, seconds, x_m):
-        """50 poses a second; the surface keeps the connection alive."""
+    def send_poses(self, topside, seconds, x_m):
+        """50 poses a second; the topside keeps the connection alive."""
         deadline = Deadline(seconds)
         while not deadline.over():
             self.poses.sendto(wire.pose_update(time.monotonic_ns(), (x_m, 0.0, 0.0)), ("127.0.0.1", 14600))
-            surface.send(wire.status_request(513))
+            topside.send(wire.status_request(513))
             time.sleep(0.02)
 
-    def pings_within(self, surface, seconds):
-        """Ping heads seen, while the surface keeps the connection alive."""
+    def pings_within(self, topside, seconds):
+        """Ping heads seen, while the topside keeps the connection alive."""
         heads, deadline = 0, Deadline(seconds)
         while not deadline.over():
-            surface.send(wire.status_request(513))
+            topside.send(wire.status_request(513))
             step = Deadline(0.2)
             while not step.over():
-                got = receive(surface.reports, step.left())
+                got = receive(topside.reports, step.left())
                 heads += 1 if got and wire.message_type(got[0]) == wire.PING_HEAD else 0
         return heads
 
     def test_hold_goes_on_from_the_last_pose(self):
-        _, surface = self.start("hold")
-        surface.send(wire.ping_config(513, lines=64, continuous_ms=100))
-        self.send_poses(surface, 0.5, 1.0)
+        _, topside = self.start("hold")
+        topside.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.send_poses(topside, 0.5, 1.0)
         time.sleep(0.5)  # beyond the limit of 300 ms
-        surface.drain()
-        self.assertGreater(self.pings_within(surface, 2.0), 3)
+        topside.drain()
+        self.assertGreater(self.pings_within(topside, 2.0), 3)
 
     def test_silence_sends_status_only_until_a_pose_arrives(self):
-        daemon, surface = self.start("silence")
-        surface.send(wire.ping_config(513, lines=64, continuous_ms=100))
-        self.send_poses(surface, 0.5, 1.0)
-        surface.next_ping()
+        daemon, topside = self.start("silence")
+        topside.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.send_poses(topside, 0.5, 1.0)
+        topside.next_ping()
         time.sleep(1.0)
-        surface.drain()
-        self.assertEqual(self.pings_within(surface, 1.5), 0)
-        self.assertIsNotNone(surface.next_of(wire.STATUS))
-        self.send_poses(surface, 0.3, 2.0)
-        surface.next_ping()
+        topside.drain()
+        self.assertEqual(self.pings_within(topside, 1.5), 0)
+        self.assertIsNotNone(topside.next_of(wire.STATUS))
+        self.send_poses(topside, 0.3, 2.0)
+        topside.next_ping()
         daemon.terminate(10)
         self.assertRegex(daemon.output(), r"head=bow ends: .* pings_without_pose=[1-9]")
 

@@ -82,7 +82,7 @@ class Timing(ReplayTest):
         self.assertEqual({ping["lines"] for ping in pings}, {str(LINES)})
         self.check_offsets(pings)
         self.assertEqual(daemon.wait(10), 0, daemon.tail())
-        self.assertIn("the recording is over", daemon.output())
+        self.assertIn("the recording has ended", daemon.output())
         self.assertNotIn("differ", daemon.output())
 
     def test_twice_as_fast(self):

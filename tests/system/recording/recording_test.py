@@ -28,7 +28,7 @@ sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests"
 import glf_reader  # noqa: E402
 import pcapng_reader  # noqa: E402
 import wire  # noqa: E402
-from lab import HEAD_ADDRESS, REPORT_PORT, SURFACE_ADDRESS, Lab, need  # noqa: E402
+from lab import HEAD_ADDRESS, REPORT_PORT, TOPSIDE_ADDRESS, Lab, need  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 DISSECTORS = os.path.join(SOURCE, "clients", "wireshark")
@@ -183,14 +183,14 @@ class RecordingTest(unittest.TestCase):
         return daemon
 
     def start_viewer(self, *options, range_m=4):
-        return self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonarview"), "--surface-address", SURFACE_ADDRESS,
+        return self.lab.start(self.lab.topside, os.path.join(PROGRAMS, "sonarview"), "--surface-address", TOPSIDE_ADDRESS,
                               "--head", HEAD_ADDRESS, "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait",
                               str(PATIENCE_S), "--range", str(range_m), *options)
 
     def start_scan(self, raw, *options, way=None):
         """A client of the Micron; its lines as they came go to a file."""
         way = way or ["--tcp", f"{HEAD_ADDRESS}:4001"]
-        where = self.lab.surface if way[0] == "--tcp" else self.lab.head
+        where = self.lab.topside if way[0] == "--tcp" else self.lab.head
         return self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--raw", raw, "--quiet", "--wait",
                               "30", *options)
 
@@ -344,7 +344,7 @@ class Logs(RecordingTest):
              for packet in self.packets()])
         self.assertGreater(sum(not message["to_client"] for message in messages["wire"]), 1)
         for message in messages["wire"]:
-            self.assertIn(message["peer"].split(":")[0], (SURFACE_ADDRESS, "255.255.255.255"))
+            self.assertIn(message["peer"].split(":")[0], (TOPSIDE_ADDRESS, "255.255.255.255"))
 
     def test_what_is_compressed_coded_or_of_16_bits(self):
         for number, options in enumerate((["--compression", "2"], ["--rle", "60"], ["--bits", "16"])):
@@ -444,7 +444,7 @@ class Logs(RecordingTest):
 
     def test_two_daemons_do_not_share_a_folder(self):
         self.start_daemon()
-        second = self.lab.start(self.lab.surface, os.path.join(PROGRAMS, "sonard"), "run",
+        second = self.lab.start(self.lab.topside, os.path.join(PROGRAMS, "sonard"), "run",
                                 os.path.join(self.folder.name, "sonard.yaml"))
         self.assertEqual(second.wait(START_S), 2, second.tail())
         self.assertRegex(second.output(), r"sonard.yaml:\d+:\d+: recording.directory: another daemon records into ")
@@ -469,7 +469,7 @@ class Replays(RecordingTest):
             self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
         if play:
             self.assertEqual(daemon.wait(PATIENCE_S), 0, daemon.tail())
-            self.assertIn("the recording is over", daemon.output())
+            self.assertIn("the recording has ended", daemon.output())
         else:
             self.end_daemon(daemon)
         return daemon, self.scanned(raw), self.mcap_messages()
@@ -526,7 +526,7 @@ class Faults(RecordingTest):
     def test_a_poor_link_and_a_client_that_vanishes_and_comes_back(self):
         daemon = self.start_daemon(more=self.LINK)
         received = []
-        vanished = (0.1, 4.0, 0.0)  # the second time for longer than a head waits for its surface
+        vanished = (0.1, 4.0, 0.0)  # the second time for longer than a head waits for its topside
         for pause_s in vanished:
             viewer = self.start_viewer("--continuous", "40")
             viewer.wait_for_line("^ping .*lines_lost=0 ", PATIENCE_S, count=15)  # over such a link not every ping is whole
@@ -548,7 +548,7 @@ class Faults(RecordingTest):
         self.assertGreaterEqual(count, int(head["pings_sent"]))
         self.assertLessEqual(count, int(head["pings_sent"]) + len(vanished))
         self.assertGreater(int(head["lines_resent"]), 100)
-        self.assertEqual(head["surface_timeouts"], "1")
+        self.assertEqual(head["topside_timeouts"], "1")
 
         numbers = [int(message["number"]) for message in messages["image"]]
         self.assertLess(numbers[-1], 256)

@@ -7,8 +7,8 @@ namespace sonard::gemini::testing {
 namespace {
 
 constexpr Header from_601{.sonar_id = 601};
-constexpr Header later_surface_to_601{.sonar_id = 601, .destination = 2, .source = 1};
-constexpr Header later_surface_to_1234{.sonar_id = 1234, .destination = 2, .source = 1};
+constexpr Header later_client_to_601{.sonar_id = 601, .destination = 2, .source = 1};
+constexpr Header later_client_to_1234{.sonar_id = 1234, .destination = 2, .source = 1};
 
 /// Counts up modulo 256, as the data of the fixtures do.
 template <std::size_t N>
@@ -55,9 +55,9 @@ PingConfig ping_config() {
 }
 
 /// Section 10: "header sub-device bytes, velMode 0, 482 lines, 250 ms, 1500.0 m/s".
-PingConfig ping_config_later_surface() {
+PingConfig ping_config_later_client() {
   PingConfig config = ping_config();
-  config.header = later_surface_to_601;
+  config.header = later_client_to_601;
   config.end_range = 482;
   config.interping_us = 250'000;
   config.spreading = 213;
@@ -69,7 +69,7 @@ PingConfig ping_config_later_surface() {
 /// 10 m, gain 50 %, 1500 m/s, single ping.
 PingConfig observed_ping_config() {
   PingConfig config = ping_config();
-  config.header = later_surface_to_1234;
+  config.header = later_client_to_1234;
   config.ext_mode = 0x0004;
   config.end_range = 1206;
   config.main_gain = 0xC3E8;
@@ -92,7 +92,7 @@ PingConfig observed_ping_config_mk2() {
   return config;
 }
 
-/// Section 3.6 defaults, and the 0x0100 and 10000 that later surfaces were seen to send.
+/// Section 3.6 defaults, and the 0x0100 and 10000 that later clients were seen to send.
 NetworkConfig network_config(const Header& header) {
   NetworkConfig config;
   config.header = header;
@@ -198,9 +198,9 @@ PingLine ping_line() {
 std::vector<CommandExample> command_examples() {
   return {
       {"status_request", StatusRequest{from_601}},
-      {"observed_status_request", StatusRequest{later_surface_to_1234}},
+      {"observed_status_request", StatusRequest{later_client_to_1234}},
       {"ping_config", ping_config()},
-      {"ping_config_later_surface", ping_config_later_surface()},
+      {"ping_config_later_client", ping_config_later_client()},
       {"observed_ping_config", observed_ping_config()},
       {"observed_ping_config_mk2", observed_ping_config_mk2()},
       {"flash_write", FlashWrite{from_601, 0x120400, 1, counting<1024>()}},
@@ -209,28 +209,28 @@ std::vector<CommandExample> command_examples() {
       {"info_block_write_velocimeter", InfoBlockWrite{from_601, 0, VelocimeterBlock{123456789, -2}}},
       // 192.168.2.77, mask 255.255.255.0
       {"observed_info_block_write",
-       InfoBlockWrite{later_surface_to_1234, 0, AddressBlock{0xC0A8024D, 0xFFFFFF00}}},
+       InfoBlockWrite{later_client_to_1234, 0, AddressBlock{0xC0A8024D, 0xFFFFFF00}}},
       {"info_block_read", InfoBlockRead{from_601, 2}},
       {"serial_transmit", SerialTransmit{from_601, {0x40, 0x30, 0x0A}}},
-      {"observed_reboot", Reboot{later_surface_to_1234, 1}},
+      {"observed_reboot", Reboot{later_client_to_1234, 1}},
       {"test_result_request", TestResultRequest{from_601}},
       {"production_test", ProductionTest{from_601, 0x8102030405060708, 1}},
       {"power_on_self_test", PowerOnSelfTest{from_601}},
       {"abort_production_test", AbortProductionTest{from_601}},
       {"retry_line", RetryRequest{from_601, RetryKind::lines, 10, 1}},
       {"retry_tail", RetryRequest{from_601, RetryKind::tail, 0, 1}},
-      {"observed_retry_lines", RetryRequest{later_surface_to_1234, RetryKind::lines, 40, 3}},
-      {"observed_retry_tail", RetryRequest{later_surface_to_1234, RetryKind::tail, 0, 1}},
-      {"network_config", network_config(later_surface_to_601)},
-      {"observed_network_config", network_config(later_surface_to_1234)},
+      {"observed_retry_lines", RetryRequest{later_client_to_1234, RetryKind::lines, 40, 3}},
+      {"observed_retry_tail", RetryRequest{later_client_to_1234, RetryKind::tail, 0, 1}},
+      {"network_config", network_config(later_client_to_601)},
+      {"observed_network_config", network_config(later_client_to_1234)},
       {"network_config_early", network_config_early()},
       // select the VDSL modem, write 0x5B11 to register 0x10
       {"mdio_commands", MdioCommands{from_601, {0x0056, 0x0053, 0x0010, 0x5B11}}},
       {"tx_drive_test", TxDriveTest{from_601, 0x1234}},
       {"gpo_write", GpoWrite{from_601, 1}},
       {"gpio_read", GpioRead{from_601}},
-      {"observed_diagnostic_request", DiagnosticRequest{later_surface_to_1234}},
-      {"observed_going_offline", GoingOffline{later_surface_to_1234}},
+      {"observed_diagnostic_request", DiagnosticRequest{later_client_to_1234}},
+      {"observed_going_offline", GoingOffline{later_client_to_1234}},
   };
 }
 

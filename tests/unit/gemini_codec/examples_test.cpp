@@ -75,7 +75,7 @@ TEST(Examples, last_and_resent_lines_differ_from_the_first_in_two_fields) {
   EXPECT_EQ(start, load_fixture("ping_line_resent_start"));
 }
 
-TEST(Examples, production_test_of_a_32_bit_surface_means_the_same) {
+TEST(Examples, production_test_of_a_32_bit_topside_means_the_same) {
   const auto short_form = decode_command(load_fixture("production_test_32_bit"));
   const auto long_form = decode_command(load_fixture("production_test"));
   ASSERT_TRUE(short_form && long_form);

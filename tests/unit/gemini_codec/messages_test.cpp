@@ -49,7 +49,7 @@ TEST(PingConfig, run_mode_is_two_bits) {
   PingConfig config;
   config.run_mode = 0x8002;
   EXPECT_EQ(config.mode(), RunMode::external_trigger);
-  config.run_mode = 0x0011;  // later surfaces set further bits
+  config.run_mode = 0x0011;  // later clients set further bits
   EXPECT_EQ(config.mode(), RunMode::continuous);
 }
 

@@ -19,44 +19,44 @@ std::vector<std::string> texts(const std::vector<Notice>& notices) {
 
 using Texts = std::vector<std::string>;
 
-TEST(Notices, TellOfASurfaceThatComesAndGoes) {
+TEST(Notices, TellOfATopsideThatComesAndGoes) {
   Bench bench;
   bench.run_until(500ms);
   EXPECT_TRUE(bench.notices.empty()) << "nobody is there yet, and was not before";
   bench.command(to_head<StatusRequest>());
-  EXPECT_EQ(texts(bench.last.notices), Texts{"surface 192.168.2.5 connected"});
+  EXPECT_EQ(texts(bench.last.notices), Texts{"topside 192.168.2.5 connected"});
   bench.command(to_head<StatusRequest>());
   EXPECT_TRUE(bench.last.notices.empty()) << "once";
   bench.run_until(3499ms);
   EXPECT_EQ(bench.notices.size(), 1U);
   bench.run_until(3500ms);
   EXPECT_EQ(texts(bench.last.notices),
-            Texts{"surface 192.168.2.5 lost: no command for the time-out, or reboot"});
+            Texts{"topside 192.168.2.5 lost: no command for the time-out, or reboot"});
   bench.run_until(20s);
   EXPECT_EQ(bench.notices.size(), 2U);
   bench.command(to_head<StatusRequest>());
-  EXPECT_EQ(texts(bench.last.notices), Texts{"surface 192.168.2.5 connected"});
+  EXPECT_EQ(texts(bench.last.notices), Texts{"topside 192.168.2.5 connected"});
 }
 
-TEST(Notices, TellOfTheNewestSurface) {
+TEST(Notices, TellOfTheNewestTopside) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.command(to_head<StatusRequest>(), other_surface);
-  EXPECT_EQ(texts(bench.notices), (Texts{"surface 192.168.2.5 connected", "surface 192.168.2.6 connected"}));
+  bench.command(to_head<StatusRequest>(), other_topside);
+  EXPECT_EQ(texts(bench.notices), (Texts{"topside 192.168.2.5 connected", "topside 192.168.2.6 connected"}));
 }
 
-TEST(Notices, TellOfASurfaceThatRebootsTheHead) {
+TEST(Notices, TellOfATopsideThatRebootsTheHead) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
   bench.command(to_head<Reboot>());
   EXPECT_EQ(texts(bench.notices),
-            (Texts{"surface 192.168.2.5 connected",
-                   "surface 192.168.2.5 lost: no command for the time-out, or reboot"}));
+            (Texts{"topside 192.168.2.5 connected",
+                   "topside 192.168.2.5 lost: no command for the time-out, or reboot"}));
   bench.run_until(6s);
   bench.command(to_head<Reboot>());  // its first command is its last
   EXPECT_EQ(texts(bench.last.notices),
-            (Texts{"surface 192.168.2.5 connected",
-                   "surface 192.168.2.5 lost: no command for the time-out, or reboot"}));
+            (Texts{"topside 192.168.2.5 connected",
+                   "topside 192.168.2.5 lost: no command for the time-out, or reboot"}));
 }
 
 TEST(Notices, CommandsForOthersConnectNobody) {
@@ -68,7 +68,7 @@ TEST(Notices, CommandsForOthersConnectNobody) {
   EXPECT_TRUE(bench.notices.empty());
 }
 
-TEST(NobodyThere, UntilASurfaceSpeaksAndAfterItIsLost) {
+TEST(NobodyThere, UntilATopsideSpeaksAndAfterItIsLost) {
   Bench bench;
   EXPECT_TRUE(bench.last.nobody_there);
   bench.run_until(1s);
@@ -90,9 +90,9 @@ TEST(NobodyThere, UntilASurfaceSpeaksAndAfterItIsLost) {
 TEST(NobodyThere, IsNotSaidByTheTransport) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.step(ClientGone{{0, {surface_address, surface_port}, head_address}});
-  EXPECT_FALSE(bench.last.nobody_there) << "a surface is whoever sent the last command";
-  EXPECT_EQ(bench.device.surface(), surface_address);
+  bench.step(ClientGone{{0, {topside_address, topside_port}, head_address}});
+  EXPECT_FALSE(bench.last.nobody_there) << "a topside is whoever sent the last command";
+  EXPECT_EQ(bench.device.topside(), topside_address);
 }
 
 TEST(Cancelled, NamesTheJobThatNobodyWantsUntilItIsAnswered) {
@@ -103,7 +103,7 @@ TEST(Cancelled, NamesTheJobThatNobodyWantsUntilItIsAnswered) {
   EXPECT_EQ(bench.last.cancelled, std::nullopt);
   bench.run_until(2900ms);
   EXPECT_EQ(bench.last.cancelled, std::nullopt);
-  bench.run_until(3s);  // the surface is lost
+  bench.run_until(3s);  // the topside is lost
   EXPECT_EQ(bench.last.cancelled, 0U);
   bench.run_until(5s);
   EXPECT_EQ(bench.last.cancelled, 0U) << "as long as it is out";
@@ -145,17 +145,17 @@ TEST(Cancelled, ByAReboot) {
 
 TEST(Answers, GoToThePortOfTheConfiguration) {
   DeviceConfig config = example_config();
-  config.surface_port = 40'001;
+  config.topside_port = 40'001;
   Bench bench(config);
   bench.step(
-      BytesReceived{{0, {surface_address, 55'555}, head_address}, SharedBytes(encode(Command{ping_of(32)}))});
+      BytesReceived{{0, {topside_address, 55'555}, head_address}, SharedBytes(encode(Command{ping_of(32)}))});
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
   bench.command(to_head<StatusRequest>());
   ASSERT_FALSE(bench.last.send.empty());
   for (const Outgoing& answer : bench.last.send) {
     EXPECT_EQ(answer.to, Outgoing::To::peer);
-    EXPECT_EQ(answer.peer, (Peer{0, {surface_address, 40'001}, head_address}));
+    EXPECT_EQ(answer.peer, (Peer{0, {topside_address, 40'001}, head_address}));
   }
 }
 

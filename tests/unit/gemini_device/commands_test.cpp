@@ -5,14 +5,14 @@
 namespace sonard::gemini {
 namespace {
 
-/// The bytes answered to the surface by one command, one entry per datagram.
+/// The bytes answered to the topside by one command, one entry per datagram.
 std::vector<std::vector<std::uint8_t>> answers(Bench& bench, std::span<const std::uint8_t> command) {
   const std::size_t before = bench.sent.size();
   bench.raw(command);
   std::vector<std::vector<std::uint8_t>> result;
   for (std::size_t i = before; i < bench.sent.size(); ++i) {
     EXPECT_EQ(bench.sent[i].to, Outgoing::To::peer);
-    EXPECT_EQ(bench.sent[i].surface, surface_address);
+    EXPECT_EQ(bench.sent[i].topside, topside_address);
     EXPECT_EQ(bench.sent[i].reply_from, head_address);
     result.push_back(copy(bench.sent[i].bytes));
   }
@@ -32,7 +32,7 @@ TEST(Commands, StatusRequestIsAcknowledgedAtOnceAndDrawsNoStatus) {
             Datagrams{from_hex("49 01 59 02 00 00 00 00 78 56 34 12 00 00 00 00 78 56 34 12 00 00 00 00")});
 }
 
-TEST(Commands, DiagnosticRequestAsLaterSurfacesSendIt) {
+TEST(Commands, DiagnosticRequestAsLaterClientsSendIt) {
   Bench bench;
   EXPECT_EQ(answers(bench, "36 01 59 02 00 00 02 01 00 00 00 00"),
             Datagrams{from_hex("4d 01 59 02 00 00 00 00 01 00 02 00 03 00 04 00 05 00")});
@@ -43,7 +43,7 @@ TEST(Commands, NetworkConfigIsTakenInSilence) {
   EXPECT_TRUE(answers(bench, "31 01 59 02 00 00 02 01 0f 0f 00 00 16 05 50 c3 00 00 00 01 10 27").empty());
   EXPECT_TRUE(answers(bench, "31 01 59 02 00 00 00 00 0f 0f 00 00 16 05 50 c3 00 00 00 00").empty());
   EXPECT_EQ(bench.device.counters().commands, 2U);
-  EXPECT_EQ(bench.device.surface(), surface_address);
+  EXPECT_EQ(bench.device.topside(), topside_address);
 }
 
 TEST(Commands, TestsSerialAndModemGetTheirHarmlessAnswers) {
@@ -120,7 +120,7 @@ TEST(Commands, InfoBlocksAreReadAtTheirAddresses) {
   EXPECT_TRUE(answers(bench, "25 01 59 02 00 00 00 00 03 00 00 00").empty());
 }
 
-/// 0x24 as a later surface sends it, for 192.168.2.77/24: see tests/data/gemini/notes.md.
+/// 0x24 as a later client sends it, for 192.168.2.77/24: see tests/data/gemini/notes.md.
 std::vector<std::uint8_t> write_address_77() {
   auto command = from_hex("24 01 59 02 00 00 02 01 02 00 00 00 00 00 00 00 4d 02 a8 c0 00 ff ff ff");
   command.resize(152, 0);
@@ -182,7 +182,7 @@ TEST(Commands, RebootIsFiveSecondsOfSilenceAndAClockFromZero) {
   bench.run_until(2500ms);
   bench.command(to_head<Reboot>());
   const std::size_t at_reboot = bench.sent.size();
-  EXPECT_EQ(bench.device.surface(), 0U);
+  EXPECT_EQ(bench.device.topside(), 0U);
   bench.run_until(5s);
   bench.command(to_head<StatusRequest>());
   bench.command(ping_of(100));
@@ -224,7 +224,7 @@ TEST(Commands, OnlyTheOwnIdIsHeard) {
   }
   EXPECT_EQ(bench.count(MessageType::acknowledge), 0U);
   EXPECT_EQ(bench.device.counters().wrong_id, 5U);
-  EXPECT_EQ(bench.device.surface(), 0U) << "a command for another head connects nobody";
+  EXPECT_EQ(bench.device.topside(), 0U) << "a command for another head connects nobody";
 }
 
 TEST(Commands, IdZeroCanBeAllowed) {
@@ -254,7 +254,7 @@ TEST(Commands, UnknownAndShortMessagesAreTakenInSilence) {
     EXPECT_TRUE(answers(bench, bad).empty()) << bad;
   }
   EXPECT_EQ(bench.device.counters().bad_datagrams, 6U);
-  EXPECT_EQ(bench.device.surface(), 0U) << "neither connects a surface";
+  EXPECT_EQ(bench.device.topside(), 0U) << "neither connects a topside";
 }
 
 TEST(Commands, TrailingBytesAreIgnored) {
@@ -262,22 +262,22 @@ TEST(Commands, TrailingBytesAreIgnored) {
   EXPECT_EQ(answers(bench, "20 01 59 02 00 00 00 00 de ad be ef").size(), 1U);
 }
 
-TEST(Commands, NewestSurfaceGetsTheAnswers) {
+TEST(Commands, NewestTopsideGetsTheAnswers) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.command(to_head<StatusRequest>(), other_surface);
+  bench.command(to_head<StatusRequest>(), other_topside);
   ASSERT_EQ(bench.sent.size(), 3U);
-  EXPECT_EQ(bench.sent[1].surface, surface_address);
-  EXPECT_EQ(bench.sent[2].surface, other_surface);
-  EXPECT_EQ(bench.device.surface(), other_surface);
-  EXPECT_EQ(bench.device.counters().surface_changes, 1U);
+  EXPECT_EQ(bench.sent[1].topside, topside_address);
+  EXPECT_EQ(bench.sent[2].topside, other_topside);
+  EXPECT_EQ(bench.device.topside(), other_topside);
+  EXPECT_EQ(bench.device.counters().topside_changes, 1U);
 }
 
 TEST(Commands, AnswersComeFromTheAddressThatWasAddressed) {
   Bench bench;
-  bench.raw(encode(Command{to_head<StatusRequest>()}), surface_address, 0x0A3D13C8);
+  bench.raw(encode(Command{to_head<StatusRequest>()}), topside_address, 0x0A3D13C8);
   EXPECT_EQ(bench.sent.back().reply_from, 0x0A3D13C8U);
-  bench.raw(encode(Command{to_head<StatusRequest>()}), surface_address, head_address);
+  bench.raw(encode(Command{to_head<StatusRequest>()}), topside_address, head_address);
   EXPECT_EQ(bench.sent.back().reply_from, head_address);
 }
 

@@ -153,7 +153,7 @@ TEST(Pacing, InterPacketGapIsALeastDistance) {
     std::uint16_t gap;  // 8 ns
     std::chrono::nanoseconds distance;
   };
-  // What later surfaces ask for on a bad link, a gap shorter than a line takes anyway, and the greatest one.
+  // What later clients ask for on a bad link, a gap shorter than a line takes anyway, and the greatest one.
   for (const Case& c : {Case{8000, 64us}, {10000, 80us}, {1000, 27us}, {65535, 524'280ns}}) {
     std::mt19937 random(3);
     Bench bench;

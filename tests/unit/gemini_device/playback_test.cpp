@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head that plays back: it sends what it is fed, when that is due, whatever the surface asks for.
+// A head that plays back: it sends what it is fed, when that is due, whatever the topside asks for.
 #include <algorithm>
 
 #include "bench.hpp"
@@ -173,7 +173,7 @@ TEST_F(Playback, OutOfTheWaterAPingIsKept) {
   EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
-TEST_F(Playback, ARecordingWithoutAGainLeavesThatOfTheSurface) {
+TEST_F(Playback, ARecordingWithoutAGainLeavesThatOfTheTopside) {
   RecordedPing ping = recorded(7);
   ping.settings.gain_percent = -1.0;
   bench.step(PingFed{ping});

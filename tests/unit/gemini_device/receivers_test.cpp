@@ -202,7 +202,7 @@ class LossyBench {
       : bench(device), receiver_(std::move(receiver)), loss_(loss), random_(seed) {
     bench.on_sent = [this](const Bench::Sent& sent) {
       if (sent.to == Outgoing::To::peer && !lost(sent.bytes)) {
-        to_surface_.emplace(sent.at + latency, sent.bytes);
+        to_topside_.emplace(sent.at + latency, sent.bytes);
       }
     };
   }
@@ -227,7 +227,7 @@ class LossyBench {
     while (const auto next = next_event(end)) {
       bench.run_until(*next);
       deliver(to_head_, [this](const auto& bytes) { bench.raw(bytes); });
-      deliver(to_surface_, [this](const auto& bytes) { receiver_->on_datagram(bench.now, bytes); });
+      deliver(to_topside_, [this](const auto& bytes) { receiver_->on_datagram(bench.now, bytes); });
       if (receiver_->next_tick() && *receiver_->next_tick() <= bench.now) {
         receiver_->on_tick(bench.now);
       }
@@ -252,7 +252,7 @@ class LossyBench {
   std::optional<TimePoint> next_event(TimePoint end) const {
     TimePoint next =
         std::min(bench.next_event(), bench.now + 1ms);  // the application looks once per millisecond
-    next = to_surface_.empty() ? next : std::min(next, to_surface_.begin()->first);
+    next = to_topside_.empty() ? next : std::min(next, to_topside_.begin()->first);
     next = to_head_.empty() ? next : std::min(next, to_head_.begin()->first);
     next = std::min(next, receiver_->next_tick().value_or(next));
     return next <= end ? std::optional(std::max(next, bench.now)) : std::nullopt;
@@ -266,7 +266,7 @@ class LossyBench {
   std::unique_ptr<Receiver> receiver_;
   double loss_;
   std::mt19937 random_;
-  std::multimap<TimePoint, SharedBytes> to_surface_;
+  std::multimap<TimePoint, SharedBytes> to_topside_;
   std::multimap<TimePoint, std::vector<std::uint8_t>> to_head_;
 };
 
@@ -417,7 +417,7 @@ TEST(Receivers, OneLostLineRunsAsDocumented) {
   Bench bench;
   EarlyReceiver receiver;
   std::vector<std::string> head_says;
-  std::vector<std::string> surface_says;
+  std::vector<std::string> topside_says;
   bool dropped = false;
   bench.on_sent = [&](const Bench::Sent& sent) {
     const auto report = decode_report(sent.bytes).value();
@@ -437,11 +437,11 @@ TEST(Receivers, OneLostLineRunsAsDocumented) {
   while (bench.now < 100ms) {
     bench.run_for(100us);
     for (const RetryRequest& request : std::exchange(receiver.requests, {})) {
-      surface_says.push_back(request.kind == RetryKind::lines ? line_word(request.first_line) : "tail");
+      topside_says.push_back(request.kind == RetryKind::lines ? line_word(request.first_line) : "tail");
       bench.command(request);
     }
   }
-  EXPECT_EQ(surface_says, (std::vector<std::string>{"line 10", "tail"}));
+  EXPECT_EQ(topside_says, (std::vector<std::string>{"line 10", "tail"}));
   EXPECT_EQ(head_says, (std::vector<std::string>{"tail", "line 10", "tail again"}));
   ASSERT_EQ(receiver.completed.size(), 1U);
   EXPECT_EQ(receiver.completed[0].lost_lines, 0);

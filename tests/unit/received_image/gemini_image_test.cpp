@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of speckle and noise on the 8-bit image as a client has it: the head's job makes the settings,
-// the receiver the samples, the head sends them, and a surface puts the image together (T12 of
+// the receiver the samples, the head sends them, and a topside puts the image together (T12 of
 // docs/physics.md 3.2). Expected values are those of 2.8 and 2.16.
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include "protocol/gemini/device.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "protocol/gemini/surface.hpp"
+#include "protocol/gemini/topside.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/gemini/kind.hpp"
@@ -34,11 +34,11 @@ struct Image {
   double at(int line, int beam) const { return codes[static_cast<std::size_t>(line * beams + beam)]; }
 };
 
-/// Head and surface with nothing lost between them; the world is an even echo.
+/// Head and topside with nothing lost between them; the world is an even echo.
 class Client {
  public:
   Client(const render::SonarSettings& acoustics, int native_lines, int compression_log2 = 0)
-      : device_(device_config(), now_), surface_(gemini::SurfaceConfig{}) {
+      : device_(device_config(), now_), topside_(gemini::TopsideConfig{}) {
     head_.acoustics = acoustics;
     gemini::PingSettings wanted;
     wanted.compression_log2 = compression_log2;
@@ -48,10 +48,10 @@ class Client {
 
   std::vector<Image> images(int pings, float intensity) {
     std::vector<Image> images;
-    surface_.start(now_, config_, static_cast<std::uint64_t>(pings));
-    while (!surface_.finished() && now_ < 1000s) {
+    topside_.start(now_, config_, static_cast<std::uint64_t>(pings));
+    while (!topside_.finished() && now_ < 1000s) {
       step(intensity);
-      for (const gemini::ReceivedPing& ping : surface_.take_pings()) {
+      for (const gemini::ReceivedPing& ping : topside_.take_pings()) {
         EXPECT_TRUE(ping.complete());
         images.push_back({ping.lines, line_m_, ping.samples.u8});
       }
@@ -70,9 +70,9 @@ class Client {
 
   void step(float intensity) {
     happen(TimePassed{}, intensity);
-    surface_.advance(now_);
-    for (const auto& datagram : surface_.take_outgoing()) {
-      happen(BytesReceived{{0, {surface_address, 52900}, head_address}, SharedBytes(datagram.bytes)},
+    topside_.advance(now_);
+    for (const auto& datagram : topside_.take_outgoing()) {
+      happen(BytesReceived{{0, {topside_address, 52900}, head_address}, SharedBytes(datagram.bytes)},
              intensity);
     }
     now_ += 200us;
@@ -81,7 +81,7 @@ class Client {
   void happen(const Event& event, float intensity) {
     const Actions actions = device_.step(now_, event);
     for (const Outgoing& datagram : actions.send) {
-      surface_.on_datagram(now_, datagram.bytes);
+      topside_.on_datagram(now_, datagram.bytes);
     }
     if (actions.render) {
       happen(PingRendered{render(*actions.render, intensity)}, intensity);
@@ -102,12 +102,12 @@ class Client {
   }
 
   static constexpr Ipv4 head_address = 0x7F000002;
-  static constexpr Ipv4 surface_address = 0x7F000001;
+  static constexpr Ipv4 topside_address = 0x7F000001;
 
   server::HeadConfig head_ = server::gemini_kind().make_default();
   TimePoint now_ = 0s;
   gemini::Device device_;
-  gemini::Surface surface_;
+  gemini::Topside topside_;
   gemini::PingConfig config_;
   render::Receiver receiver_;
   render::WorkerPool workers_{2};
@@ -200,13 +200,13 @@ void expect_speckle_of_the_array(const Image& image) {
   EXPECT_NEAR(covariance(part, 3) / variance, 0.08, 0.04);
 }
 
-TEST(GeminiImage, EchoOfAnEvenWallIsRayleighWithTheGrainOfTheArray) {
+TEST(GeminiImage, EchoOfAnEvenWallIsRayleighAndCorrelatedByTheArray) {
   render::SonarSettings settings = even_gain();
   settings.physical.noise = false;
   expect_speckle_of_the_array(Client(settings, 2100).images(1, static_cast<float>(level)).front());
 }
 
-TEST(GeminiImage, NoiseOfEmptyWaterIsRayleighWithTheSameGrain) {
+TEST(GeminiImage, NoiseOfEmptyWaterIsRayleighWithTheSameCorrelation) {
   expect_speckle_of_the_array(Client(even_gain(), 2100).images(1, 0).front());
 }
 

@@ -53,10 +53,10 @@ Bytes continuous_config() {
   return config;
 }
 
-// Runs serve() on this thread while `surface` plays the client on another.
+// Runs serve() on this thread while `topside` plays the client on another.
 struct DaemonTest : testing::Test {
   const Ipv4 head_address = test::own_loopback_address(2);
-  const Ipv4 surface_address = test::own_loopback_address(1);
+  const Ipv4 topside_address = test::own_loopback_address(1);
   std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
   DaemonConfig config;
 
@@ -74,8 +74,8 @@ struct DaemonTest : testing::Test {
     device->device.netmask = 0xFF000000;
     device->device.min_ping_period = std::chrono::milliseconds{1};
     device->bind_address = address;
-    device->status = {StatusDestination::Mode::unicast, {surface_address}};
-    device->allow = {{surface_address, 32}};
+    device->status = {StatusDestination::Mode::unicast, {topside_address}};
+    device->allow = {{topside_address, 32}};
     HeadConfig result = gemini_kind().make_default();
     result.name = name;
     result.device = std::move(device);
@@ -83,25 +83,25 @@ struct DaemonTest : testing::Test {
   }
 
   // A client: for each datagram that arrives it does what `react` says; ends when that returns true.
-  static void play_surface(UdpEndpoint& surface, boost::asio::io_context& io,
+  static void play_topside(UdpEndpoint& topside, boost::asio::io_context& io,
                            const std::function<bool(const Datagram&)>& react) {
     bool done = false;
-    surface.start([&](const Datagram& datagram) { done = done || react(datagram); });
+    topside.start([&](const Datagram& datagram) { done = done || react(datagram); });
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{20};
     while (!done && std::chrono::steady_clock::now() < deadline) {
       io.run_one_for(std::chrono::milliseconds{10});
       io.restart();
     }
     EXPECT_TRUE(done) << "the daemon did not answer in time";
-    surface.close();
+    topside.close();
   }
 
   // Serves until the client has seen enough, then ends the daemon by a signal, as an operator does.
   int serve_until(const std::function<bool(UdpEndpoint&, const Datagram&)>& react, bool send_signal = true) {
     boost::asio::io_context io;
-    UdpEndpoint surface(io, {surface_address, 52900});
+    UdpEndpoint topside(io, {topside_address, 52900});
     std::thread client([&] {
-      play_surface(surface, io, [&](const Datagram& datagram) { return react(surface, datagram); });
+      play_topside(topside, io, [&](const Datagram& datagram) { return react(topside, datagram); });
       if (send_signal) {
         kill(getpid(), SIGTERM);
       }
@@ -195,9 +195,9 @@ TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
     }));
     lines_are_here = true;
   });
-  const int code = serve_until([&](UdpEndpoint& surface, const Datagram& datagram) {
+  const int code = serve_until([&](UdpEndpoint& topside, const Datagram& datagram) {
     if (is(datagram, 0x40) && !fan_is_busy) {
-      surface.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+      topside.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
     }
     return lines_are_here.load() && is(datagram, 0x43);
   });
@@ -210,8 +210,8 @@ TEST_F(DaemonTest, RendererThatFailsWhileServingEndsItWithItsOwnCode) {
     throw render::RendererError("context lost");
   };
   const int code = serve_until(
-      [this](UdpEndpoint& surface, const Datagram&) {
-        surface.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+      [this](UdpEndpoint& topside, const Datagram&) {
+        topside.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
         return true;
       },
       /*send_signal=*/false);
@@ -243,9 +243,9 @@ TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
   for (int life = 0; life < 50; ++life) {
     int heads = 0;
     const auto started = std::chrono::steady_clock::now();
-    const int code = serve_until([&](UdpEndpoint& surface, const Datagram& datagram) {
+    const int code = serve_until([&](UdpEndpoint& topside, const Datagram& datagram) {
       if (is(datagram, 0x40)) {
-        surface.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+        topside.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
       }
       heads += is(datagram, 0x41) ? 1 : 0;
       return heads > life % 3;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface's side of a Gemini 720i as a pure state machine: datagrams and time go in; datagrams and pings
+// The topside's side of a Gemini 720i as a pure state machine: datagrams and time go in; datagrams and pings
 // come out. It knows no sockets, clocks or threads. Source: docs/protocols/gemini.md 1, 5, 6, 7.
 //
 // It talks as the libraries of a vehicle do, and asks harder: whatever is lost on the way (a configuration, a
 // head, lines, a tail, the request for any of them, or what was sent in answer) is asked for again until the
-// ping is complete, the head goes on to its next ping, or nothing at all has come for a second.
+// ping is complete, the head begins its next ping, or nothing at all has come for a second.
 #pragma once
 
 #include <chrono>
@@ -23,13 +23,13 @@
 
 namespace sonard::gemini {
 
-struct SurfaceConfig {
+struct TopsideConfig {
   std::uint16_t sonar_id = 0;  ///< the head to talk to; 0: the first whose status arrives
   Ipv4 head_address = 0;       ///< where commands go; 0: the alternate address that the status names
 };
 
 /// A datagram to send now, to port 52901 of `to`.
-struct SurfaceDatagram {
+struct TopsideDatagram {
   Ipv4 to = 0;
   std::vector<std::uint8_t> bytes;
 };
@@ -78,7 +78,7 @@ struct LinkStatistics {
   std::uint64_t pings_incomplete = 0;  ///< delivered with lines missing
   std::uint64_t pings_missed = 0;      ///< IDs that were skipped: nothing at all arrived of those pings
   std::uint64_t pings_unrequested =
-      0;                              ///< seen, but answering no configuration of this surface; not delivered
+      0;                              ///< seen, but answering no configuration of this topside; not delivered
   std::uint64_t pings_abandoned = 0;  ///< broken off and not delivered: another ping came to answer the same
                                       ///< configuration, or no head came at all
   std::uint64_t configs_sent = 0;
@@ -87,16 +87,16 @@ struct LinkStatistics {
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
-class Surface {
+class Topside {
  public:
-  explicit Surface(const SurfaceConfig& config);
+  explicit Topside(const TopsideConfig& config);
 
   /// A datagram that arrived on port 52900. Bad ones are counted and dropped.
   void on_datagram(TimePoint now, std::span<const std::uint8_t> bytes);
 
   /// Starts to ping, at once or as soon as the head is known; replaces what was going on. Run mode single:
   /// the next configuration leaves when a ping has ended. Continuous: one configuration, the head keeps the
-  /// time. Ends after `pings` delivered pings, complete or not; 0: goes on until stop().
+  /// time. Ends after `pings` delivered pings, complete or not; 0: continues until stop().
   void start(TimePoint now, const PingConfig& config, std::uint64_t pings);
   /// Tells the head to stop; from here on nothing is sent, so that the head falls silent even if that is
   /// lost.
@@ -108,7 +108,7 @@ class Surface {
   std::optional<TimePoint> next_deadline() const;
 
   /// Datagrams due, in order. Each call empties the list.
-  std::vector<SurfaceDatagram> take_outgoing();
+  std::vector<TopsideDatagram> take_outgoing();
   /// Pings that ended, in order. Each call empties the list.
   std::vector<ReceivedPing> take_pings();
 
@@ -142,7 +142,7 @@ class Surface {
   /// The ping that is coming in.
   struct Incoming {
     Incoming(std::uint8_t id, TimePoint now)
-        : assembly(id), first_datagram(now), heard(now), progress(now), marked_at(now) {}
+        : assembly(id), first_datagram(now), last_arrival(now), progress(now), marked_at(now) {}
 
     /// Two pings of a head that counts its IDs otherwise than modulo 256 differ in their time.
     bool may_have(const PingHead& head) const {
@@ -151,7 +151,7 @@ class Surface {
 
     PingAssembly assembly;
     TimePoint first_datagram;
-    TimePoint heard;         ///< last datagram of it, or last time something was asked
+    TimePoint last_arrival;  ///< last datagram of it, or last time something was asked
     TimePoint progress;      ///< last datagram of it that brought something new
     bool requested = true;   ///< false: answers no configuration of ours; it is only watched until it ends
     bool pass_over = false;  ///< the head has sent all of it once; from here on it answers requests
@@ -181,7 +181,7 @@ class Surface {
   void on_report(TimePoint now, const PingLine& line);
   void on_report(TimePoint now, const PingTail& tail);
   template <class Other>
-  void on_report(TimePoint, const Other&) {}  // nothing that a surface needs
+  void on_report(TimePoint, const Other&) {}  // nothing that a topside needs
 
   void meet_head(TimePoint now);
   void on_reboot();
@@ -201,7 +201,7 @@ class Surface {
   Incoming* incoming_for(TimePoint now, std::uint8_t id);
   Incoming& begin(TimePoint now, std::uint8_t id);
   void adopt_head(TimePoint now, Incoming& ping, const PingHead& head);
-  void heard_answer(TimePoint now, Incoming& ping);
+  void on_answer(TimePoint now, Incoming& ping);
   void end_pass(Incoming& ping);
   void follow_first_pass(TimePoint now, Incoming& ping, int number);
   void ask_unasked(Incoming& ping, int end);
@@ -220,7 +220,7 @@ class Surface {
   template <class Message>
   void send(Message message);
 
-  SurfaceConfig config_;
+  TopsideConfig config_;
   std::optional<HeadInfo> head_;
   HeadClock head_clock_;
   bool diagnostic_known_ = false;
@@ -244,7 +244,7 @@ class Surface {
   ResponseTime request_to_answer_;
 
   std::uint64_t next_number_ = 0;
-  std::vector<SurfaceDatagram> outgoing_;
+  std::vector<TopsideDatagram> outgoing_;
   std::vector<ReceivedPing> pings_;
   LinkStatistics statistics_;
 };

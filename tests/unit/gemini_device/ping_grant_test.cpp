@@ -16,7 +16,7 @@ std::chrono::nanoseconds listening_of(int lines) {
   return std::chrono::nanoseconds{static_cast<std::int64_t>(lines / 90422.0 * 1e9)};
 }
 
-struct Permission : testing::Test {
+struct PingGrant : testing::Test {
   Bench bench{waiting()};
 
   /// Grants what the head would begin by now, as a server does.
@@ -30,11 +30,11 @@ struct Permission : testing::Test {
   }
 };
 
-TEST_F(Permission, NobodyWishesForAPingAtFirst) {
+TEST_F(PingGrant, NoPingIsNextAtFirst) {
   EXPECT_FALSE(bench.last.next_ping);
 }
 
-TEST_F(Permission, NothingIsSentWithoutIt) {
+TEST_F(PingGrant, NothingIsSentWithoutIt) {
   bench.command(ping_of(64, RunMode::continuous));
   bench.run_connected(5s);
   EXPECT_TRUE(bench.jobs.empty());
@@ -43,7 +43,7 @@ TEST_F(Permission, NothingIsSentWithoutIt) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(Permission, TheWishSaysHowPingsFollow) {
+TEST_F(PingGrant, TheNextPingSaysHowPingsFollow) {
   bench.command(ping_of(6028, RunMode::continuous, 200ms));  // 50 m
   ASSERT_TRUE(bench.last.next_ping);
   EXPECT_EQ(bench.last.next_ping->period, 200ms);
@@ -54,7 +54,7 @@ TEST_F(Permission, TheWishSaysHowPingsFollow) {
   EXPECT_EQ(bench.last.next_ping->period, waiting().min_ping_period);
 }
 
-TEST_F(Permission, APingForEach) {
+TEST_F(PingGrant, APingForEach) {
   bench.command(ping_of(64, RunMode::continuous));
   for (std::size_t pings = 1; pings <= 20; ++pings) {
     ASSERT_TRUE(grant());
@@ -64,7 +64,7 @@ TEST_F(Permission, APingForEach) {
   EXPECT_EQ(bench.count(MessageType::ping_tail), 20U);
 }
 
-TEST_F(Permission, ASinglePingIsWishedForOnce) {
+TEST_F(PingGrant, ASinglePingIsNextOnce) {
   bench.command(ping_of(64));
   ASSERT_TRUE(grant());
   bench.run_for(100ms);
@@ -72,7 +72,7 @@ TEST_F(Permission, ASinglePingIsWishedForOnce) {
   EXPECT_FALSE(bench.last.next_ping);
 }
 
-TEST_F(Permission, NoneIsWishedForWhileOneIsOnItsWay) {
+TEST_F(PingGrant, NoneIsNextWhileOneIsOnItsWay) {
   bench.render_time = 40ms;
   bench.command(ping_of(64, RunMode::continuous));
   ASSERT_TRUE(grant());
@@ -83,7 +83,7 @@ TEST_F(Permission, NoneIsWishedForWhileOneIsOnItsWay) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(Permission, AnEdgeOfTheTriggerIsAWish) {
+TEST_F(PingGrant, AnEdgeOfTheTriggerMakesAPingNext) {
   bench.command(ping_of(64, RunMode::external_trigger));
   EXPECT_FALSE(bench.last.next_ping);
   bench.trigger();
@@ -91,7 +91,7 @@ TEST_F(Permission, AnEdgeOfTheTriggerIsAWish) {
   EXPECT_EQ(bench.jobs.size(), 1U);
 }
 
-TEST_F(Permission, ASilentSurfaceWishesForNothing) {
+TEST_F(PingGrant, ASilentTopsideHasNoNextPing) {
   bench.command(ping_of(64, RunMode::continuous));
   bench.run_for(4s);
   EXPECT_FALSE(bench.last.next_ping);

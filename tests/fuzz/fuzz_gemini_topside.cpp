@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any sequence of datagrams and pauses against the surface's side of the protocol.
+// Any sequence of datagrams and pauses against the topside's side of the protocol.
 // Promises: every datagram that leaves is a command; an image that is delivered has the size that its head
 // announced; time goes on whatever comes in.
 #include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/codec.hpp"
-#include "protocol/gemini/surface.hpp"
+#include "protocol/gemini/topside.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/script.hpp"
 
@@ -28,18 +28,18 @@ class Bench {
     PingConfig config;
     switch (event.kind) {
       case start_single:
-        surface_.start(now_, config, 0);
+        topside_.start(now_, config, 0);
         break;
       case start_continuous:
         config.run_mode = 1;
-        surface_.start(now_, config, 3);
+        topside_.start(now_, config, 3);
         break;
       case stop:
-        surface_.stop();
+        topside_.stop();
         break;
       default:
         if (event.kind < start_single) {
-          surface_.on_datagram(now_, event.datagram);
+          topside_.on_datagram(now_, event.datagram);
         }
     }
     advance();
@@ -49,7 +49,7 @@ class Bench {
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;
     for (int i = 0; i < most_wake_ups; ++i) {
-      const auto deadline = surface_.next_deadline();
+      const auto deadline = topside_.next_deadline();
       if (!deadline || *deadline > target) {
         break;
       }
@@ -61,14 +61,14 @@ class Bench {
   }
 
   void advance() {
-    surface_.advance(now_);
-    for (const SurfaceDatagram& datagram : surface_.take_outgoing()) {
+    topside_.advance(now_);
+    for (const TopsideDatagram& datagram : topside_.take_outgoing()) {
       const auto command = decode_command(datagram.bytes);
       require(command.has_value() && !std::holds_alternative<Unknown>(*command),
-              "a surface speaks its protocol");
+              "a topside speaks its protocol");
       require(datagram.bytes.size() <= max_datagram_size, "no datagram fragments");
     }
-    for (const ReceivedPing& ping : surface_.take_pings()) {
+    for (const ReceivedPing& ping : topside_.take_pings()) {
       const auto lines = static_cast<std::size_t>(ping.head.line_count());
       require(ping.samples.u8.size() + ping.samples.u16.size() == lines * ping.head.beams,
               "an image has the size that its head announced");
@@ -77,7 +77,7 @@ class Bench {
   }
 
   TimePoint now_{};
-  Surface surface_{SurfaceConfig{}};
+  Topside topside_{TopsideConfig{}};
 };
 
 }  // namespace

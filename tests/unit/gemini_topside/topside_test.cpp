@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface against a head that says exactly what the test wants, in virtual time.
-#include "protocol/gemini/surface.hpp"
+// The topside against a head that says exactly what the test wants, in virtual time.
+#include "protocol/gemini/topside.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ std::vector<std::uint8_t> image(int id) {
   return samples;
 }
 
-class SurfaceTest : public testing::Test {
+class TopsideTest : public testing::Test {
  protected:
   PingConfig config(RunMode mode = RunMode::single) const {
     PingConfig made;
@@ -68,9 +68,9 @@ class SurfaceTest : public testing::Test {
   }
 
   template <class Message>
-  void hear(const Message& message) {
-    surface_.on_datagram(now_, encode(Report{message}));
-    surface_.advance(now_);
+  void receive(const Message& message) {
+    topside_.on_datagram(now_, encode(Report{message}));
+    topside_.advance(now_);
   }
 
   void hear_head(int id, bool resent = false) { hear_head(id, now_, resent); }
@@ -112,12 +112,12 @@ class SurfaceTest : public testing::Test {
   void pass(std::chrono::nanoseconds span) {
     const TimePoint end = now_ + span;
     while (true) {
-      const auto due = surface_.next_deadline();
+      const auto due = topside_.next_deadline();
       if (!due || *due > end) {
         break;
       }
       now_ = std::max(now_, *due);
-      surface_.advance(now_);
+      topside_.advance(now_);
     }
     now_ = end;
   }
@@ -126,7 +126,7 @@ class SurfaceTest : public testing::Test {
   template <class Message>
   std::vector<Message> said() {
     std::vector<Message> messages;
-    for (const auto& datagram : surface_.take_outgoing()) {
+    for (const auto& datagram : topside_.take_outgoing()) {
       EXPECT_EQ(datagram.to, alternate);
       const auto command = decode_command(datagram.bytes);
       EXPECT_TRUE(command.has_value());
@@ -158,43 +158,43 @@ class SurfaceTest : public testing::Test {
   void meet_and_start(const PingConfig& wanted, std::uint64_t pings = 0) {
     hear(status());
     hear(from_head(Diagnostic{}));
-    surface_.start(now_, wanted, pings);
-    surface_.advance(now_);
+    topside_.start(now_, wanted, pings);
+    topside_.advance(now_);
     ASSERT_THAT(said<PingConfig>(), SizeIs(1));
     now_ += 1ms;
   }
 
-  Surface surface_{SurfaceConfig{}};
+  Topside topside_{TopsideConfig{}};
   TimePoint now_ = 0s;
 };
 
 // ---- Meeting a head
 // ---------------------------------------------------------------------------------------------
 
-TEST_F(SurfaceTest, IsSilentUntilAStatusComes) {
-  surface_.start(now_, config(), 1);
+TEST_F(TopsideTest, IsSilentUntilAStatusComes) {
+  topside_.start(now_, config(), 1);
   pass(10s);
-  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
-  EXPECT_FALSE(surface_.head());
+  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
+  EXPECT_FALSE(topside_.head());
 }
 
-TEST_F(SurfaceTest, PingsOfAnUnknownHeadAreIgnored) {
+TEST_F(TopsideTest, PingsOfAnUnknownHeadAreIgnored) {
   // A client before us has died; its head still pings.
-  surface_.start(now_, config(RunMode::continuous), 1);
+  topside_.start(now_, config(RunMode::continuous), 1);
   hear_head(5);
   hear_lines(5, 0, 10);
   hear_lines(5, 20, 10);
   hear_tail(5);
   pass(1s);
-  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
   now_ += 1s;
   hear(status());
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
+TEST_F(TopsideTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
   hear(status());
-  const auto sent = surface_.take_outgoing();
+  const auto sent = topside_.take_outgoing();
   ASSERT_GE(sent.size(), 2U);
   // gemini.md 10; bytes 6 and 7 as the early library sends them.
   EXPECT_EQ(sent[0].bytes,
@@ -204,7 +204,7 @@ TEST_F(SurfaceTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
   EXPECT_EQ(sent[0].to, alternate);
 }
 
-TEST_F(SurfaceTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
+TEST_F(TopsideTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
   hear(status());
   EXPECT_THAT(said<DiagnosticRequest>(), SizeIs(1));
   pass(1s);
@@ -216,13 +216,13 @@ TEST_F(SurfaceTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
   EXPECT_THAT(said<DiagnosticRequest>(), IsEmpty());
 }
 
-TEST_F(SurfaceTest, KeepsTheHeadAwakeEverySecond) {
+TEST_F(TopsideTest, KeepsTheHeadAwakeEverySecond) {
   hear(status());
   pass(10s);
   EXPECT_THAT(said<StatusRequest>(), SizeIs(11));
 }
 
-TEST_F(SurfaceTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
+TEST_F(TopsideTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
   Status nowhere = status();
   nowhere.alternate_ip = 0;
   hear(nowhere);
@@ -232,57 +232,57 @@ TEST_F(SurfaceTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
   Status contradictory = status();
   contradictory.header.sonar_id = 77;
   hear(contradictory);
-  EXPECT_FALSE(surface_.head());
-  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+  EXPECT_FALSE(topside_.head());
+  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
 }
 
-TEST_F(SurfaceTest, TalksToOneHeadOnly) {
+TEST_F(TopsideTest, TalksToOneHeadOnly) {
   hear(status());
   Status other = status();
   other.sonar_id = other.header.sonar_id = 777;
   other.alternate_ip = 0x0A0A0A0A;
   hear(other);
-  EXPECT_EQ(surface_.head()->status.sonar_id, sonar_id);
-  EXPECT_EQ(surface_.statistics().other_heads, 1U);
+  EXPECT_EQ(topside_.head()->status.sonar_id, sonar_id);
+  EXPECT_EQ(topside_.statistics().other_heads, 1U);
 }
 
-TEST_F(SurfaceTest, WaitsForTheHeadItWasToldToTalkTo) {
-  surface_ = Surface(SurfaceConfig{.sonar_id = 777, .head_address = 0x0A0A0A0A});
+TEST_F(TopsideTest, WaitsForTheHeadItWasToldToTalkTo) {
+  topside_ = Topside(TopsideConfig{.sonar_id = 777, .head_address = 0x0A0A0A0A});
   hear(status());
-  EXPECT_FALSE(surface_.head());
+  EXPECT_FALSE(topside_.head());
   Status wanted = status();
   wanted.sonar_id = wanted.header.sonar_id = 777;
   hear(wanted);
-  ASSERT_TRUE(surface_.head());
-  EXPECT_EQ(surface_.take_outgoing().at(0).to, 0x0A0A0A0AU);
+  ASSERT_TRUE(topside_.head());
+  EXPECT_EQ(topside_.take_outgoing().at(0).to, 0x0A0A0A0AU);
 }
 
-TEST_F(SurfaceTest, BadDatagramsAreCounted) {
-  surface_.on_datagram(now_, std::vector<std::uint8_t>{0x41, 0x01, 0x59});
-  surface_.on_datagram(now_, {});
-  EXPECT_EQ(surface_.statistics().bad_datagrams, 2U);
+TEST_F(TopsideTest, BadDatagramsAreCounted) {
+  topside_.on_datagram(now_, std::vector<std::uint8_t>{0x41, 0x01, 0x59});
+  topside_.on_datagram(now_, {});
+  EXPECT_EQ(topside_.statistics().bad_datagrams, 2U);
 }
 
 // ---- Single pings
 // -----------------------------------------------------------------------------------------------
 
-TEST_F(SurfaceTest, ACompletePingIsDeliveredAndTheNextConfigurationLeavesAtOnce) {
+TEST_F(TopsideTest, ACompletePingIsDeliveredAndTheNextConfigurationLeavesAtOnce) {
   meet_and_start(config(), 2);
   hear_ping(5);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
   EXPECT_TRUE(pings[0].complete());
   EXPECT_EQ(pings[0].retries.total(), 0U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
-  EXPECT_FALSE(surface_.finished());
+  EXPECT_FALSE(topside_.finished());
   hear_ping(6);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
-  EXPECT_TRUE(surface_.finished());
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_TRUE(topside_.finished());
   EXPECT_THAT(said<PingConfig>(), IsEmpty());
 }
 
-TEST_F(SurfaceTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
+TEST_F(TopsideTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -297,26 +297,26 @@ TEST_F(SurfaceTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
   hear_tail(5);
   EXPECT_THAT(asked(), IsEmpty());
   hear_lines(5, 10, 3, true);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
   EXPECT_EQ(pings[0].lines_repaired, 3);
   EXPECT_EQ(pings[0].lines_lost, 0);
 }
 
-TEST_F(SurfaceTest, TheRequestForALineIsTheWorkedExample) {
+TEST_F(TopsideTest, TheRequestForALineIsTheWorkedExample) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
   hear_lines(5, 11, lines - 11);
   hear_tail(5);
-  const auto sent = surface_.take_outgoing();
+  const auto sent = topside_.take_outgoing();
   ASSERT_THAT(sent, SizeIs(1));
   EXPECT_EQ(sent[0].bytes,
             (std::vector<std::uint8_t>{0x30, 0x01, 0x59, 0x02, 0, 0, 0, 0, 1, 0, 0x0a, 0, 1, 0, 0, 0}));
 }
 
-TEST_F(SurfaceTest, LastLinesAreAskedForWhenTheTailComes) {
+TEST_F(TopsideTest, LastLinesAreAskedForWhenTheTailComes) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines - 2);
@@ -324,7 +324,7 @@ TEST_F(SurfaceTest, LastLinesAreAskedForWhenTheTailComes) {
   EXPECT_THAT(asked(), ElementsAre("38+2"));
 }
 
-TEST_F(SurfaceTest, LinesAreAskedForUntilTheyCome) {
+TEST_F(TopsideTest, LinesAreAskedForUntilTheyCome) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -336,10 +336,10 @@ TEST_F(SurfaceTest, LinesAreAskedForUntilTheyCome) {
     EXPECT_THAT(asked(), ElementsAre("10")) << "round " << round;
   }
   hear_line(5, 10, true);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
+TEST_F(TopsideTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -352,28 +352,28 @@ TEST_F(SurfaceTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
   }
 }
 
-TEST_F(SurfaceTest, ALostTailIsAskedFor) {
+TEST_F(TopsideTest, ALostTailIsAskedFor) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
-  EXPECT_THAT(surface_.take_pings(), IsEmpty());
+  EXPECT_THAT(topside_.take_pings(), IsEmpty());
   pass(5ms);
   EXPECT_THAT(asked(), ElementsAre("tail"));
   hear_tail(5, true);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, ATailThatNeverComesDoesNotSpoilTheImage) {
+TEST_F(TopsideTest, ATailThatNeverComesDoesNotSpoilTheImage) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
   pass(1s);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_TRUE(pings[0].complete());
 }
 
-TEST_F(SurfaceTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
+TEST_F(TopsideTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines - 3);
@@ -382,11 +382,11 @@ TEST_F(SurfaceTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
   hear_tail(5, true);
   EXPECT_THAT(asked(), ElementsAre("37+3"));
   hear_lines(5, lines - 3, 3, true);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
 // What a head that is late with its image would otherwise be asked for in every ping (7.2).
-TEST_F(SurfaceTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients) {
+TEST_F(TopsideTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines - 36);
@@ -396,7 +396,7 @@ TEST_F(SurfaceTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients)
   EXPECT_THAT(asked(), ElementsAre("tail"));
 }
 
-TEST_F(SurfaceTest, ALostHeadIsAskedForAndTheLinesAreKept) {
+TEST_F(TopsideTest, ALostHeadIsAskedForAndTheLinesAreKept) {
   meet_and_start(config());
   hear_lines(5, 0, 10);
   pass(3ms);
@@ -406,32 +406,32 @@ TEST_F(SurfaceTest, ALostHeadIsAskedForAndTheLinesAreKept) {
   hear_head(5, 0s + 1ms, true);
   EXPECT_THAT(asked(), ElementsAre("39"));  // only now is it known how many there are
   hear_line(5, lines - 1, true);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
-  EXPECT_EQ(surface_.statistics().configs_sent, 1U + 1U);  // that of the next ping
+  EXPECT_EQ(topside_.statistics().configs_sent, 1U + 1U);  // that of the next ping
 }
 
-TEST_F(SurfaceTest, AHeadRightAfterItsFirstLineIsNotAskedFor) {
+TEST_F(TopsideTest, AHeadRightAfterItsFirstLineIsNotAskedFor) {
   meet_and_start(config());
   hear_line(5, 0);
   hear_head(5);
   hear_lines(5, 1, lines - 1);
   hear_tail(5);
   EXPECT_THAT(asked(), IsEmpty());
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, ALostConfigurationIsSentAgain) {
+TEST_F(TopsideTest, ALostConfigurationIsSentAgain) {
   meet_and_start(config());
   pass(5s);
   EXPECT_THAT(said<PingConfig>(), SizeIs(testing::Ge(2U)));
-  EXPECT_GE(surface_.statistics().configs_repeated, 2U);
+  EXPECT_GE(topside_.statistics().configs_repeated, 2U);
   hear_ping(5);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
+TEST_F(TopsideTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
   meet_and_start(config());
   const TimePoint transmitted = now_;
   hear_ping(5);
@@ -444,10 +444,10 @@ TEST_F(SurfaceTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
   hear_head(5, transmitted, true);  // the answer to the second copy of the question
   EXPECT_THAT(said<PingConfig>(), IsEmpty());
-  EXPECT_EQ(surface_.statistics().pings_complete, 1U);
+  EXPECT_EQ(topside_.statistics().pings_complete, 1U);
 }
 
-TEST_F(SurfaceTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
+TEST_F(TopsideTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
   meet_and_start(config(), 1);
   const TimePoint transmitted = now_;
   while (said<RetryRequest>().empty()) {
@@ -457,16 +457,16 @@ TEST_F(SurfaceTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
   hear_head(5, transmitted, true);
   hear_lines(5, 0, lines, true);
   hear_tail(5, true);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
-  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
 }
 
-TEST_F(SurfaceTest, AHeadThatComesVeryLateStillSavesThePing) {
+TEST_F(TopsideTest, AHeadThatComesVeryLateStillSavesThePing) {
   meet_and_start(config(), 1);
   const TimePoint transmitted = now_;
   hear_lines(5, 0, lines);
   hear_tail(5);
-  while (surface_.statistics().pings_abandoned == 0) {
+  while (topside_.statistics().pings_abandoned == 0) {
     pass(1ms);
     ASSERT_LT(now_, 5s);
   }
@@ -474,61 +474,61 @@ TEST_F(SurfaceTest, AHeadThatComesVeryLateStillSavesThePing) {
   hear_head(5, transmitted, true);
   hear_tail(5, true);
   hear_lines(5, 0, lines, true);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
-  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
 }
 
-TEST_F(SurfaceTest, APingThatLacksOnlyItsTailIsDeliveredWhenTheNextBegins) {
+TEST_F(TopsideTest, APingThatLacksOnlyItsTailIsDeliveredWhenTheNextBegins) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
   hear_line(6, 0);  // the configuration came twice
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].head.ping_id, 5);
-  EXPECT_EQ(surface_.statistics().pings_abandoned, 0U);
+  EXPECT_EQ(topside_.statistics().pings_abandoned, 0U);
 }
 
-TEST_F(SurfaceTest, CanStartAgainAfterAStop) {
+TEST_F(TopsideTest, CanStartAgainAfterAStop) {
   meet_and_start(config(RunMode::continuous), 1);
   hear_ping(5);
-  ASSERT_TRUE(surface_.finished());
-  static_cast<void>(surface_.take_outgoing());
-  surface_.start(now_, config(), 1);
-  surface_.advance(now_);
+  ASSERT_TRUE(topside_.finished());
+  static_cast<void>(topside_.take_outgoing());
+  topside_.start(now_, config(), 1);
+  topside_.advance(now_);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
-  EXPECT_FALSE(surface_.finished());
+  EXPECT_FALSE(topside_.finished());
   pass(1500ms);
   EXPECT_THAT(said<StatusRequest>(), SizeIs(testing::Ge(1U)));
 }
 
-TEST_F(SurfaceTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
+TEST_F(TopsideTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
   meet_and_start(config(RunMode::continuous));  // asks for 10 pings a second
   for (int id = 0; id < 5; ++id) {
     hear_ping(id);
     pass(1500ms);
     hear(status());
   }
-  EXPECT_LE(surface_.statistics().configs_sent, 2U);
+  EXPECT_LE(topside_.statistics().configs_sent, 2U);
 }
 
-TEST_F(SurfaceTest, ASecondPingToARepeatedConfigurationIsLetPass) {
+TEST_F(TopsideTest, ASecondPingToARepeatedConfigurationIsLetPass) {
   meet_and_start(config());
   pass(1100ms);
-  ASSERT_EQ(surface_.statistics().configs_sent, 2U);
+  ASSERT_EQ(topside_.statistics().configs_sent, 2U);
   hear_ping(5);
-  static_cast<void>(surface_.take_outgoing());
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  static_cast<void>(topside_.take_outgoing());
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
   pass(5ms);
   hear_ping(6);  // the first configuration had arrived too
-  EXPECT_THAT(surface_.take_pings(), IsEmpty());
-  EXPECT_EQ(surface_.statistics().pings_unrequested, 1U);
+  EXPECT_THAT(topside_.take_pings(), IsEmpty());
+  EXPECT_EQ(topside_.statistics().pings_unrequested, 1U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));  // the next one waited for its end
   hear_ping(7);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
+TEST_F(TopsideTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
   now_ = 2s;
   meet_and_start(config(), 1);
   // A client before us asked for it and died; it is being sent.
@@ -537,15 +537,15 @@ TEST_F(SurfaceTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
   hear_lines(9, 25, 15);
   EXPECT_THAT(asked(), IsEmpty());
   hear_tail(9);
-  EXPECT_THAT(surface_.take_pings(), IsEmpty());
+  EXPECT_THAT(topside_.take_pings(), IsEmpty());
   hear_ping(10);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].head.ping_id, 10);
-  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
+  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
 }
 
-TEST_F(SurfaceTest, DuplicatesAndDisorderDoNoHarm) {
+TEST_F(TopsideTest, DuplicatesAndDisorderDoNoHarm) {
   meet_and_start(config());
   hear_line(5, 1);
   hear_head(5);
@@ -561,59 +561,59 @@ TEST_F(SurfaceTest, DuplicatesAndDisorderDoNoHarm) {
   hear_tail(5, true);
   hear_head(5, 1ms, true);
   hear_line(5, 3, true);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
   hear_ping(6);
-  EXPECT_THAT(surface_.take_pings(), SizeIs(1));
+  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-TEST_F(SurfaceTest, ALineThatNeverComesEndsThePingIncomplete) {
+TEST_F(TopsideTest, ALineThatNeverComesEndsThePingIncomplete) {
   meet_and_start(config(), 1);
   hear_head(5);
   hear_lines(5, 0, 10);
   hear_lines(5, 11, lines - 11);
   hear_tail(5);
   pass(2s);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].lines_lost, 1);
-  EXPECT_EQ(surface_.statistics().pings_incomplete, 1U);
-  EXPECT_EQ(surface_.statistics().lines_missing, 1U);
-  EXPECT_TRUE(surface_.finished());
+  EXPECT_EQ(topside_.statistics().pings_incomplete, 1U);
+  EXPECT_EQ(topside_.statistics().lines_missing, 1U);
+  EXPECT_TRUE(topside_.finished());
 }
 
-TEST_F(SurfaceTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
+TEST_F(TopsideTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
   meet_and_start(config());
   now_ = 10s;
   hear(status());
-  static_cast<void>(surface_.take_outgoing());
+  static_cast<void>(topside_.take_outgoing());
   Status fresh = status();
   fresh.clock_us = 1'000;
   now_ += 6s;
   hear(fresh);
-  EXPECT_EQ(surface_.statistics().reboots, 1U);
+  EXPECT_EQ(topside_.statistics().reboots, 1U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
 
 // ---- Continuous
 // -------------------------------------------------------------------------------------------------
 
-TEST_F(SurfaceTest, ContinuousPingsNeedOneConfigurationAndAreStoppedAtTheEnd) {
+TEST_F(TopsideTest, ContinuousPingsNeedOneConfigurationAndAreStoppedAtTheEnd) {
   meet_and_start(config(RunMode::continuous), 3);
   for (int id = 254; id < 257; ++id) {
     hear_ping(id & 0xFF);
     pass(100ms);
   }
-  EXPECT_THAT(surface_.take_pings(), SizeIs(3));
-  EXPECT_EQ(surface_.statistics().configs_sent, 1U);
-  EXPECT_TRUE(surface_.finished());
+  EXPECT_THAT(topside_.take_pings(), SizeIs(3));
+  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
+  EXPECT_TRUE(topside_.finished());
   EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
   pass(10s);
-  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
+  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
 }
 
-TEST_F(SurfaceTest, LinesOfAnUnknownPingAskForItsHead) {
+TEST_F(TopsideTest, LinesOfAnUnknownPingAskForItsHead) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(5);
   pass(95ms);
@@ -624,12 +624,12 @@ TEST_F(SurfaceTest, LinesOfAnUnknownPingAskForItsHead) {
   hear_lines(6, 20, 20);
   hear_tail(6);
   hear_head(6, transmitted, true);
-  const auto pings = surface_.take_pings();
+  const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(2));
   EXPECT_EQ(pings[1].samples.u8, image(6));
 }
 
-TEST_F(SurfaceTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
+TEST_F(TopsideTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
   meet_and_start(config(RunMode::continuous));
   hear_head(5);
   hear_lines(5, 1, lines - 10);
@@ -638,7 +638,7 @@ TEST_F(SurfaceTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
   EXPECT_THAT(asked(), ElementsAre("tail"));
 }
 
-TEST_F(SurfaceTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
+TEST_F(TopsideTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
   meet_and_start(config(RunMode::continuous));
   hear_head(5);
   hear_lines(5, 0, lines - 2);
@@ -646,43 +646,43 @@ TEST_F(SurfaceTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
   hear_line(5, lines - 1);
   hear_line(6, 0);
   hear_line(5, lines - 2, true);
-  auto pings = surface_.take_pings();
+  auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_TRUE(pings[0].complete());
   hear_lines(6, 1, 5);
   hear_head(7);
   pass(20ms);
-  pings = surface_.take_pings();
+  pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].lines_lost, lines - 6);
 }
 
-TEST_F(SurfaceTest, SkippedIdsAreMissedPings) {
+TEST_F(TopsideTest, SkippedIdsAreMissedPings) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(255);
   hear_ping(2);
-  EXPECT_EQ(surface_.statistics().pings_missed, 2U);  // 0 and 1
+  EXPECT_EQ(topside_.statistics().pings_missed, 2U);  // 0 and 1
 }
 
-TEST_F(SurfaceTest, AProgrammeThatFallsSilentIsSentAgain) {
+TEST_F(TopsideTest, AProgrammeThatFallsSilentIsSentAgain) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(5);
   pass(3s);
   EXPECT_THAT(said<PingConfig>(), SizeIs(testing::Ge(1U)));
 }
 
-TEST_F(SurfaceTest, StopSilencesTheSurface) {
+TEST_F(TopsideTest, StopSilencesTheTopside) {
   meet_and_start(config(RunMode::continuous));
   hear_head(5);
   hear_lines(5, 0, 3);
-  surface_.stop();
-  surface_.advance(now_);
+  topside_.stop();
+  topside_.advance(now_);
   EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
   hear_lines(5, 10, 3);
   hear(status());
   pass(10s);
-  EXPECT_THAT(surface_.take_outgoing(), IsEmpty());
-  EXPECT_TRUE(surface_.finished());
+  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
+  EXPECT_TRUE(topside_.finished());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/gemini/surface.hpp"
+#include "protocol/gemini/topside.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -97,10 +97,10 @@ nanoseconds doubled(nanoseconds patience, int times, nanoseconds most) {
 
 }  // namespace
 
-Surface::Surface(const SurfaceConfig& config)
+Topside::Topside(const TopsideConfig& config)
     : config_(config), config_to_ping_(config_limits), request_to_answer_(answer_limits) {}
 
-void Surface::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
+void Topside::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
   ++statistics_.datagrams;
   const auto report = decode_report(bytes);
   if (!report) {
@@ -115,7 +115,7 @@ void Surface::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
   std::visit([&](const auto& message) { on_report(now, message); }, *report);
 }
 
-void Surface::start(TimePoint now, const PingConfig& config, std::uint64_t pings) {
+void Topside::start(TimePoint now, const PingConfig& config, std::uint64_t pings) {
   programme_ = Programme{.config = config, .wanted = pings};
   stopped_ = false;
   request_.reset();
@@ -133,7 +133,7 @@ void Surface::start(TimePoint now, const PingConfig& config, std::uint64_t pings
   request_ping(now);
 }
 
-void Surface::stop() {
+void Topside::stop() {
   if (stopped_) {
     return;
   }
@@ -150,7 +150,7 @@ void Surface::stop() {
   lingering_.reset();
 }
 
-void Surface::advance(TimePoint now) {
+void Topside::advance(TimePoint now) {
   if (due_by(stay_alive_due_, now)) {
     send(StatusRequest{});
     stay_alive_due_ = now + stay_alive_period;
@@ -175,7 +175,7 @@ void Surface::advance(TimePoint now) {
   stop_when_finished();
 }
 
-std::optional<TimePoint> Surface::next_deadline() const {
+std::optional<TimePoint> Topside::next_deadline() const {
   std::optional<TimePoint> earliest = stay_alive_due_;
   if (lingering_) {
     take_earlier(earliest, lingering_due_);
@@ -192,11 +192,11 @@ std::optional<TimePoint> Surface::next_deadline() const {
   return earliest;
 }
 
-std::vector<SurfaceDatagram> Surface::take_outgoing() {
+std::vector<TopsideDatagram> Topside::take_outgoing() {
   return std::exchange(outgoing_, {});
 }
 
-std::vector<ReceivedPing> Surface::take_pings() {
+std::vector<ReceivedPing> Topside::take_pings() {
   return std::exchange(pings_, {});
 }
 
@@ -204,7 +204,7 @@ std::vector<ReceivedPing> Surface::take_pings() {
 // The head
 // ---------------------------------------------------------------------------------------------------------------
 
-void Surface::on_report(TimePoint now, const Status& status) {
+void Topside::on_report(TimePoint now, const Status& status) {
   const Ipv4 address = config_.head_address != 0 ? config_.head_address : status.alternate_ip;
   if (status.sonar_id < min_sonar_id || status.sonar_id != status.header.sonar_id || address == 0) {
     ++statistics_.bad_datagrams;  // nobody could talk to it (1.2, 1.4)
@@ -229,8 +229,8 @@ void Surface::on_report(TimePoint now, const Status& status) {
   }
 }
 
-void Surface::meet_head(TimePoint now) {
-  NetworkConfig network;  // as later surfaces send it at first contact
+void Topside::meet_head(TimePoint now) {
+  NetworkConfig network;  // as later clients send it at first contact
   network.serial_routing = 0x0100;
   network.extension = 10'000;
   send(network);
@@ -240,7 +240,7 @@ void Surface::meet_head(TimePoint now) {
   }
 }
 
-void Surface::on_reboot() {
+void Topside::on_reboot() {
   ++statistics_.reboots;
   for (auto* ping : {&incoming_, &lingering_}) {
     statistics_.pings_abandoned += *ping && (*ping)->requested ? 1 : 0;
@@ -254,12 +254,12 @@ void Surface::on_reboot() {
   silence_due_.reset();
 }
 
-void Surface::on_report(TimePoint now, const Acknowledge& acknowledge) {
+void Topside::on_report(TimePoint now, const Acknowledge& acknowledge) {
   ++statistics_.acknowledges;
   head_clock_.observe(now, acknowledge.reply_us);
 }
 
-void Surface::on_report(TimePoint, const Diagnostic&) {
+void Topside::on_report(TimePoint, const Diagnostic&) {
   diagnostic_known_ = true;
 }
 
@@ -267,14 +267,14 @@ void Surface::on_report(TimePoint, const Diagnostic&) {
 // Configurations
 // ---------------------------------------------------------------------------------------------------------------
 
-void Surface::request_ping(TimePoint now) {
+void Topside::request_ping(TimePoint now) {
   request_.emplace(Request{});
   if (head_) {
     send_config(now);
   }
 }
 
-void Surface::send_config(TimePoint now) {
+void Topside::send_config(TimePoint now) {
   if (++request_->sends == 1) {
     programme_->least_head_us = head_clock_.at_least_us(now);
   } else {
@@ -290,7 +290,7 @@ void Surface::send_config(TimePoint now) {
 /// No ping came. Either the configuration was lost, or all of the ping was; only in the first case a second
 /// configuration is harmless. So first ask for the head of the last ping: a new one can be repaired; an old
 /// one, or no answer at all, means that the head has nothing for us.
-void Surface::on_request_due(TimePoint now) {
+void Topside::on_request_due(TimePoint now) {
   if (request_->probes == probes_before_config) {
     send_config(now);
     return;
@@ -300,7 +300,7 @@ void Surface::on_request_due(TimePoint now) {
   request_->due = now + request_to_answer_.patience();
 }
 
-void Surface::watch_for_silence(TimePoint now) {
+void Topside::watch_for_silence(TimePoint now) {
   if (request_ || incoming_) {
     return;
   }
@@ -309,7 +309,7 @@ void Surface::watch_for_silence(TimePoint now) {
   request_->due = now;
 }
 
-void Surface::await_next(TimePoint now) {
+void Topside::await_next(TimePoint now) {
   const bool repeated = request_ && request_->sends > 1;
   request_.reset();
   if (programme_->finished()) {
@@ -333,7 +333,7 @@ void Surface::await_next(TimePoint now) {
 // The ping that is coming in
 // ---------------------------------------------------------------------------------------------------------------
 
-void Surface::on_report(TimePoint now, const PingHead& head) {
+void Topside::on_report(TimePoint now, const PingHead& head) {
   if (!takes_pings()) {
     return;
   }
@@ -353,9 +353,9 @@ void Surface::on_report(TimePoint now, const PingHead& head) {
   if (ping == nullptr || !ping->may_have(head)) {
     ping = &begin(now, id);
   }
-  ping->heard = now;
+  ping->last_arrival = now;
   if ((head.ping_id & resent_head) != 0) {
-    heard_answer(now, *ping);
+    on_answer(now, *ping);
   }
   if (!ping->assembly.head()) {
     adopt_head(now, *ping, head);
@@ -363,7 +363,7 @@ void Surface::on_report(TimePoint now, const PingHead& head) {
   settle(now);
 }
 
-void Surface::on_report(TimePoint now, const PingLine& line) {
+void Topside::on_report(TimePoint now, const PingLine& line) {
   if (!takes_pings()) {
     return;
   }
@@ -372,7 +372,7 @@ void Surface::on_report(TimePoint now, const PingLine& line) {
     ++statistics_.lines_duplicate;
     return;
   }
-  ping->heard = now;
+  ping->last_arrival = now;
   const auto added = ping->assembly.add_line(line);
   if (added == PingAssembly::Added::unusable) {
     ++statistics_.bad_datagrams;
@@ -387,14 +387,14 @@ void Surface::on_report(TimePoint now, const PingLine& line) {
     ping->lines_repaired += line.resent() ? 1 : 0;
   }
   if (line.resent()) {
-    heard_answer(now, *ping);
+    on_answer(now, *ping);
   } else if (!ping->pass_over) {
     follow_first_pass(now, *ping, line.line_number());
   }
   settle(now);
 }
 
-void Surface::on_report(TimePoint now, const PingTail& tail) {
+void Topside::on_report(TimePoint now, const PingTail& tail) {
   if (!takes_pings()) {
     return;
   }
@@ -402,20 +402,20 @@ void Surface::on_report(TimePoint now, const PingTail& tail) {
   if (ping == nullptr) {
     return;
   }
-  ping->heard = now;
+  ping->last_arrival = now;
   if (!ping->has_tail) {
     ping->has_tail = true;
     ping->progress = now;
   }
   if (tail.resent()) {
-    heard_answer(now, *ping);
+    on_answer(now, *ping);
   } else {
     end_pass(*ping);
   }
   settle(now);
 }
 
-Surface::Incoming* Surface::find_incoming(std::uint8_t id) {
+Topside::Incoming* Topside::find_incoming(std::uint8_t id) {
   for (auto* ping : {&incoming_, &lingering_}) {
     if (*ping && (*ping)->assembly.id() == id) {
       return &**ping;
@@ -424,7 +424,7 @@ Surface::Incoming* Surface::find_incoming(std::uint8_t id) {
   return nullptr;
 }
 
-Surface::Incoming* Surface::incoming_for(TimePoint now, std::uint8_t id) {
+Topside::Incoming* Topside::incoming_for(TimePoint now, std::uint8_t id) {
   Incoming* ping = find_incoming(id);
   if (ping != nullptr) {
     return ping;
@@ -432,13 +432,13 @@ Surface::Incoming* Surface::incoming_for(TimePoint now, std::uint8_t id) {
   return find_ended(id) != nullptr ? nullptr : &begin(now, id);
 }
 
-const Surface::Ended* Surface::find_ended(std::uint8_t id) const {
+const Topside::Ended* Topside::find_ended(std::uint8_t id) const {
   const auto found =
       std::find_if(ended_.rbegin(), ended_.rend(), [id](const Ended& ping) { return ping.id == id; });
   return found == ended_.rend() ? nullptr : &*found;
 }
 
-Surface::Incoming& Surface::begin(TimePoint now, std::uint8_t id) {
+Topside::Incoming& Topside::begin(TimePoint now, std::uint8_t id) {
   if (incoming_) {
     supersede(now);
   }
@@ -455,7 +455,7 @@ Surface::Incoming& Surface::begin(TimePoint now, std::uint8_t id) {
   return *incoming_;
 }
 
-void Surface::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
+void Topside::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
   ping.assembly.set_head(head);
   ping.progress = now;
   if (head.transmit_time_us < programme_->least_head_us) {
@@ -472,7 +472,7 @@ void Surface::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
 }
 
 /// A head serves requests only after the tail: whatever is marked as re-sent ends the first pass.
-void Surface::heard_answer(TimePoint now, Incoming& ping) {
+void Topside::on_answer(TimePoint now, Incoming& ping) {
   if (ping.asked) {
     request_to_answer_.sample(now - *ping.asked);
     ping.asked.reset();
@@ -481,7 +481,7 @@ void Surface::heard_answer(TimePoint now, Incoming& ping) {
   end_pass(ping);
 }
 
-void Surface::end_pass(Incoming& ping) {
+void Topside::end_pass(Incoming& ping) {
   if (ping.pass_over) {
     return;
   }
@@ -497,7 +497,7 @@ void Surface::end_pass(Incoming& ping) {
 }
 
 /// Line `number` came for the first time.
-void Surface::follow_first_pass(TimePoint now, Incoming& ping, int number) {
+void Topside::follow_first_pass(TimePoint now, Incoming& ping, int number) {
   ping.highest = std::max(ping.highest, number);
   if (!ping.requested) {
     return;
@@ -516,7 +516,7 @@ void Surface::follow_first_pass(TimePoint now, Incoming& ping, int number) {
 }
 
 /// Asks for what is missing below `end` and has not been asked for.
-void Surface::ask_unasked(Incoming& ping, int end) {
+void Topside::ask_unasked(Incoming& ping, int end) {
   for (const LineRange& range : ping.assembly.missing(ping.asked_to, end)) {
     ask(&ping, RetryKind::lines, range, 1);
   }
@@ -524,9 +524,9 @@ void Surface::ask_unasked(Incoming& ping, int end) {
 }
 
 /// A round: everything that is missing, in the order in which it helps.
-void Surface::ask_again(TimePoint now, Incoming& ping) {
+void Topside::ask_again(TimePoint now, Incoming& ping) {
   ++ping.fruitless;
-  ping.heard = now;
+  ping.last_arrival = now;
   if (!ping.assembly.head()) {
     ask(&ping, RetryKind::head, {0, 1}, copies_of_a_repeated_request);
   }
@@ -546,27 +546,28 @@ void Surface::ask_again(TimePoint now, Incoming& ping) {
   }
 }
 
-TimePoint Surface::due(const Incoming& ping) const {
+TimePoint Topside::due(const Incoming& ping) const {
   if (!ping.requested) {
-    return ping.heard + unrequested_patience;
+    return ping.last_arrival + unrequested_patience;
   }
   const int slower = ping.fruitless - fruitless_rounds_at_full_speed;
   if (ping.pass_over) {
     const auto patience = request_to_answer_.patience();
-    return ping.heard +
+    return ping.last_arrival +
            doubled(programme_->continuous() ? std::min(patience, answer_patience_continuous) : patience,
                    slower, answer_patience_most);
   }
   if (ping.assembly.is_complete()) {
-    return ping.heard + doubled(neighbour_patience, slower, answer_patience_most);
+    return ping.last_arrival + doubled(neighbour_patience, slower, answer_patience_most);
   }
   const nanoseconds patience = stream_quiet(ping.assembly, ping.highest);
-  const TimePoint quiet = ping.heard + doubled(patience, slower, std::max(patience, answer_patience_most));
+  const TimePoint quiet =
+      ping.last_arrival + doubled(patience, slower, std::max(patience, answer_patience_most));
   const bool headless = !ping.assembly.head() && !ping.head_asked;
   return headless ? std::min(quiet, ping.first_datagram + neighbour_patience) : quiet;
 }
 
-void Surface::on_incoming_due(TimePoint now) {
+void Topside::on_incoming_due(TimePoint now) {
   Incoming& ping = *incoming_;
   const bool only_tail_lacks = ping.assembly.is_complete() && ping.fruitless >= rounds_for_the_tail_alone;
   if (!ping.requested || only_tail_lacks || now - ping.progress >= give_up_after) {
@@ -578,7 +579,7 @@ void Surface::on_incoming_due(TimePoint now) {
   }
 }
 
-void Surface::settle(TimePoint now) {
+void Topside::settle(TimePoint now) {
   if (lingering_ && lingering_->assembly.is_complete()) {
     close_lingering(now);
   }
@@ -590,14 +591,14 @@ void Surface::settle(TimePoint now) {
 }
 
 /// A head in continuous mode has to be told; in single mode it has nothing more to do.
-void Surface::stop_when_finished() {
+void Topside::stop_when_finished() {
   if (!stopped_ && programme_ && programme_->continuous() && programme_->finished()) {
     stop();
   }
 }
 
 /// Another ping begins before the end of one: the head has dropped the old one (7.3).
-void Surface::supersede(TimePoint now) {
+void Topside::supersede(TimePoint now) {
   Incoming& ping = *incoming_;
   if (ping.requested && ping.assembly.is_complete()) {
     finish(now);  // only the tail was awaited
@@ -621,7 +622,7 @@ void Surface::supersede(TimePoint now) {
   incoming_.reset();
 }
 
-void Surface::finish(TimePoint now) {
+void Topside::finish(TimePoint now) {
   close_lingering(now);
   Incoming ping = std::move(*incoming_);
   incoming_.reset();
@@ -650,7 +651,7 @@ void Surface::finish(TimePoint now) {
   await_next(now);
 }
 
-void Surface::close_lingering(TimePoint now) {
+void Topside::close_lingering(TimePoint now) {
   if (!lingering_) {
     return;
   }
@@ -660,7 +661,7 @@ void Surface::close_lingering(TimePoint now) {
   deliver(now, std::move(ping));
 }
 
-void Surface::deliver(TimePoint now, Incoming ping) {
+void Topside::deliver(TimePoint now, Incoming ping) {
   if (programme_->finished()) {
     ++statistics_.pings_unrequested;
     return;
@@ -681,7 +682,7 @@ void Surface::deliver(TimePoint now, Incoming ping) {
   pings_.push_back(std::move(received));
 }
 
-void Surface::note_end(const Incoming& ping) {
+void Topside::note_end(const Incoming& ping) {
   const auto& head = ping.assembly.head();
   ended_.push_back({ping.assembly.id(), head ? std::optional{head->transmit_time_us} : std::nullopt});
   if (ended_.size() > ended_kept) {
@@ -693,7 +694,7 @@ void Surface::note_end(const Incoming& ping) {
 // Sending
 // ---------------------------------------------------------------------------------------------------------------
 
-void Surface::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
+void Topside::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
   RetryRequest request;
   request.kind = kind;
   request.first_line = static_cast<std::uint16_t>(range.first);
@@ -715,7 +716,7 @@ void Surface::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
 }
 
 template <class Message>
-void Surface::send(Message message) {
+void Topside::send(Message message) {
   message.header.sonar_id = head_->status.sonar_id;
   message.header.version = head_->status.header.version;
   outgoing_.push_back({head_->address, encode(Command{std::move(message)})});
