@@ -40,17 +40,17 @@ class WorkerPool {
 
   static constexpr int stopped = -1;
 
-  // Written by the caller while `unclaimed_` is 0, read by whoever has claimed a job. A claim holds run() up
-  // until that job is done, so neither changes under a reader.
+  // Written by the caller while `unclaimed_` is 0, read by a thread that has claimed a job. A claim holds
+  // run() up until that job is done, so neither changes under a reader.
   const std::function<void(int)>* job_ = nullptr;
   int count_ = 0;
-  std::atomic<int> unclaimed_{0};   ///< jobs of this run that nobody has begun; `stopped` at the end
+  std::atomic<int> unclaimed_{0};   ///< jobs of this run that are not claimed; `stopped` at the end
   std::atomic<int> unfinished_{0};  ///< jobs of this run that are not done
 
   // For sleeping only. Who is about to sleep says so under the mutex before it looks at the numbers above a
-  // last time; who changes them looks whether anybody said so after. In one order of all these accesses (they
-  // are sequentially consistent) at least one sees the other, so no wake-up is lost, and none costs a system
-  // call in vain.
+  // last time; who changes them checks whether a thread said so after. In one order of all these accesses
+  // (they are sequentially consistent) at least one sees the other, so no wake-up is lost, and none costs a
+  // system call in vain.
   std::mutex mutex_;
   std::condition_variable jobs_, done_;
   std::atomic<int> sleeping_workers_{0};

@@ -212,7 +212,7 @@ void Check::try_socket(const Endpoint& endpoint, const std::string& key) {
   boost::system::error_code error;
   socket.open(Protocol::v4(), error);
   if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
-    // As the listener does: connections of an earlier run that still linger are no obstacle.
+    // Like the listener: connections of an earlier run that still linger are no obstacle.
     if (!error) {
       socket.set_option(asio::socket_base::reuse_address(true), error);
     }

@@ -115,8 +115,7 @@ class Device::Impl {
   // One for each event.
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& datagram);
-  void take(TimePoint, const ClientGone&) {
-  }  // it was never there: the topside is whoever sent the last command
+  void take(TimePoint, const ClientGone&) {}  // not the topside, which is the sender of the last command
   void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
   void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
   void take(TimePoint now, const TriggerEdge&);
@@ -318,7 +317,7 @@ void Device::Impl::handle(TimePoint now, const Reboot& command) {
 }
 
 // A page that holds no usable address (erased, cleared, a mask with holes) leaves the head where it is:
-// nobody could reach it elsewhere.
+// no client could reach it elsewhere.
 void Device::Impl::apply_programmed_addresses() {
   const FlashStore::Page page = flash_.read(info_block_addresses.at(address_bank));
   ByteReader reader(page);
@@ -351,7 +350,7 @@ void Device::Impl::send_status(TimePoint now) {
     return;
   }
   actions_.send.push_back({Outgoing::To::everybody, {}, SharedBytes(encode(Report{make_status(now)}))});
-  // Keeps the phase; what a late caller has missed is not made up for.
+  // Keeps the phase; what a late caller has missed is lost.
   next_status_ += config_.status_period * ((now - next_status_) / config_.status_period + 1);
 }
 
@@ -442,24 +441,23 @@ PingProgress Device::progress() const {
 std::vector<Counter> Device::counts() const {
   using Shown = Counter::Shown;
   const DeviceCounters& count = counters();
-  return {
-      {"pings_sent", count.pings_sent},
-      {"pings_failed", count.pings_failed},
-      {"pings_suppressed", count.pings_suppressed, Shown::warns, "{} pings not made: out of the water"},
-      {"lines_sent", count.lines_sent},
-      {"lines_resent", count.lines_resent, Shown::often},
-      {"tails_resent", count.tails_resent, Shown::often},
-      {"heads_resent", count.heads_resent},
-      {"retries_dropped", count.retries_dropped},
-      {"commands", count.commands},
-      {"wrong_id", count.wrong_id, Shown::warns, "{} commands were for another sonar ID"},
-      {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were not Gemini 720i commands"},
-      {"unknown_type", count.unknown_type},
-      {"unsupported_data", count.unsupported_data, Shown::warns,
-       "{} ping configurations asked for data that is not made here (I/Q, channels) or for run mode 3"},
-      {"topside_changes", count.topside_changes},
-      {"topside_timeouts", count.topside_timeouts},
-      {"reboots", count.reboots}};
+  return {{"pings_sent", count.pings_sent},
+          {"pings_failed", count.pings_failed},
+          {"pings_suppressed", count.pings_suppressed, Shown::warns, "{} pings not made: out of the water"},
+          {"lines_sent", count.lines_sent},
+          {"lines_resent", count.lines_resent, Shown::often},
+          {"tails_resent", count.tails_resent, Shown::often},
+          {"heads_resent", count.heads_resent},
+          {"retries_dropped", count.retries_dropped},
+          {"commands", count.commands},
+          {"wrong_id", count.wrong_id, Shown::warns, "{} commands were for another sonar ID"},
+          {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were not Gemini 720i commands"},
+          {"unknown_type", count.unknown_type},
+          {"unsupported_data", count.unsupported_data, Shown::warns,
+           "{} ping configurations asked for data that is not made here (I/Q, channels) or for run mode 3"},
+          {"topside_changes", count.topside_changes},
+          {"topside_timeouts", count.topside_timeouts},
+          {"reboots", count.reboots}};
 }
 
 const DeviceCounters& Device::counters() const {

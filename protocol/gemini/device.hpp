@@ -23,7 +23,7 @@ struct DeviceAddresses {
 };
 
 /// One head. It has one channel: the socket on port 52901. What goes to everybody is a status packet. Steps
-/// that come late are made up for within the pacing rules: no more than DeviceConfig::burst_lines ping
+/// that come late are caught up within the pacing rules: no more than DeviceConfig::burst_lines ping
 /// datagrams leave at once. Out of the water the head does not ping unless the configuration says so, and
 /// reports it in its status. A job may come before its transmit time by DeviceConfig::render_lead.
 class Device final : public sonard::Device {

@@ -39,7 +39,7 @@ void PingTransmission::send(TimePoint now, Pacer& pacer, std::vector<SharedBytes
 TimePoint PingTransmission::next_send(const Pacer& pacer) const {
   const int remaining = ping_.datagram_count() - next_;
   const int count =
-      next_ == 0 ? 1 : std::min(pacer.wake_batch(), remaining);  // nobody waits for more than the head
+      next_ == 0 ? 1 : std::min(pacer.wake_batch(), remaining);  // clients wait for the head alone
   return std::max(pacer.earliest(count), available_at(next_ + count - 1));
 }
 

@@ -122,7 +122,7 @@ std::chrono::nanoseconds Pinger::period_of(const PingPlan& plan) const {
   return std::max(config_.min_ping_period, plan.job.listening_time);
 }
 
-// In time of the head. Where another time rules, whoever grants a ping has kept the rules in that one.
+// In the head's time. With simulated time the grant keeps these rules in that time.
 TimePoint Pinger::earliest_by_rate() const {
   if (config_.waits_for_permission) {
     return single_ ? single_->asked_at : boot_time_;

@@ -61,7 +61,7 @@ class Pinger {
   /// See Actions::cancelled.
   std::optional<std::uint64_t> cancelled() const { return acquisition_ ? std::nullopt : unanswered_; }
 
-  /// Pinging is held back because the head is out of the water and was not told to ping all the same.
+  /// Pinging is held back because the head is out of the water and was not told to ping anyway.
   bool stopped_by_air() const { return out_of_water_ && !pings_out_of_water_; }
 
  private:

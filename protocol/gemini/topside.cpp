@@ -55,7 +55,7 @@ constexpr int rounds_for_the_tail_alone = 8;
 constexpr nanoseconds give_up_after = seconds{1};
 /// What was under way when the next ping began is here by then.
 constexpr nanoseconds linger_time = milliseconds{10};
-/// A ping that nobody asked for has ended when nothing more comes of it.
+/// A ping that was not requested has ended when no more of it comes.
 constexpr nanoseconds unrequested_patience = milliseconds{100};
 
 constexpr int copies_of_a_repeated_request = 2;
@@ -207,7 +207,7 @@ std::vector<ReceivedPing> Topside::take_pings() {
 void Topside::on_report(TimePoint now, const Status& status) {
   const Ipv4 address = config_.head_address != 0 ? config_.head_address : status.alternate_ip;
   if (status.sonar_id < min_sonar_id || status.sonar_id != status.header.sonar_id || address == 0) {
-    ++statistics_.bad_datagrams;  // nobody could talk to it (1.2, 1.4)
+    ++statistics_.bad_datagrams;  // no client could talk to it (1.2, 1.4)
     return;
   }
   ++statistics_.statuses;

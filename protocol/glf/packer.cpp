@@ -30,8 +30,8 @@ std::uint32_t crc_of(const std::string& text) {
   return crc.value();
 }
 
-/// Of `size` bytes in stored blocks. It is never less than `size`, by which a reader knows that nothing is
-/// really compressed.
+/// Size of `size` bytes in stored blocks. It is never less, by which a reader knows that nothing is really
+/// compressed.
 std::uint32_t stored_size(std::uint32_t size) {
   const std::size_t blocks = (size + pack_block_size - 1) / pack_block_size + 1;
   return static_cast<std::uint32_t>(size + blocks * zip::block_header_size);

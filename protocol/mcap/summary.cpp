@@ -213,7 +213,7 @@ Bytes make_end(const Summary& summary, std::uint64_t offset, std::uint32_t data_
   writer.u64le(20);
   writer.u64le(offset + summary_start);
   writer.u64le(offset + offsets_start);
-  // Of the summary and of the footer up to here.
+  // The checksum covers the summary and the footer up to here.
   writer.u32le(crc32(ByteView{out}.subspan(summary_start)));
   writer.bytes(magic);
   return out;

@@ -309,7 +309,7 @@ void Device::Impl::send_due_alive(TimePoint now) {
   if (!quiet) {
     send_alive(now);
   }
-  // Keeps the phase; what a late caller has missed is not made up for.
+  // Keeps the phase; what a late caller has missed is lost.
   next_alive_ += config_.alive_period * ((now - next_alive_) / config_.alive_period + 1);
 }
 

@@ -14,7 +14,7 @@ namespace sonard::micron {
 
 /// What a sector is whose left limit is the larger number (8.3).
 enum class LimitsOrder : std::uint8_t {
-  clockwise,  ///< it runs clockwise from left to right all the same, through astern
+  clockwise,  ///< it still runs clockwise from left to right, through astern
   swapped,    ///< the host has confused them
 };
 

@@ -11,7 +11,7 @@ struct DeviceCounters {
   std::uint64_t commands = 0;             ///< understood and for this head
   std::uint64_t dropped_bytes = 0;        ///< part of no frame
   std::uint64_t bad_frames = 0;           ///< whole, with contents that mean nothing
-  std::uint64_t cut_frames = 0;           ///< shorter than they say, and understood all the same
+  std::uint64_t cut_frames = 0;           ///< shorter than their length field, but understood
   std::uint64_t wrong_node = 0;           ///< for another head
   std::uint64_t unknown_type = 0;         ///< for this head, of a type it does not know
   std::uint64_t unheard_bytes = 0;        ///< came while it booted

@@ -16,7 +16,7 @@ inline constexpr double carrier_hz = 700'000.0;  ///< of the sound (docs/protoco
 
 /// PingRecord::wire of a line: a frame without data. @param line its data are left out
 std::vector<std::uint8_t> recorded_wire(const HeadData& line, std::uint8_t node);
-/// The line that it says; nullopt where it is none.
+/// The line in a message; nullopt where it holds none.
 std::optional<HeadData> recorded_line(std::span<const std::uint8_t> wire);
 
 /// How `asked` differs from what is sent in its place. Rounding of the wire and of logs is no difference.

@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// A caller that is late by less keeps the pace; what it has missed beyond is not made up for.
+/// A caller that is late by less keeps the pace; what it has missed beyond is lost.
 constexpr std::chrono::milliseconds lateness_allowed{50};
 
 }  // namespace
@@ -112,7 +112,7 @@ std::optional<TimePoint> Scanner::ping_possible() const {
   }
   const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
   if (config_.waits_for_permission) {
-    return possible;  // whoever grants a ping has kept the pace in the time that rules
+    return possible;  // a grant keeps the pace in simulated time
   }
   const TimePoint due = std::max(possible, next_ping_at_);
   return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
@@ -136,7 +136,7 @@ std::optional<TimePoint> Scanner::line_due() const {
   return ping_ && !ping_->samples.empty() ? std::optional{ping_->line_due} : std::nullopt;
 }
 
-/// Of a line that is no recorded one.
+/// When a rendered line is due.
 TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) const {
   if (config_.waits_for_permission) {
     return transmit_time;
@@ -253,7 +253,7 @@ HeadData Scanner::make_line() const {
   return line;
 }
 
-/// As they travel.
+/// The bins in the form of the wire.
 std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
   if (ping.line.eight_bit() || config_.plays_back) {
     return ping.samples;

@@ -203,7 +203,7 @@ void BeamPattern::add_band(const Aperture& aperture, int beam, const std::vector
   const double starboard_rad = aperture.beam_edges_rad[b + 1];
   const double axis = (std::sin(port_rad) + std::sin(starboard_rad)) / 2;
   const auto fine_beams = static_cast<std::size_t>(this->fine_beams());
-  // Of an echo that is even in angle this beam receives `received` times c_b.
+  // This beam receives `received` times c_b of an echo that is even in angle.
   double received = 0;
   std::vector<double> over_floor(fine_beams);
   std::size_t first = fine_beams;

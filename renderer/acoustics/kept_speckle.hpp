@@ -17,7 +17,7 @@ namespace sonard::render {
 /// beam's by its bearing, for a scanning head comes back to it. One thread calls it.
 class KeptSpeckle {
  public:
-  /// Brings all to the settings and the pose of a ping: begun anew where they no longer fit, faded by the
+  /// Brings all to the settings and the pose of a ping: drawn again where they no longer fit, faded by the
   /// motion since the last ping (docs/physics.md 2.8).
   void advance(const PingRequest& request, const ReceiverTables& tables);
 

@@ -52,7 +52,7 @@ double mean_response(Pulse pulse, int lines, double line_cells) {
   return sum * 2 / steps;
 }
 
-/// The same of a box, exactly: differences of the second integral of the box.
+/// The mean over a tone, exactly: differences of the second integral of a box.
 double mean_tone(int lines, double line_cells) {
   const auto second_integral = [](double x) {
     const double inside = std::clamp(x, -0.5, 0.5);

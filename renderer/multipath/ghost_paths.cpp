@@ -91,7 +91,7 @@ const std::vector<GhostPaths::Result>& GhostPaths::follow(const PathScene& scene
   return results_;
 }
 
-/// As many columns as a packet is wide.
+/// Follows as many columns as a packet is wide.
 void GhostPaths::follow_columns(const Ping& ping, int first_column) {
   PathScene::Directions directions;
   std::array<PathHit, packet_size> mirrors;

@@ -17,7 +17,7 @@ constexpr int font = cv::FONT_HERSHEY_DUPLEX;
 constexpr double font_scale = 0.5;
 constexpr int label_gap_px = 8;
 constexpr double most_rings = 8.0;
-/// A range that was meant to be round is cut to whole lines; its ring is wanted all the same.
+/// A range that was meant to be round is cut to whole lines; its ring is drawn anyway.
 constexpr double whole_range_slack = 1.003;
 
 double degrees(double radians) {

@@ -44,7 +44,7 @@ double wall_echo(double psi, double from_m, double to_m, double elevation_limit)
          (cos4_integral(elevation_at(to_m)) - cos4_integral(elevation_at(from_m)));
 }
 
-/// The same over the width of a beam, by the midpoint rule.
+/// The echo over the width of a beam, by the midpoint rule.
 double beam_echo(double psi_from, double psi_to, double from_m, double to_m, double elevation_limit) {
   constexpr int steps = 400;
   const double step = (psi_to - psi_from) / steps;

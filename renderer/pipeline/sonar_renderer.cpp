@@ -69,7 +69,7 @@ Pose checked(const Pose& pose) {
 struct SonarRenderer::Impl {
   const SkipSwitches skip;
   const double ray_curvature_per_m;
-  WorkerPool workers;  // outlives whoever uses it
+  WorkerPool workers;  // outlives its users
   SpatialIndex index;  // the world, and where it is moved
   ChosenEngine chosen;
   Multipath multipath;

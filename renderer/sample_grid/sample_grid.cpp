@@ -170,7 +170,7 @@ class GridBuilder {
     }
   }
 
-  /// Of a ray. Where there is no pattern, nobody needs the angle: this is most of the cost of a grid.
+  /// Weight of a ray. Without a pattern the angle is not computed: it is most of the cost of a grid.
   double elevation_weight(double x, double y) const {
     return aperture_.elevation == Aperture::Elevation::top_hat
                ? 1.0

@@ -14,7 +14,7 @@
 namespace sonard::render {
 
 /// Refuses elements and attributes of the sonard namespace that are unknown, misplaced or there twice, so
-/// that a slip of the pen is not taken for a default.
+/// that a typing error does not become a default.
 /// @throws WorldError "file:line: ..."
 void check_own_elements(const sdf::ElementPtr& root);
 

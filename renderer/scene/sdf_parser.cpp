@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Collects what libsdformat prints: some errors inside included files reach nobody in another way.
+/// Collects what libsdformat prints: some errors inside included files are reported in no other way.
 class ConsoleCapture {
  public:
   ConsoleCapture() : cerr_buffer_(std::cerr.rdbuf(text_.rdbuf())) {

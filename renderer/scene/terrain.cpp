@@ -53,8 +53,8 @@ glm::vec3 Terrain::position(int x, int y) const {
   return p;
 }
 
-/// Of the mean slope over a step to either side, or to one at the rim of the map: what a coarse level leaves
-/// out does not turn its normals.
+/// The normal of the mean slope over a step to either side, to one at the rim of the map: detail that a
+/// coarse level leaves out does not turn it.
 glm::vec3 Terrain::normal(int x, int y, int step_px) const {
   const int west = std::max(x - step_px, 0), east = std::min(x + step_px, picture_.width_px - 1);
   const int south = std::max(y - step_px, 0), north = std::min(y + step_px, picture_.height_px - 1);

@@ -202,7 +202,7 @@ struct SpatialIndex::Impl {
     return meshes;
   }
 
-  /// Those that set_part_meshes() was told of.
+  /// Replaces the meshes that set_part_meshes() was given.
   void replace_awaited() {
     std::vector<std::shared_ptr<const Mesh>> unknown;
     for (const auto& [number, triangles] : awaited) {

@@ -21,7 +21,7 @@ enum class Facets {
 /// for a surface whose slopes are Gaussian with rms m along each axis. All of it integrates to |R|^2 a^2 / 4
 /// over a sphere of radius a.
 struct Backscatter {
-  static constexpr float widest_variance = 0.25F;  // m = 0.5: beyond, the law is none
+  static constexpr float widest_variance = 0.25F;  // m = 0.5: the law does not hold beyond
 
   float lambert_mu = 0.0F;
   float facet_strength = 0.0F;   ///< |R|^2 / (8 pi); 0: no facets

@@ -152,7 +152,7 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span
     types.emplace_back(kind->type(), kind);
     names.push_back(kind->type());
   }
-  const HeadKind* kind = kinds.front();  // where the type is wrong the other keys are read all the same
+  const HeadKind* kind = kinds.front();  // where the type is wrong the other keys are still read
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
   section.choice_of("type", kind, types);
   return kind->read(section, context, warnings);

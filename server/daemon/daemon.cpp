@@ -303,22 +303,22 @@ int Daemon::run() {
 }
 
 void Daemon::wait_for_signal() {
-  signals_.async_read_some(
-      asio::buffer(&signal_, 1), [this](const boost::system::error_code& error, std::size_t) {
-        if (error) {
-          return;
-        }
-        if (signal_ == SIGHUP) {
-          spdlog::info("SIGHUP ignored: the configuration is read at the start only");
-          wait_for_signal();
-        } else {
-          spdlog::info("signal {}: ending", signal_);
-          lifetime_.stop();
-        }
-      });
+  signals_.async_read_some(asio::buffer(&signal_, 1),
+                           [this](const boost::system::error_code& error, std::size_t) {
+                             if (error) {
+                               return;
+                             }
+                             if (signal_ == SIGHUP) {
+                               spdlog::info("SIGHUP ignored: the configuration is read at the start only");
+                               wait_for_signal();
+                             } else {
+                               spdlog::info("signal {}: ending", signal_);
+                               lifetime_.stop();
+                             }
+                           });
 }
 
-// Looks now and then: nobody minds when a replay ends a little late.
+// Checks now and then: a replay may end a little late.
 void Daemon::end_when_played() {
   if (playback_ == nullptr) {
     return;

@@ -35,7 +35,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config);
 
 /// Loads the world, starts the renderer (self-test first), binds the sockets and serves until SIGINT or
 /// SIGTERM, which end it within the time of one ping. When all is up it logs one line that begins with
-/// "sonard ready": one ping of each head has then been rendered, which nobody gets, so that the first one for
+/// "sonard ready": one ping of each head has then been rendered and dropped, so that the first one for
 /// a client takes no longer than others. A signal a second after the first kills at once; SIGHUP is one line
 /// in the log.
 /// @return exit_clean; exit_renderer when the renderer fails while serving; exit_internal

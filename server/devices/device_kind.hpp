@@ -43,7 +43,7 @@ class ConnectedDevice {
   /// What reaches the device by other ways than its transport is handed to `happen` from here on.
   virtual void start(std::function<void(Event)> /*happen*/) {}
   virtual void stop() {}
-  /// After each step, when what it sends is on its way: follows the device where the transport has to change.
+  /// Called after each step, when its messages are sent: changes the transport where the device asks for it.
   virtual void after_step() {}
 };
 

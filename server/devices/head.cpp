@@ -213,7 +213,7 @@ void Head::Impl::take(TimePoint now, const Event& event) {
   }
 }
 
-// A ping that cannot be made, or that nobody wants any more, is answered at once; rendering ahead, the device
+// A ping that cannot be made, or is no longer wanted, is answered at once; rendering ahead, the device
 // may ask for the next one at once. Each turn moves on by a ping period or takes one of the pings that are
 // owed, so this ends.
 void Head::Impl::step(TimePoint now, const Event& event) {

@@ -8,8 +8,8 @@
 
 namespace sonard::server {
 
-/// A recording on its way to clients. `stream` is the number of a head, as in HeadServices. All calls come
-/// from the I/O thread.
+/// A recording that heads play back to clients. `stream` is the number of a head, as in HeadServices. All
+/// calls come from the I/O thread.
 class Playback {
  public:
   virtual ~Playback() = default;

@@ -135,11 +135,11 @@ void PtyPort::Impl::open() {
   }
 }
 
-/// Waits for somebody to open the slave.
+/// Waits for a client to open the slave.
 void PtyPort::Impl::check_client() {
   pollfd state{master.native_handle(), POLLIN, 0};
   poll(&state, 1, /*timeout=*/0);
-  // Who has written and closed again since the last look was there too.
+  // A client that has written and closed again since the last check counts too.
   if ((state.revents & POLLHUP) == 0 || (state.revents & POLLIN) != 0) {
     occupied = true;
     ++counters.connections;

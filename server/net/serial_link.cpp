@@ -140,7 +140,7 @@ void SerialLink::Impl::take(Incoming incoming) {
     return;
   }
   if (!connected()) {
-    // What was on its way to those who have left must not meet the next one.
+    // What was sent to clients that have left must not reach the next one.
     counters.frames_unheard += to_clients.waiting();
     to_clients.clear();
   }

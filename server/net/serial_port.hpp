@@ -27,7 +27,7 @@ struct SerialUdpConfig {
   AllowList allow;
 };
 
-/// A pseudo terminal, whose slave is a serial device to whoever opens it.
+/// A pseudo terminal, whose slave is a serial device to clients.
 struct SerialPtyConfig {
   /// Symbolic link to the slave, whose own name is new at each start; empty: none.
   std::filesystem::path link;

@@ -40,7 +40,7 @@ struct UdpEndpointCounters {
 /// interface a broadcast leaves by.
 ///
 /// Segmentation offload (UDP_SEGMENT) would cost a sixth of the time, but a veth pair hands its large packets
-/// on unsplit, and whoever captures on it would see one packet of many lines: not what a device sends.
+/// on unsplit, and a capture on it would show one packet of many lines: not what a device sends.
 ///
 /// Shutdown: close() cancels the waits; their handlers still run on the io_context, find the socket closed
 /// and do nothing. They share ownership of the inner state, so the endpoint may be destroyed before they run.

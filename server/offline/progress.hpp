@@ -11,7 +11,7 @@ namespace sonard::server {
 /// Frames of this process.
 struct ProgressState {
   int frames = 0;  ///< to be there in the end
-  int found = 0;   ///< that were there before it began
+  int found = 0;   ///< frames that existed before it began
   int made = 0;    ///< since then
   std::chrono::nanoseconds elapsed{0};
 };

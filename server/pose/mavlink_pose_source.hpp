@@ -9,7 +9,7 @@ namespace sonard::server {
 /// Listens only: it sends no heartbeat and asks for no message. A datagram may hold any number of frames, of
 /// either version; what is no frame, and what is of another vehicle, is counted and dropped. Nothing that a
 /// peer repeats fills the log: troubles are told the 1st, 2nd, 4th, 8th ... time, senders that are ignored
-/// once each. A vehicle that sends for `patience` without giving a pose is told of once, with what is
+/// once each. A vehicle that sends for `patience` without giving a pose is logged once, with what is
 /// missing.
 class MavlinkPoseSource final : public PoseSource {
  public:

@@ -39,7 +39,7 @@ struct PoseEstimate {
 /// They only grow.
 struct PoseHistoryCounters {
   std::uint64_t samples = 0;
-  std::uint64_t late = 0;            ///< came after a newer one; used all the same
+  std::uint64_t late = 0;            ///< came after a newer one; still used
   std::uint64_t repeated = 0;        ///< same time stamp as one before, which they replace
   std::uint64_t too_old = 0;         ///< older than everything that is kept: dropped
   std::uint64_t clock_restarts = 0;  ///< the publisher's clock went back: simulation reset, log played again

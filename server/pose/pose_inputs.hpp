@@ -16,7 +16,7 @@ namespace sonard::server {
 
 /// Belongs to the I/O thread, as its sources do; made and destroyed by the owner of the io_context while it
 /// does not run. Every `report_period`, and when it is stopped, it logs a line for each source; a source
-/// that stays silent is told of once.
+/// that stays silent is logged once.
 class PoseInputs {
  public:
   /// Every pose of every source goes to `sink`. `hold` may be empty: no publisher has to wait.

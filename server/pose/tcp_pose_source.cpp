@@ -180,7 +180,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     unfinished_ = true;
     timer_.expires_after(source_->message_timeout);
     timer_.async_wait([self = shared_from_this()](const error_code& error) {
-      // A wait that had already ended when the timer was set anew comes here too; the expiry tells.
+      // A wait that had ended before the timer was set again comes here too; the expiry tells.
       const bool due = !error && self->timer_.expiry() <= std::chrono::steady_clock::now();
       if (due && self->unfinished_ && self->socket_.is_open()) {
         self->close_faulty("a message was left unfinished");

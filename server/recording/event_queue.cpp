@@ -26,7 +26,7 @@ bool EventQueue::push(RecordingEvent event) {
   while (!newest_.compare_exchange_weak(before, node, std::memory_order_release, std::memory_order_relaxed)) {
     node->next = before;
   }
-  if (before == nullptr) {  // whoever finds the stack empty wakes the taker: once for each take()
+  if (before == nullptr) {  // the thread that finds the stack empty wakes the taker: once for each take()
     news_.release();
   }
   return true;

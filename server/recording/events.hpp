@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What heads say, on its way from the thread where it was said to the thread that writes it down.
+// What heads tell the recorder, from the I/O thread to the recorder's thread.
 #pragma once
 
 #include <cstddef>

@@ -22,8 +22,8 @@ std::vector<double> log_bearings_rad(const std::vector<double>& bearings_rad) {
   return bearings;
 }
 
-// Of lines as they are sent, so that a log needs no word on range compression. A half is rounded up, whatever
-// the division made of it.
+// Frequency of lines as sent, so that a log need not mention range compression. A half is rounded up,
+// whatever the division made of it.
 std::uint32_t line_frequency_hz(const RecordedSettings& settings) {
   constexpr double of_the_division = 1e-6;
   return static_cast<std::uint32_t>(

@@ -11,7 +11,7 @@
 
 namespace sonard::server {
 
-/// An interface for each head. A stream that goes on from a file before this one begins anew here, with a
+/// An interface for each head. A stream that continues from a file before this one starts over here, with a
 /// connection of its own.
 class PcapngLog final : public Log {
  public:

@@ -90,7 +90,7 @@ struct Recorder::Impl {
   std::atomic<bool> stopping{false};
   std::atomic<std::uint64_t> images{0}, images_lost{0}, logs_written{0}, logs_failed{0};
 
-  // Of the recorder's thread.
+  // Used by the recorder's thread only:
   std::optional<LogSet> set;
   std::deque<GlfPacking> packings;
   TimePoint synced_at{};
@@ -215,8 +215,8 @@ void Recorder::Impl::report_drops() {
   const DroppedEvents dropped = queue.dropped();
   if (dropped.total() > drops_reported) {
     drops_reported = dropped.total();
-    spdlog::warn("recording: disk too slow, dropped so far: images={} wire_pieces={} others={}", dropped.images,
-                 dropped.pieces, dropped.others);
+    spdlog::warn("recording: disk too slow, dropped so far: images={} wire_pieces={} others={}",
+                 dropped.images, dropped.pieces, dropped.others);
   }
 }
 

@@ -26,7 +26,8 @@ struct RenderService::Impl {
   struct Entry {
     RenderJob job;
     Done done;
-    std::optional<std::promise<void>> warmed_up{};  ///< somebody waits: this is no ping, and has no `done`
+    std::optional<std::promise<void>>
+        warmed_up{};  ///< set: a caller waits; this is no ping, and has no `done`
   };
 
   // Constant once the constructor has returned.
@@ -40,7 +41,7 @@ struct RenderService::Impl {
   std::deque<Entry> queue;
   bool stopping = false;
 
-  // Of the render thread.
+  // Used by the render thread only:
   std::set<std::string> unknown_bodies;
 
   std::thread thread;

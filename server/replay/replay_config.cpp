@@ -21,7 +21,7 @@ constexpr Ipv4 first_loopback_head = 0x7F000002;
 constexpr std::chrono::hours day{24};
 constexpr std::chrono::nanoseconds longest_span = 90 * day;
 
-/// Of those that are scanning, or not: only these can stand in for each other.
+/// The heads that scan, or those that do not: only these can stand in for each other.
 std::vector<const LoggedHead*> alike(const std::vector<LoggedHead>& logged, bool scanning) {
   std::vector<const LoggedHead*> found;
   for (const LoggedHead& head : logged) {

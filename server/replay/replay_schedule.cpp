@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// Of pings that all have the same time: a loop must get on.
+// Lap of pings that all have the same time: a loop must advance.
 constexpr std::chrono::milliseconds shortest_lap{1};
 
 // From the last ping of a lap to the first of the next.

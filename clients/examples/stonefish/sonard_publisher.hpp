@@ -60,7 +60,7 @@ class SonardPublisher {
     if (update.time_ns() != sent_ns_) {
       sent_ns_ = update.time_ns();
       const std::string bytes = update.SerializeAsString();
-      // A datagram that nobody takes is no harm: the next one is newer.
+      // A datagram that no one receives does no harm: the next one is newer.
       sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&receiver_),
              sizeof receiver_);
     }

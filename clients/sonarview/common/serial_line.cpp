@@ -80,7 +80,7 @@ void SerialLine::connect(typename Protocol::resolver& resolver, typename Protoco
       return;
     }
     error_code ignored;
-    // Trying a port of this machine on which nobody listens, TCP now and then meets itself.
+    // Trying an unused port of this machine, TCP now and then connects to itself.
     if (error || socket.local_endpoint(ignored) == socket.remote_endpoint(ignored)) {
       lose((error ? error : error_code(asio::error::connection_refused)).message());
       return;

@@ -150,7 +150,7 @@ FacetMerger::FacetMerger(Welded mesh) : mesh_(std::move(mesh)) {
 bool FacetMerger::in_plane(const Triangle& t, const Plane& plane) const {
   const glm::dvec3 cross = cross_of(t);
   const double along = glm::dot(cross, plane.normal);
-  // Of the angle between them the sine is compared: no more than 1e-4 rad.
+  // Compares the sine of the angle between them: no more than 1e-4 rad.
   if (!(along > 0) || glm::length(cross - plane.normal * along) > flat_rad * along) {
     return false;
   }
@@ -282,7 +282,7 @@ std::vector<Index> FacetMerger::targets(Index vertex, const Ring& ring) const {
   return straight ? ends : std::vector<Index>{};
 }
 
-/// Of the triangles that would remain: the least height over longest side. Negative: not possible.
+/// Least height over longest side of the triangles that would remain. Negative: not possible.
 double FacetMerger::worst_quality(Index target, const Ring& ring) const {
   double worst = 1.0;
   for (std::size_t i = 0; i < ring.triangles.size(); ++i) {

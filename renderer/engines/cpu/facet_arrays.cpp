@@ -21,8 +21,8 @@ inline float exp_of_negative(float x) {
   return series * std::bit_cast<float>((whole + 127) << 23);
 }
 
-/// As Backscatter::facets(), of the square of the cosine. Without branches: what is as good as none is 1e-25,
-/// also for what is not a number.
+/// Backscatter::facets() as a function of the squared cosine, without branches: a negligible response is
+/// 1e-25, also for what is not a number.
 inline float facets(float c2, float strength, float variance) {
   constexpr float grazing = 1e-4F, as_good_as_none = 80.0F;
   const float k2 = c2 > grazing ? (c2 < 1 ? c2 : 1.0F) : grazing;

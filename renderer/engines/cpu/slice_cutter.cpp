@@ -165,7 +165,7 @@ void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, do
   }
 }
 
-/// Of the parts [begin, end), which stand in one place.
+/// Probes of the edge parts [begin, end), which stand in one place.
 ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
   std::array<std::int32_t, side_probes + 1> sides{};
   std::array<float, side_probes + 1> turns{};
@@ -321,8 +321,8 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
   }
 }
 
-/// The same for a triangle of which the plane of the slice cuts a part behind the vertical axis, in doubles
-/// and one at a time: such triangles are few.
+/// Cuts a triangle that the plane of the slice meets behind the vertical axis too, in doubles and one at a
+/// time: such triangles are few.
 void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments) {
   const auto cosine = static_cast<double>(slice.cosine), sine = static_cast<double>(slice.sine);
   double s[3], h[3], z[3];

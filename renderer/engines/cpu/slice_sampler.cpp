@@ -76,7 +76,7 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSw
   }
 }
 
-/// Of the body that is added next.
+/// Adds a part of the body that is added next.
 void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   PartSurface surface;
   surface.backscatter = Backscatter(part.material);
@@ -249,7 +249,7 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   scratch.expectation.find(cell.visible, cell.slice.width_rad, setting.side_view, cell.sides);
 }
 
-/// Of the slices that are left.
+/// Makes the patches of the final slices.
 void SliceSampler::make_patches(const Setting& setting) {
   constexpr std::size_t cells_per_job = 4;
   workers_.run(static_cast<int>((order_.size() + cells_per_job - 1) / cells_per_job), [&](int job) {

@@ -70,8 +70,8 @@ void VisibleEnds::find_surfaces(const std::vector<VisibleSegment>& visible, cons
   }
 }
 
-/// Of segments first to last, which make up a surface that ends at both: from its ends inwards as far as
-/// segments cross.
+/// Keeps the segments first to last, one surface that ends at both, from crossing: from its ends inwards as
+/// far as they do.
 void VisibleEnds::keep_from_crossing(std::size_t first, std::size_t last, float width_rad,
                                      VisibleArrays& seen) {
   const auto most_of = [&](float length) { return 2 * length / width_rad; };

@@ -150,7 +150,7 @@ class Strips {
   std::size_t begin(std::size_t beam) const { return static_cast<std::size_t>(grid_.beam_parts[beam]); }
   std::size_t end(std::size_t beam) const { return static_cast<std::size_t>(grid_.beam_parts[beam + 1]); }
 
-  /// Of the part of a pixel inside the fan, tangent units.
+  /// Height of the part of a pixel inside the fan, tangent units.
   static float height_of(const ColumnPart& part, int row, const SubView& view) {
     if (row == part.row_begin) {
       return part.first_height;
@@ -158,7 +158,7 @@ class Strips {
     return row + 1 == part.row_end ? part.last_height : static_cast<float>(view.pixel_height());
   }
 
-  /// Of the column's centre, moved by so much of the part's offset and width.
+  /// Azimuth of the column's centre, moved by so much of the part's offset and width.
   double azimuth_of(const ColumnPart& part, double offset, double width) const {
     const SubView& view = grid_.views[static_cast<std::size_t>(part.view)];
     const double centre = -view.tan_half_width + (part.column + 0.5) * view.pixel_width();

@@ -33,7 +33,7 @@ constexpr GLint at_sr_per_unit = 3, at_mean = 4, at_open_water = 5, at_least_sha
 constexpr double units_of_fullest_beam = 0x1p48;
 constexpr double most_units_of_beam = 0x1p62;
 
-/// As the shader has it.
+/// The layout in the shader.
 struct GpuPart {
   std::int32_t column, row_begin, row_end, beam;
   std::uint32_t weights;
@@ -102,7 +102,7 @@ class StorageBuffer {
       fill(std::vector<std::uint32_t>(words), GL_DYNAMIC_COPY);
     }
   }
-  /// The next hold() begins anew.
+  /// The next hold() starts over.
   void forget() { words_ = 0; }
   void bind() const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding_, name_); }
   void read(void* to, std::size_t bytes) const {
@@ -135,14 +135,14 @@ struct GpuBinner::Impl {
   StorageBuffer differences, parts, weights, counts, echo, open, solid_angles;
   std::size_t most_bytes = 0;  // of a buffer
 
-  // Of the grid.
+  // The grid:
   std::vector<SubView> views;
   std::vector<int> view_parts;  // parts of view v: [view_parts[v], view_parts[v + 1])
   int beams = 0;
   double units_per_sr = 1.0;
   double most_units = 1.0;  // of one sample
   std::string grid_obstacle;
-  // Of the image.
+  // The image:
   int lines = 0;
   bool weighed = false;
 

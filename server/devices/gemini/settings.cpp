@@ -14,7 +14,7 @@ namespace {
 constexpr double widest_sin = 0.9962;  // of 85 degrees
 
 // Device bearings are positive to starboard, azimuths of the renderer to port.
-// `steering`: the ratio c / c_d of the true sound speed to that which delays are reckoned with. A beam meant
+// `steering`: the ratio c / c_d of the true sound speed to that which delays are computed with. A beam meant
 // for the bearing b receives sin b * c / c_d (docs/physics.md 2.12).
 std::vector<double> beam_edges_rad(double steering) {
   std::vector<double> edges = gemini::beam_edges_sin();
