@@ -152,6 +152,11 @@ class Words(LintTest):
         tree = self.write({"protocol/x/a.cpp": "gizmo\n"})
         self.assertEqual(self.complaints(tree, self.ROWS + "  allowed: [protocol/x/*]\n"), [])
 
+    def test_where_it_is_plain_english_it_passes(self):
+        tree = self.write({"docs/a.md": "gizmo\n", "renderer/a.cpp": "gizmo\n"})
+        complaints = self.complaints(tree, self.ROWS + "  within: [renderer/*]\n")
+        self.assertEqual([complaint.splitlines()[0] for complaint in complaints], ["renderer/a.cpp:1: gizmo"])
+
     def test_what_is_left_may_become_less_only_if_it_is_said(self):
         tree = self.write({"docs/a.md": "gizmo\ngizmo\n"})
         self.assertEqual(self.complaints(tree, self.ROWS + "  left: 2\n"), [])
