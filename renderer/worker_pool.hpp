@@ -47,10 +47,10 @@ class WorkerPool {
   std::atomic<int> unclaimed_{0};   ///< jobs of this run that are not claimed; `stopped` at the end
   std::atomic<int> unfinished_{0};  ///< jobs of this run that are not done
 
-  // For sleeping only. Who is about to sleep says so under the mutex before it looks at the numbers above a
-  // last time; who changes them checks whether a thread said so after. In one order of all these accesses
-  // (they are sequentially consistent) at least one sees the other, so no wake-up is lost, and none costs a
-  // system call in vain.
+  // For sleeping only. A thread about to sleep says so under the mutex before it reads the numbers above a
+  // last time; a thread that changes them checks whether a thread said so after. In one order of all these
+  // accesses (they are sequentially consistent) at least one sees the other, so no wake-up is lost, and none
+  // costs a useless system call.
   std::mutex mutex_;
   std::condition_variable jobs_, done_;
   std::atomic<int> sleeping_workers_{0};

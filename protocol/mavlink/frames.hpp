@@ -24,7 +24,7 @@ struct Frame {
   std::span<const std::uint8_t> payload;
 };
 
-/// They only grow.
+/// Counters, which only grow.
 struct FrameCounters {
   std::uint64_t frames = 0;         ///< handed out, known or not
   std::uint64_t bad_checksums = 0;  ///< of known messages

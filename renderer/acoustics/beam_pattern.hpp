@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the receive array makes of directions: main lobes that overlap, side lobes, and what errors of the
-// elements let leak into all beams.
+// The directional response of the receive array: main lobes that overlap, side lobes, and what leaks into all
+// beams by errors of the elements.
 #pragma once
 
 #include <cstddef>
@@ -33,9 +33,9 @@ std::vector<double> fine_beam_edges(const Aperture& aperture);
 /// farther apart are its integral.
 class BeamPattern {
  public:
-  /// Changes nothing.
+  /// A pattern that changes nothing.
   BeamPattern() = default;
-  /// @param aperture as check_aperture() wants it, with Azimuth::array and two beams or more
+  /// @param aperture passes check_aperture(), with Azimuth::array and two beams or more
   BeamPattern(const Aperture& aperture, RandomKey elements);
 
   int fine_beams() const { return static_cast<int>(inverse_width_.size()); }

@@ -29,7 +29,7 @@ class FieldReader {
   FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& field, const SkipSwitches& skip,
               SkipCounts& skipped);
 
-  /// The field in one line; good until the next call.
+  /// The field in one line; valid until the next call.
   Phasors line(int bin);
   /// Brings a kept field up to date, from -reach of the pulse to as much beyond the last
   /// line.
@@ -37,7 +37,7 @@ class FieldReader {
 
  private:
   bool skips(SkipRule rule);
-  /// Correlated across beams alone.
+  /// A line of the field correlated across beams alone.
   Phasors row(int bin);
   Phasors draw(int bin, ComplexRow& row);
   int place(int bin) const { return bin + tables_.pulse_correlation.reach(); }

@@ -21,12 +21,12 @@ class KeptSpeckle {
   /// motion since the last ping (docs/physics.md 2.8).
   void advance(const PingRequest& request, const ReceiverTables& tables);
 
-  /// What the ping reads; good until the next call of anything. @param skipped gets what is left out.
+  /// The fields that a ping reads; valid until the next call. @param skipped gets what is left out.
   RandomFieldOfPing speckle(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
   RandomFieldOfPing texture(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
 
  private:
-  /// What the fields were made for.
+  /// The settings that the fields were made for.
   struct Maker {
     PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
     std::uint64_t seed = 0;

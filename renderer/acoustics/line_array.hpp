@@ -22,9 +22,9 @@ int element_count(const Aperture& aperture);
 /// faultless array is received with amplitude 1.
 class LineArray {
  public:
-  /// Without errors.
+  /// An array without errors.
   explicit LineArray(const Aperture& aperture);
-  /// With the errors that the aperture asks for, which belong to `key`.
+  /// An array with the errors that the aperture asks for, drawn with `key`.
   LineArray(const Aperture& aperture, RandomKey key);
 
   int elements() const { return static_cast<int>(weights_.size()); }

@@ -9,7 +9,7 @@
 
 namespace sonard::render {
 
-/// What the level of noise follows from. Levels in dB re 1 uPa.
+/// The terms of the noise level. Levels in dB re 1 uPa.
 struct NoiseBudget {
   double source_level_db = 200.0;  ///< at 1 m
   double spectral_level_db = 0.0;  ///< of 1 Hz, where the array is
@@ -27,7 +27,7 @@ double noise_level_db(const NoiseBudget& budget);
 /// (docs/physics.md 2.16).
 std::vector<float> noise_profile(const SonarSettings& settings);
 
-/// What interference does to the noise of one ping.
+/// Interference in the noise of one ping.
 struct InterferenceStreak {
   int first_line = 0;   ///< all range bins from here on are raised
   float factor = 1.0F;  ///< of amplitude; 1: this ping is not hit

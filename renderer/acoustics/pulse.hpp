@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the length of the pulse does along the range: it spreads the mean echo, and neighbouring lines share
-// speckle and noise.
+// The length of the pulse along the range: it spreads the mean echo and correlates speckle and noise of
+// neighbouring lines.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class PulseResponse {
  public:
   using Pulse = PhysicalModel::Pulse;
 
-  /// Spreads nothing.
+  /// A pulse that spreads nothing.
   PulseResponse() = default;
   /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
   PulseResponse(Pulse pulse, double cell_m, double step_m);
@@ -44,7 +44,7 @@ class PulseResponse {
 /// (docs/physics.md 2.8).
 class PulseCorrelation {
  public:
-  /// Lines share nothing.
+  /// Lines without correlation.
   PulseCorrelation() = default;
   /// Takes the main lobe of a chirp, the overlap of a tone. @param cell_m PhysicalModel::range_cell_m;
   /// 0: a pulse without length.

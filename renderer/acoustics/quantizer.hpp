@@ -10,7 +10,7 @@ namespace sonard::render {
 /// Buffers of the size and kind that `settings` ask for, all zero.
 PingSamples make_samples(const SonarSettings& settings);
 
-/// What amplitude 1 (full scale) is in codes of the output, or 1 where codes are decibels, shared among the
+/// Amplitude 1 (full scale) in codes of the output, or 1 where codes are decibels, shared among the
 /// range bins of a mean: amplitudes come to Quantizer multiplied with this.
 float codes_per_amplitude(const SonarSettings& settings);
 

@@ -13,7 +13,7 @@
 
 namespace sonard::render {
 
-/// Where a single beam looks, apart from what its head turns by.
+/// The direction of a single beam.
 struct ScanPose {
   glm::dvec3 position_m;
   glm::dvec3 axis;     ///< that the head turns about: the sonar's z, in the world
@@ -22,10 +22,10 @@ struct ScanPose {
   explicit ScanPose(const Pose& T_world_sonar);
 };
 
-/// CN(0, 1) per range bin, for one beam that is turned about the sonar's z axis. What it looks at is what
-/// it looked at a sweep ago: the field hangs on the world's bearings, white over cells of a quarter of a
+/// CN(0, 1) per range bin, for one beam that is turned about the sonar's z axis. It sees what it saw a
+/// sweep ago: the field belongs to bearings of the world, white over cells of a quarter of a
 /// beamwidth, and a beam receives the cells around it. Two bearings apart by d are correlated by exp(-(d /
-/// half a beamwidth)^2), as SpeckleField has it for a sonar that turns; only other motion fades
+/// half a beamwidth)^2), as in SpeckleField for a sonar that turns; only other motion fades
 /// (docs/physics.md 2.8).
 class ScannedSpeckle {
  public:
@@ -36,7 +36,7 @@ class ScannedSpeckle {
   /// All bearings lose correlation: exp(-decay) of the field is left. @param decay >= 0
   void fade(double decay);
   /// The field at a bearing, correlated along the range by the pulse. @param key of the random numbers.
-  /// @return good until the next call.
+  /// @return valid until the next call.
   Phasors at(double bearing_rad, const PulseCorrelation& pulse, RandomKey key, const SkipSwitches& skip,
              SkipCounts& skipped);
 
@@ -47,7 +47,7 @@ class ScannedSpeckle {
   double correlation_rad_ = 1.0;  ///< bearings this far apart are correlated by 1 / e
   int lines_ = 0;                 ///< with those beyond both ends that the pulse reaches
   int cell_count_ = 0;
-  std::map<int, SpeckleField> cells_;  ///< those that were looked at: one row of all range bins each
+  std::map<int, SpeckleField> cells_;  ///< those that were sampled: one row of all range bins each
   ComplexRow fresh_{0}, sum_{0}, out_{0};
 };
 

@@ -13,7 +13,7 @@ namespace sonard::render {
 /// beams is linear and the same for every ping, so the filtered field is kept and fades just as the white one
 /// would.
 ///
-/// Fading is lazy. A line remembers up to which motion it was evolved; the steps missed since are made up for
+/// Fading is lazy. A line remembers up to which motion it was evolved; the steps missed since are caught up
 /// in one. That is exact in distribution: a * exp(-d1) and then exp(-d2) with fresh innovations each is one
 /// step of exp(-d1 - d2). Lines are independent, so threads may evolve different lines at the same time; all
 /// else belongs to one thread.
@@ -21,7 +21,7 @@ class SpeckleField {
  public:
   explicit SpeckleField(int beams = 0);
 
-  /// At least so many lines; new ones hold nothing and take the first innovation whole.
+  /// Provides at least so many lines; new ones are empty and take the first innovation whole.
   void ensure_lines(int lines);
   /// All lines lose correlation: exp(-decay) of the field is left. @param decay >= 0
   void fade(double decay);

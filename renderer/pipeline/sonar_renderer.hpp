@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The door of the renderer: a world and a ping request go in, an echo image and the device's samples come
-// out.
+// The entrance of the renderer: a world and a ping request go in, an echo image and the device's samples
+// come out.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace sonard::render {
 /// `stream` number, which keeps their speckle apart.
 class SonarRenderer {
  public:
-  /// @throws RendererError when what was asked for cannot be had: `raster` without OpenGL 4.5, or binning on
+  /// @throws RendererError when the request cannot be met: `raster` without OpenGL 4.5, or binning on
   /// the GPU where its shaders do not build.
   explicit SonarRenderer(const World& world, const RendererOptions& options = {});
   ~SonarRenderer();
@@ -38,15 +38,15 @@ class SonarRenderer {
   /// @throws RequestError, RendererError
   const EchoImage& render_echo(const PingRequest& request, int stream = 0);
 
-  /// The whole chain. The result is the same bytes for the same history of requests of this stream; with
-  /// speckle `frozen` or `per_ping` it depends on this request alone.
+  /// Renders the samples of a ping. The bytes depend on the history of requests of this stream; with speckle
+  /// `frozen` or `per_ping` on this request alone.
   /// @throws RequestError, RendererError
   PingSamples render_ping(const PingRequest& request, int stream = 0);
 
-  /// Leaves all that this stream keeps from ping to ping as render_ping() would, for a fraction of its time:
+  /// Advances all that this stream keeps from ping to ping as render_ping() would, in a fraction of its time:
   /// rendering every n-th ping of a run gives the bytes of the whole run.
-  /// @return false, and nothing has happened, when that depends on the echo: where pulses are shorter than a
-  /// line, speckle `ou` goes on only in lines with an echo. Then render_ping() it is.
+  /// @return false, and does nothing, when that depends on the echo: where pulses are shorter than a line,
+  /// speckle `ou` evolves only in lines with an echo. Use render_ping() then.
   /// @throws RequestError
   bool pass_ping(const PingRequest& request, int stream = 0);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The world as both samplers see it: plain triangles with acoustic materials, grouped in bodies that move.
+// The world for all engines: plain triangles with acoustic materials, grouped in bodies that move.
 // No scene graph and no graphics types here: a sampler builds its own acceleration data from this.
 #pragma once
 
@@ -88,7 +88,7 @@ struct Body {
 struct WorldSonar {
   std::string path;   ///< "rov::sonar_link::multibeam"; unique
   std::string type;   ///< the text of sonard:type, not checked
-  std::string body;   ///< that carries it
+  std::string body;   ///< the body that carries it
   Pose T_body_sonar;  ///< x is the acoustic axis, z up
 };
 
@@ -99,7 +99,7 @@ class Terrain;
 struct TerrainParts {
   std::shared_ptr<const Terrain> terrain;
   std::size_t body;
-  std::size_t first_part;  ///< of that body
+  std::size_t first_part;  ///< the first part of that body
 };
 
 /// What a loader had to repair or drop; shown by `sonard check`.
@@ -123,7 +123,7 @@ struct World {
   /// What the file has that gives no echo ("lights (2): sun, lamp"), a line for each kind.
   std::vector<std::string> left_out;
 
-  /// Tiles of terrains as they are here.
+  /// The terrains whose tiles are parts above.
   std::size_t triangle_count() const;
   bool is_terrain(std::size_t body, std::size_t part_of_body) const;
   /// Number of parts of all bodies.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the server needs to know of a kind of device. Each kind has a folder of its own beside this file.
+// The interface of a kind of device to the server. Each kind has a folder beside this file.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ class ConnectedDevice {
   virtual Device& device() = 0;
   virtual Transport& transport() = 0;
 
-  /// What reaches the device by other ways than its transport is handed to `happen` from here on.
+  /// From here on events that do not come by the transport are passed to `happen`.
   virtual void start(std::function<void(Event)> /*happen*/) {}
   virtual void stop() {}
   /// Called after each step, when its messages are sent: changes the transport where the device asks for it.
@@ -64,7 +64,7 @@ class DeviceKind : public HeadKind {
 
   // ---- Logs
 
-  /// The users of such heads know .glf logs.
+  /// Whether .glf logs are in use for such heads.
   virtual bool writes_glf() const { return false; }
   /// See HeadToRecord::glf_status.
   virtual std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> /*message*/) const {
@@ -77,9 +77,9 @@ class DeviceKind : public HeadKind {
 
   // ---- Playing logs back
 
-  /// What such a head cannot send of a log, in words; nothing when it can.
+  /// Why such a head cannot play this log, in words; nullopt when it can.
   virtual std::optional<std::string> why_not_played(const LoggedHead& logged) const = 0;
-  /// What of it clients will see wrongly, one phrase each.
+  /// What clients will see wrongly of a played log, one phrase each.
   virtual std::vector<std::string> played_wrongly(const LoggedHead& /*logged*/) const { return {}; }
   /// A head at an address of loopback that plays this log.
   virtual HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const = 0;
@@ -88,22 +88,22 @@ class DeviceKind : public HeadKind {
 
   // ---- Rendering without serving
 
-  /// @throws CLI::ValidationError naming the option that such a head cannot follow
+  /// The survey of such a head. @throws CLI::ValidationError naming an option that the head does not have
   virtual std::unique_ptr<Survey> survey(const HeadConfig& head, const SurveyOptions& options) const = 0;
 };
 
-/// Whatever a head of this program is, it is a DeviceKind.
+/// The kind of a head; every head of this program has a DeviceKind.
 inline const DeviceKind& kind_of(const HeadConfig& head) {
   return static_cast<const DeviceKind&>(*head.kind);
 }
 
-/// The transducer of a head that looks to a bearing (PingJob::bearing_rad): the mount, turned about its z
+/// The pose of a head's transducer at a bearing (PingJob::bearing_rad): the mount, turned about its z
 /// axis.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad);
 
-/// What a head would ask of the renderer for DeviceKind::usual_job().
+/// The settings of the renderer for DeviceKind::usual_job().
 render::SonarSettings usual_settings(const HeadConfig& head);
-/// Heads as their logs name them, by their places in the configuration.
+/// The heads under the names of their logs, in the order of the configuration.
 std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads);
 
 /// @throws render::RequestError where the sampling of the configuration cannot serve such pings

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every head does to have its pings rendered, and what it counts and says of that.
+// The rendering of a head's pings, with counts and log lines.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@
 
 namespace sonard::server {
 
-/// They only grow.
+/// Counters, which only grow.
 struct RenderCounters {
   std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
   std::uint64_t pings_rendered = 0;
@@ -31,7 +31,7 @@ struct RenderCounters {
   render::SkipCounts skipped;   ///< of all pings
 };
 
-/// One ping of a head, as it goes to the render thread.
+/// One ping of a head for the render thread.
 struct HeadPing {
   std::uint64_t number = 0;
   TimePoint pose_time{};          ///< of the transmission, as PoseHistory takes it
@@ -60,15 +60,15 @@ class HeadRendering {
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
-  /// Where the mount of the head is; of a time to come, as far as the twist of the newest pose says. nullopt:
-  /// there is no pose, or only a stale one that is not to be used.
+  /// Pose of the head's mount; of a future time, extrapolated by the twist of the newest pose. nullopt: there
+  /// is no pose, or only a stale one that must not be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
 
   /// All poses that a log keeps of a ping transmitted at `transmit_time`.
   std::shared_ptr<const PosesUsed> poses_used(TimePoint transmit_time) const;
 
   void submit(HeadPing ping, RenderService::Done done);
-  /// Counts an answer, and logs what is wrong with it, the same thing once. @return whether there are
+  /// Counts an answer and logs an error in it, each error once. @return whether there are
   /// samples.
   bool take(const RenderResult& result);
   /// SkipRule::nobody_listening: takes back a ping that waits behind those of other heads.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What heads play back instead of having it rendered.
+// The interface of a recording that heads play back instead of rendering.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ class Playback {
  public:
   virtual ~Playback() = default;
 
-  /// The next ping of a head as things stand at `now`; nullopt: it has no more.
+  /// The next ping of a head at `now`; nullopt: it has no more.
   virtual std::optional<RecordedPing> next_ping(int stream, TimePoint now) = 0;
   /// A ping that next_ping() has named begins: `job.record`.
   virtual void started(int stream, const PingJob& job) = 0;
-  /// What a head has done so far, whenever it has done something.
+  /// Reports what a head has done so far, whenever that changes.
   virtual void progress(int stream, TimePoint now, const PingProgress& done) = 0;
   /// Everything is sent, and clients have had the time to ask for lost messages.
   virtual bool finished(TimePoint now) const = 0;

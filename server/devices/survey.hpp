@@ -12,7 +12,7 @@
 
 namespace sonard::server {
 
-/// What a user sets of a sonar; each kind takes what it knows and refuses the rest.
+/// Options of a sonar; each kind takes those it knows and refuses the rest.
 struct SurveyOptions {
   std::optional<double> range_m;
   std::optional<double> gain_percent;
@@ -34,7 +34,7 @@ class Survey {
 
   /// The shortest time from ping to ping.
   virtual std::chrono::nanoseconds natural_period() const = 0;
-  /// Lays out so many pings. @return first pings of the frames that they fill, and after the last frame the
+  /// Plans so many pings. @return first pings of the frames that they fill, and after the last frame the
   /// first ping that is in none
   virtual std::vector<int> frames(int pings) = 0;
   /// One of these pings, without its time; its number is `ping`.
@@ -53,7 +53,7 @@ class Survey {
   /// The sector of a scanning head.
   virtual Sector sector() const { return {}; }
 
-  /// What frames are made with, as members of a JSON object, but for the period.
+  /// Settings of the frames as members of a JSON object, without the period.
   virtual std::string settings_json() const = 0;
   /// A ping as a log keeps it, whose samples these are: 8 bits each, or the high ones of 16.
   /// nullopt where the users of such heads know no .glf.

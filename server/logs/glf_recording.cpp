@@ -92,7 +92,7 @@ std::vector<std::string> GlfRecording::problems() const {
     problems.emplace_back("not closed: still being written, or its writer went away");
   }
   if (const std::uint64_t damaged = index.damaged_records + bad_images_; damaged > 0) {
-    problems.push_back(fmt::format("{} images make no sense and are left out", damaged));
+    problems.push_back(fmt::format("{} images cannot be decoded and are left out", damaged));
   }
   return problems;
 }

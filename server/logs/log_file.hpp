@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A log on disk, mapped into memory, and what it shows itself to be.
+// A log on disk, mapped into memory, and its format.
 #pragma once
 
 #include <cstdint>

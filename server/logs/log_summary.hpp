@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a log, in numbers.
+// A summary of a log, in numbers.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace sonard::server {
 
-/// Images in a row, or not, that were made with the same settings.
+/// All images, in a row or not, with the same settings.
 struct SettingsCount {
   RecordedSettings settings;
   std::uint64_t pings = 0;
@@ -36,7 +36,7 @@ PingRate ping_rate(const std::vector<std::int64_t>& times_ns);
 struct HeadSummary {
   std::string name;                     ///< empty where the log has none
   std::string device;                   ///< its type in the configuration; empty where the log does not say
-  std::uint16_t id = 0;                 ///< that it has on the wire
+  std::uint16_t id = 0;                 ///< its ID on the wire
   bool scanning = false;                ///< a ping is a line of one beam
   std::vector<SettingsCount> settings;  ///< in order of appearance
   std::vector<std::int64_t> times_ns;   ///< of pings, rising; the clock is that of LoggedPing
@@ -56,7 +56,7 @@ struct LogSummary {
   std::vector<std::string> problems;                                 ///< one phrase each
 };
 
-/// The beginning of a ping in a datagram, as a device that knows its bytes finds it.
+/// Finds the beginning of a ping in a datagram; made by the kind of device.
 struct PingSeen {
   std::string device;
   std::uint16_t device_id = 0;

@@ -156,10 +156,10 @@ std::vector<std::string> McapRecording::problems() const {
     }
   }
   if (bad_images_ > 0) {
-    problems.push_back(fmt::format("{} images make no sense and are left out", bad_images_));
+    problems.push_back(fmt::format("{} images cannot be decoded and are left out", bad_images_));
   }
   if (bad_lines_ > 0) {
-    problems.push_back(fmt::format("{} scan lines make no sense and are left out", bad_lines_));
+    problems.push_back(fmt::format("{} scan lines cannot be decoded and are left out", bad_lines_));
   }
   return problems;
 }

@@ -28,7 +28,7 @@ struct LoggedPing {
   double bearing_rad = 0.0;        ///< of the beam of a scanning head: 0 ahead, positive to port
   int bits_per_bin = 8;            ///< 8: samples are 0..255; 4: 0..15
   std::vector<std::uint8_t> wire;  ///< the message without samples; empty: the log does not have it
-  std::size_t place = 0;           ///< of the Recording's own
+  std::size_t place = 0;           ///< index in the Recording
 };
 
 /// A head of a log.
@@ -56,9 +56,9 @@ class Recording {
   /// bins * beams samples, bin after bin from the nearest on, beams from port to starboard.
   /// @throws LogError when they cannot be unpacked
   virtual std::vector<std::uint8_t> samples(const LoggedPing& ping) const = 0;
-  /// What is wrong with the log, one phrase each: cut, not closed, damaged inside.
+  /// Problems of the log, one phrase each: cut, not closed, damaged inside.
   virtual std::vector<std::string> problems() const = 0;
-  /// It ends as a log does that was closed.
+  /// Whether the log was closed properly.
   virtual bool closed() const = 0;
 
  protected:
@@ -71,7 +71,7 @@ class Recording {
 };
 
 /// @throws LogError when `file` is broken from its start or holds no images by its kind (.pcapng). Pings
-/// that make no sense are left out. The recording views `file`, which must outlive it.
+/// that cannot be decoded are left out. The recording views `file`, which must outlive it.
 std::unique_ptr<Recording> open_recording(const LogFile& file);
 
 }  // namespace sonard::server

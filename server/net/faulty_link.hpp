@@ -28,7 +28,7 @@ struct LinkFaults {
 };
 
 /// Faults of the link between a head and its clients, to test drivers with. Seeded: the same datagrams in
-/// the same order meet the same fate.
+/// the same order have the same faults.
 struct LinkConfig {
   LinkFaults to_client;
   LinkFaults from_client;
@@ -43,7 +43,7 @@ struct FaultyLinkCounters {
   std::uint64_t reordered = 0;
 };
 
-/// One direction of a link. Pure: no socket, clock or thread. The fate of the n-th datagram depends on the
+/// One direction of a link. Pure: no socket, clock or thread. The faults of the n-th datagram depend on the
 /// seed and n alone (five numbers are drawn for each, whatever the settings), so a run can be repeated.
 /// Without jitter and reordering the order is kept.
 class FaultyLink {

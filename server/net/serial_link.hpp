@@ -18,7 +18,7 @@ class io_context;
 
 namespace sonard::server {
 
-/// They only grow.
+/// Counters, which only grow.
 struct SerialLinkCounters {
   SerialPortCounters ports;             ///< of all ports together
   std::vector<SerialPortReport> each;   ///< in the order of the configuration
@@ -46,7 +46,7 @@ struct SerialAddresses {
 /// Nothing here blocks or grows: a client that reads too slowly loses whole frames (SerialPort::send()), and
 /// what a line cannot carry in time is dropped and counted.
 ///
-/// Belongs to the I/O thread, as every handler of its does; constructor and destructor to the thread that
+/// Belongs to the I/O thread, as all its handlers do; constructor and destructor to the thread that
 /// owns the io_context while it does not run. After stop() no callback is called; it, and the destructor, may
 /// be called from within one. Handlers that are still queued find the inner state stopped or gone.
 class SerialLink {
@@ -56,7 +56,7 @@ class SerialLink {
 
   /// One read of one client: any piece of a command, or several. `peer` tells clients apart.
   using Receive = std::function<void(std::span<const std::uint8_t> bytes, const std::string& peer)>;
-  /// A client has left, after all that came of it: a command that it began will not be finished.
+  /// A client has left, after all that it sent: the rest of a command that it had begun will not come.
   using Left = std::function<void(const std::string& peer)>;
 
   /// Opens everything; it reads from clients from start() on.
@@ -70,7 +70,7 @@ class SerialLink {
   void start(Receive receive, Left left, decltype(SerialPortEvents::passed) passed = {},
              decltype(SerialPortEvents::ended) ended = {});
   void stop();
-  /// A whole frame, for everybody who is connected.
+  /// Sends a whole frame to all connected clients.
   void send(std::vector<std::uint8_t> frame);
   bool connected() const;
 

@@ -33,7 +33,7 @@ struct SerialPtyConfig {
   std::filesystem::path link;
 };
 
-/// Every way at once by which the clients of a serial device reach it.
+/// All ways by which clients reach a serial device at once.
 struct SerialLinkConfig {
   std::vector<SerialTcpConfig> tcp;
   std::vector<SerialUdpConfig> udp;
@@ -47,13 +47,13 @@ std::string serial_text(const SerialLinkConfig& config);
 /// Most bytes taken from a client with one system call; longer than any command of a device.
 inline constexpr std::size_t serial_read_bytes = 2048;
 
-/// They only grow.
+/// Counters, which only grow.
 struct SerialPortCounters {
   std::uint64_t connections = 0;  ///< clients that came
   std::uint64_t refused = 0;      ///< connections, or datagrams, turned away: not allowed, too many, too long
   std::uint64_t bytes_in = 0;     ///< of all clients
   std::uint64_t bytes_out = 0;    ///< to all clients: a frame that two of them get counts twice
-  std::uint64_t frames_dropped = 0;  ///< a client had not taken what it was sent before
+  std::uint64_t frames_dropped = 0;  ///< a client had not read earlier frames
   std::uint64_t frames_lost = 0;     ///< the other end was gone, or the OS refused
 };
 
@@ -75,7 +75,7 @@ struct SerialPortEvents {
   std::function<void(const WireEnds& ends)> ended;
 };
 
-/// Belongs to the I/O thread, as every handler of its does. The constructors open what they serve and throw
+/// Belongs to the I/O thread, as all its handlers do. The constructors open what they serve and throw
 /// SocketError; from start() on it reads from clients. After stop() no event is called; it may be called from
 /// within one.
 class SerialPort {
@@ -87,9 +87,9 @@ class SerialPort {
 
   virtual void start(SerialPortEvents events) = 0;
   virtual void stop() = 0;
-  /// Gives the frame to every client with one system call each, now or never. A client whose buffers are full
-  /// does not get it. Where the buffers took only the first part the rest follows as they drain, and frames
-  /// until then are dropped: what a client reads is whole frames.
+  /// Sends the frame to every client with one system call each, without a later try. A client whose buffers
+  /// are full does not get it. Where the buffers took only the first part the rest follows as they drain, and
+  /// frames until then are dropped: what a client reads is whole frames.
   virtual void send(std::span<const std::uint8_t> frame) = 0;
   virtual bool connected() const = 0;
   /// For the log: "tcp 127.0.0.1:4001".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a head reaches its clients, whatever lies between: sockets, a serial line.
+// The interface between a head and its clients: sockets or a serial line.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace sonard::server {
 
-/// What a transport tells the head that it belongs to. All are called on the I/O thread, none after stop().
+/// Callbacks of a transport to its head. All are called on the I/O thread, none after stop().
 struct TransportEvents {
   std::function<void(BytesReceived)> received;
   std::function<void(ClientGone)> gone;
@@ -23,7 +23,7 @@ struct TransportEvents {
   std::function<void(const WireEnds&)> ended;  ///< a stream is over
 };
 
-/// Belongs to the I/O thread, as every handler of its does; constructor and destructor to the thread that
+/// Belongs to the I/O thread, as all its handlers do; constructor and destructor to the thread that
 /// owns the io_context while it does not run. The constructors open what they serve and throw SocketError.
 /// Nothing here waits.
 class Transport {

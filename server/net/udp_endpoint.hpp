@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A UDP socket that knows on which of its addresses it was addressed, and never drops what it shall send.
+// A UDP socket that reports the local address of each datagram and never drops what it sends.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct SocketError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// They only grow.
+/// Counters, which only grow.
 struct UdpEndpointCounters {
   std::uint64_t received = 0;
   std::uint64_t truncated = 0;       ///< longer than any message of a device: dropped

@@ -16,7 +16,7 @@
 
 namespace sonard::server {
 
-/// They only grow.
+/// Counters, which only grow.
 struct MavlinkPoseCounters {
   std::uint64_t bad_value = 0;         ///< not finite, no rotation, or out of bounds
   std::uint64_t unknown_frame = 0;     ///< ODOMETRY whose frame_id has no place in the world

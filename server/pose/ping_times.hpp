@@ -11,7 +11,7 @@
 
 namespace sonard::server {
 
-/// They only grow.
+/// Counters, which only grow.
 struct PingTimesCounters {
   std::uint64_t left_out = 0;  ///< by PingClock::source: the head could not keep up
   std::uint64_t unknown =
@@ -49,7 +49,7 @@ class PingTimes {
   std::uint64_t restarts_ = 0;
   std::optional<TimePoint> last_;                    ///< begun
   std::optional<TimePoint> next_;                    ///< awaited
-  std::chrono::nanoseconds period_{}, listening_{};  ///< that were asked for last
+  std::chrono::nanoseconds period_{}, listening_{};  ///< of the last request
   PingTimesCounters counters_;
 };
 

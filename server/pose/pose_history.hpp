@@ -36,7 +36,7 @@ struct PoseEstimate {
   std::chrono::nanoseconds age{0};
 };
 
-/// They only grow.
+/// Counters, which only grow.
 struct PoseHistoryCounters {
   std::uint64_t samples = 0;
   std::uint64_t late = 0;            ///< came after a newer one; still used

@@ -30,7 +30,7 @@ using PoseSink = std::function<void(const pose::PoseSample&, TimePoint arrival)>
 /// True while publishers that can wait are to wait: the pings are behind. Asked on the I/O thread.
 using PoseHold = std::function<bool()>;
 
-/// They only grow.
+/// Counters, which only grow.
 struct PoseSourceCounters {
   std::uint64_t samples = 0;    ///< delivered
   std::uint64_t malformed = 0;  ///< messages that are no pose message, and lengths that are none

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the threads that serve to the one that records, without ever holding up the former.
+// The queue from the serving threads to the recorder, which never makes the former wait.
 #pragma once
 
 #include <atomic>
@@ -41,7 +41,7 @@ class EventQueue {
   void wait(std::chrono::milliseconds longest) { static_cast<void>(news_.try_acquire_for(longest)); }
   /// Takes all events in the order in which they were pushed. Their memory counts until done().
   std::vector<RecordingEvent> take();
-  /// An event that was taken is worked off, and makes room.
+  /// Frees the memory of a processed event.
   void done(const RecordingEvent& event);
 
   /// Any thread.

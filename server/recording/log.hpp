@@ -17,11 +17,11 @@
 
 namespace sonard::server {
 
-/// A head as its logs name it.
+/// A head for its logs.
 struct HeadToRecord {
   std::string name;
   std::string device;           ///< its type in the configuration
-  std::uint16_t device_id = 0;  ///< that it has on the wire
+  std::uint16_t device_id = 0;  ///< its ID on the wire
   /// Where the users of such heads know .glf logs: its place among those, 0..9.
   std::optional<std::uint8_t> glf_number;
   /// What a status of the head says in fields that a .glf has; nullopt for other messages to everybody.

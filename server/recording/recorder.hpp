@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes down what the heads say, on a thread of its own.
+// Writes what the heads report to logs, on its own thread.
 #pragma once
 
 #include <memory>
@@ -18,11 +18,11 @@ struct RecordingError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// They only grow.
+/// Counters, which only grow.
 struct RecorderCounters {
   DroppedEvents dropped;           ///< the queue was full
   std::uint64_t images = 0;        ///< pings and scan lines that came through the queue
-  std::uint64_t images_lost = 0;   ///< of those: in no log, for none could be written
+  std::uint64_t images_lost = 0;   ///< of those: lost, as no log could be written
   std::uint64_t logs_written = 0;  ///< closed without a failure
   std::uint64_t logs_failed = 0;   ///< could not be written, to the end or at all
 };
@@ -33,11 +33,11 @@ struct RecorderCounters {
 ///
 /// All logs of a daemon begin and end together, so that files of one name cover the same time. When one is
 /// full, or time is over, the next event begins new ones. The .dat of the old ones are packed meanwhile, a
-/// slice between any two looks at the queue: while it copies 1 MiB and waits for the disk events gather, at
+/// slice between any two checks of the queue: while it copies 1 MiB and waits for the disk events gather, at
 /// most for as long as that takes.
 ///
-/// Disk full, or any other error of a file: that file is given up (GrowingLog), the others go on. The next
-/// logs begin only where there is room for them; until then events are taken and thrown away.
+/// Disk full, or any other error of a file: that file is abandoned (GrowingLog), the others continue. The
+/// next logs begin only where there is room for them; until then events are discarded.
 class Recorder {
  public:
   /// Free space below which no logs begin.
@@ -54,8 +54,8 @@ class Recorder {
 
   /// Any thread; never waits. An event that does not fit the queue is dropped and counted.
   void push(RecordingEvent event);
-  /// Writes what was pushed before, closes and packs the logs, and says in the log what was done. Harmless
-  /// when called again.
+  /// Writes what was pushed before, closes and packs the logs, and logs what was done. Harmless when called
+  /// again.
   void stop();
 
   RecorderCounters counters() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes whole what a daemon that was killed has left behind (docs/logs.md, "Recording").
+// Repairs the logs that a killed daemon has left behind (docs/logs.md, "Recording").
 #pragma once
 
 #include <filesystem>

@@ -17,18 +17,18 @@
 
 namespace sonard::server {
 
-/// The renderer as the service sees it, so that tests can put another in its place. All calls come from the
+/// The renderer's interface to the service, so that tests can replace it. All calls come from the
 /// render thread.
 class PingRenderer {
  public:
   virtual ~PingRenderer() = default;
-  /// One line for the log: who makes the pixels.
+  /// The backend, one line for the log.
   virtual std::string description() const = 0;
   /// @return false when the world has no such body.
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
   /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can)
   virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
-  /// Makes what a ping like this one needs and is not there yet: trees, shaders, memory. Changes no later
+  /// Prepares what a ping like this one needs: trees, shaders, memory. Changes no later
   /// ping.
   /// @throws as render_ping()
   virtual void warm_up(const render::PingRequest& /*request*/, int /*stream*/) {}
@@ -91,7 +91,7 @@ class RenderService {
   /// @throws std::logic_error when the queue is full: more than one job per stream was submitted
   void submit(RenderJob job, Done done);
   /// Forgets the waiting job of a stream; its `done` is never called. @return false when none is waiting: it
-  /// has been begun, and is answered as always.
+  /// has begun, and is answered as usual.
   bool withdraw(int stream);
   /// Ends the render thread after the ping it is working on. Harmless when called again.
   void stop();

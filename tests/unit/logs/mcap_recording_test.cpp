@@ -118,7 +118,7 @@ TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
   const LogFile file(temporary.path());
   const McapRecording recording(file);
   EXPECT_EQ(recording.heads().at(0).pings.size(), 5U);
-  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 images make no sense and are left out"}));
+  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 images cannot be decoded and are left out"}));
 }
 
 TEST(McapRecording, summary_counts_all_kinds) {
@@ -183,7 +183,7 @@ TEST(McapRecording, has_every_scan_line_and_how_it_travelled) {
   }
   EXPECT_EQ(scan.pings[2].bits_per_bin, 8);
   EXPECT_TRUE(scan.pings[2].wire.empty());
-  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 scan lines make no sense and are left out"}));
+  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 scan lines cannot be decoded and are left out"}));
 }
 
 TEST(McapRecording, says_which_devices_its_heads_were) {
