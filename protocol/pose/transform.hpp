@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rigid motion in double precision, as plain values: what a pose stream and a trajectory are made of. C++17
-// reads it too: the headers of ROS 1 know nothing later.
+// Rigid motion in double precision, as plain values: what a pose stream and a trajectory are made of.
 #pragma once
 
 namespace sonard::pose {
@@ -10,7 +9,7 @@ struct Vec3 {
   double y = 0.0;
   double z = 0.0;
 
-  bool operator==(const Vec3& other) const { return x == other.x && y == other.y && z == other.z; }
+  bool operator==(const Vec3&) const = default;
 };
 
 Vec3 operator+(const Vec3& a, const Vec3& b);
@@ -26,9 +25,7 @@ struct Quat {
   double y = 0.0;
   double z = 0.0;
 
-  bool operator==(const Quat& other) const {
-    return w == other.w && x == other.x && y == other.y && z == other.z;
-  }
+  bool operator==(const Quat&) const = default;
 };
 
 Quat operator*(const Quat& a, const Quat& b);
@@ -48,9 +45,7 @@ struct Transform {
   Vec3 position_m;
   Quat orientation;
 
-  bool operator==(const Transform& other) const {
-    return position_m == other.position_m && orientation == other.orientation;
-  }
+  bool operator==(const Transform&) const = default;
 };
 
 /// Twist of frame b relative to frame a, in the axes of b.

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What roscast makes of ROS's messages: odometry and transforms become messages of protocol/pose/pose.proto.
+
+Nothing here needs a roscore or a socket.
+"""
+import collections
+import math
+
+import genpy
+import tf2_py
+
+import pose_pb2
+
+FRAMES = {"enu_flu": pose_pb2.FRAME_ENU_FLU, "ned_frd": pose_pb2.FRAME_NED_FRD}
+
+# More than what comes late over a network; sonard's own sources of poses draw the line there, too.
+SET_BACK_NS = 250_000_000
+# What sonard refuses (protocol/pose/transform.hpp, pose_codec.hpp) is said here, to whom it concerns.
+MAX_COORDINATE_M = 1e8
+MAX_SPEED = 1e6
+MIN_QUATERNION_NORM, MAX_QUATERNION_NORM = 1e-3, 1e3
+
+
+def without_slash(frame):
+    """Frame names of tf's first version begin with a slash and mean the same without it."""
+    return frame[1:] if frame.startswith("/") else frame
+
+
+def numbers(message, names="xyz"):
+    return [getattr(message, name) for name in names]
+
+
+def copy_numbers(ours, theirs, names="xyz"):
+    for name in names:
+        setattr(ours, name, getattr(theirs, name))
+
+
+def normalize(position, orientation):
+    """Scales the quaternion to norm 1. Returns what is wrong with the two, or None."""
+    if not all(map(math.isfinite, numbers(position))):
+        return "position is not finite"
+    if max(map(abs, numbers(position))) > MAX_COORDINATE_M:
+        return "position is beyond 1e8 m"
+    if not all(map(math.isfinite, numbers(orientation, "wxyz"))):
+        return "orientation is not finite"
+    norm = math.hypot(*numbers(orientation, "wxyz"))
+    if not MIN_QUATERNION_NORM <= norm <= MAX_QUATERNION_NORM:
+        return "orientation has a norm outside 0.001..1000, so it is no rotation"
+    for name in "wxyz":
+        setattr(orientation, name, getattr(orientation, name) / norm)
+    return None
+
+
+def fault_of_twist(twist):
+    for vector in (twist.linear, twist.angular):
+        # Not a number is no more than anything.
+        if not math.hypot(*numbers(vector)) <= MAX_SPEED:
+            return "twist is not finite, or beyond 1e6"
+    return None
+
+
+class FrameTree:
+    """The frames that /tf and /tf_static tell of, in tf2's own buffer, which interpolates and remembers 10 s."""
+
+    def __init__(self):
+        self._buffer = tf2_py.BufferCore()
+        self._newest_ns = {}  # by child frame
+
+    def insert(self, transform, is_static):
+        """Returns True when its stamp was far behind the newest one of the same frame: the clock was set back (a
+        simulation was reset), and everything from before, but for /tf_static, is forgotten."""
+        if is_static:
+            self._buffer.set_transform_static(transform, "")
+            return False
+        stamp_ns = transform.header.stamp.to_nsec()
+        newest_ns = self._newest_ns.get(transform.child_frame_id)
+        if stamp_ns == newest_ns:
+            return False  # of a paused simulation; tf2 would refuse it, and write a line about each one
+        reset = newest_ns is not None and stamp_ns < newest_ns - SET_BACK_NS
+        if reset:
+            self._buffer.clear()
+            self._newest_ns.clear()
+            newest_ns = None
+        self._newest_ns[transform.child_frame_id] = stamp_ns if newest_ns is None else max(newest_ns, stamp_ns)
+        self._buffer.set_transform(transform, "")
+        return reset
+
+    def newest(self, root, frame):
+        """Where `frame` is in `root` at the newest time for which the whole chain between them is known; a stamp of 0
+        says that the chain does not change at all. Raises tf2_py.TransformException."""
+        return self._buffer.lookup_transform_core(root, frame, genpy.Time())
+
+    def at(self, stamp, root, frame):
+        """Where `frame` was at that time, or at the newest time where that is not known; None without any."""
+        for time in (stamp, genpy.Time()):
+            try:
+                return self._buffer.lookup_transform_core(root, frame, time)
+            except tf2_py.TransformException:
+                pass
+        return None
+
+    def frames(self):
+        return sorted(self._buffer._getFrameStrings())
+
+
+class PoseBridge:
+    """Calls send(PoseUpdate) for each pose of the vehicle, and say(line) for a person. One thread."""
+
+    def __init__(self, send, say, odometry, world_frame="world", vehicle_frame="", axes="enu_flu", bodies=()):
+        """`odometry`: whether the vehicle's pose comes from there, else from tf. `vehicle_frame`: with odometry the
+        child_frame_id that is expected, any when empty; else the vehicle's frame of tf. `bodies`: pairs of a frame of
+        tf and the body of sonard's world that follows it."""
+        self._send_update, self._say = send, say
+        self._by_odometry = odometry
+        self._world_frame = without_slash(world_frame)
+        self._vehicle_frame = without_slash(vehicle_frame)
+        self._axes = axes
+        self._bodies = [(without_slash(frame), body) for frame, body in bodies]
+        self._tree = FrameTree()
+        self._newest_ns = 0  # of the vehicle by tf, as far as sent
+        self._said = set()
+        # poses: handed on; wrong_frame: odometry in or of another frame than expected; no_stamp: no time to put the
+        # pose at; bad_value: not finite, no rotation, beyond every limit; clock_resets.
+        self.counters = collections.Counter()
+
+    def _drop(self, counter, line):
+        """What would be said for every message is said once."""
+        self.counters[counter] += 1
+        if line not in self._said:
+            self._said.add(line)
+            self._say(line)
+
+    def on_odometry(self, message):
+        frame = without_slash(message.header.frame_id)
+        child = without_slash(message.child_frame_id)
+        if frame != self._world_frame:
+            self._drop("wrong_frame", f"odometry with frame_id '{frame}' is dropped: expected '{self._world_frame}'. "
+                       f"If '{frame}' is what sonard's world is, say --world-frame {frame}, and --axes ned_frd where "
+                       "its z points down")
+        elif self._vehicle_frame and child != self._vehicle_frame:
+            self._drop("wrong_frame", f"odometry with child_frame_id '{child}' is dropped: expected "
+                       f"'{self._vehicle_frame}' (--vehicle-frame)")
+        elif message.header.stamp.is_zero():
+            self._drop("no_stamp", "odometry with a header.stamp of 0 is dropped: its publisher has to fill in the time")
+        else:
+            pose, twist = message.pose.pose, message.twist.twist
+            fault = normalize(pose.position, pose.orientation) or fault_of_twist(twist)
+            if fault:
+                self._drop("bad_value", f"odometry is dropped: {fault}")
+            else:
+                self._send(message.header, child, pose.position, pose.orientation, twist)
+
+    def on_transforms(self, transforms, is_static):
+        """All transforms of one message of /tf (False) or /tf_static (True)."""
+        for transform in transforms:
+            child = transform.child_frame_id = without_slash(transform.child_frame_id)
+            transform.header.frame_id = without_slash(transform.header.frame_id)
+            fault = normalize(transform.transform.translation, transform.transform.rotation)
+            if fault:
+                self._drop("bad_value", f"the transform to '{child}' is dropped: {fault}")
+            elif self._tree.insert(transform, is_static):
+                self.counters["clock_resets"] += 1
+                self._newest_ns = 0
+                self._say(f"the stamps of frame '{child}' went back to {transform.header.stamp.to_sec():.3f} s: "
+                          "transforms from before are forgotten. Again and again: two publishers of one frame")
+        if not self._by_odometry and not is_static:
+            self._send_from_tree({transform.child_frame_id for transform in transforms})
+
+    def _send_from_tree(self, changed_frames):
+        try:
+            vehicle = self._tree.newest(self._world_frame, self._vehicle_frame)
+        except tf2_py.TransformException:
+            return  # the rest of the chain may come in another message; why_no_vehicle() is for who waits in vain
+        stamp_ns = vehicle.header.stamp.to_nsec()
+        if stamp_ns == 0:
+            self._drop("no_stamp", f"nothing between '{self._world_frame}' and '{self._vehicle_frame}' ever changes: "
+                       "give this pose as poses.initial")
+            return
+        # Other frames bring no news of the vehicle. The same time again is that of a paused simulation.
+        again = stamp_ns == self._newest_ns and self._vehicle_frame in changed_frames
+        if stamp_ns > self._newest_ns or again:
+            self._newest_ns = stamp_ns
+            self._send(vehicle.header, self._vehicle_frame, vehicle.transform.translation, vehicle.transform.rotation)
+
+    def _send(self, header, child, position, orientation, twist=None):
+        """Numbers go as they are: sonard knows both axes, and the twist of Odometry is in the vehicle's own."""
+        update = pose_pb2.PoseUpdate(time_ns=header.stamp.to_nsec(), frame=FRAMES[self._axes])
+        copy_numbers(update.vehicle.position_m, position)
+        copy_numbers(update.vehicle.orientation, orientation, "wxyz")
+        if twist is not None:
+            copy_numbers(update.twist.linear_mps, twist.linear)
+            copy_numbers(update.twist.angular_radps, twist.angular)
+        for frame, body in self._bodies:
+            found = self._tree.at(header.stamp, self._world_frame, frame)
+            if found:
+                pose = update.bodies.add(name=body).pose
+                copy_numbers(pose.position_m, found.transform.translation)
+                copy_numbers(pose.orientation, found.transform.rotation, "wxyz")
+        self.counters["poses"] += 1
+        if self.counters["poses"] == 1:
+            x, y, z = numbers(position)
+            east, north, up = (x, y, z) if self._axes == "enu_flu" else (y, x, -z)
+            self._say(f"first pose: '{child}' in '{without_slash(header.frame_id)}' at {header.stamp.to_sec():.3f} s, "
+                      f"({east:.2f}, {north:.2f}, {up:.2f}) east, north, up")
+        self._send_update(update)
+
+    def why_no_vehicle(self):
+        """Why tf gives no pose of the vehicle: tf2's reason and the frames that there are. One line."""
+        problem = ""
+        try:
+            self._tree.newest(self._world_frame, self._vehicle_frame)
+        except tf2_py.TransformException as error:
+            problem = str(error)
+        return f"{problem}; frames there are: {', '.join(self._tree.frames())}"
