@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "protocol/common/ping_job.hpp"
 #include "protocol/common/ping_record.hpp"
 
@@ -53,8 +55,8 @@ class Survey {
   /// The sector of a scanning head.
   virtual Sector sector() const { return {}; }
 
-  /// Settings of the frames as members of a JSON object, without the period.
-  virtual std::string settings_json() const = 0;
+  /// Settings of the frames as a JSON object, without the period.
+  virtual nlohmann::ordered_json settings_json() const = 0;
   /// A ping as a log keeps it, whose samples these are: 8 bits each, or the high ones of 16.
   /// nullopt where the users of such heads know no .glf.
   virtual std::optional<PingRecord> record(int /*ping*/, std::vector<std::uint8_t> /*samples*/) const {

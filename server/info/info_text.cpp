@@ -8,6 +8,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "server/devices/kinds/kinds.hpp"
 
@@ -90,68 +91,56 @@ std::string span_text(const LogSummary& log, std::int32_t utc_offset_s) {
 
 // ---- JSON
 
-std::string json_string(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
+using Json = nlohmann::ordered_json;
 
 /// null for what the log does not say.
-std::string json_known(bool known, double value) {
-  return known ? fmt::format("{}", value) : "null";
+Json json_known(bool known, double value) {
+  return known ? Json(value) : Json();
 }
 
-template <class List, class Item>
-std::string json_list(const List& list, const Item& item) {
-  std::string out;
-  for (const auto& element : list) {
-    out += (out.empty() ? "" : ", ") + item(element);
-  }
-  return "[" + out + "]";
-}
-
-std::string json_settings(const SettingsCount& count) {
+Json json_settings(const SettingsCount& count) {
   const RecordedSettings& settings = count.settings;
-  return fmt::format(
-      R"({{"pings": {}, "lines": {}, "beams": {}, "metres_per_line": {}, "range_m": {}, "sound_speed_mps": {}, )"
-      R"("gain_percent": {}, "frequency_hz": {}}})",
-      count.pings, settings.bins, settings.beams, settings.bin_m, settings.range_m(),
-      settings.sound_speed_mps, json_known(settings.gain_percent >= 0.0, settings.gain_percent),
-      json_known(settings.frequency_hz > 0.0, settings.frequency_hz));
+  return {{"pings", count.pings},
+          {"lines", settings.bins},
+          {"beams", settings.beams},
+          {"metres_per_line", settings.bin_m},
+          {"range_m", settings.range_m()},
+          {"sound_speed_mps", settings.sound_speed_mps},
+          {"gain_percent", json_known(settings.gain_percent >= 0.0, settings.gain_percent)},
+          {"frequency_hz", json_known(settings.frequency_hz > 0.0, settings.frequency_hz)}};
 }
 
-std::string json_head(const HeadSummary& head, LogKind log) {
+Json json_head(const HeadSummary& head, LogKind log) {
   const PingRate rate = ping_rate(head.times_ns);
   const DeviceKind* const kind = kind_of_logged(head.device, log);
   const std::string device = kind != nullptr ? std::string(kind->type()) : head.device;
-  return fmt::format(
-      R"({{"device": {}, "scanning": {}, "name": {}, "id": {}, "pings": {}, "rate_hz": {}, "median_interval_s": {}, )"
-      R"("gaps": {}, "longest_gap_s": {}, "settings": {}}})",
-      device.empty() ? "null" : json_string(device), head.scanning, json_string(head.name), head.id,
-      head.pings(), rate.rate_hz(), rate.median_interval_s, rate.gaps, rate.longest_gap_s,
-      json_list(head.settings, json_settings));
+  Json settings = Json::array();
+  for (const SettingsCount& count : head.settings) {
+    settings.push_back(json_settings(count));
+  }
+  return {{"device", device.empty() ? Json() : Json(device)},
+          {"scanning", head.scanning},
+          {"name", head.name},
+          {"id", head.id},
+          {"pings", head.pings()},
+          {"rate_hz", rate.rate_hz()},
+          {"median_interval_s", rate.median_interval_s},
+          {"gaps", rate.gaps},
+          {"longest_gap_s", rate.longest_gap_s},
+          {"settings", settings}};
 }
 
-std::string json_span(const LogSummary& log, std::int32_t utc_offset_s) {
+Json json_span(const LogSummary& log, std::int32_t utc_offset_s) {
   if (!log.span_ns) {
-    return "null";
+    return nullptr;
   }
   const auto [first, last] = *log.span_ns;
-  return fmt::format(
-      R"({{"first_as_written": "{}", "last_as_written": "{}", "first_utc": "{}", "last_utc": "{}", )"
-      R"("utc_offset_s": {}, "seconds": {}}})",
-      iso_time(first, !log.local_time), iso_time(last, !log.local_time),
-      iso_time(to_utc(log, first, utc_offset_s), true), iso_time(to_utc(log, last, utc_offset_s), true),
-      log.local_time ? utc_offset_s : 0, 1e-9 * static_cast<double>(last - first));
+  return {{"first_as_written", iso_time(first, !log.local_time)},
+          {"last_as_written", iso_time(last, !log.local_time)},
+          {"first_utc", iso_time(to_utc(log, first, utc_offset_s), true)},
+          {"last_utc", iso_time(to_utc(log, last, utc_offset_s), true)},
+          {"utc_offset_s", log.local_time ? utc_offset_s : 0},
+          {"seconds", 1e-9 * static_cast<double>(last - first)}};
 }
 
 }  // namespace
@@ -195,18 +184,23 @@ std::string info_text(const LogSummary& log, std::int32_t utc_offset_s) {
 }
 
 std::string info_json(const LogSummary& log, std::int32_t utc_offset_s) {
-  std::string others;
-  for (const auto& [what, number] : log.other_records) {
-    others += fmt::format("{}{}: {}", others.empty() ? "" : ", ", json_string(what), number);
+  Json heads = Json::array();
+  for (const HeadSummary& head : log.heads) {
+    heads.push_back(json_head(head, log.kind));
   }
-  return fmt::format(
-      R"({{"file": {}, "kind": "{}", "bytes": {}, "closed": {}, "span": {}, "heads": {}, "other_records": {{{}}}, )"
-      R"("problems": {}}})"
-      "\n",
-      json_string(log.path), name_of(log.kind).substr(1), log.size_bytes,
-      log.closed ? fmt::format("{}", *log.closed) : "null", json_span(log, utc_offset_s),
-      json_list(log.heads, [&](const HeadSummary& head) { return json_head(head, log.kind); }), others,
-      json_list(log.problems, json_string));
+  Json others = Json::object();
+  for (const auto& [what, number] : log.other_records) {
+    others[what] = number;
+  }
+  const Json json{{"file", log.path},
+                  {"kind", name_of(log.kind).substr(1)},
+                  {"bytes", log.size_bytes},
+                  {"closed", log.closed ? Json(*log.closed) : Json()},
+                  {"span", json_span(log, utc_offset_s)},
+                  {"heads", heads},
+                  {"other_records", others},
+                  {"problems", log.problems}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace sonard::server

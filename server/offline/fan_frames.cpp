@@ -12,7 +12,6 @@
 
 #include "server/devices/device_kind.hpp"
 #include "server/npy/npy_file.hpp"
-#include "server/offline/json_text.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
 #include "server/recording/glf_records.hpp"
@@ -112,29 +111,32 @@ std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view np
                    {0, static_cast<std::uint8_t>(place_.glf_number), kind_of(head_).device_id(head_)});
 }
 
-std::string FanFrames::settings_json() const {
-  return fmt::format("{}, \"period_s\": {}", survey_->settings_json(), 1e-9 * times_.period_ns);
+Json FanFrames::settings_json() const {
+  Json settings = survey_->settings_json();
+  settings["period_s"] = 1e-9 * times_.period_ns;
+  return settings;
 }
 
 std::string FanFrames::sidecar(int frame, const render::PingRequest& request) const {
   const int beams = static_cast<int>(bearings_rad_.size());
-  SidecarText text;
-  text.add_frame({frame, head_.name, std::string(head_.kind->type()), times_.at(frame), unix_ns(frame)});
-  text.add("device_id", std::to_string(head_.kind->device_id(head_)));
-  text.add("ping_number", std::to_string(frame));
-  text.add("stream", std::to_string(place_.stream));
-  text.add("seed", std::to_string(head_.seed));
-  text.add_samples(name(frame), job_.sixteen_bit, {"line", job_.bins()}, {"beam", beams});
-  text.add("geometry", fmt::format("{{\"line_step_m\": {}, \"range_m\": {}, \"sound_speed_mps\": {}, "
-                                   "\"bearings_rad\": {}}}",
-                                   job_.bin_m(), job_.bin_m() * job_.bins(), job_.sound_speed_mps,
-                                   json_list(bearings_rad_)));
-  text.add("settings", "{" + settings_json() + "}");
-  text.add("T_world_vehicle", json_pose(trajectory_.T_world_vehicle(times_.at(frame))));
-  text.add("T_world_sonar", json_pose(request.T_world_sonar));
-  text.add("T_world_sonar_at_end", json_pose(*request.T_world_sonar_at_end));
-  text.add_truth(name(frame), truth_);
-  return text.finish();
+  Json json =
+      frame_json({frame, head_.name, std::string(head_.kind->type()), times_.at(frame), unix_ns(frame)});
+  json["device_id"] = head_.kind->device_id(head_);
+  json["ping_number"] = frame;
+  json["stream"] = place_.stream;
+  json["seed"] = head_.seed;
+  json["picture"] = picture_name(name(frame));
+  json["samples"] = samples_json(name(frame), job_.sixteen_bit, {"line", job_.bins()}, {"beam", beams});
+  json["geometry"] = {{"line_step_m", job_.bin_m()},
+                      {"range_m", job_.bin_m() * job_.bins()},
+                      {"sound_speed_mps", job_.sound_speed_mps},
+                      {"bearings_rad", bearings_rad_}};
+  json["settings"] = settings_json();
+  json["T_world_vehicle"] = pose_json(trajectory_.T_world_vehicle(times_.at(frame)));
+  json["T_world_sonar"] = pose_json(request.T_world_sonar);
+  json["T_world_sonar_at_end"] = pose_json(*request.T_world_sonar_at_end);
+  json["truth"] = truth_json(name(frame), truth_);
+  return sidecar_text(json);
 }
 
 }  // namespace sonard::server

@@ -28,7 +28,7 @@ class FanFrames final : public FrameSource {
   std::string name(int frame) const override;
   Frame render(render::SonarRenderer& renderer, int frame) override;
   void pass(render::SonarRenderer& renderer, int frame) override;
-  std::string settings_json() const override;
+  nlohmann::ordered_json settings_json() const override;
   bool makes_glf() const override;
   std::optional<glf::ImageRecord> record(int frame, std::string_view npy) const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(frame)); }

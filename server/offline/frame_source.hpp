@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include <nlohmann/json_fwd.hpp>
 #include <opencv2/core/mat.hpp>
 
 #include "protocol/glf/records.hpp"
@@ -46,8 +47,8 @@ class FrameSource {
   /// Leaves the renderer as render() does. @throws the same
   virtual void pass(render::SonarRenderer& renderer, int frame) = 0;
 
-  /// What frames are made with, as members of a JSON object.
-  virtual std::string settings_json() const = 0;
+  /// What frames are made with, as a JSON object.
+  virtual nlohmann::ordered_json settings_json() const = 0;
 
   /// Whether frames go into a .glf.
   virtual bool makes_glf() const { return false; }

@@ -28,7 +28,6 @@
 #include "server/offline/fan_frames.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/glf_file.hpp"
-#include "server/offline/json_text.hpp"
 #include "server/offline/output_folder.hpp"
 #include "server/offline/progress.hpp"
 #include "server/offline/sidecar.hpp"
@@ -163,19 +162,18 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
 
 // All that the bytes of frames follow from, as far as it is not in the program; nothing of this process.
 std::string RenderRun::manifest() const {
-  SidecarText text;
-  text.add("program", json_string(app_name));
-  text.add("config_crc32", fmt::format("\"{:08x}\"", crc_of(config_.file)));
-  text.add("world_crc32", fmt::format("\"{:08x}\"", crc_of(config_.world_file)));
-  text.add("trajectory_crc32", fmt::format("\"{:08x}\"", crc_of(options_.trajectory)));
-  text.add("axes", options_.axes == pose::Axes::ned_frd ? "\"ned_frd\"" : "\"enu_flu\"");
-  text.add("backend", json_string(render::name_of(renderer_.backend())));
-  text.add("head", json_string(config_.heads[head_].name));
-  text.add("settings", "{" + frames_->settings_json() + "}");
-  text.add("frames", std::to_string(frames_->count()));
-  text.add("radius_px", std::to_string(options_.radius_px));
-  text.add("truth", options_.truth ? "true" : "false");
-  return text.finish();
+  const Json json{{"program", app_name},
+                  {"config_crc32", fmt::format("{:08x}", crc_of(config_.file))},
+                  {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
+                  {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
+                  {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
+                  {"backend", render::name_of(renderer_.backend())},
+                  {"head", config_.heads[head_].name},
+                  {"settings", frames_->settings_json()},
+                  {"frames", frames_->count()},
+                  {"radius_px", options_.radius_px},
+                  {"truth", options_.truth}};
+  return sidecar_text(json);
 }
 
 bool RenderRun::whole(int frame) const {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/offline/sidecar.hpp"
 
-#include <vector>
-
 #include <fmt/format.h>
-
-#include "server/offline/json_text.hpp"
 
 namespace sonard::server {
 namespace {
@@ -14,37 +10,47 @@ constexpr double sixteen_to_eight_bits = 1.0 / 257.0;
 
 }  // namespace
 
-void SidecarText::add(const std::string& key, const std::string& json) {
-  text_ += fmt::format("{}{}: {}", text_.empty() ? "{\n  " : ",\n  ", json_string(key), json);
+Json frame_json(const FrameFacts& facts) {
+  return {{"frame", facts.number},
+          {"head", facts.head},
+          {"type", facts.type},
+          {"stamp_s", static_cast<double>(facts.stamp_ns) / 1e9},
+          {"unix_ns", facts.unix_ns}};
 }
 
-void SidecarText::add_frame(const FrameFacts& facts) {
-  add("frame", std::to_string(facts.number));
-  add("head", json_string(facts.head));
-  add("type", json_string(facts.type));
-  add("stamp_s", fmt::format("{}", static_cast<double>(facts.stamp_ns) / 1e9));
-  add("unix_ns", std::to_string(facts.unix_ns));
+Json samples_json(const std::string& name, bool sixteen_bit, const Axis& rows, const Axis& columns) {
+  return {{"file", npy_name(name)},
+          {"dtype", sixteen_bit ? "<u2" : "|u1"},
+          {"axes", {rows.name, columns.name}},
+          {"shape", {rows.size, columns.size}}};
 }
 
-void SidecarText::add_samples(const std::string& name, bool sixteen_bit, const Axis& rows,
-                              const Axis& columns) {
-  add("picture", json_string(picture_name(name)));
-  add("samples", fmt::format("{{\"file\": {}, \"dtype\": \"{}\", \"axes\": [{}, {}], \"shape\": [{}, {}]}}",
-                             json_string(npy_name(name)), sixteen_bit ? "<u2" : "|u1", json_string(rows.name),
-                             json_string(columns.name), rows.size, columns.size));
-}
-
-void SidecarText::add_truth(const std::string& name, const BodyTruth* truth) {
+Json truth_json(const std::string& name, const BodyTruth* truth) {
   if (truth == nullptr) {
-    add("truth", "null");
-    return;
+    return nullptr;
   }
-  std::vector<std::string> rows;
+  Json bodies = Json::array();
   for (const std::string& body : truth->bodies()) {
-    rows.push_back(fmt::format("{{\"id\": {}, \"name\": {}}}", rows.size() + 1, json_string(body)));
+    bodies.push_back({{"id", bodies.size() + 1}, {"name", body}});
   }
-  add("truth", fmt::format("{{\"file\": {}, \"bodies\": [{}]}}", json_string(bodies_name(name)),
-                           fmt::join(rows, ", ")));
+  return {{"file", bodies_name(name)}, {"bodies", bodies}};
+}
+
+Json pose_json(const render::Pose& pose) {
+  const glm::dvec3& p = pose.position_m;
+  const glm::dquat& q = pose.orientation;
+  return {{"position_m", {p.x, p.y, p.z}}, {"quaternion_xyzw", {q.x, q.y, q.z, q.w}}};
+}
+
+std::string sidecar_text(const Json& object) {
+  const auto text_of = [](const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  std::string text;
+  for (const auto& [key, value] : object.items()) {
+    text += fmt::format("{}\n  {}: {}", text.empty() ? "{" : ",", text_of(key), text_of(value));
+  }
+  return text + "\n}\n";
 }
 
 cv::Mat eight_bit_matrix(const NpyTable& samples) {

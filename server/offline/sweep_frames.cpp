@@ -9,7 +9,6 @@
 
 #include "server/devices/device_kind.hpp"
 #include "server/npy/npy_file.hpp"
-#include "server/offline/json_text.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
 
@@ -109,8 +108,10 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   return made;
 }
 
-std::string SweepFrames::settings_json() const {
-  return fmt::format("{}, \"period_s\": {}", survey_->settings_json(), times_.period_ns / 1e9);
+Json SweepFrames::settings_json() const {
+  Json settings = survey_->settings_json();
+  settings["period_s"] = times_.period_ns / 1e9;
+  return settings;
 }
 
 std::string SweepFrames::sidecar(int frame) const {
@@ -118,30 +119,32 @@ std::string SweepFrames::sidecar(int frame) const {
   const int end = first_line(frame + 1);
   const PingJob ping = survey_->job(first);
   std::vector<double> bearings_rad, stamps_s;
-  std::vector<std::string> vehicle, transducer;
+  Json vehicle = Json::array();
+  Json transducer = Json::array();
   for (int line = first; line < end; ++line) {
     bearings_rad.push_back(survey_->job(line).bearing_rad);
     stamps_s.push_back(static_cast<double>(times_.at(line)) / 1e9);
-    vehicle.push_back(json_pose(trajectory_.T_world_vehicle(times_.at(line))));
-    transducer.push_back(json_pose(request(line).T_world_sonar));
+    vehicle.push_back(pose_json(trajectory_.T_world_vehicle(times_.at(line))));
+    transducer.push_back(pose_json(request(line).T_world_sonar));
   }
-  SidecarText text;
-  text.add_frame({frame, head_.name, std::string(head_.kind->type()), times_.at(first), unix_ns(frame)});
-  text.add("device_id", std::to_string(head_.kind->device_id(head_)));
-  text.add("first_ping_number", std::to_string(first));
-  text.add("stream", std::to_string(stream_));
-  text.add("seed", std::to_string(head_.seed));
-  text.add_samples(name(frame), false, {"bin", bins_}, {"line", end - first});
-  text.add("geometry",
-           fmt::format("{{\"line_step_m\": {}, \"range_m\": {}, \"sound_speed_mps\": {}, "
-                       "\"bearings_rad\": {}}}",
-                       ping.bin_m(), ping.range_m(), ping.sound_speed_mps, json_list(bearings_rad)));
-  text.add("settings", "{" + settings_json() + "}");
-  text.add("stamps_s", json_list(stamps_s));
-  text.add("T_world_vehicle", fmt::format("[{}]", fmt::join(vehicle, ", ")));
-  text.add("T_world_sonar", fmt::format("[{}]", fmt::join(transducer, ", ")));
-  text.add_truth(name(frame), truth_);
-  return text.finish();
+  Json json =
+      frame_json({frame, head_.name, std::string(head_.kind->type()), times_.at(first), unix_ns(frame)});
+  json["device_id"] = head_.kind->device_id(head_);
+  json["first_ping_number"] = first;
+  json["stream"] = stream_;
+  json["seed"] = head_.seed;
+  json["picture"] = picture_name(name(frame));
+  json["samples"] = samples_json(name(frame), false, {"bin", bins_}, {"line", end - first});
+  json["geometry"] = {{"line_step_m", ping.bin_m()},
+                      {"range_m", ping.range_m()},
+                      {"sound_speed_mps", ping.sound_speed_mps},
+                      {"bearings_rad", bearings_rad}};
+  json["settings"] = settings_json();
+  json["stamps_s"] = stamps_s;
+  json["T_world_vehicle"] = vehicle;
+  json["T_world_sonar"] = transducer;
+  json["truth"] = truth_json(name(frame), truth_);
+  return sidecar_text(json);
 }
 
 }  // namespace sonard::server

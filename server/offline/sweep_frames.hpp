@@ -29,7 +29,7 @@ class SweepFrames final : public FrameSource {
   std::string name(int frame) const override;
   Frame render(render::SonarRenderer& renderer, int frame) override;
   void pass(render::SonarRenderer& renderer, int frame) override;
-  std::string settings_json() const override;
+  nlohmann::ordered_json settings_json() const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(first_line(frame))); }
 
   /// What the renderer is asked for, by the number of the line since the beginning.

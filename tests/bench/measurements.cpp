@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/measurements.hpp"
 
-#include <fmt/format.h>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace sonard::bench {
-
-namespace {
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += '\\';
-    }
-    result += c;
-  }
-  return result + '"';
-}
-
-}  // namespace
 
 void Measurements::add(const Subject& subject, const std::string& metric, double value,
                        const std::string& unit) {
@@ -40,15 +25,16 @@ std::optional<double> Measurements::find(const Subject& subject, const std::stri
 }
 
 std::string Measurements::to_json() const {
-  std::string text = "[";
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Measurement& m : all_) {
-    text += fmt::format(
-        "{}\n{{\"scene\": {}, \"backend\": {}, \"preset\": {}, \"metric\": {}, \"value\": {:.9g}, \"unit\": "
-        "{}}}",
-        text.size() > 1 ? "," : "", quoted(m.subject.scene), quoted(m.subject.backend),
-        quoted(m.subject.preset), quoted(m.metric), m.value, quoted(m.unit));
+    list.push_back({{"scene", m.subject.scene},
+                    {"backend", m.subject.backend},
+                    {"preset", m.subject.preset},
+                    {"metric", m.metric},
+                    {"value", m.value},
+                    {"unit", m.unit}});
   }
-  return text + "\n]\n";
+  return list.dump(1) + "\n";
 }
 
 void write_json(const Measurements& measurements, const std::filesystem::path& file) {

@@ -33,7 +33,7 @@ class Measurements {
   std::optional<double> find(const Subject& subject, const std::string& metric) const;
   const std::vector<Measurement>& all() const { return all_; }
 
-  /// A JSON array of {scene, backend, preset, metric, value, unit}, one object a line.
+  /// A JSON array of {scene, backend, preset, metric, value, unit}.
   std::string to_json() const;
 
  private:

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -33,23 +34,8 @@ std::vector<Row> rows_of(const Similarity& similarity) {
   };
 }
 
-std::string number(const std::optional<double>& value, int digits, const char* otherwise) {
-  return value ? fmt::format("{:.{}f}", *value, digits) : otherwise;
-}
-
-std::string quoted(const std::string& text) {
-  std::string json = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      json += '\\';
-      json += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      json += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    } else {
-      json += c;
-    }
-  }
-  return json + '"';
+std::string number(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4f}", *value) : "-";
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -66,24 +52,26 @@ std::string table_of(const Similarity& similarity) {
   std::string table =
       fmt::format("{:<14}{:>12} {:<3}{:>10}{:>11}\n", "measure", "value", "", "score", "identical");
   for (const Row& row : rows_of(similarity)) {
-    table += fmt::format("{:<14}{:>12} {:<3}{:>10}{:>11}\n", row.name, number(row.value, 4, "-"), row.unit,
-                         number(row.score, 4, "-"), row.identical);
+    table += fmt::format("{:<14}{:>12} {:<3}{:>10}{:>11}\n", row.name, number(row.value), row.unit,
+                         number(row.score), row.identical);
   }
   return table;
 }
 
 std::string json_of(const Similarity& similarity, const CompareOptions& options, int width, int height) {
-  std::string json = fmt::format("{{\"a\": {}, \"b\": {}, \"width\": {}, \"height\": {}, \"measures\": [",
-                                 quoted(options.a), quoted(options.b), width, height);
-  const char* separator = "\n";
+  using Json = nlohmann::ordered_json;
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  Json measures = Json::array();
   for (const Row& row : rows_of(similarity)) {
-    json += fmt::format(
-        "{}  {{\"name\": \"{}\", \"value\": {}, \"unit\": \"{}\", \"score\": {}, \"identical\": {}}}",
-        separator, row.key, number(row.value, 9, "null"), row.unit, number(row.score, 9, "null"),
-        row.identical);
-    separator = ",\n";
+    measures.push_back({{"name", row.key},
+                        {"value", number(row.value)},
+                        {"unit", row.unit},
+                        {"score", number(row.score)},
+                        {"identical", row.identical}});
   }
-  return json + "\n]}\n";
+  const Json json{
+      {"a", options.a}, {"b", options.b}, {"width", width}, {"height", height}, {"measures", measures}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 ExitStatus compare(const CompareOptions& options) {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/gemini/ping_plan.hpp"
@@ -66,12 +66,13 @@ class GeminiSurvey final : public Survey {
   }
   std::vector<double> bearings_rad() const override { return gemini::bearings_rad(); }
 
-  std::string settings_json() const override {
-    return fmt::format(
-        "\"range_m\": {}, \"gain_percent\": {}, \"sound_speed_mps\": {}, \"compression\": {}, \"bits\": {}, "
-        "\"native_lines\": {}",
-        asked_.range_m, asked_.gain_percent, asked_.sound_speed_mps, plan_.job.compression_log2,
-        plan_.job.sixteen_bit ? 16 : 8, plan_.job.native_bins);
+  nlohmann::ordered_json settings_json() const override {
+    return {{"range_m", asked_.range_m},
+            {"gain_percent", asked_.gain_percent},
+            {"sound_speed_mps", asked_.sound_speed_mps},
+            {"compression", plan_.job.compression_log2},
+            {"bits", plan_.job.sixteen_bit ? 16 : 8},
+            {"native_lines", plan_.job.native_bins}};
   }
 
   std::optional<PingRecord> record(int ping, std::vector<std::uint8_t> samples) const override {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "protocol/micron/line_job.hpp"
 #include "protocol/micron/line_timing.hpp"
@@ -115,16 +116,17 @@ class MicronSurvey final : public Survey {
     return sector;
   }
 
-  std::string settings_json() const override {
-    const std::string sector = asked_.sector
-                                   ? fmt::format("[{}, {}]", micron::bearing_deg(asked_.sector->left),
-                                                 micron::bearing_deg(asked_.sector->right))
-                                   : "null";
-    return fmt::format(
-        "\"range_m\": {}, \"gain_percent\": {}, \"sound_speed_mps\": {}, \"bins\": {}, \"step_deg\": {}, "
-        "\"sector_deg\": {}",
-        asked_.range_m, asked_.gain_percent, asked_.sound_speed_mps, asked_.bins,
-        asked_.step * micron::step_unit_deg, sector);
+  nlohmann::ordered_json settings_json() const override {
+    nlohmann::ordered_json sector;
+    if (asked_.sector) {
+      sector = {micron::bearing_deg(asked_.sector->left), micron::bearing_deg(asked_.sector->right)};
+    }
+    return {{"range_m", asked_.range_m},
+            {"gain_percent", asked_.gain_percent},
+            {"sound_speed_mps", asked_.sound_speed_mps},
+            {"bins", asked_.bins},
+            {"step_deg", asked_.step * micron::step_unit_deg},
+            {"sector_deg", sector}};
   }
 
  private:

@@ -44,7 +44,7 @@ TEST(Measurements, AreWrittenAsAFlatList) {
   EXPECT_EQ(list[0]["value"].as<double>(), 0.125);
   EXPECT_EQ(list[0]["unit"].as<std::string>(), "ms");
   EXPECT_EQ(list[1]["scene"].as<std::string>(), R"(a "quoted" \ name)");
-  EXPECT_EQ(list[1]["value"].as<int>(), 131072);
+  EXPECT_EQ(list[1]["value"].as<double>(), 131072.0);
 }
 
 TEST(Measurements, AFileThatCannotBeWrittenIsNamed) {

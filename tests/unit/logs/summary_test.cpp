@@ -45,7 +45,7 @@ TEST(IsoTime, also_before_1970) {
 TEST(InfoJson, text_of_logs_is_escaped) {
   LogSummary log;
   log.path = "a\"b\\c\nd";
-  EXPECT_NE(info_json(log, 0).find(R"("file": "a\"b\\c\u000ad")"), std::string::npos);
+  EXPECT_NE(info_json(log, 0).find(R"("file":"a\"b\\c\nd")"), std::string::npos);
 }
 
 /// What is said of one head of a log.
@@ -70,31 +70,30 @@ TEST(InfoText, heads_have_the_title_of_their_kind) {
   const Said bow = said_of(LogKind::mcap, "bow", "gemini_720i", 513, false);
   EXPECT_THAT(bow.text, HasSubstr("\nhead     Gemini 720i 513 'bow': 1 pings\n"));
   EXPECT_THAT(bow.text, HasSubstr(" 1x 400 lines of 256 beams, range 10.00 m"));
-  EXPECT_THAT(bow.json,
-              HasSubstr(R"([{"device": "gemini_720i", "scanning": false, "name": "bow", "id": 513,)"));
+  EXPECT_THAT(bow.json, HasSubstr(R"([{"device":"gemini_720i","scanning":false,"name":"bow","id":513,)"));
   const Said stern = said_of(LogKind::mcap, "stern", "micron", 2, true);
   EXPECT_THAT(stern.text, HasSubstr("\nhead     Micron 2 'stern': 1 lines\n"));
   EXPECT_THAT(stern.text, HasSubstr(" 1x 400 bins, range 10.00 m"));
-  EXPECT_THAT(stern.json, HasSubstr(R"([{"device": "micron", "scanning": true, "name": "stern", "id": 2,)"));
+  EXPECT_THAT(stern.json, HasSubstr(R"([{"device":"micron","scanning":true,"name":"stern","id":2,)"));
 }
 
 TEST(InfoText, what_nobody_knows_is_a_sonar) {
   const Said fan = said_of(LogKind::mcap, "bow", "", 600, false);
   EXPECT_THAT(fan.text, HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
-  EXPECT_THAT(fan.json, HasSubstr(R"([{"device": null, "scanning": false, )"));
+  EXPECT_THAT(fan.json, HasSubstr(R"([{"device":null,"scanning":false,)"));
   const Said line = said_of(LogKind::mcap, "", "", 2, true);
   EXPECT_THAT(line.text, HasSubstr("\nhead     scanning sonar 2: 1 lines\n"));
-  EXPECT_THAT(line.json, HasSubstr(R"([{"device": null, "scanning": true, )"));
+  EXPECT_THAT(line.json, HasSubstr(R"([{"device":null,"scanning":true,)"));
   const Said other = said_of(LogKind::mcap, "bow", "other_900", 600, false);
   EXPECT_THAT(other.text, HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
-  EXPECT_THAT(other.json, HasSubstr(R"([{"device": "other_900", "scanning": false, )")) << "the log knows";
+  EXPECT_THAT(other.json, HasSubstr(R"([{"device":"other_900","scanning":false,)")) << "the log knows";
 }
 
 TEST(InfoText, the_format_of_a_log_says_whose_it_is) {
   for (const LogKind kind : {LogKind::glf, LogKind::dat}) {
     const Said said = said_of(kind, "", "", 600, false);
     EXPECT_THAT(said.text, HasSubstr("\nhead     Gemini 720i 600: 1 pings\n"));
-    EXPECT_THAT(said.json, HasSubstr(R"([{"device": "gemini_720i", "scanning": false, "name": "", )"));
+    EXPECT_THAT(said.json, HasSubstr(R"([{"device":"gemini_720i","scanning":false,"name":"",)"));
   }
 }
 
