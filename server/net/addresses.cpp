@@ -6,23 +6,14 @@
 #include <charconv>
 
 #include <fmt/core.h>
+#include <boost/asio/ip/network_v4.hpp>
 
 namespace sonard::server {
-namespace {
 
-/// A whole decimal number without sign or leading zeros, up to `max`.
-std::optional<std::uint32_t> parse_decimal(std::string_view text, std::uint32_t max) {
-  if (text.empty() || (text.size() > 1 && text.front() == '0')) {
-    return std::nullopt;
-  }
-  std::uint32_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || value > max) {
-    return std::nullopt;
-  }
-  return value;
-}
+namespace ip = boost::asio::ip;
+using boost::system::error_code;
+
+namespace {
 
 /// What stands before the first `mark`; `text` keeps what follows it. Everything when there is none.
 std::string_view take_until(std::string_view& text, char mark) {
@@ -35,44 +26,33 @@ std::string_view take_until(std::string_view& text, char mark) {
 }  // namespace
 
 std::optional<Ipv4> parse_ipv4(std::string_view text) {
-  if (std::count(text.begin(), text.end(), '.') != 3) {
-    return std::nullopt;
-  }
-  Ipv4 address = 0;
-  for (int octet = 0; octet < 4; ++octet) {
-    const std::optional<std::uint32_t> value = parse_decimal(take_until(text, '.'), 255);
-    if (!value) {
-      return std::nullopt;
-    }
-    address = address << 8 | *value;
-  }
-  return address;
+  error_code error;
+  const ip::address_v4 address = ip::make_address_v4(text, error);
+  return error ? std::nullopt : std::optional<Ipv4>(address.to_uint());
 }
 
 std::optional<Cidr> parse_cidr(std::string_view text) {
-  const bool has_length = text.find('/') != std::string_view::npos;
-  const std::optional<Ipv4> network = parse_ipv4(take_until(text, '/'));
-  const std::optional<std::uint32_t> length = has_length ? parse_decimal(text, 32) : 32;
-  if (!network || !length) {
+  if (text.find('/') == std::string_view::npos) {
+    const std::optional<Ipv4> address = parse_ipv4(text);
+    return address ? std::optional<Cidr>({*address, 32}) : std::nullopt;
+  }
+  error_code error;
+  const ip::network_v4 block = ip::make_network_v4(text, error);
+  if (error || block != block.canonical()) {
     return std::nullopt;
   }
-  const Cidr block{*network, static_cast<int>(*length)};
-  if ((block.network & ~netmask_of(block.prefix_length)) != 0) {
-    return std::nullopt;
-  }
-  return block;
+  return Cidr{block.network().to_uint(), block.prefix_length()};
 }
 
 std::optional<Endpoint> parse_endpoint(std::string_view text) {
-  if (text.find(':') == std::string_view::npos) {
-    return std::nullopt;
-  }
   const std::optional<Ipv4> address = parse_ipv4(take_until(text, ':'));
-  const std::optional<std::uint32_t> port = parse_decimal(text, 65535);
-  if (!address || !port) {
+  std::uint16_t port = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, port);
+  if (!address || error != std::errc{} || stop != end) {
     return std::nullopt;
   }
-  return Endpoint{*address, static_cast<std::uint16_t>(*port)};
+  return Endpoint{*address, port};
 }
 
 std::optional<std::array<std::uint8_t, 6>> parse_mac(std::string_view text) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // IPv4 addresses as text: "127.0.0.2", "127.0.0.0/8", "127.0.0.1:14600", "00:12:34:00:02:01".
-// Strict: no spaces, no leading zeros, no names, nothing left over.
+// Strict: no spaces, no names, nothing left over.
 #pragma once
 
 #include <array>

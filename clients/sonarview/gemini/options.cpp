@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/gemini/options.hpp"
 
-#include <arpa/inet.h>
-
 #include <CLI/CLI.hpp>
+#include <boost/asio/ip/address_v4.hpp>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -12,25 +11,17 @@
 namespace sonard::client {
 namespace {
 
-/// Nothing for anything but four decimal octets.
-std::optional<std::uint32_t> parse_ipv4(const std::string& text) {
-  in_addr address{};
-  if (inet_pton(AF_INET, text.c_str(), &address) != 1) {
-    return std::nullopt;
-  }
-  return ntohl(address.s_addr);
-}
-
 std::chrono::nanoseconds to_ns(double seconds) {
   return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
 }
 
 Ipv4 address_of(const std::string& option, const std::string& text) {
-  const auto address = parse_ipv4(text);
-  if (!address) {
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address_v4(text, error);
+  if (error) {
     throw CLI::ValidationError(option, "expected an IPv4 address, found '" + text + "'");
   }
-  return *address;
+  return address.to_uint();
 }
 
 }  // namespace
