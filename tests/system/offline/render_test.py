@@ -19,10 +19,11 @@ import unittest
 import uuid
 import zipfile
 
+import numpy
+
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path += [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "tests", "system", "gemini")]
 import glf_reader  # noqa: E402
-from npy_reader import read_npy  # noqa: E402
 from lab import Namespace, Program  # noqa: E402
 
 PROGRAMS = None  # folder of the programs under test
@@ -114,9 +115,11 @@ class Files(Case):
         self.assertEqual([n for n in names if n.endswith(".glf")], ["log_1980-01-01-000000.glf"])
         self.assertEqual(len(names), 4 * 3 + 2, names)
         for k in range(4):
-            rows, columns, _ = read_npy(os.path.join(out, f"ping_{k:06}.npy"))
+            samples = numpy.load(os.path.join(out, f"ping_{k:06}.npy"))
+            rows, columns = samples.shape
             sidecar = self.sidecar(out, f"ping_{k:06}")
             self.assertEqual(sidecar["samples"]["shape"], [rows, columns])
+            self.assertEqual((samples.dtype.str, samples.flags.c_contiguous), (sidecar["samples"]["dtype"], True))
             self.assertEqual(len(sidecar["geometry"]["bearings_rad"]), columns)
             self.assertAlmostEqual(sidecar["geometry"]["line_step_m"] * rows, sidecar["geometry"]["range_m"])
             with open(os.path.join(out, sidecar["picture"]), "rb") as file:
@@ -135,8 +138,8 @@ class Files(Case):
         self.assertEqual(len(log.images), 5)
         self.assertEqual(log.device_info, "Gemini - 601")
         for k, image in enumerate(log.images):
-            rows, columns, samples = read_npy(os.path.join(out, f"ping_{k:06}.npy"))
-            self.assertEqual((image.lines, image.beams, image.pixels), (rows, columns, samples))
+            samples = numpy.load(os.path.join(out, f"ping_{k:06}.npy"))
+            self.assertEqual((image.lines, image.beams, image.pixels), (*samples.shape, samples.tobytes()))
             self.assertAlmostEqual(image.header.unix_s, start + k / 4, places=6)
             self.assertEqual(image.transmit_time_s, image.header.time_s)
             sidecar = self.sidecar(out, f"ping_{k:06}")
@@ -147,15 +150,15 @@ class Files(Case):
         """The sphere at (3, 2, 0): 33.7 degrees to port; its near side is at sqrt(13) - 0.5 m."""
         out = self.path("out")
         render(self.config(), "--trajectory", self.way(0.1), "--out", out, "--rate", "1", "--range", "6")
-        rows, columns, samples = read_npy(os.path.join(out, "ping_000000.npy"))
-        brightest = max(range(len(samples)), key=lambda i: samples[i])
+        samples = numpy.load(os.path.join(out, "ping_000000.npy"))
+        line, beam = numpy.unravel_index(samples.argmax(), samples.shape)
         geometry = self.sidecar(out, "ping_000000")["geometry"]
-        bearing = geometry["bearings_rad"][brightest % columns]
-        range_m = (brightest // columns + 0.5) * geometry["line_step_m"]
+        bearing = geometry["bearings_rad"][beam]
+        range_m = (line + 0.5) * geometry["line_step_m"]
         self.assertAlmostEqual(math.degrees(bearing), -33.7, delta=4.0)
         self.assertTrue(math.sqrt(13) - 0.55 < range_m < math.sqrt(13), range_m)
         image = glf_reader.read(os.path.join(out, "log_1980-01-01-000000.glf")).images[0]
-        self.assertGreater(image.bearings_rad[brightest % columns], 0.0)
+        self.assertGreater(image.bearings_rad[beam], 0.0)
 
     def test_truth_names_bodies(self):
         out = self.path("out")
@@ -163,12 +166,11 @@ class Files(Case):
                "--compression", "1")
         truth = self.sidecar(out, "ping_000000")["truth"]
         self.assertEqual(truth["bodies"], [{"id": 1, "name": "sphere"}])
-        rows, columns, ids = read_npy(os.path.join(out, truth["file"]))
+        ids = numpy.load(os.path.join(out, truth["file"]))
         geometry = self.sidecar(out, "ping_000000")["geometry"]
         near = math.sqrt(13) - 0.5
-        seen = [(i // columns * geometry["line_step_m"], geometry["bearings_rad"][i % columns])
-                for i in range(len(ids)) if ids[i] == 1]
-        self.assertEqual(set(ids), {0, 1})
+        seen = [(line * geometry["line_step_m"], geometry["bearings_rad"][beam]) for line, beam in numpy.argwhere(ids == 1)]
+        self.assertEqual(set(ids.flat), {0, 1})
         self.assertAlmostEqual(min(r for r, _ in seen), near, delta=2 * geometry["line_step_m"])
         self.assertLess(max(r for r, _ in seen), math.sqrt(13 - 0.25) + 0.1)  # the rim, where rays graze; the back is at 4.1 m
         half_rad = math.asin(0.5 / math.sqrt(13)) + 0.02
@@ -188,9 +190,9 @@ class Files(Case):
             for name in ("ping_000000", "ping_000001"):
                 truth = self.sidecar(out, name)["truth"]
                 rov = next(body["id"] for body in truth["bodies"] if body["name"] == "rov")
-                rows, columns, ids = read_npy(os.path.join(out, truth["file"]))
+                ids = numpy.load(os.path.join(out, truth["file"]))
                 step_m = self.sidecar(out, name)["geometry"]["line_step_m"]
-                ahead = [row * step_m for row in range(rows) if ids[row * columns + columns // 2] == rov]
+                ahead = numpy.flatnonzero(ids[:, ids.shape[1] // 2] == rov) * step_m
                 seen |= {round(range_m, 1) for range_m in ahead[:1]}
             self.assertEqual(seen, expected)
 
@@ -201,16 +203,16 @@ class Files(Case):
         scans = sorted(name for name in os.listdir(out) if name.endswith(".npy"))
         self.assertEqual(scans, [f"scan_{k:06}.npy" for k in range(6)])
         self.assertFalse([name for name in os.listdir(out) if name.endswith(".glf")])
-        rows, columns, samples = read_npy(os.path.join(out, scans[0]))
-        self.assertEqual((rows, columns), (200, 51))
+        samples = numpy.load(os.path.join(out, scans[0]))
+        self.assertEqual(samples.shape, (200, 51))
         sidecar = self.sidecar(out, "scan_000000")
         bearings = sidecar["geometry"]["bearings_rad"]
         self.assertAlmostEqual(bearings[0], -math.pi / 4)
         self.assertAlmostEqual(bearings[-1], math.pi / 4)
         # From 1.2 m on the head no longer hears itself: the brightest is the sphere.
         first = int(1.2 / sidecar["geometry"]["line_step_m"])
-        brightest = max(range(first * columns, len(samples)), key=lambda i: samples[i])
-        self.assertAlmostEqual(math.degrees(bearings[brightest % columns]), -33.7, delta=6.0)
+        brightest = samples[first:].argmax() % samples.shape[1]
+        self.assertAlmostEqual(math.degrees(bearings[brightest]), -33.7, delta=6.0)
         last = self.sidecar(out, "scan_000005")
         self.assertAlmostEqual(last["T_world_vehicle"][-1]["position_m"][0], 0.5 * last["stamps_s"][-1])
 
@@ -286,9 +288,10 @@ class Bytes(Case):
         render(config, "--trajectory", self.way(0.3), "--out", out, "--rate", "10", "--range", "12", "--gain", "60",
                "--compression", "1")
         for k in range(4):
-            served = read_npy(self.path("dump", f"bow-{k:08}.npy"))
-            self.assertEqual(served, read_npy(os.path.join(out, f"ping_{k:06}.npy")), f"ping {k}")
-        self.assertNotEqual(read_npy(os.path.join(out, "ping_000000.npy")), read_npy(os.path.join(out, "ping_000001.npy")))
+            served = numpy.load(self.path("dump", f"bow-{k:08}.npy"))
+            numpy.testing.assert_array_equal(served, numpy.load(os.path.join(out, f"ping_{k:06}.npy")), f"ping {k}", strict=True)
+        first, second = (numpy.load(os.path.join(out, f"ping_{k:06}.npy")) for k in range(2))
+        self.assertTrue((first != second).any())
 
 
 class Complaints(Case):

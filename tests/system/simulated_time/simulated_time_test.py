@@ -12,13 +12,14 @@ import sys
 import time
 import unittest
 
+import numpy
+
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path[:0] = [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "tests", "system", "gemini")]
 
 import link_test  # noqa: E402
 import wire  # noqa: E402
 from link_test import PATIENCE_S, key_values  # noqa: E402
-from npy_reader import read_npy  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "two_walls.sdf")
@@ -55,9 +56,9 @@ MICRON = """
 
 def first_echo_m(path):
     """Range of the first bin above half of the maximum in the beam ahead, of an image of 8 bit."""
-    lines, beams, image = read_npy(path)
-    column = [image[line * beams + beams // 2] for line in range(lines)]
-    return next(line for line in range(lines) if column[line] > max(column) / 2) * wire.line_step_m(1500.0)
+    image = numpy.load(path)
+    column = image[:, image.shape[1] // 2]
+    return (column > column.max() / 2).argmax() * wire.line_step_m(1500.0)
 
 
 class SimulatedTime(link_test.LinkTest):
