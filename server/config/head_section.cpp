@@ -20,43 +20,59 @@ constexpr std::uint64_t max_u64 = std::numeric_limits<std::uint64_t>::max();
 constexpr Range level_db = Range::from(-300.0, 300.0);
 
 double read_noise_budget(YamlSection& section, double carrier_hz) {
+  section.introduce(
+      "The level of the noise by the sonar equation: `spectral_level_db` - `directivity_db` + 10 log10 of "
+      "the bandwidth - `source_level_db`. The defaults make -138.2 at 720 kHz.");
   render::NoiseBudget budget;
   budget.spectral_level_db = render::thermal_noise_db(carrier_hz);
-  section.number("source_level_db", budget.source_level_db, level_db);
-  section.number("spectral_level_db", budget.spectral_level_db, level_db);
-  section.number("directivity_db", budget.directivity_db, Range::from(0.0, 100.0));
-  double bandwidth_khz = budget.bandwidth_hz / 1000.0;
-  section.number("bandwidth_khz", bandwidth_khz, Range::above(0.0, 10'000.0));
-  budget.bandwidth_hz = bandwidth_khz * 1000.0;
+  section.number("source_level_db", budget.source_level_db, level_db, "dB re 1 uPa at 1 m");
+  section.number("spectral_level_db", budget.spectral_level_db, level_db,
+                 "dB re 1 uPa^2/Hz; thermal noise at the frequency of the head");
+  section.number("directivity_db", budget.directivity_db, Range::from(0.0, 100.0),
+                 "directivity index of the receive array");
+  section.number("bandwidth_khz", budget.bandwidth_hz, Range::above(0.0, 10'000.0), "of the receiver", 1e-3);
   return render::noise_level_db(budget);
 }
 
 void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
-  section.boolean("on", ring_down.on);
-  section.number("level_db", ring_down.level_db, level_db);
-  section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0));
-  section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0));
+  section.introduce(
+      "It rises from nothing at half of `peak_m`, and falls from the peak to `end_m` by 80 dB.");
+  section.boolean("on", ring_down.on, "");
+  section.number("level_db", ring_down.level_db, level_db,
+                 "intensity of the peak re the source intensity at 1 m, before TVG");
+  section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0), "range of the peak");
+  section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0), "where it is over; beyond `peak_m`");
   if (ring_down.end_m <= ring_down.peak_m) {
     section.report("end_m", "is not beyond peak_m (expected a larger range)");
   }
 }
 
 void read_interference(YamlSection& section, render::Interference& interference) {
-  section.number("probability", interference.probability, Range::from(0.0, 1.0));
-  section.number("least_db", interference.least_db, Range::from(0.0, 100.0));
-  section.number("most_db", interference.most_db, Range::from(0.0, 100.0));
+  section.introduce(
+      "A ping that is hit has more noise from some range to its end: which pings, from where and by how much "
+      "is drawn evenly, by the seed.");
+  section.number("probability", interference.probability, Range::from(0.0, 1.0), "of a ping to be hit");
+  section.number("least_db", interference.least_db, Range::from(0.0, 100.0), "noise rises by this at least");
+  section.number("most_db", interference.most_db, Range::from(0.0, 100.0), "and by this at most");
   if (interference.most_db < interference.least_db) {
     section.report("most_db", "is less than least_db (expected at least as much)");
   }
 }
 
 void read_multipath(YamlSection& section, render::MultipathSettings& multipath) {
+  section.introduce(
+      "What mirrors follows from the materials of the world ([worlds.md](worlds.md)); the rule `multipath` "
+      "spares it where nothing does.");
   using Level = render::MultipathSettings::Level;
   section.choice("level", multipath.level,
-                 {{"full", Level::full}, {"surface", Level::surface}, {"off", Level::off}});
-  double rms_height_mm = multipath.water_surface_rms_height_m * 1000.0;
-  section.number("water_surface_rms_height_mm", rms_height_mm, Range::from(0.0, 10'000.0));
-  multipath.water_surface_rms_height_m = rms_height_mm / 1000.0;
+                 {{"full", Level::full}, {"surface", Level::surface}, {"off", Level::off}},
+                 "`full`: every surface that is smooth enough mirrors, and corners of two or three are "
+                 "corner reflectors; `surface`: only the water surface of the world mirrors");
+  section.number("water_surface_rms_height_mm", multipath.water_surface_rms_height_m,
+                 Range::from(0.0, 10'000.0),
+                 "rms height of waves and ripples on that surface: 0 mirrors like glass, some 20 under a "
+                 "light breeze only at the flattest angles, a wind sea never",
+                 1000.0);
 }
 
 void read_physical_model(YamlSection& section, double carrier_hz, render::PhysicalModel& model) {
@@ -65,64 +81,97 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                  {{"ou", Speckle::ou},
                   {"frozen", Speckle::frozen},
                   {"per_ping", Speckle::per_ping},
-                  {"off", Speckle::off}});
-  section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0));
+                  {"off", Speckle::off}},
+                 "`ou`: the same while the sonar rests, fading as it moves; `frozen`: always the same; "
+                 "`per_ping`: drawn anew");
+  section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0),
+                 "length of the array: half of it is the motion over which speckle changes");
   using Backscatter = render::PhysicalModel::Backscatter;
   section.choice("backscatter", model.backscatter,
-                 {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}});
-  section.boolean("noise", model.noise);
+                 {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}},
+                 "whether materials show their facets near normal incidence, or scatter diffusely alone");
+  section.boolean("noise", model.noise, "additive noise, amplified with range by the TVG");
   if (section.has("noise_budget") && section.has("noise_level_db")) {
     section.report("noise_budget", "sets noise_level_db, which is given too (expected one of the two)");
   }
-  section.number("noise_level_db", model.noise_level_db, level_db);
-  section.section("noise_budget",
+  section.number("noise_level_db", model.noise_level_db, level_db,
+                 "noise intensity re the source intensity at 1 m, before TVG");
+  section.section("noise_budget", "what `noise_level_db` follows from, instead of that key",
                   [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
-  section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0));
-  section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0));
+  section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
+                 "scatterers in a cell at `texture_range_m`, growing with the range: sand 5 to 20, gravel "
+                 "and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
+  section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0), "see there");
   section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
-                         {{"off", -std::numeric_limits<double>::infinity()}});
-  section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0));
-  double tvg_absorption_db_per_km = model.tvg_absorption_db_per_m * 1000.0;
-  section.number("tvg_absorption_db_per_km", tvg_absorption_db_per_km, Range::from(0.0, 10'000.0));
-  model.tvg_absorption_db_per_m = tvg_absorption_db_per_km / 1000.0;
-  section.number("tvg_max_db", model.tvg_max_db, Range::from(0.0, 200.0));
-  section.number("gain_db", model.gain_db, level_db);
-  section.number("near_field_blank_m", model.near_field_blank_m, Range::from(0.0, 120.0));
-  section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0));
-  section.section("ring_down", [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
-  section.section("interference", [&](YamlSection& inner) { read_interference(inner, model.interference); });
-  section.section("multipath", [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
-  section.boolean("motion_within_ping", model.motion_within_ping);
+                         {{"off", -std::numeric_limits<double>::infinity()}},
+                         "what a cubic metre of water scatters: -80 clear, -60 turbid or full of bubbles");
+  section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0),
+                 "X of the gain X log10 r + 2 alpha r");
+  section.number("tvg_absorption_db_per_km", model.tvg_absorption_db_per_m, Range::from(0.0, 10'000.0),
+                 "alpha of this gain, one way: what the device believes the water to be", 1000.0);
+  section.default_is("tvg_absorption_db_per_km", "absorption of the water");
+  section.number("tvg_max_db", model.tvg_max_db, Range::from(0.0, 200.0),
+                 "ceiling of this gain: 62 dB at 720 kHz in the sea are reached at 37 m");
+  section.number("gain_db", model.gain_db, level_db,
+                 "level of unit intensity after TVG, re full scale (80 dB where samples are decibels); the "
+                 "client's gain is added");
+  section.number("near_field_blank_m", model.near_field_blank_m, Range::from(0.0, 120.0),
+                 "output is exactly 0 nearer than this");
+  section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0),
+                 "extra noise in the middle of the fan, as recordings show; 0 is off");
+  section.section("ring_down", "the transducer's own ringing after the pulse",
+                  [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
+  section.section("interference", "pings that another sonar or the vehicle disturbs",
+                  [&](YamlSection& inner) { read_interference(inner, model.interference); });
+  section.section("multipath", "ghosts in smooth surfaces, corner reflectors",
+                  [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
+  section.boolean("motion_within_ping", model.motion_within_ping,
+                  "receive beams turn with the vehicle while echoes return; needs a twist in the poses, or a "
+                  "trajectory. false: the whole ping is heard from where it was sent");
 }
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {
   using Speckle = render::PaperModel::Speckle;
   bool later_release = false;
-  section.choice("preset", later_release, {{"paper2017", false}, {"paper2018", true}});
+  section.choice("preset", later_release, {{"paper2017", false}, {"paper2018", true}},
+                 "what the other keys start from: the paper, or the authors' later releases (attenuation "
+                 "0.024 per m, folded Gaussian speckle of mean 0.95 and sd 0.30, floor 0.03)");
   if (later_release) {
     model = render::PaperModel::release_2018();
   }
-  section.number("sigmoid_slope", model.sigmoid_slope, Range::above(0.0, 1000.0));
-  section.number("sigmoid_centre", model.sigmoid_centre, Range::from(0.0, 1.0));
-  section.boolean("two_sided", model.two_sided);
-  section.boolean("legacy_bin_index", model.legacy_bin_index);
-  section.boolean("legacy_columns", model.legacy_columns);
-  section.boolean("elevation_mask", model.elevation_mask);
-  section.boolean("footprint", model.footprint);
-  section.number("attenuation_per_m", model.attenuation_per_m, Range::from(0.0, 10.0));
-  section.number("gain", model.gain, Range::from(0.0, 1.0));
-  section.choice("speckle", model.speckle,
-                 {{"gaussian", Speckle::gaussian},
-                  {"folded_gaussian", Speckle::folded_gaussian},
-                  {"off", Speckle::off}});
-  section.number("speckle_mean", model.speckle_mean, Range::from(0.0, 10.0));
-  section.number("speckle_sd", model.speckle_sd, Range::from(0.0, 10.0));
-  section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0));
+  section.number("sigmoid_slope", model.sigmoid_slope, Range::above(0.0, 1000.0),
+                 "beta of S(x) = 1 / (1 + exp(-beta (x - x0)))");
+  section.number("sigmoid_centre", model.sigmoid_centre, Range::from(0.0, 1.0), "x0");
+  section.boolean("two_sided", model.two_sided, "false: surfaces seen from behind are invisible");
+  section.boolean("legacy_bin_index", model.legacy_bin_index,
+                  "scale ranges to the last bin as the authors' code does: the last bin stays empty");
+  section.boolean("legacy_columns", model.legacy_columns,
+                  "a pixel column belongs whole to one beam, instead of being cut at beam edges");
+  section.boolean("elevation_mask", model.elevation_mask,
+                  "false: the whole planar view counts, so edge beams see less elevation");
+  section.boolean("footprint", model.footprint,
+                  "false: a sample is a point in range, so the image has holes");
+  section.number("attenuation_per_m", model.attenuation_per_m, Range::from(0.0, 10.0),
+                 "a of exp(-2 a r), applied before the sigmoid");
+  section.number("gain", model.gain, Range::from(0.0, 1.0), "applied after speckle; 0.5 is neutral");
+  section.choice(
+      "speckle", model.speckle,
+      {{"gaussian", Speckle::gaussian}, {"folded_gaussian", Speckle::folded_gaussian}, {"off", Speckle::off}},
+      "multiplicative, drawn for each ping");
+  section.number("speckle_mean", model.speckle_mean, Range::from(0.0, 10.0), "of that factor");
+  section.number("speckle_sd", model.speckle_sd, Range::from(0.0, 10.0), "its standard deviation");
+  section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0), "the least that it is");
 }
 
 void read_mount(YamlSection& section, HeadConfig& head) {
-  section.text("from_world", head.mount_from_world);
-  read_pose(section, head.T_vehicle_sonar);
+  section.introduce("T_vehicle_sonar, the pose of the sonar on the vehicle.");
+  read_pose(section, head.T_vehicle_sonar,
+            "origin of the sonar in the vehicle frame (x forward, y to port, z up), metres",
+            "as in `poses.initial`; [0, 20, 0] turns the x axis 20 degrees down");
+  section.text("from_world", head.mount_from_world,
+               "instead of the other two: the sonar of the world ([worlds.md](worlds.md#sonars)) that says "
+               "both, `gemini`, or as much of `rov::sonar_link::gemini` as tells it from others. It has to "
+               "be of this head's type");
   for (const char* key : {"position_m", "rpy_deg"}) {
     if (section.has("from_world") && section.has(key)) {
       section.report(key, "the world says where the head sits (expected this or from_world)");
@@ -137,8 +186,8 @@ void warn_of_extrapolation(std::vector<ConfigWarning>& warnings) {
   if (!said) {
     warnings.push_back(
         {"water",
-         "the absorption is computed outside of what its formula was made for, -2 to 30 degrees and "
-         "30 to 35 ppt: it may be off by more than 10 % (absorption_db_per_km sets it)"});
+         "the absorption is computed outside of what its formula was made for, -2 to 30 degrees and 30 to 35 "
+         "ppt: it may be off by more than 10 % (absorption_db_per_km sets it)"});
   }
 }
 
@@ -154,38 +203,45 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span
   }
   const HeadKind* kind = kinds.front();  // where the type is wrong the other keys are still read
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
-  section.choice_of("type", kind, types);
+  section.choice("type", kind, types, "device");
   return kind->read(section, context, warnings);
 }
 
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   head.acoustics.sampling = context.sampling;
   section.require("name", "a name of this head for the log");
-  section.text("name", head.name);
-  section.section("mount", [&](YamlSection& inner) { read_mount(inner, head); });
-  section.boolean("hides_vehicle", head.hides_vehicle);
-  section.section("dump", [&](YamlSection& inner) {
-    std::string directory;
+  section.text("name", head.name, "unique; appears in every log line of this head");
+  section.section("mount", "where the sonar sits on the vehicle",
+                  [&](YamlSection& inner) { read_mount(inner, head); });
+  section.boolean("hides_vehicle", head.hides_vehicle,
+                  "leaves the vehicle's own model (`world.vehicle_model`) out of the images of this head; "
+                  "other heads may hear it");
+  section.section("dump", "pings written to disk as the renderer handed them over", [&](YamlSection& inner) {
     inner.require("directory", "a folder to write to");
-    inner.text("directory", directory);
-    head.dump_directory = context.folder / directory;
+    inner.path("directory", head.dump_directory.emplace(), context.folder,
+               "folder, made if needed; one file per ping, so it fills up fast");
   });
 }
 
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   render::SonarSettings& settings = head.acoustics;
   section.choice("mode", settings.model,
-                 {{"physical", render::Model::physical}, {"paper", render::Model::paper}});
-  section.integer("seed", head.seed, 0, max_u64);
-  section.angle("vertical_beamwidth_deg", settings.aperture.vertical_beamwidth_rad, Range::above(0.0, 170.0));
+                 {{"physical", render::Model::physical}, {"paper", render::Model::paper}},
+                 "sonar equation with Rayleigh speckle and noise, or the model of Cerqueira et al. 2017");
+  section.integer("seed", head.seed, 0, max_u64,
+                  "of speckle and noise: the same seed, poses and pings give the same bytes");
+  section.angle("vertical_beamwidth_deg", settings.aperture.vertical_beamwidth_rad, Range::above(0.0, 170.0),
+                "-3 dB full width");
   using Elevation = render::Aperture::Elevation;
-  section.choice("elevation_pattern", settings.aperture.elevation,
-                 {{"top_hat", Elevation::top_hat},
-                  {"sinc", Elevation::sinc},
-                  {"sinc_two_way", Elevation::sinc_two_way}});
-  section.section("physical",
+  section.choice(
+      "elevation_pattern", settings.aperture.elevation,
+      {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}, {"sinc_two_way", Elevation::sinc_two_way}},
+      "sharp vertical edges, the pattern of a line array, or its square, as where sending and hearing share "
+      "the array's height; the last two are followed to 1.25 beamwidths on either side");
+  section.section("physical", "settings of mode `physical`",
                   [&](YamlSection& inner) { read_physical_model(inner, carrier_hz, settings.physical); });
-  section.section("paper", [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });
+  section.section("paper", "settings of mode `paper`",
+                  [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });
 }
 
 void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,
@@ -205,11 +261,12 @@ void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head
   head.acoustics.physical.tvg_absorption_db_per_m = absorption;
 }
 
-void read_pose(YamlSection& section, render::Pose& pose) {
+void read_pose(YamlSection& section, render::Pose& pose, std::string_view position_meaning,
+               std::string_view rpy_meaning) {
   constexpr double far_m = 1e8;  // beyond the radius of the earth: geocentric coordinates fit
-  section.vector3("position_m", pose.position_m, Range::from(-far_m, far_m));
+  section.vector3("position_m", pose.position_m, Range::from(-far_m, far_m), position_meaning);
   glm::dvec3 rpy_deg{0.0};
-  section.vector3("rpy_deg", rpy_deg, Range::from(-360.0, 360.0));
+  section.vector3("rpy_deg", rpy_deg, Range::from(-360.0, 360.0), rpy_meaning);
   const glm::dvec3 rpy = rpy_deg * (std::numbers::pi / 180.0);
   pose.orientation =
       glm::normalize(glm::angleAxis(rpy.z, glm::dvec3(0, 0, 1)) * glm::angleAxis(rpy.y, glm::dvec3(0, 1, 0)) *

@@ -43,7 +43,9 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head);
 void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,
                  std::vector<ConfigWarning>& warnings);
 
-/// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down).
-void read_pose(YamlSection& section, render::Pose& pose);
+/// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down), each
+/// with its meaning.
+void read_pose(YamlSection& section, render::Pose& pose, std::string_view position_meaning,
+               std::string_view rpy_meaning);
 
 }  // namespace sonard::server

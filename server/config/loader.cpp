@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config/loader.hpp"
 
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
@@ -56,7 +57,17 @@ void read_log(YamlSection& section, LogLevel& level) {
                   {"debug", LogLevel::debug},
                   {"info", LogLevel::info},
                   {"warn", LogLevel::warn},
-                  {"error", LogLevel::error}});
+                  {"error", LogLevel::error}},
+                 "least severe events shown; `--log-level` overrides it");
+}
+
+void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
+  section.require("file", "an SDF world");
+  section.path("file", config.world_file, folder, "SDF world ([worlds.md](worlds.md))");
+  section.text("vehicle_model", config.vehicle_model,
+               "model of the world that is the vehicle itself: it moves as the vehicle does, whatever the "
+               "pose stream says of a body of this name. Its frame is the vehicle's");
+  section.default_is("vehicle_model", "the model with the sonars of `mount.from_world`; without any, none");
 }
 
 render::Water properties(const WaterConfig& water) {
@@ -65,53 +76,73 @@ render::Water properties(const WaterConfig& water) {
 
 /// Fills the water and what the heads take from it.
 void read_water(YamlSection& section, HeadContext& context) {
+  section.introduce(
+      "Sets the absorption (Francois & Garrison 1982, at the frequency of each head) and, if asked to, the "
+      "true speed of sound (Mackenzie 1981; Medwin 1975 outside 2 to 30 degrees or 25 to 40 ppt).");
   WaterConfig& water = context.water;
-  section.number("temperature_c", water.temperature_c, Range::from(-4.0, 45.0));
-  section.number("salinity_ppt", water.salinity_ppt, Range::from(0.0, 50.0));
-  section.number("depth_m", water.depth_m, Range::from(0.0, 11'000.0));
-  section.number("ph", water.ph, Range::from(5.0, 10.0));
+  section.number("temperature_c", water.temperature_c, Range::from(-4.0, 45.0), "degrees Celsius");
+  section.number("salinity_ppt", water.salinity_ppt, Range::from(0.0, 50.0),
+                 "parts per thousand; 0 is fresh water");
+  section.number("depth_m", water.depth_m, Range::from(0.0, 11'000.0),
+                 "depth for these formulas; it does not follow the vehicle");
+  section.number("ph", water.ph, Range::from(5.0, 10.0), "acidity; hardly matters above 100 kHz");
   double absorption_db_per_km = -1.0;
   section.number_or_word("absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0),
-                         {{"computed", -1.0}});
+                         {{"computed", -1.0}},
+                         "one way; computed outside -2 to 30 degrees or 30 to 35 ppt it is an extrapolation, "
+                         "and a warning says so");
   context.absorption_db_per_m = absorption_db_per_km < 0.0 ? -1.0 : absorption_db_per_km / 1000.0;
   section.number_or_word(
       "sound_speed_mps", context.water_sound_speed_mps, Range::from(1000.0, 2000.0),
-      {{"ping_configuration", 0.0}, {"computed", render::sound_speed_mps(properties(water))}});
-  section.number("sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0));
+      {{"ping_configuration", 0.0}, {"computed", render::sound_speed_mps(properties(water))}},
+      "true speed of sound. With `ping_configuration` the water has the speed the client assumes (where the "
+      "head is not told, 1500 m/s), so its ranges are true; otherwise ranges are off by the ratio, as at "
+      "sea");
+  section.number(
+      "sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0),
+      "by how much sound gets faster per metre upwards (m/s per m). 0: it goes straight. Warm water above "
+      "cold, 0.5 to 1.8: rays sink, echoes of the bed come nearer. Water of one temperature: -0.017, which "
+      "no sonar here would notice. Facets are divided for it ([acoustics.md](acoustics.md#refraction))");
 }
 
 void read_trajectory(YamlSection& section, const std::filesystem::path& folder, TrajectoryInput& trajectory) {
-  std::string path;
   section.require("file", "a trajectory file, CSV or TUM");
-  section.text("file", path);
-  trajectory.file = folder / path;
-  section.boolean("loop", trajectory.loop);
-  section.number("speed", trajectory.speed, Range::above(0.0, 1000.0));
+  section.path("file", trajectory.file, folder, "CSV or TUM ([poses.md](poses.md))");
+  section.boolean("loop", trajectory.loop,
+                  "start again at the end; otherwise the last pose stays the newest");
+  section.number("speed", trajectory.speed, Range::above(0.0, 1000.0), "2: twice as fast as recorded");
   section.choice("axes", trajectory.axes,
-                 {{"enu_flu", pose::Axes::enu_flu}, {"ned_frd", pose::Axes::ned_frd}});
+                 {{"enu_flu", pose::Axes::enu_flu}, {"ned_frd", pose::Axes::ned_frd}},
+                 "axes of world and vehicle in the file");
 }
 
 void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
-  section.require("bind", expected_endpoint);
-  section.parsed("bind", mavlink.bind, &parse_endpoint, expected_endpoint);
-  read_allow_list(section, mavlink.bind.address, mavlink.allow);
-  section.integer("system_id", mavlink.system_id, 1, 255);
-  section.integer("component_id", mavlink.component_id, 1, 255);
-  section.choice("messages", mavlink.messages,
-                 {{"auto", MavlinkMessages::automatic},
-                  {"odometry", MavlinkMessages::odometry},
-                  {"local_position", MavlinkMessages::local_position}});
-  section.section("origin", [&](YamlSection& inner) { read_pose(inner, mavlink.T_world_local); });
+  read_socket(section, mavlink.bind, mavlink.allow, endpoint_form, "the example uses 127.0.0.1:14660",
+              "who may send");
+  section.integer("system_id", mavlink.system_id, 1, 255, "the vehicle; messages of others are ignored");
+  section.integer("component_id", mavlink.component_id, 1, 255,
+                  "the part of the vehicle that is believed; 1 is the autopilot");
+  section.choice(
+      "messages", mavlink.messages,
+      {{"auto", MavlinkMessages::automatic},
+       {"odometry", MavlinkMessages::odometry},
+       {"local_position", MavlinkMessages::local_position}},
+      "ODOMETRY, or LOCAL_POSITION_NED with the attitude of its time; `auto`: the first where it comes");
+  section.section("origin", "where the vehicle's own origin is in the world", [&](YamlSection& inner) {
+    read_pose(inner, mavlink.T_world_local,
+              "what the vehicle calls (0, 0, 0), in the world (x east, y north, z up), metres",
+              "as in `poses.initial`; yaw 90 turns the vehicle's north to west of the world");
+  });
 }
 
 std::optional<std::string> any_text(std::string_view text) {
   return text.empty() ? std::nullopt : std::optional(std::string(text));
 }
 
-/// `name_key` and "parents", which says what a relative pose is relative to.
-void read_entity(YamlSection& section, std::string_view name_key, bool relative, SimulatorEntity& entity) {
-  section.text(name_key, entity.name);
-  section.parsed_list("parents", entity.parents, &any_text, "names of entities, the outermost first");
+/// "parents", which says what a relative pose is relative to.
+void read_parents(YamlSection& section, bool relative, SimulatorEntity& entity, std::string_view meaning) {
+  constexpr TextForm names{"names of entities, the outermost first", "texts", R"("type": "string")"};
+  section.parsed_list("parents", entity.parents, &any_text, names, meaning);
   if (!relative && section.has("parents")) {
     section.report("parents", "poses in the world have no parents (expected only with `frame: relative`)");
   }
@@ -121,61 +152,86 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
   enum class Frame { world, relative };
   Frame frame = Frame::world;
   section.require("topic", "a topic such as /world/ocean/dynamic_pose/info");
-  section.text("topic", ignition.topic);
-  section.text("partition", ignition.partition);
+  section.text("topic", ignition.topic, "with messages `Pose_V` or `Pose`");
+  section.text("partition", ignition.partition, "of the transport");
+  section.default_is("partition", "that of `IGN_PARTITION`");
   section.require("frame", "world, or relative for poses that are relative to parents");
-  section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}});
+  section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
+                 "what poses are relative to: the world, or `parents`");
   const bool relative = frame == Frame::relative;
-  read_entity(section, "vehicle", relative, ignition.vehicle);
+  section.text("vehicle", ignition.vehicle.name,
+               "entity that carries the sonars; **required** where no model is the vehicle");
+  section.default_is("vehicle", "`world.vehicle_model`, and with `relative` no parents");
+  read_parents(section, relative, ignition.vehicle,
+               "what its pose is relative to, the outermost first; [] for a model that stands in the world");
+  section.default_is("parents", "**required** with `relative` and `vehicle`");
   const bool named = section.has("vehicle");
   if (relative && named) {
     section.require("parents",
-                    "what the vehicle's pose is relative to, the outermost first; [] for a model "
-                    "that stands in the world");
+                    "what the vehicle's pose is relative to, the outermost first; [] for a model that stands "
+                    "in the world");
   }
   for (const char* key : {"parents", "mount"}) {
     if (!named && section.has(key)) {
       section.report(key, "is of `vehicle`, which is not given (expected both, or neither)");
     }
   }
-  section.section("mount", [&](YamlSection& inner) { read_pose(inner, ignition.T_entity_vehicle); });
-  section.sections("bodies", [&](YamlSection& inner) {
+  section.section("mount", "where the vehicle frame sits on the entity; only with `vehicle`",
+                  [&](YamlSection& inner) {
+                    read_pose(inner, ignition.T_entity_vehicle, "in the axes of the entity, metres",
+                              "as in `poses.initial`");
+                  });
+  section.sections("bodies", "entities that move bodies of the world", [&](YamlSection& inner) {
     IgnitionPoseInput::Body& body = ignition.bodies.emplace_back();
     inner.require("entity", "the name of an entity of the simulator");
-    read_entity(inner, "entity", relative, body.entity);
+    inner.text("entity", body.entity.name, "name in the simulator");
+    read_parents(inner, relative, body.entity, "only with `frame: relative`, as above");
     inner.require("body", "the name of a model of the world");
-    inner.text("body", body.body);
+    inner.text("body", body.body, "name of the model in the world here");
   });
 }
 
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
-  section.section("initial", [&](YamlSection& inner) {
-    inner.require("position_m", "a list of three numbers");
-    read_pose(inner, poses.T_world_vehicle_initial.emplace());
-  });
-  section.section("udp", [&](YamlSection& inner) {
+  section.introduce(
+      "At least one of `initial`, `udp`, `tcp`, `mavlink`, `ignition` and `trajectory`; a trajectory "
+      "excludes the live inputs.");
+  section.section(
+      "initial", "pose until the first one arrives; without it the heads answer but do not ping before that",
+      [&](YamlSection& inner) {
+        inner.require("position_m", "a list of three numbers");
+        read_pose(inner, poses.T_world_vehicle_initial.emplace(),
+                  "origin of the vehicle in the world (x east, y north, z up), metres",
+                  "roll, pitch, yaw about the fixed x, y and z axes, in this order; vehicle x forward, y to "
+                  "port, z up, so positive pitch is nose down and positive yaw turns to port");
+      });
+  section.section("udp", "one pose message per datagram ([poses.md](poses.md))", [&](YamlSection& inner) {
     UdpPoseInput& udp = poses.udp.emplace();
-    inner.require("bind", expected_endpoint);
-    inner.parsed("bind", udp.bind, &parse_endpoint, expected_endpoint);
-    read_allow_list(inner, udp.bind.address, udp.allow);
+    read_socket(inner, udp.bind, udp.allow, endpoint_form, "the demo uses 127.0.0.1:14600",
+                "who may publish");
   });
-  section.section("tcp", [&](YamlSection& inner) {
+  section.section("tcp", "varint-delimited pose messages ([poses.md](poses.md))", [&](YamlSection& inner) {
     TcpPoseInput& tcp = poses.tcp.emplace();
-    inner.require("bind", expected_endpoint);
-    inner.parsed("bind", tcp.bind, &parse_endpoint, expected_endpoint);
-    read_allow_list(inner, tcp.bind.address, tcp.allow);
-    inner.integer("max_clients", tcp.max_clients, 1, 1000);
+    read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "", "who may publish");
+    inner.integer("max_clients", tcp.max_clients, 1, 1000, "further connections are closed at once");
   });
-  section.section("mavlink", [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
-  section.section("trajectory",
+  section.section("mavlink",
+                  "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",
+                  [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
+  section.section("ignition", "a pose topic of Gazebo ([simulators/gazebo.md](simulators/gazebo.md))",
+                  [&](YamlSection& inner) { read_ignition(inner, poses.ignition.emplace()); });
+  section.section("trajectory", "a file, played from the start of the daemon",
                   [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
-  section.section("ignition", [&](YamlSection& inner) { read_ignition(inner, poses.ignition.emplace()); });
-  section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0));
-  section.choice("stale", poses.stale_policy,
-                 {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}});
+  section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0),
+                   "past the newest pose the twist is followed (without one the pose is held) for this long");
+  section.choice(
+      "stale", poses.stale_policy, {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}},
+      "after that: go on from the last pose, or stop pinging (status packets go on) until a pose arrives");
   section.choice(
       "clock", poses.clock,
-      {{"wall", PingClock::wall}, {"source", PingClock::source}, {"lock_step", PingClock::lock_step}});
+      {{"wall", PingClock::wall}, {"source", PingClock::source}, {"lock_step", PingClock::lock_step}},
+      "whose time pings keep: this machine's, or that of the stamps of the poses, for a simulation that is "
+      "slow, fast or paused; `lock_step` leaves no ping out, however slow the rendering "
+      "([poses.md](poses.md#time-of-the-simulation))");
 
   const bool live = poses.udp || poses.tcp || poses.mavlink || poses.ignition;
   if (live && poses.trajectory) {
@@ -194,15 +250,21 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
 }
 
 void read_sampling(YamlSection& section, render::Sampling& sampling) {
+  section.introduce(
+      "The error of the echo that is aimed at; what it takes is found by itself. See "
+      "[accuracy.md](accuracy.md) for what is measured and [benchmark.md](benchmark.md) for what it costs.");
   using Preset = render::Sampling::Preset;
   section.choice("preset", sampling.preset,
                  {{"fast", Preset::fast},
                   {"default", Preset::normal},
                   {"reference", Preset::reference},
-                  {"grid", Preset::grid}});
-  section.integer("views", sampling.views, 1, 32);
-  section.integer("columns_per_view", sampling.columns_per_view, 8, 4096);
-  section.integer("rows", sampling.rows, 8, 4096);
+                  {"grid", Preset::grid}},
+                 "5 %, 1 %, as close as it gets (for offline use), or a fixed grid of samples");
+  section.integer("views", sampling.views, 1, 32,
+                  "only with `grid`, like the two below: side-by-side views across the fan; more are used "
+                  "where one would exceed 60 degrees");
+  section.integer("columns_per_view", sampling.columns_per_view, 8, 4096, "pixels of a view across the fan");
+  section.integer("rows", sampling.rows, 8, 4096, "pixels over the elevation of the fan");
   if (sampling.preset != Preset::grid) {
     for (const char* key : {"views", "columns_per_view", "rows"}) {
       if (section.has(key)) {
@@ -213,41 +275,54 @@ void read_sampling(YamlSection& section, render::Sampling& sampling) {
 }
 
 void read_skip(YamlSection& section, render::SkipSwitches& skip) {
+  section.introduce(
+      "The daemon leaves out what does not change the image, by rules that [skipping.md](skipping.md) lists "
+      "with what each may change and saves. How often each did is in the log.");
   std::vector<std::string_view> names;
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     names.push_back(entry.name);
   }
+  const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
+  const std::string schema = fmt::format(R"("enum": ["{}"])", fmt::join(names, R"(", ")"));
   std::vector<render::SkipRule> off;
-  section.parsed_list("off", off, &render::skip_rule_named, fmt::format("one of {}", fmt::join(names, ", ")));
+  section.parsed_list("off", off, &render::skip_rule_named, {expected, "rules", schema},
+                      "these do not apply: what they would leave out is worked out in full");
   for (const render::SkipRule rule : off) {
     skip.turn_off(rule);
   }
 }
 
 void read_recording(YamlSection& section, const std::filesystem::path& folder, RecordingConfig& recording) {
-  std::string path;
+  section.introduce(
+      "Logs that users' tools open, of all heads. [logs.md](logs.md#recording) says what is in them, what "
+      "happens when the disk is full, and what a daemon that was killed leaves behind.");
   section.require("directory", "a folder for the logs");
-  section.text("directory", path);
-  recording.directory = folder / path;
-  section.boolean("glf", recording.glf);
-  section.boolean("mcap", recording.mcap);
-  section.boolean("pcapng", recording.pcapng);
+  section.path("directory", recording.directory, folder,
+               "folder of the logs, made when it is not there; one daemon at a time records into it");
+  section.boolean("glf", recording.glf, "a `.glf` of each head whose users know such logs");
+  section.boolean("mcap", recording.mcap, "one MCAP file: images, poses, and the bytes of both directions");
+  section.boolean("pcapng", recording.pcapng, "one capture for Wireshark: the bytes of both directions");
   if (!recording.glf && !recording.mcap && !recording.pcapng) {
     section.report("directory", "no kind of log is to be written (expected glf, mcap or pcapng to be true)");
   }
   std::uint64_t mebibytes = recording.rotate_bytes >> 20;
-  section.integer("rotate_mib", mebibytes, 1, 1800);  // a .glf holds 1907 MiB, and a ping may still come
+  section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and a ping may still come
+                  "when one of the files has so many mebibytes, all are closed, and new ones begun");
   recording.rotate_bytes = mebibytes << 20;
-  double minutes = std::chrono::duration<double, std::ratio<60>>(recording.rotate_after).count();
-  section.number("rotate_min", minutes, Range::from(0.05, 10'080.0));
-  recording.rotate_after = std::chrono::nanoseconds{static_cast<std::int64_t>(minutes * 60e9)};
-  section.choice("zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}});
+  section.duration("rotate_min", recording.rotate_after, Range::from(0.05, 10'080.0),
+                   "and so they are after so many minutes");
+  section.choice("zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}},
+                 "clock of the times in a `.glf` and of all names; a `.glf` does not say which it is");
   section.choice("sync", recording.sync,
                  {{"never", RecordingSync::never},
                   {"on_close", RecordingSync::on_close},
-                  {"every_second", RecordingSync::every_second}});
+                  {"every_second", RecordingSync::every_second}},
+                 "when files are forced onto the disk, against power cuts; a process that is killed loses "
+                 "nothing by any of them");
   mebibytes = recording.queue_bytes >> 20;
-  section.integer("queue_mib", mebibytes, 1, 16'384);
+  section.integer(
+      "queue_mib", mebibytes, 1, 16'384,
+      "what waits to be written; beyond that is dropped and counted, for nothing ever waits for the disk");
   recording.queue_bytes = mebibytes << 20;
 }
 
@@ -255,36 +330,42 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
                    std::vector<ConfigWarning>& warnings) {
   HeadContext context;
   context.folder = config.file.parent_path();
-  root.section("log", [&](YamlSection& section) { read_log(section, config.log_level); });
+  root.section("log", "the log", [&](YamlSection& section) { read_log(section, config.log_level); });
   root.require("world", "a mapping with the world's file");
-  root.section("world", [&](YamlSection& section) {
-    std::string path;
-    section.require("file", "an SDF world");
-    section.text("file", path);
-    config.world_file = context.folder / path;
-    section.text("vehicle_model", config.vehicle_model);
-  });
+  root.section("world", "what the sonars see",
+               [&](YamlSection& section) { read_world(section, context.folder, config); });
   root.choice("backend", config.backend,
               {{"auto", render::Backend::automatic},
                {"raster", render::Backend::raster},
-               {"ray", render::Backend::ray}});
-  root.choice("gpu_binning", config.gpu_binning,
-              {{"auto", render::GpuBinning::automatic},
-               {"on", render::GpuBinning::on},
-               {"off", render::GpuBinning::off}});
-  root.section("skip", [&](YamlSection& section) { read_skip(section, config.skip); });
-  root.section("water", [&](YamlSection& section) { read_water(section, context); });
+               {"ray", render::Backend::ray}},
+              "what finds the visible surfaces: OpenGL 4.5, or ray tracing on all cores of the CPU, which "
+              "needs no OpenGL. `auto` takes OpenGL where it runs on graphics hardware. Both give the same "
+              "image ([accuracy.md](accuracy.md)); the log says which one runs on what");
+  root.choice(
+      "gpu_binning", config.gpu_binning,
+      {{"auto", render::GpuBinning::automatic},
+       {"on", render::GpuBinning::on},
+       {"off", render::GpuBinning::off}},
+      "whether backend `raster` bins fixed grids (`sampling.preset: grid`, mode `paper` with "
+      "`legacy_columns` and the like) on the GPU too, so that only the echo image is read back. `auto`: "
+      "where OpenGL runs on graphics hardware; `on`: also where it is software. An image too large for "
+      "OpenGL's buffers is binned on the CPU, with a line in the log. No meaning for backend `ray`");
+  root.section("skip", "what need not be worked out",
+               [&](YamlSection& section) { read_skip(section, config.skip); });
+  root.section("water", "what they swim in", [&](YamlSection& section) { read_water(section, context); });
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
   config.water = context.water;
   root.require("poses", "a mapping that says where poses come from");
-  root.section("poses", [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
+  root.section("poses", "where the vehicle is",
+               [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
   context.pings_by_source = config.poses.clock != PingClock::wall;
-  root.section("sampling", [&](YamlSection& section) { read_sampling(section, context.sampling); });
-  root.section("recording", [&](YamlSection& section) {
-    read_recording(section, context.folder, config.recording.emplace());
-  });
+  root.section("sampling", "the error that is aimed at",
+               [&](YamlSection& section) { read_sampling(section, context.sampling); });
+  root.section(
+      "recording", "logs of what the heads say; without it there are none",
+      [&](YamlSection& section) { read_recording(section, context.folder, config.recording.emplace()); });
   root.require("heads", "a list of sonar heads");
-  root.sections("heads", [&](YamlSection& section) {
+  root.sections("heads", "the sonars, one or more", [&](YamlSection& section) {
     config.heads.push_back(read_head(section, context, kinds, warnings));
   });
   if (root.is_list("heads") && config.heads.empty()) {
@@ -315,6 +396,16 @@ LoadedConfig load_config(const std::filesystem::path& file, std::span<const Head
     loaded.warnings.push_back(loaded.problem_with(warning.key, warning.message));
   }
   return loaded;
+}
+
+std::vector<KeyReference> describe_config(const HeadKind& kind) {
+  YamlFindings findings;
+  findings.describing = true;
+  DaemonConfig config;
+  std::vector<ConfigWarning> warnings;
+  YamlSection root(findings, YAML::Node(YAML::NodeType::Map), "");
+  read_document(root, std::array{&kind}, config, warnings);
+  return root.known();
 }
 
 std::string LoadedConfig::problem_with(std::string_view key, const std::string& message) const {

@@ -10,6 +10,7 @@
 
 #include "server/config/config.hpp"
 #include "server/config/config_error.hpp"
+#include "server/config/key_reference.hpp"
 
 namespace sonard::server {
 
@@ -30,5 +31,8 @@ struct LoadedConfig {
 /// @param kinds those that heads may be of
 /// @throws ConfigError with every problem of the file.
 LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds);
+
+/// All keys of a configuration whose heads are of one kind: for the schema and docs/configuration.md.
+std::vector<KeyReference> describe_config(const HeadKind& kind);
 
 }  // namespace sonard::server

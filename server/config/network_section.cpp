@@ -13,16 +13,17 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::string_view expected_serial_endpoint = "an address and port such as 127.0.0.1:4001";
+constexpr TextForm serial_endpoint_form{"an address and port such as 127.0.0.1:4001", endpoint_form.type,
+                                        endpoint_form.schema};
 
 /// Socket is SerialTcpConfig or SerialUdpConfig.
 template <typename Socket>
-void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket>& sockets) {
-  section.sections(key, [&](YamlSection& inner) {
+void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket>& sockets,
+                  std::string_view meaning) {
+  section.sections(key, meaning, [&](YamlSection& inner) {
     Socket socket;
-    inner.require("bind", expected_serial_endpoint);
-    inner.parsed("bind", socket.bind, &parse_endpoint, expected_serial_endpoint);
-    read_allow_list(inner, socket.bind.address, socket.allow);
+    read_socket(inner, socket.bind, socket.allow, serial_endpoint_form, "where clients come",
+                "who may; up to 16 connections at a time");
     const bool taken = std::any_of(sockets.begin(), sockets.end(), [&](const Socket& other) {
       return other.bind == socket.bind && socket.bind.port != 0;
     });
@@ -32,57 +33,78 @@ void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket
     }
     sockets.push_back(std::move(socket));
   });
+  section.default_is(key, "[]", "[]");
 }
 
 void read_ptys(YamlSection& section, const std::filesystem::path& folder,
                std::vector<SerialPtyConfig>& ptys) {
-  section.sections("pty", [&](YamlSection& inner) {
+  const auto read_pty = [&](YamlSection& inner) {
     SerialPtyConfig pty;
-    std::string link;
-    inner.text("link", link);
-    if (!link.empty()) {
-      pty.link = (folder / link).lexically_normal();
-      const bool taken = std::any_of(ptys.begin(), ptys.end(),
-                                     [&](const SerialPtyConfig& other) { return other.link == pty.link; });
-      if (taken) {
-        inner.report("link", fmt::format("{} is given twice (expected a name of its own)", link));
-      }
+    inner.path(
+        "link", pty.link, folder,
+        "symbolic link to the pseudo terminal, whose own name (`/dev/pts/3`) is new at each start. Replaces "
+        "a link that leads to a pseudo terminal, and nothing else; gone when the daemon ends");
+    pty.link = pty.link.lexically_normal();
+    const bool taken = std::any_of(ptys.begin(), ptys.end(), [&](const SerialPtyConfig& other) {
+      return other.link == pty.link && !pty.link.empty();
+    });
+    if (taken) {
+      inner.report("link", fmt::format("{} is given twice (expected a name of its own)", pty.link.string()));
     }
     ptys.push_back(std::move(pty));
-  });
+  };
+  section.sections("pty", "pseudo terminals: serial devices of this machine; `- {}` is one without a link",
+                   read_pty);
+  section.default_is("pty", "[]", "[]");
 }
 
 void read_faults(YamlSection& section, LinkFaults& faults) {
   constexpr Range probability = Range::from(0.0, 1.0);
-  constexpr double minute_ms = 60'000.0;
-  section.number("loss", faults.loss, probability);
-  section.number("duplicate", faults.duplicate, probability);
-  section.number("reorder", faults.reorder, probability);
-  section.duration("delay_ms", faults.delay, Range::from(0.0, minute_ms));
-  section.duration("jitter_ms", faults.jitter, Range::from(0.0, minute_ms));
+  constexpr Range up_to_a_minute = Range::from(0.0, 60'000.0);
+  section.number("loss", faults.loss, probability, "probability that a datagram is lost");
+  section.number("duplicate", faults.duplicate, probability, "probability that it comes twice");
+  section.number("reorder", faults.reorder, probability, "probability that the next one overtakes it");
+  section.duration("delay_ms", faults.delay, up_to_a_minute, "added to each");
+  section.duration("jitter_ms", faults.jitter, up_to_a_minute, "plus up to so much, drawn for each");
 }
 
 }  // namespace
 
-void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow) {
-  constexpr std::string_view expected = "an address block such as 10.61.19.0/24";
+void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, std::string_view meaning) {
   if (is_loopback(bind_address)) {
     allow = {{0x7F000000, 8}};
   } else if (bind_address != 0 || section.has("bind")) {  // otherwise the address itself was refused
     section.require("allow", "the address blocks to serve, as the socket is not bound to loopback");
   }
-  section.parsed_list("allow", allow, &parse_cidr, expected);
-  if (section.is_list("allow") && allow.empty()) {
-    section.report("allow", "nobody is listed (expected at least one address block)");
-  }
+  constexpr TextForm blocks{"an address block such as 10.61.19.0/24", "address blocks",
+                            R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}(/[0-9]{1,2})?$")"};
+  section.parsed_list("allow", allow, &parse_cidr, blocks, meaning,
+                      "nobody is listed (expected at least one address block)");
+  section.default_is("allow", "[127.0.0.0/8]; **required** when not bound to loopback", R"(["127.0.0.0/8"])");
+}
+
+void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const TextForm& form,
+                 std::string_view bind_meaning, std::string_view allow_meaning) {
+  section.require("bind", form.expected);
+  section.parsed("bind", bind, &parse_endpoint, form, bind_meaning);
+  read_allow_list(section, bind.address, allow, allow_meaning);
 }
 
 SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder) {
+  section.introduce(
+      "Any number of each kind, at least one in all. Every client hears every frame, and what they send "
+      "comes in the order in which it arrives. Clients may come and go at any byte. The log says where each "
+      "port is to be found.");
   SerialLinkConfig link;
-  read_sockets(section, "tcp", link.tcp);
-  read_sockets(section, "udp", link.udp);
+  read_sockets(section, "tcp", link.tcp,
+               "raw bytes to and from each client, as serial device servers do; no telnet, no RFC 2217");
+  read_sockets(section, "udp", link.udp, "one datagram for each frame, to the peer that was heard last");
   read_ptys(section, folder, link.pty);
-  section.integer("baud", link.baud, 300, 4'000'000);
+  section.integer("baud", link.baud, 300, 4'000'000,
+                  "bytes take ten bits each, in both directions. A head that keeps the pace of its line does "
+                  "so without that; this makes single frames as slow as they are: at 115200 one of 445 bytes "
+                  "arrives 38.6 ms after it was sent");
+  section.default_is("baud", "as fast as it goes");
   if (link.tcp.empty() && link.udp.empty() && link.pty.empty()) {
     section.report("tcp",
                    "no client could reach the device (expected tcp, udp or pty with at least one item)");
@@ -91,9 +113,14 @@ SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::p
 }
 
 void read_link_faults(YamlSection& section, LinkConfig& link) {
-  section.integer("seed", link.seed, 0, std::numeric_limits<std::uint64_t>::max());
-  section.section("to_surface", [&](YamlSection& inner) { read_faults(inner, link.to_client); });
-  section.section("from_surface", [&](YamlSection& inner) { read_faults(inner, link.from_client); });
+  section.introduce(
+      "Faults are drawn from the seed and the number of the datagram alone: the same traffic meets the same "
+      "fate.");
+  section.integer("seed", link.seed, 0, std::numeric_limits<std::uint64_t>::max(), "of the faults");
+  section.section("to_surface", "faults on what the head sends",
+                  [&](YamlSection& inner) { read_faults(inner, link.to_client); });
+  section.section("from_surface", "faults on what it receives",
+                  [&](YamlSection& inner) { read_faults(inner, link.from_client); });
 }
 
 }  // namespace sonard::server

@@ -11,11 +11,17 @@
 
 namespace sonard::server {
 
-inline constexpr std::string_view expected_endpoint = "an address and port such as 127.0.0.1:14600";
+inline constexpr TextForm endpoint_form{
+    "an address and port such as 127.0.0.1:14600", "address:port",
+    R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}:[0-9]{1,5}$")"};
 
 /// "allow" beside a bind address: a list of address blocks. Left out, loopback peers are served if the socket
 /// is bound to loopback; for any other address it has to be given.
-void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow);
+void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, std::string_view meaning);
+
+/// The required key `bind`, and `allow` beside it.
+void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const TextForm& form,
+                 std::string_view bind_meaning, std::string_view allow_meaning);
 
 /// The keys `tcp`, `udp`, `pty` (lists) and `baud`. Reports a link without any transport, and transports of
 /// one link that would get in each other's way.

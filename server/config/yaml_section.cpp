@@ -83,10 +83,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 /// The known key that was probably meant, or an empty text.
-std::string_view closest(std::string_view name, const std::vector<std::string>& known) {
+std::string_view closest(std::string_view name, const std::vector<KeyReference>& known) {
   std::string_view best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  for (const std::string& candidate : known) {
+  for (const KeyReference& key : known) {
+    const std::string_view candidate = key.name;
     // "delay" for "delay_ms": the unit was forgotten.
     const bool unit_missing = candidate.starts_with(name) && candidate.substr(name.size()).starts_with('_');
     const std::size_t distance = unit_missing ? 1 : edit_distance(name, candidate);
@@ -99,16 +100,36 @@ std::string_view closest(std::string_view name, const std::vector<std::string>& 
   return best;
 }
 
+std::string range_text(const Range& range) {
+  return fmt::format("{}{} to {}", range.above_min ? "above " : "", range.min, range.max);
+}
+
+std::string range_schema(const Range& range) {
+  return fmt::format(R"("type": "number", "{}": {}, "maximum": {})",
+                     range.above_min ? "exclusiveMinimum" : "minimum", range.min, range.max);
+}
+
+/// Of a number that may have been converted between units.
+std::string number_text(double value) {
+  return fmt::format("{:g}", value);
+}
+
+std::string quoted_words(const std::vector<std::string_view>& words, char quote) {
+  std::string text;
+  for (const std::string_view word : words) {
+    text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", quote, word, quote);
+  }
+  return text;
+}
+
+double ns_per_unit(std::string_view key) {
+  return key.ends_with("_us") ? 1e3 : key.ends_with("_ms") ? 1e6 : 60e9;
+}
+
 }  // namespace
 
 SourcePosition position_of(const YAML::Mark& mark) {
   return mark.is_null() ? SourcePosition{} : SourcePosition{mark.line + 1, mark.column + 1};
-}
-
-std::string Range::text() const {
-  constexpr double unbounded = std::numeric_limits<double>::max();
-  const std::string lower = above_min ? fmt::format("above {:g}", min) : fmt::format("from {:g}", min);
-  return max >= unbounded ? lower : fmt::format("{} to {:g}", lower, max);
 }
 
 YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path)
@@ -153,6 +174,7 @@ bool YamlSection::is_list(std::string_view key) const {
 }
 
 void YamlSection::require(std::string_view key, std::string_view expected) {
+  known_key(key).required = true;
   if (find(key) == nullptr && is_map_) {
     problem(at_, path_of(key), fmt::format("missing (expected {})", expected));
   }
@@ -173,16 +195,34 @@ void YamlSection::place_default(std::string_view key, std::string_view source) {
   }
 }
 
-void YamlSection::number(std::string_view key, double& out, const Range& range) {
+void YamlSection::default_is(std::string_view key, std::string_view text, std::string_view json) {
+  known_key(key).default_text = text;
+  known_key(key).default_json = json;
+}
+
+void YamlSection::number(std::string_view key, double& out, const Range& range, std::string_view meaning,
+                         double units_per_one) {
+  double value = out * units_per_one;
+  document(key, range_text(range), range_schema(range), number_text(value), meaning);
   if (const Entry* entry = find(key)) {
-    if (const std::optional<double> value = number_of(entry->value, path_of(key), range)) {
-      out = *value;
-    }
+    value = number_of(entry->value, path_of(key), range).value_or(value);
   }
+  out = value / units_per_one;
 }
 
 void YamlSection::number_or_word(std::string_view key, double& out, const Range& range,
-                                 std::initializer_list<std::pair<std::string_view, double>> words) {
+                                 const std::vector<std::pair<std::string_view, double>>& words,
+                                 std::string_view meaning) {
+  std::vector<std::string_view> names;
+  std::string_view default_word;
+  for (const auto& [word, value] : words) {
+    names.push_back(word);
+    default_word = value == out ? word : default_word;
+  }
+  document(
+      key, fmt::format("{}, or {}", quoted_words(names, '`'), range_text(range)),
+      fmt::format(R"("anyOf": [{{"enum": [{}]}}, {{{}}}])", quoted_words(names, '"'), range_schema(range)),
+      quoted_words({default_word}, '"'), meaning);
   const Entry* entry = find(key);
   if (entry == nullptr) {
     return;
@@ -201,21 +241,24 @@ void YamlSection::number_or_word(std::string_view key, double& out, const Range&
   } else if (findings_.problems.size() > problems_before) {
     std::string& message = findings_.problems.back().message;
     message.pop_back();  // the closing parenthesis
-    for (const auto& [word, unused] : words) {
+    for (const std::string_view word : names) {
       message += fmt::format(", or '{}'", word);
     }
     message += ')';
   }
 }
 
-void YamlSection::duration(std::string_view key, std::chrono::nanoseconds& out, const Range& range) {
-  const double ns_per_unit = key.ends_with("_us") ? 1e3 : 1e6;
-  double value = static_cast<double>(out.count()) / ns_per_unit;
-  number(key, value, range);
-  out = std::chrono::nanoseconds{std::llround(value * ns_per_unit)};
+void YamlSection::duration(std::string_view key, std::chrono::nanoseconds& out, const Range& range,
+                           std::string_view meaning) {
+  double value_ns = static_cast<double>(out.count());
+  number(key, value_ns, range, meaning, 1.0 / ns_per_unit(key));
+  out = std::chrono::nanoseconds{std::llround(value_ns)};
 }
 
-void YamlSection::angle(std::string_view key, double& out_rad, const Range& range_deg) {
+void YamlSection::angle(std::string_view key, double& out_rad, const Range& range_deg,
+                        std::string_view meaning) {
+  document(key, range_text(range_deg), range_schema(range_deg),
+           number_text(out_rad * 180.0 / std::numbers::pi), meaning);
   if (const Entry* entry = find(key)) {
     if (const std::optional<double> degrees = number_of(entry->value, path_of(key), range_deg)) {
       out_rad = *degrees * std::numbers::pi / 180.0;
@@ -223,7 +266,12 @@ void YamlSection::angle(std::string_view key, double& out_rad, const Range& rang
   }
 }
 
-void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& range) {
+void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& range,
+                          std::string_view meaning) {
+  document(
+      key, "three numbers",
+      fmt::format(R"("type": "array", "items": {{{}}}, "minItems": 3, "maxItems": 3)", range_schema(range)),
+      fmt::format("[{}, {}, {}]", out.x, out.y, out.z), meaning);
   const Entry* entry = find(key);
   if (entry == nullptr) {
     return;
@@ -243,7 +291,8 @@ void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& ra
   }
 }
 
-void YamlSection::boolean(std::string_view key, bool& out) {
+void YamlSection::boolean(std::string_view key, bool& out, std::string_view meaning) {
+  document(key, "boolean", R"("type": "boolean")", out ? "true" : "false", meaning);
   const Entry* entry = find(key);
   if (entry == nullptr) {
     return;
@@ -258,20 +307,34 @@ void YamlSection::boolean(std::string_view key, bool& out) {
   }
 }
 
-void YamlSection::text(std::string_view key, std::string& out) {
+void YamlSection::text(std::string_view key, std::string& out, std::string_view meaning) {
+  document(key, "text", R"("type": "string")", "", meaning);
+  out = plain_text(key, "a text").value_or(out);
+}
+
+void YamlSection::path(std::string_view key, std::filesystem::path& out, const std::filesystem::path& folder,
+                       std::string_view meaning) {
+  document(key, "path", R"("type": "string")", "", meaning);
   if (const std::optional<std::string> value = plain_text(key, "a text")) {
-    out = *value;
+    out = folder / *value;
   }
 }
 
-void YamlSection::section(std::string_view key, const std::function<void(YamlSection&)>& read) {
-  if (const Entry* entry = find(key)) {
-    YamlSection inner(findings_, entry->value, path_of(key));
-    read(inner);
+void YamlSection::section(std::string_view key, std::string_view meaning,
+                          const std::function<void(YamlSection&)>& read) {
+  document(key, "mapping", "", "", meaning);
+  if (const Entry* entry = find(key); entry != nullptr || findings_.describing) {
+    read_inner(key, entry == nullptr ? YAML::Node(YAML::NodeType::Map) : entry->value, path_of(key), read);
   }
 }
 
-void YamlSection::sections(std::string_view key, const std::function<void(YamlSection&)>& read) {
+void YamlSection::sections(std::string_view key, std::string_view meaning,
+                           const std::function<void(YamlSection&)>& read) {
+  document(key, "list of mappings", "", "", meaning);
+  known_key(key).is_list = true;
+  if (findings_.describing) {
+    read_inner(key, YAML::Node(YAML::NodeType::Map), path_of(key), read);
+  }
   const Entry* entry = find(key);
   if (entry == nullptr) {
     return;
@@ -285,15 +348,54 @@ void YamlSection::sections(std::string_view key, const std::function<void(YamlSe
     const YAML::Node item = entry->value[i];
     const std::string path = fmt::format("{}[{}]", path_of(key), i);
     findings_.positions.emplace(path, position_of(item.Mark()));
-    YamlSection inner(findings_, item, path);
-    read(inner);
+    read_inner(key, item, path, read);
   }
 }
 
-const YamlSection::Entry* YamlSection::find(std::string_view key) {
-  if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-    known_.emplace_back(key);
+void YamlSection::read_inner(std::string_view key, const YAML::Node& node, std::string path,
+                             const std::function<void(YamlSection&)>& read) {
+  YamlSection inner(findings_, node, std::move(path));
+  read(inner);
+  known_key(key).introduction = inner.introduction_;
+  known_key(key).keys = inner.known_;
+}
+
+KeyReference& YamlSection::known_key(std::string_view key) {
+  const auto found = std::find_if(known_.begin(), known_.end(),
+                                  [key](const KeyReference& known) { return known.name == key; });
+  if (found != known_.end()) {
+    return *found;
   }
+  known_.emplace_back().name = key;
+  return known_.back();
+}
+
+void YamlSection::document(std::string_view key, std::string_view type, std::string_view schema,
+                           std::string_view default_json, std::string_view meaning) {
+  KeyReference& known = known_key(key);
+  if (!known.schema.empty()) {
+    known.type += fmt::format(", or {}", type);
+    known.schema = fmt::format(R"("anyOf": [{{{}}}, {{{}}}])", known.schema, schema);
+    return;
+  }
+  known.type = type;
+  known.schema = schema;
+  known.default_json = default_json;
+  known.default_text = default_json;
+  std::replace(known.default_text.begin(), known.default_text.end(), '"', '`');
+  known.meaning = meaning;
+}
+
+void YamlSection::document_list(std::string_view key, const TextForm& form, std::string_view meaning,
+                                bool may_be_empty) {
+  document(key, fmt::format("list of {}", form.type),
+           fmt::format(R"("type": "array", {}"items": {{{}}})", may_be_empty ? "" : R"("minItems": 1, )",
+                       form.schema),
+           may_be_empty ? "[]" : "", meaning);
+}
+
+const YamlSection::Entry* YamlSection::find(std::string_view key) {
+  known_key(key);
   for (Entry& entry : entries_) {
     if (entry.name == key) {
       entry.read = true;
@@ -329,16 +431,20 @@ void YamlSection::report_unknown(const Entry& entry) {
   if (!meant.empty()) {
     message += fmt::format(", did you mean '{}'?", meant);
   }
+  std::vector<std::string_view> names;
+  for (const KeyReference& key : known_) {
+    names.push_back(key.name);
+  }
   message +=
-      known_.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(known_, ", "));
+      names.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(names, ", "));
   problem(entry.key_at, path_of(entry.name), std::move(message));
 }
 
 std::optional<double> YamlSection::number_of(const YAML::Node& node, const std::string& path,
                                              const Range& range) {
   const std::string_view unit = unit_of(last_key(path));
-  const std::string expected = unit.empty() ? fmt::format("a number {}", range.text())
-                                            : fmt::format("a number {}, in {}", range.text(), unit);
+  const std::string expected = fmt::format("a number {}{}{}{}", range.above_min ? "" : "from ",
+                                           range_text(range), unit.empty() ? "" : ", in ", unit);
   const SourcePosition at = position_of(node.Mark());
   if (!node.IsScalar() || node.Tag() != plain_tag) {
     const std::string what =
@@ -366,30 +472,35 @@ std::optional<double> YamlSection::number_of(const YAML::Node& node, const std::
   return value;
 }
 
-std::optional<std::uint64_t> YamlSection::whole_number(std::string_view key, std::uint64_t min,
-                                                       std::uint64_t max) {
+void YamlSection::whole_number(std::string_view key, std::uint64_t& out, std::uint64_t min, std::uint64_t max,
+                               std::string_view meaning) {
+  document(key, fmt::format("{} to {}", min, max),
+           fmt::format(R"("type": "integer", "minimum": {}, "maximum": {})", min, max), std::to_string(out),
+           meaning);
   const Entry* entry = find(key);
   if (entry == nullptr) {
-    return std::nullopt;
+    return;
   }
   const YAML::Node& node = entry->value;
-  const std::string expected = fmt::format("a whole number from {} to {}", min, max);
   if (node.IsScalar() && node.Tag() == plain_tag) {
     const std::string& text = node.Scalar();
     std::uint64_t value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     if (error == std::errc{} && stop == end && value >= min && value <= max) {
-      return value;
+      out = value;
+      return;
     }
   }
   problem(position_of(node.Mark()), path_of(key),
-          fmt::format("is {} (expected {})", describe(node), expected));
-  return std::nullopt;
+          fmt::format("is {} (expected a whole number from {} to {})", describe(node), min, max));
 }
 
 std::optional<std::size_t> YamlSection::word_index(std::string_view key,
-                                                   const std::vector<std::string_view>& words) {
+                                                   const std::vector<std::string_view>& words,
+                                                   std::string_view default_word, std::string_view meaning) {
+  document(key, quoted_words(words, '`'), fmt::format(R"("enum": [{}])", quoted_words(words, '"')),
+           quoted_words({default_word}, '"'), meaning);
   const std::string expected = fmt::format("one of {}", fmt::join(words, ", "));
   const std::optional<std::string> word = plain_text(key, expected);
   if (!word) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Strict reading of YAML mappings: every key is known, given once, of the right type and in range, or it is
 // reported with its place. All problems of a file are collected; nothing here throws.
+// A line that reads a key is all there is to say of it: name, form, range, default and meaning. The schema
+// and the tables of docs/configuration.md are written from these lines (describe_config() in loader.hpp).
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,13 +19,15 @@
 #include <glm/vec3.hpp>
 
 #include "server/config/config_error.hpp"
+#include "server/config/key_reference.hpp"
 
 namespace sonard::server {
 
 /// Where problems and the places of keys gather while one file is read.
 struct YamlFindings {
   std::vector<ConfigProblem> problems;
-  KeyPositions positions;  ///< of the value of every key that was read
+  KeyPositions positions;   ///< of the value of every key that was read
+  bool describing = false;  ///< no file is read: every section is entered, for what it knows (KeyReference)
 };
 
 SourcePosition position_of(const YAML::Mark& mark);
@@ -37,12 +41,18 @@ struct Range {
   static constexpr Range from(double min, double max) { return {min, max, false}; }
   static constexpr Range above(double min, double max) { return {min, max, true}; }
   bool holds(double value) const { return (above_min ? value > min : value >= min) && value <= max; }
-  std::string text() const;
+};
+
+/// What a text has to look like.
+struct TextForm {
+  std::string_view expected;  ///< for complaints: "an IPv4 address such as 127.0.0.2"
+  std::string_view type;      ///< for people: "address"; for a list "addresses"
+  std::string_view schema;    ///< as KeyReference::schema
 };
 
 /// One mapping. At most one problem is reported for each key. Each reader writes its result only when the key
 /// is there and its value is good, so what stood there before is the default. Readers name the unit of a
-/// number in the key ("delay_ms").
+/// number in the key ("delay_ms"). `meaning` is KeyReference::meaning.
 class YamlSection {
  public:
   /// @param path of the mapping, "" for the document. A node that is not a mapping is reported and read as
@@ -63,84 +73,97 @@ class YamlSection {
   /// Lets a key that is not given stand where the key that its default comes from does.
   void place_default(std::string_view key, std::string_view source);
 
-  void number(std::string_view key, double& out, const Range& range);
+  /// For what the schema and docs/configuration.md say: sentences on this mapping as a whole.
+  void introduce(std::string_view sentences) { introduction_ = sentences; }
+  /// For the same: the default of a key that was read, where it is not the value that stood there.
+  void default_is(std::string_view key, std::string_view text, std::string_view json = "");
+  /// Whether there is no file, and all keys are read only for what is known of them.
+  bool describing() const { return findings_.describing; }
+  const std::vector<KeyReference>& known() const { return known_; }  ///< keys that readers asked for
+
+  /// @param units_per_one how many units of the key make one of `out`: 1000 for "_mm" and metres
+  void number(std::string_view key, double& out, const Range& range, std::string_view meaning,
+              double units_per_one = 1.0);
   /// A number, or one of the words, which stands for a number.
   void number_or_word(std::string_view key, double& out, const Range& range,
-                      std::initializer_list<std::pair<std::string_view, double>> words);
-  /// The key ends in _ms or _us.
-  void duration(std::string_view key, std::chrono::nanoseconds& out, const Range& range);
+                      const std::vector<std::pair<std::string_view, double>>& words,
+                      std::string_view meaning);
+  /// The key ends in _us, _ms or _min.
+  void duration(std::string_view key, std::chrono::nanoseconds& out, const Range& range,
+                std::string_view meaning);
   /// The key ends in _deg; the result is in radians.
-  void angle(std::string_view key, double& out_rad, const Range& range_deg);
-  void vector3(std::string_view key, glm::dvec3& out, const Range& range);
-  void boolean(std::string_view key, bool& out);
-  void text(std::string_view key, std::string& out);
+  void angle(std::string_view key, double& out_rad, const Range& range_deg, std::string_view meaning);
+  void vector3(std::string_view key, glm::dvec3& out, const Range& range, std::string_view meaning);
+  void boolean(std::string_view key, bool& out, std::string_view meaning);
+  void text(std::string_view key, std::string& out, std::string_view meaning);
+  /// A relative path starts at `folder`.
+  void path(std::string_view key, std::filesystem::path& out, const std::filesystem::path& folder,
+            std::string_view meaning);
 
   template <typename Integer>
-  void integer(std::string_view key, Integer& out, std::uint64_t min, std::uint64_t max) {
-    if (const std::optional<std::uint64_t> value = whole_number(key, min, max)) {
-      out = static_cast<Integer>(*value);
-    }
+  void integer(std::string_view key, Integer& out, std::uint64_t min, std::uint64_t max,
+               std::string_view meaning) {
+    auto value = static_cast<std::uint64_t>(out);
+    whole_number(key, value, min, max, meaning);
+    out = static_cast<Integer>(value);
   }
 
-  template <typename Enum>
-  void choice(std::string_view key, Enum& out,
-              std::initializer_list<std::pair<std::string_view, std::type_identity_t<Enum>>> choices) {
-    std::vector<std::string_view> words;
-    for (const auto& [word, value] : choices) {
-      words.push_back(word);
-    }
-    if (const std::optional<std::size_t> index = word_index(key, words)) {
-      out = (choices.begin() + *index)->second;
-    }
-  }
-
-  /// The same for choices that are known only when the program runs.
   template <typename Value>
-  void choice_of(std::string_view key, Value& out,
-                 const std::vector<std::pair<std::string_view, Value>>& choices) {
+  void choice(std::string_view key, Value& out,
+              const std::vector<std::pair<std::string_view, std::type_identity_t<Value>>>& choices,
+              std::string_view meaning) {
     std::vector<std::string_view> words;
+    std::string_view default_word;
     for (const auto& [word, value] : choices) {
       words.push_back(word);
+      default_word = value == out ? word : default_word;
     }
-    if (const std::optional<std::size_t> index = word_index(key, words)) {
+    if (const std::optional<std::size_t> index = word_index(key, words, default_word, meaning)) {
       out = choices[*index].second;
     }
   }
 
-  /// A text that `parse` understands ("an address such as 127.0.0.2").
+  /// A text that `parse` understands.
   template <typename Value>
   void parsed(std::string_view key, Value& out, std::optional<Value> (*parse)(std::string_view),
-              std::string_view expected) {
-    if (const std::optional<std::string> word = plain_text(key, expected)) {
+              const TextForm& form, std::string_view meaning) {
+    document(key, form.type, form.schema, "", meaning);
+    if (const std::optional<std::string> word = plain_text(key, form.expected)) {
       if (const std::optional<Value> value = parse(*word)) {
         out = *value;
       } else {
-        report_bad_value(key, *word, expected);
+        report_bad_value(key, *word, form.expected);
       }
     }
   }
 
   /// A list of such texts; `out` is replaced.
+  /// @param if_empty what to complain of where nothing is listed; without it the list may be empty
   template <typename Value>
   void parsed_list(std::string_view key, std::vector<Value>& out,
-                   std::optional<Value> (*parse)(std::string_view), std::string_view expected) {
+                   std::optional<Value> (*parse)(std::string_view), const TextForm& form,
+                   std::string_view meaning, std::string_view if_empty = "") {
+    document_list(key, form, meaning, if_empty.empty());
     std::vector<Value> values;
-    const bool complete = each_text(key, expected, [&](const std::string& word) {
+    const bool complete = each_text(key, form.expected, [&](const std::string& word) {
       const std::optional<Value> value = parse(word);
       if (value) {
         values.push_back(*value);
       }
       return value.has_value();
     });
-    if (complete) {
+    if (complete && values.empty() && !if_empty.empty()) {
+      report(key, std::string(if_empty));
+    } else if (complete) {
       out = std::move(values);
     }
   }
 
   /// Reads a mapping inside this one, when it is there.
-  void section(std::string_view key, const std::function<void(YamlSection&)>& read);
+  void section(std::string_view key, std::string_view meaning, const std::function<void(YamlSection&)>& read);
   /// Reads each mapping of a list.
-  void sections(std::string_view key, const std::function<void(YamlSection&)>& read);
+  void sections(std::string_view key, std::string_view meaning,
+                const std::function<void(YamlSection&)>& read);
 
  private:
   struct Entry {
@@ -150,14 +173,24 @@ class YamlSection {
     bool read = false;
   };
 
+  KeyReference& known_key(std::string_view key);
+  /// Fills in a KeyReference. A key that is documented twice may have either form.
+  void document(std::string_view key, std::string_view type, std::string_view schema,
+                std::string_view default_json, std::string_view meaning);
+  void document_list(std::string_view key, const TextForm& form, std::string_view meaning, bool may_be_empty);
+  /// Reads a mapping of a key, or of a list that the key has.
+  void read_inner(std::string_view key, const YAML::Node& node, std::string path,
+                  const std::function<void(YamlSection&)>& read);
   const Entry* find(std::string_view key);
   const Entry* peek(std::string_view key) const;
   void problem(const SourcePosition& at, std::string path, std::string message);
   void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);
   void report_unknown(const Entry& entry);
   std::optional<double> number_of(const YAML::Node& node, const std::string& path, const Range& range);
-  std::optional<std::uint64_t> whole_number(std::string_view key, std::uint64_t min, std::uint64_t max);
-  std::optional<std::size_t> word_index(std::string_view key, const std::vector<std::string_view>& words);
+  void whole_number(std::string_view key, std::uint64_t& out, std::uint64_t min, std::uint64_t max,
+                    std::string_view meaning);
+  std::optional<std::size_t> word_index(std::string_view key, const std::vector<std::string_view>& words,
+                                        std::string_view default_word, std::string_view meaning);
   std::optional<std::string> plain_text(std::string_view key, std::string_view expected);
   bool each_text(std::string_view key, std::string_view expected,
                  const std::function<bool(const std::string&)>& take);
@@ -167,7 +200,8 @@ class YamlSection {
   SourcePosition at_;
   bool is_map_ = true;
   std::vector<Entry> entries_;
-  std::vector<std::string> known_;  ///< keys that readers asked for
+  std::vector<KeyReference> known_;
+  std::string introduction_;
 };
 
 }  // namespace sonard::server

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ledger itself: its table, its switches, and that configuration, schema and documentation know the same
-// rules.
+// The ledger itself: its table, its switches, and that configuration and documentation know the same rules.
 #include "renderer/skip_ledger.hpp"
 
 #include <fstream>
@@ -11,7 +10,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <yaml-cpp/yaml.h>
 
 #include "tests/unit/config/config_text.hpp"
 
@@ -66,15 +64,6 @@ TEST(SkipLedger, CountsAddUpRuleByRule) {
   EXPECT_EQ(all.of(SkipRule::no_noise), 2u);
   EXPECT_EQ(all.of(SkipRule::unchanged_scene), 0u);
   EXPECT_EQ(all - first, second);
-}
-
-TEST(SkipLedger, SchemaKnowsTheSameRules) {
-  const YAML::Node schema = YAML::LoadFile(source_folder + "/configs/schema/sonard.schema.json");
-  std::set<std::string> names;
-  for (const YAML::Node& name : schema["properties"]["skip"]["properties"]["off"]["items"]["enum"]) {
-    names.insert(name.as<std::string>());
-  }
-  EXPECT_EQ(names, rule_names());
 }
 
 // docs/skipping.md: | `rule` | criterion | bound | ... |
