@@ -77,7 +77,7 @@ class YamlSection {
   void introduce(std::string_view sentences) { introduction_ = sentences; }
   /// For the same: the default of a key that was read, where it is not the value that stood there.
   void default_is(std::string_view key, std::string_view text, std::string_view json = "");
-  /// Whether there is no file, and all keys are read only for what is known of them.
+  /// Whether there is no file: then each key is read for what is known of it, whatever the others are.
   bool describing() const { return findings_.describing; }
   const std::vector<KeyReference>& known() const { return known_; }  ///< keys that readers asked for
 

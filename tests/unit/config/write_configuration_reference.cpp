@@ -141,6 +141,10 @@ void add_tables(const Keys& keys, const std::string& path, const std::string& in
   }
 }
 
+std::string cell(const std::string& text) {
+  return text.empty() ? " " : ' ' + text + ' ';
+}
+
 std::string text_of(const Table& table, std::size_t kind_count) {
   std::string text = table.paths.front().empty() ? "\n### the document"
                                                  : fmt::format("\n### `{}`", fmt::join(table.paths, "`, `"));
@@ -149,9 +153,10 @@ std::string text_of(const Table& table, std::size_t kind_count) {
   text += "| key | type | default | meaning |\n|---|---|---|---|\n";
   for (std::size_t i = 0; i < table.keys.size(); ++i) {
     const KeyReference& key = table.keys[i];
-    text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.type, table.defaults[i], key.meaning);
+    text +=
+        fmt::format("| `{}` | {} |{}|{}|\n", key.name, key.type, cell(table.defaults[i]), cell(key.meaning));
   }
-  return std::regex_replace(text, std::regex(R"(\|  \|)"), "| |");
+  return text;
 }
 
 // ---- The files
@@ -171,7 +176,12 @@ int write_or_check(const std::string& program, bool check) {
   const std::filesystem::path source = SONARD_SOURCE_DIR;
   const std::filesystem::path page = source / "docs/configuration.md";
   std::string text = read(page);
-  text.resize(std::min(text.size(), text.find(beginning) + beginning.size()));
+  const std::size_t kept = text.find(beginning);
+  if (kept == std::string::npos) {
+    fmt::print("{} does not say where the reference begins (expected {})", page.string(), beginning);
+    return 1;
+  }
+  text.resize(kept + beginning.size());
   for (const Table& table : tables) {
     text += text_of(table, of_kinds.size());
   }
