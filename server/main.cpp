@@ -240,8 +240,8 @@ int main_program(int argc, char** argv) {
       "render", "Render a trajectory to pictures, arrays and a log, without serving (docs/offline.md)");
   OfflineArguments offline(*render_command);
 
-  CLI::App* selftest_command = app.add_subcommand(
-      "selftest", "Show the backend in use and compare one scene with its closed form");
+  CLI::App* selftest_command =
+      app.add_subcommand("selftest", "Show the backend in use and compare one scene with its closed form");
   selftest_command->add_option("--backend", arguments.backend, "auto, raster or ray")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},

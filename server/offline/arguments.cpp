@@ -26,11 +26,11 @@ void OfflineArguments::declare_run(CLI::App& app) {
   app.add_option("--rate", options_.rate_hz,
                  "Pings per second (lines of a scanning head); default: as many as the head can")
       ->check(CLI::Range(1e-6, 1e6));
-  app.add_option("--shard", shard_,
-                 "I/N: render share I of N, for N processes that fill one folder together; I counts from 0 or "
-                 "from 1");
-  app.add_flag("--overwrite", options_.overwrite,
-               "Render existing frames again, whatever their settings");
+  app.add_option(
+      "--shard", shard_,
+      "I/N: render share I of N, for N processes that fill one folder together; I counts from 0 or "
+      "from 1");
+  app.add_flag("--overwrite", options_.overwrite, "Render existing frames again, whatever their settings");
   app.add_flag("--truth", options_.truth,
                "Also write which body echoes most in each bin; renders an echo for each body near");
   app.add_option("--size", options_.radius_px, "Pixels of pictures from the apex to the full range")

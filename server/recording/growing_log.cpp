@@ -53,8 +53,8 @@ void GrowingLog::end() {
 void GrowingLog::fail(const std::error_code& error) {
   failed_ = true;
   file_.close();
-  spdlog::error("recording: cannot write {}: {}; this log ends here, serving continues", file_.path().string(),
-                error.message());
+  spdlog::error("recording: cannot write {}: {}; this log ends here, serving continues",
+                file_.path().string(), error.message());
 }
 
 }  // namespace sonard::server

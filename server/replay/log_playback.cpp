@@ -125,7 +125,8 @@ void LogPlayback::log_totals() const {
     }
   }
   if (schedule_.skipped() > 0) {
-    spdlog::info("{} pings of the recording were skipped: no client wanted them in time", schedule_.skipped());
+    spdlog::info("{} pings of the recording were skipped: no client wanted them in time",
+                 schedule_.skipped());
   }
 }
 

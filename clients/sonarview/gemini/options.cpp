@@ -60,7 +60,8 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str()
       ->group("Sonar");
-  app.add_option("--sound-speed", settings.sound_speed_mps, "Metres per second, for converting times to ranges")
+  app.add_option("--sound-speed", settings.sound_speed_mps,
+                 "Metres per second, for converting times to ranges")
       ->check(CLI::Range(1400.0, 1588.0))
       ->capture_default_str()
       ->group("Sonar");
@@ -78,9 +79,8 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str()
       ->group("Sonar");
-  app.add_option(
-         "--continuous", interval_ms_,
-         "Let the head ping by itself at this interval in milliseconds; default: request each ping")
+  app.add_option("--continuous", interval_ms_,
+                 "Let the head ping by itself at this interval in milliseconds; default: request each ping")
       ->check(CLI::Range(1.0, 1e6))
       ->group("Sonar");
 }

@@ -55,8 +55,7 @@ void MicronArguments::declare_link(CLI::App& app) {
       ->group(group);
   app.add_flag("--reboot", options_.host.reboot_first, "Reboot the head first: it forgets all settings")
       ->group(group);
-  app.add_option("--wait", wait_s_,
-                 "Seconds to wait for a connection, and then for the head's first message")
+  app.add_option("--wait", wait_s_, "Seconds to wait for a connection, and then for the head's first message")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str()
       ->group(group);
@@ -81,7 +80,8 @@ void MicronArguments::declare_sonar(CLI::App& app) {
       ->expected(2)
       ->check(CLI::Range(-360.0, 360.0))
       ->group("Sonar");
-  app.add_flag("--scan-left", scan_left_, "Scan counter-clockwise; in a sector: begin that way")->group("Sonar");
+  app.add_flag("--scan-left", scan_left_, "Scan counter-clockwise; in a sector: begin that way")
+      ->group("Sonar");
   add("--gain", scan.gain_percent, "Initial gain, percent")->check(CLI::Range(0.0, 100.0));
   CLI::Option* four_bit =
       app.add_flag("--four-bit", four_bit_, "4-bit bins over the window below; default: 8-bit bins, 0..80 dB")

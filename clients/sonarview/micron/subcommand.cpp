@@ -9,8 +9,7 @@
 namespace sonard::client {
 namespace {
 
-constexpr const char* summary =
-    "Talks to a Micron: scans, reports rate and loss, writes pictures and lines.";
+constexpr const char* summary = "Talks to a Micron: scans, reports rate and loss, writes pictures and lines.";
 
 constexpr const char* footer = R"(Examples:
   sonarview micron --tcp 127.0.0.1:4001 --range 20 --out out       all round, until Ctrl-C

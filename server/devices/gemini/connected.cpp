@@ -70,7 +70,8 @@ class ConnectedGemini final : public ConnectedDevice {
     try {
       transport_.rebind({addresses_.alternate, config_.command_port});
     } catch (const SocketError& error) {
-      log_.error("head={} cannot change its address, stays on {}: {}", name_, address_text(before), error.what());
+      log_.error("head={} cannot change its address, stays on {}: {}", name_, address_text(before),
+                 error.what());
     }
   }
 
@@ -87,8 +88,9 @@ class ConnectedGemini final : public ConnectedDevice {
     transport_.set_everybody(std::move(hosts), bound_to_all && owner ? addresses_.alternate : 0);
     transport_.set_own_address(addresses_.alternate);
     if (!owner) {
-      log_.warn("head={} reports the address {}, which this machine does not have: clients will send there in vain",
-                name_, address_text(addresses_.alternate));
+      log_.warn(
+          "head={} reports the address {}, which this machine does not have: clients will send there in vain",
+          name_, address_text(addresses_.alternate));
     } else if (owner->netmask != addresses_.netmask) {
       log_.warn("head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",
                 name_, address_text(addresses_.netmask), owner->interface, address_text(owner->netmask));

@@ -183,7 +183,8 @@ TEST(McapRecording, has_every_scan_line_and_how_it_travelled) {
   }
   EXPECT_EQ(scan.pings[2].bits_per_bin, 8);
   EXPECT_TRUE(scan.pings[2].wire.empty());
-  EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 scan lines cannot be decoded and are left out"}));
+  EXPECT_EQ(recording.problems(),
+            (std::vector<std::string>{"1 scan lines cannot be decoded and are left out"}));
 }
 
 TEST(McapRecording, says_which_devices_its_heads_were) {
