@@ -5,21 +5,14 @@
 #include <netinet/tcp.h>
 
 #include <array>
-#include <bit>
-#include <chrono>
 #include <set>
 #include <utility>
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 
-#include "server/net/addresses.hpp"
 #include "server/net/frame_writer.hpp"
-#include "server/net/udp_endpoint.hpp"
-#include "server/program_log/peer_log.hpp"
+#include "server/net/tcp_listener.hpp"
 
 namespace sonard::server {
 namespace {
@@ -35,14 +28,9 @@ constexpr int send_buffer_bytes = 16 << 10;
 constexpr int keepalive_idle_s = 30;
 constexpr int keepalive_interval_s = 10;
 constexpr int keepalive_probes = 3;
-constexpr std::chrono::seconds accept_retry{1};
 
 template <int Name>
 using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, Name>;
-
-Endpoint to_endpoint(const tcp::endpoint& endpoint) {
-  return {endpoint.address().to_v4().to_uint(), endpoint.port()};
-}
 
 void set_options(tcp::socket& socket) {
   error_code ignored;  // the peer may be gone already
@@ -60,21 +48,14 @@ void set_options(tcp::socket& socket) {
 struct TcpPort::Impl : std::enable_shared_from_this<TcpPort::Impl> {
   class Session;
 
-  Impl(asio::io_context& io, SerialTcpConfig port_config)
-      : config(std::move(port_config)), acceptor(io), retry(io) {}
+  Impl(asio::io_context& io, const SerialTcpConfig& config)
+      : listener(std::make_shared<TcpListener>(io, "serial tcp", config.bind, config.allow)) {}
 
-  void open();
-  void accept();
-  void on_accepted(const error_code& error, tcp::socket socket);
   void admit(tcp::socket socket, const Endpoint& peer);
-  void refuse(const Endpoint& peer, const char* reason);
   void stop();
-  std::string description() const { return "tcp " + endpoint_text(local); }
+  std::string description() const { return "tcp " + endpoint_text(listener->local()); }
 
-  SerialTcpConfig config;
-  tcp::acceptor acceptor;
-  asio::steady_timer retry;
-  Endpoint local;
+  std::shared_ptr<TcpListener> listener;
   SerialPortEvents events;
   std::set<std::shared_ptr<Session>> sessions;
   SerialPortCounters counters;
@@ -89,7 +70,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
         socket_(std::move(socket)),
         writer_(socket_),
         peer_("tcp " + endpoint_text(peer)),
-        ends_{WireTransport::tcp, peer, port_->local, {}} {}
+        ends_{WireTransport::tcp, peer, port_->listener->local(), {}} {}
 
   void read() {
     socket_.async_read_some(asio::buffer(buffer_),
@@ -144,65 +125,9 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
   std::array<std::uint8_t, serial_read_bytes> buffer_{};
 };
 
-void TcpPort::Impl::open() {
-  error_code error;
-  const auto check = [&](const char* operation) {
-    if (error) {
-      throw SocketError(
-          fmt::format("cannot {} TCP {}: {}", operation, endpoint_text(config.bind), error.message()));
-    }
-  };
-  acceptor.open(tcp::v4(), error);
-  check("open");
-  // Connections of an earlier run that linger in TIME_WAIT must not block a restart. A live listener still
-  // does.
-  acceptor.set_option(tcp::acceptor::reuse_address{true}, error);
-  check("set SO_REUSEADDR of");
-  acceptor.bind({asio::ip::address_v4{config.bind.address}, config.bind.port}, error);
-  check("bind");
-  acceptor.listen(tcp::acceptor::max_listen_connections, error);
-  check("listen on");
-  const tcp::endpoint bound = acceptor.local_endpoint(error);
-  check("use");
-  local = to_endpoint(bound);
-}
-
-void TcpPort::Impl::accept() {
-  acceptor.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
-    self->on_accepted(error, std::move(socket));
-  });
-}
-
-void TcpPort::Impl::on_accepted(const error_code& error, tcp::socket socket) {
-  if (!acceptor.is_open()) {
-    return;
-  }
-  if (!error) {
-    error_code gone;
-    const tcp::endpoint peer = socket.remote_endpoint(gone);
-    if (!gone) {
-      admit(std::move(socket), to_endpoint(peer));
-    }
-    accept();
-    return;
-  }
-  // Out of file descriptors, most likely: asking again at once would only spin.
-  log.error("serial {}: accept: {}", description(), error.message());
-  retry.expires_after(accept_retry);
-  retry.async_wait([self = shared_from_this()](const error_code& cancelled) {
-    if (!cancelled && self->acceptor.is_open()) {
-      self->accept();
-    }
-  });
-}
-
 void TcpPort::Impl::admit(tcp::socket socket, const Endpoint& peer) {
-  if (!allows(config.allow, peer.address)) {
-    refuse(peer, "not in the allow list");
-    return;
-  }
   if (sessions.size() >= most_clients) {
-    refuse(peer, "too many clients");
+    listener->refuse(peer, "too many clients");
     return;
   }
   set_options(socket);
@@ -213,17 +138,8 @@ void TcpPort::Impl::admit(tcp::socket socket, const Endpoint& peer) {
   session->read();
 }
 
-void TcpPort::Impl::refuse(const Endpoint& peer, const char* reason) {
-  if (std::has_single_bit(++counters.refused)) {
-    spdlog::warn("serial {}: {} refused: {} ({} so far)", description(), endpoint_text(peer), reason,
-                 counters.refused);
-  }
-}
-
 void TcpPort::Impl::stop() {
-  error_code ignored;
-  acceptor.close(ignored);
-  retry.cancel(ignored);
+  listener->close();
   for (const auto& session : sessions) {
     session->close();
   }
@@ -232,7 +148,7 @@ void TcpPort::Impl::stop() {
 
 TcpPort::TcpPort(asio::io_context& io, const SerialTcpConfig& config)
     : impl_(std::make_shared<Impl>(io, config)) {
-  impl_->open();
+  impl_->listener->open();
 }
 
 TcpPort::~TcpPort() {
@@ -241,7 +157,11 @@ TcpPort::~TcpPort() {
 
 void TcpPort::start(SerialPortEvents events) {
   impl_->events = std::move(events);
-  impl_->accept();
+  impl_->listener->start([weak = impl_->weak_from_this()](tcp::socket socket, const Endpoint& peer) {
+    if (const auto self = weak.lock()) {
+      self->admit(std::move(socket), peer);
+    }
+  });
 }
 
 void TcpPort::stop() {
@@ -263,11 +183,13 @@ std::string TcpPort::description() const {
 }
 
 SerialPortCounters TcpPort::counters() const {
-  return impl_->counters;
+  SerialPortCounters counters = impl_->counters;
+  counters.refused = impl_->listener->refused();
+  return counters;
 }
 
 Endpoint TcpPort::local_endpoint() const {
-  return impl_->local;
+  return impl_->listener->local();
 }
 
 }  // namespace sonard::server

@@ -27,7 +27,6 @@ namespace asio = boost::asio;
 using asio::ip::udp;
 
 constexpr std::size_t batch_size = 64;         // datagrams per system call
-constexpr std::size_t most_bytes = 2048;       // longer than any message a device accepts
 constexpr int receive_rounds_per_wake = 4;     // then others get their turn on the I/O thread
 constexpr int receive_buffer_bytes = 4 << 20;  // the kernel gives at most net.core.rmem_max
 // Small on purpose: on a slow link datagrams then wait in the head, which knows of it, and not in the kernel.
@@ -60,15 +59,21 @@ struct ReceiveBatch {
   struct alignas(cmsghdr) Control {
     std::array<char, receive_control_bytes> bytes;
   };
-  std::array<std::array<std::uint8_t, most_bytes>, batch_size> data;
+  explicit ReceiveBatch(std::size_t most_bytes_of_one)
+      : most_bytes(most_bytes_of_one), data(batch_size * most_bytes_of_one) {}
+
+  std::size_t most_bytes;
+  std::vector<std::uint8_t> data;
   std::array<Control, batch_size> control;
   std::array<sockaddr_in, batch_size> from;
   std::array<iovec, batch_size> vectors;
   std::array<mmsghdr, batch_size> headers;
 
+  std::uint8_t* datagram(std::size_t i) { return data.data() + i * most_bytes; }
+
   void prepare() {
     for (std::size_t i = 0; i < batch_size; ++i) {
-      vectors[i] = {data[i].data(), data[i].size()};
+      vectors[i] = {datagram(i), most_bytes};
       headers[i] = {};
       headers[i].msg_hdr.msg_name = &from[i];
       headers[i].msg_hdr.msg_namelen = sizeof from[i];
@@ -119,7 +124,7 @@ struct SendBatch {
 }  // namespace
 
 struct UdpEndpoint::Impl : std::enable_shared_from_this<UdpEndpoint::Impl> {
-  explicit Impl(asio::io_context& io) : socket(io) {}
+  Impl(asio::io_context& io, std::size_t most_bytes) : socket(io), incoming(most_bytes) {}
 
   udp::socket socket;
   Endpoint local;
@@ -144,8 +149,8 @@ struct UdpEndpoint::Impl : std::enable_shared_from_this<UdpEndpoint::Impl> {
   void drop_front(int error);
 };
 
-UdpEndpoint::UdpEndpoint(asio::io_context& io, const Endpoint& bind, Sharing sharing)
-    : impl_(std::make_shared<Impl>(io)) {
+UdpEndpoint::UdpEndpoint(asio::io_context& io, const Endpoint& bind, Sharing sharing, std::size_t most_bytes)
+    : impl_(std::make_shared<Impl>(io, most_bytes)) {
   impl_->open(bind, sharing);
 }
 
@@ -256,7 +261,7 @@ void UdpEndpoint::Impl::deliver(std::size_t i) {
       counters.kernel_dropped = total;
     }
   }
-  const std::uint8_t* bytes = incoming.data[i].data();
+  const std::uint8_t* bytes = incoming.datagram(i);
   datagram.bytes = SharedBytes(std::vector<std::uint8_t>(bytes, bytes + incoming.headers[i].msg_len));
   receive(datagram);
 }

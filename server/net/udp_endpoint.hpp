@@ -26,7 +26,7 @@ struct SocketError : std::runtime_error {
 /// Counters, which only grow.
 struct UdpEndpointCounters {
   std::uint64_t received = 0;
-  std::uint64_t truncated = 0;       ///< longer than any message of a device: dropped
+  std::uint64_t truncated = 0;       ///< longer than what is listened for: dropped
   std::uint64_t kernel_dropped = 0;  ///< lost because the receive buffer was full
   std::uint64_t sent = 0;
   std::uint64_t send_failed = 0;  ///< refused by the OS (no route, ...): dropped
@@ -57,9 +57,13 @@ class UdpEndpoint {
   /// head: two of them on one address must be an error, not a lottery.
   enum class Sharing { alone, with_others };
 
-  /// Binds. Port 0 lets the kernel choose.
+  /// Longer than any message that a device accepts.
+  static constexpr std::size_t most_command_bytes = 2048;
+
+  /// Binds. Port 0 lets the kernel choose. Datagrams of more than `most_bytes` are dropped.
   /// @throws SocketError
-  UdpEndpoint(boost::asio::io_context& io, const Endpoint& bind, Sharing sharing = Sharing::alone);
+  UdpEndpoint(boost::asio::io_context& io, const Endpoint& bind, Sharing sharing = Sharing::alone,
+              std::size_t most_bytes = most_command_bytes);
   ~UdpEndpoint();
   UdpEndpoint(const UdpEndpoint&) = delete;
   UdpEndpoint& operator=(const UdpEndpoint&) = delete;

@@ -40,7 +40,7 @@ std::uint64_t& counter_of(const mavlink::Message& message, Received& received) {
 struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource::Impl> {
   Impl(boost::asio::io_context& io, MavlinkPoseInput configured, const Clock& clock, PoseSink poses_go_to)
       : input(std::move(configured)),
-        listener(std::make_shared<UdpListener>(io, "mavlink udp", input.bind, input.allow, clock)),
+        listener(io, "mavlink udp", input.bind, input.allow, clock),
         sink(std::move(poses_go_to)),
         poses(input) {}
 
@@ -52,7 +52,7 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   void tell_of_broken_frames(std::uint64_t before);
 
   MavlinkPoseInput input;
-  std::shared_ptr<UdpListener> listener;
+  UdpListener listener;
   PoseSink sink;
   std::optional<Endpoint> publisher;  // of the newest pose
   MavlinkPoses poses;
@@ -72,7 +72,7 @@ void MavlinkPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimeP
   mavlink::FrameReader reader(datagram, frames);
   while (const std::optional<mavlink::Frame> frame = reader.next()) {
     take(*frame, arrival);
-    if (!listener->is_open()) {
+    if (!listener.is_open()) {
       return;
     }
   }
@@ -93,7 +93,7 @@ void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arriva
   counters.bad_value = poses.counters().bad_value;
   if (sample) {
     ++counters.samples;
-    publisher = listener->peer();
+    publisher = listener.peer();
     sink(*sample, arrival);
   } else {
     tell_what_is_missing(arrival);
@@ -105,7 +105,7 @@ bool MavlinkPoseSource::Impl::is_ours(const mavlink::Frame& frame) {
     ++wrong_system;
     if (!systems_said.test(frame.system_id)) {
       systems_said.set(frame.system_id);
-      spdlog::info("{}: system {} is ignored (poses.mavlink.system_id is {})", listener->description(),
+      spdlog::info("{}: system {} is ignored (poses.mavlink.system_id is {})", listener.description(),
                    frame.system_id, input.system_id);
     }
     return false;
@@ -115,7 +115,7 @@ bool MavlinkPoseSource::Impl::is_ours(const mavlink::Frame& frame) {
     if (!components_said.test(frame.component_id)) {
       components_said.set(frame.component_id);
       spdlog::info("{}: component {} of system {} is ignored (poses.mavlink.component_id is {})",
-                   listener->description(), frame.component_id, frame.system_id, input.component_id);
+                   listener.description(), frame.component_id, frame.system_id, input.component_id);
     }
     return false;
   }
@@ -131,7 +131,7 @@ void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
   spdlog::warn(
       "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, ATTITUDE or "
       "ATTITUDE_QUATERNION {}, others {} (expected the first, or the second and the third)",
-      listener->description(), input.system_id, patience.count(), received.odometry, received.position,
+      listener.description(), input.system_id, patience.count(), received.odometry, received.position,
       received.attitude, received.other);
 }
 
@@ -142,7 +142,7 @@ void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
   ++counters.malformed;
   if (std::has_single_bit(++broken_datagrams)) {
     spdlog::warn("{}: datagram from {} holds {} bytes of no valid frame (bad checksums {} so far)",
-                 listener->description(), endpoint_text(listener->peer()), frames.stray_bytes - before,
+                 listener.description(), endpoint_text(listener.peer()), frames.stray_bytes - before,
                  frames.bad_checksums);
   }
 }
@@ -156,7 +156,7 @@ MavlinkPoseSource::~MavlinkPoseSource() {
 }
 
 void MavlinkPoseSource::start() {
-  impl_->listener->start(
+  impl_->listener.start(
       [weak = impl_->weak_from_this()](std::span<const std::uint8_t> datagram, TimePoint arrival) {
         if (const auto impl = weak.lock()) {
           impl->take(datagram, arrival);
@@ -165,16 +165,16 @@ void MavlinkPoseSource::start() {
 }
 
 void MavlinkPoseSource::stop() {
-  impl_->listener->close();
+  impl_->listener.close();
 }
 
 std::string MavlinkPoseSource::description() const {
-  return fmt::format("{} system {} component {}", impl_->listener->description(), impl_->input.system_id,
+  return fmt::format("{} system {} component {}", impl_->listener.description(), impl_->input.system_id,
                      impl_->input.component_id);
 }
 
 const PoseSourceCounters& MavlinkPoseSource::counters() const {
-  impl_->counters.refused = impl_->listener->refused();
+  impl_->counters.refused = impl_->listener.refused();
   return impl_->counters;
 }
 
@@ -208,7 +208,7 @@ std::string MavlinkPoseSource::silence_hint() const {
 }
 
 Endpoint MavlinkPoseSource::local_endpoint() const {
-  return impl_->listener->local();
+  return impl_->listener.local();
 }
 
 }  // namespace sonard::server

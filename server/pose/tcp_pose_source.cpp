@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pose/tcp_pose_source.hpp"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -12,7 +11,8 @@
 #include <set>
 #include <utility>
 
-#include "server/net/addresses.hpp"
+#include "server/net/tcp_listener.hpp"
+#include "server/net/udp_endpoint.hpp"
 #include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
@@ -21,42 +21,27 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-namespace {
-
-Endpoint to_endpoint(const tcp::endpoint& endpoint) {
-  return {endpoint.address().to_v4().to_uint(), endpoint.port()};
-}
-
-}  // namespace
-
 struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   class Session;
 
-  Impl(asio::io_context& io, TcpPoseInput configured, const Clock& used_clock, PoseSink poses_go_to,
+  Impl(asio::io_context& io, const TcpPoseInput& input, const Clock& used_clock, PoseSink poses_go_to,
        PoseHold publishers_wait, std::chrono::milliseconds timeout)
-      : input(std::move(configured)),
+      : listener(std::make_shared<TcpListener>(io, "pose stream tcp", input.bind, input.allow)),
+        max_clients(input.max_clients),
         clock(used_clock),
         sink(std::move(poses_go_to)),
         hold(std::move(publishers_wait)),
-        message_timeout(timeout),
-        acceptor(io),
-        retry(io) {}
+        message_timeout(timeout) {}
 
-  void open();
-  void accept();
-  void on_accepted(const error_code& error, tcp::socket socket);
-  void admit(tcp::socket socket, const tcp::endpoint& peer);
-  void refuse(const tcp::endpoint& peer, const char* reason);
+  void admit(tcp::socket socket, const Endpoint& peer);
   void stop();
 
-  TcpPoseInput input;
+  std::shared_ptr<TcpListener> listener;
+  int max_clients;
   const Clock& clock;
   PoseSink sink;
   PoseHold hold;
   std::chrono::milliseconds message_timeout;
-  tcp::acceptor acceptor;
-  asio::steady_timer retry;
-  Endpoint local;
   std::optional<Endpoint> publisher;  // of the newest pose
   std::set<std::shared_ptr<Session>> sessions;
   PoseSourceCounters counters;
@@ -96,7 +81,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       return;
     }
     if (error) {
-      source_->log.info("pose stream tcp {}: {} left", endpoint_text(source_->local), endpoint_text(peer_));
+      source_->log.info("{}: {} left", source_->listener->description(), endpoint_text(peer_));
       close();
       return;
     }
@@ -162,9 +147,8 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     }
     ++source_->counters.bad_value;
     if (std::has_single_bit(++bad_values_)) {
-      spdlog::warn("pose stream tcp {}: message from {} dropped: {} ({} so far)",
-                   endpoint_text(source_->local), endpoint_text(peer_), to_string(sample.error()),
-                   bad_values_);
+      spdlog::warn("{}: message from {} dropped: {} ({} so far)", source_->listener->description(),
+                   endpoint_text(peer_), to_string(sample.error()), bad_values_);
     }
   }
 
@@ -196,8 +180,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
 
   void close_faulty(const std::string& reason) {
     ++source_->counters.closed;
-    source_->log.warn("pose stream tcp {}: {} closed: {}", endpoint_text(source_->local),
-                      endpoint_text(peer_), reason);
+    source_->log.warn("{}: {} closed: {}", source_->listener->description(), endpoint_text(peer_), reason);
     close();
   }
 
@@ -212,105 +195,47 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   std::uint64_t bad_values_ = 0;
 };
 
-void TcpPoseSource::Impl::open() {
-  error_code error;
-  const auto check = [&](const char* operation) {
-    if (error) {
-      throw PoseSourceError(
-          fmt::format("pose stream tcp {}: {}: {}", endpoint_text(input.bind), operation, error.message()));
-    }
-  };
-  acceptor.open(tcp::v4(), error);
-  check("open");
-  // Connections of an earlier run that linger in TIME_WAIT must not block a restart. A live listener still
-  // does.
-  acceptor.set_option(tcp::acceptor::reuse_address{true}, error);
-  check("set SO_REUSEADDR");
-  acceptor.bind({asio::ip::address_v4{input.bind.address}, input.bind.port}, error);
-  check("bind");
-  acceptor.listen(tcp::acceptor::max_listen_connections, error);
-  check("listen");
-  const tcp::endpoint bound = acceptor.local_endpoint(error);
-  check("local address");
-  local = to_endpoint(bound);
-}
-
-void TcpPoseSource::Impl::accept() {
-  acceptor.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
-    self->on_accepted(error, std::move(socket));
-  });
-}
-
-void TcpPoseSource::Impl::on_accepted(const error_code& error, tcp::socket socket) {
-  if (!acceptor.is_open()) {
-    return;
-  }
-  if (!error) {
-    error_code gone;
-    const tcp::endpoint peer = socket.remote_endpoint(gone);
-    if (!gone) {
-      admit(std::move(socket), peer);
-    }
-    accept();
-    return;
-  }
-  // Out of file descriptors, most likely: asking again at once would only spin.
-  log.error("pose stream tcp {}: accept: {}", endpoint_text(local), error.message());
-  retry.expires_after(std::chrono::seconds{1});
-  retry.async_wait([self = shared_from_this()](const error_code& cancelled) {
-    if (!cancelled && self->acceptor.is_open()) {
-      self->accept();
-    }
-  });
-}
-
-void TcpPoseSource::Impl::admit(tcp::socket socket, const tcp::endpoint& peer) {
-  if (!allows(input.allow, to_endpoint(peer).address)) {
-    refuse(peer, "not in the allow list");
-    return;
-  }
-  if (std::ssize(sessions) >= input.max_clients) {
-    refuse(peer, "too many publishers");
+void TcpPoseSource::Impl::admit(tcp::socket socket, const Endpoint& peer) {
+  if (std::ssize(sessions) >= max_clients) {
+    listener->refuse(peer, "too many publishers");
     return;
   }
   // A publisher whose machine is gone without a word gives its place back in the end.
   error_code ignored;
   socket.set_option(tcp::socket::keep_alive{true}, ignored);
   ++counters.connections;
-  log.info("pose stream tcp {}: {} connected", endpoint_text(local), endpoint_text(to_endpoint(peer)));
-  const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), to_endpoint(peer));
+  log.info("{}: {} connected", listener->description(), endpoint_text(peer));
+  const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), peer);
   sessions.insert(session);
   session->read();
 }
 
-void TcpPoseSource::Impl::refuse(const tcp::endpoint& peer, const char* reason) {
-  if (std::has_single_bit(++counters.refused)) {
-    spdlog::warn("pose stream tcp {}: {} refused: {} ({} so far)", endpoint_text(local),
-                 endpoint_text(to_endpoint(peer)), reason, counters.refused);
-  }
-}
-
 void TcpPoseSource::Impl::stop() {
-  error_code ignored;
-  acceptor.close(ignored);
-  retry.cancel(ignored);
+  listener->close();
   for (const auto& session : std::set{sessions}) {  // a copy: close() takes the session out of the set
     session->close();
   }
 }
 
-TcpPoseSource::TcpPoseSource(asio::io_context& io, TcpPoseInput input, const Clock& clock, PoseSink sink,
-                             PoseHold hold, std::chrono::milliseconds message_timeout)
-    : impl_(std::make_shared<Impl>(io, std::move(input), clock, std::move(sink), std::move(hold),
-                                   message_timeout)) {}
+TcpPoseSource::TcpPoseSource(asio::io_context& io, const TcpPoseInput& input, const Clock& clock,
+                             PoseSink sink, PoseHold hold, std::chrono::milliseconds message_timeout)
+    : impl_(std::make_shared<Impl>(io, input, clock, std::move(sink), std::move(hold), message_timeout)) {}
 
 TcpPoseSource::~TcpPoseSource() {
   impl_->stop();
 }
 
 void TcpPoseSource::start() {
-  impl_->open();
-  impl_->accept();
+  try {
+    impl_->listener->open();
+  } catch (const SocketError& error) {
+    throw PoseSourceError(std::string("pose stream tcp: ") + error.what());
+  }
+  impl_->listener->start([weak = impl_->weak_from_this()](tcp::socket socket, const Endpoint& peer) {
+    if (const auto self = weak.lock()) {
+      self->admit(std::move(socket), peer);
+    }
+  });
 }
 
 void TcpPoseSource::stop() {
@@ -318,11 +243,11 @@ void TcpPoseSource::stop() {
 }
 
 std::string TcpPoseSource::description() const {
-  const bool started = impl_->local.port != 0;
-  return "pose stream tcp " + endpoint_text(started ? impl_->local : impl_->input.bind);
+  return impl_->listener->description();
 }
 
 const PoseSourceCounters& TcpPoseSource::counters() const {
+  impl_->counters.refused = impl_->listener->refused();
   return impl_->counters;
 }
 
@@ -331,7 +256,7 @@ std::string TcpPoseSource::received() const {
 }
 
 Endpoint TcpPoseSource::local_endpoint() const {
-  return impl_->local;
+  return impl_->listener->local();
 }
 
 std::size_t TcpPoseSource::client_count() const {

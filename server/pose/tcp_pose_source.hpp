@@ -17,7 +17,7 @@ namespace sonard::server {
 class TcpPoseSource final : public PoseSource {
  public:
   /// `hold` may be empty: publishers do not wait then.
-  TcpPoseSource(boost::asio::io_context& io, TcpPoseInput input, const Clock& clock, PoseSink sink,
+  TcpPoseSource(boost::asio::io_context& io, const TcpPoseInput& input, const Clock& clock, PoseSink sink,
                 PoseHold hold = {}, std::chrono::milliseconds message_timeout = std::chrono::seconds{5});
   ~TcpPoseSource() override;
 

@@ -2,25 +2,20 @@
 // A UDP socket that receives from those who may publish.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
-#include <boost/asio/ip/udp.hpp>
-
-#include "protocol/pose/pose_codec.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
+#include "server/net/addresses.hpp"
+#include "server/net/udp_endpoint.hpp"
 
 namespace sonard::server {
 
-/// Belongs to the I/O thread. Shared with the handlers that are queued for it, which find it closed once it
-/// is.
-class UdpListener : public std::enable_shared_from_this<UdpListener> {
+/// Belongs to the I/O thread.
+class UdpListener {
  public:
   /// `bytes` and the peer of this datagram are good for the call, which may close the listener.
   using Handler = std::function<void(std::span<const std::uint8_t> bytes, TimePoint arrival)>;
@@ -32,32 +27,31 @@ class UdpListener : public std::enable_shared_from_this<UdpListener> {
   /// Binds and listens. Called once.
   /// @throws PoseSourceError
   void start(Handler handler);
+  /// The handler is not called any more.
   void close();
-  bool is_open() const { return socket_.is_open(); }
+  bool is_open() const { return open_; }
 
   /// Where it listens, or will listen.
   const Endpoint& local() const { return local_; }
   /// Who has sent the datagram that is handled, or the last one.
-  Endpoint peer() const;
+  const Endpoint& peer() const { return peer_; }
   /// "pose stream udp 127.0.0.1:14600"
   std::string description() const;
   /// Datagrams from peers that are not allowed: each the first, second, fourth, ... time in the log.
   std::uint64_t refused() const { return refused_; }
 
  private:
-  void receive();
-  void on_received(std::size_t length);
+  void take(const Datagram& datagram, const Handler& handler);
 
+  boost::asio::io_context& io_;
   std::string name_;
   Endpoint local_;
   AllowList allow_;
   const Clock& clock_;
-  boost::asio::ip::udp::socket socket_;
-  boost::asio::ip::udp::endpoint peer_;
-  Handler handler_;
+  std::optional<UdpEndpoint> socket_;
+  bool open_ = false;
+  Endpoint peer_;
   std::uint64_t refused_ = 0;
-  // One byte more than a message may have, so that a longer datagram shows as such.
-  std::array<std::uint8_t, pose::max_message_bytes + 1> buffer_{};
 };
 
 }  // namespace sonard::server

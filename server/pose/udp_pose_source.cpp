@@ -14,14 +14,13 @@ namespace sonard::server {
 
 struct UdpPoseSource::Impl : std::enable_shared_from_this<UdpPoseSource::Impl> {
   Impl(boost::asio::io_context& io, const UdpPoseInput& input, const Clock& clock, PoseSink poses_go_to)
-      : listener(std::make_shared<UdpListener>(io, "pose stream udp", input.bind, input.allow, clock)),
-        sink(std::move(poses_go_to)) {}
+      : listener(io, "pose stream udp", input.bind, input.allow, clock), sink(std::move(poses_go_to)) {}
 
   void take(std::span<const std::uint8_t> datagram, TimePoint arrival);
   /// Logs what happened for the `count`th time.
   void complain(std::uint64_t count, const std::string& problem) const;
 
-  std::shared_ptr<UdpListener> listener;
+  UdpListener listener;
   PoseSink sink;
   std::optional<Endpoint> publisher;  // of the newest pose
   PoseSourceCounters counters;
@@ -35,14 +34,14 @@ void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint
     return;
   }
   ++counters.samples;
-  publisher = listener->peer();
+  publisher = listener.peer();
   sink(*sample, arrival);
 }
 
 void UdpPoseSource::Impl::complain(std::uint64_t count, const std::string& problem) const {
   if (std::has_single_bit(count)) {
-    spdlog::warn("{}: datagram from {} dropped: {} ({} so far)", listener->description(),
-                 endpoint_text(listener->peer()), problem, count);
+    spdlog::warn("{}: datagram from {} dropped: {} ({} so far)", listener.description(),
+                 endpoint_text(listener.peer()), problem, count);
   }
 }
 
@@ -55,7 +54,7 @@ UdpPoseSource::~UdpPoseSource() {
 }
 
 void UdpPoseSource::start() {
-  impl_->listener->start(
+  impl_->listener.start(
       [weak = impl_->weak_from_this()](std::span<const std::uint8_t> datagram, TimePoint arrival) {
         if (const auto impl = weak.lock()) {
           impl->take(datagram, arrival);
@@ -64,15 +63,15 @@ void UdpPoseSource::start() {
 }
 
 void UdpPoseSource::stop() {
-  impl_->listener->close();
+  impl_->listener.close();
 }
 
 std::string UdpPoseSource::description() const {
-  return impl_->listener->description();
+  return impl_->listener.description();
 }
 
 const PoseSourceCounters& UdpPoseSource::counters() const {
-  impl_->counters.refused = impl_->listener->refused();
+  impl_->counters.refused = impl_->listener.refused();
   return impl_->counters;
 }
 
@@ -81,7 +80,7 @@ std::string UdpPoseSource::received() const {
 }
 
 Endpoint UdpPoseSource::local_endpoint() const {
-  return impl_->listener->local();
+  return impl_->listener.local();
 }
 
 }  // namespace sonard::server

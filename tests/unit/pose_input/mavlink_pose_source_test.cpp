@@ -90,8 +90,8 @@ TEST_F(MavlinkPoseSourceTest, NamesItselfAndWhatTheOsRefuses) {
     second.start();
     FAIL() << "two sockets on one port";
   } catch (const PoseSourceError& error) {
-    EXPECT_EQ(error.what(),
-              "mavlink udp " + endpoint_text(first->local_endpoint()) + ": bind: Address already in use");
+    EXPECT_EQ(error.what(), "mavlink udp: cannot bind UDP " + endpoint_text(first->local_endpoint()) +
+                                ": Address already in use");
   }
 }
 

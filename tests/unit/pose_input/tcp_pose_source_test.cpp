@@ -221,8 +221,8 @@ TEST_F(TcpPoseSourceTest, NamesAddressAndOperationWhenTheOsRefuses) {
     second.start();
     FAIL() << "two listeners on one port";
   } catch (const PoseSourceError& error) {
-    EXPECT_EQ(error.what(),
-              "pose stream tcp " + endpoint_text(first->local_endpoint()) + ": bind: Address already in use");
+    EXPECT_EQ(error.what(), "pose stream tcp: cannot bind TCP " + endpoint_text(first->local_endpoint()) +
+                                ": Address already in use");
   }
 }
 

@@ -91,8 +91,8 @@ TEST_F(UdpPoseSourceTest, NamesAddressAndOperationWhenTheOsRefuses) {
     second.start();
     FAIL() << "two sockets on one port";
   } catch (const PoseSourceError& error) {
-    EXPECT_EQ(error.what(),
-              "pose stream udp " + endpoint_text(first->local_endpoint()) + ": bind: Address already in use");
+    EXPECT_EQ(error.what(), "pose stream udp: cannot bind UDP " + endpoint_text(first->local_endpoint()) +
+                                ": Address already in use");
   }
 }
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// A TCP port on which whoever is allowed to may connect.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/net/addresses.hpp"
+#include "server/program_log/peer_log.hpp"
+
+namespace sonard::server {
+
+/// Belongs to the I/O thread. Shared with the handlers that are queued for it, which find it closed once it
+/// is.
+class TcpListener : public std::enable_shared_from_this<TcpListener> {
+ public:
+  /// A client that is allowed; its socket closes where it is not kept.
+  using Accepted = std::function<void(boost::asio::ip::tcp::socket socket, const Endpoint& peer)>;
+
+  /// `name` begins each line of the log: "pose stream tcp".
+  TcpListener(boost::asio::io_context& io, std::string name, const Endpoint& bind, AllowList allow)
+      : name_(std::move(name)), local_(bind), allow_(std::move(allow)), acceptor_(io), retry_(io) {}
+
+  /// @throws SocketError
+  void open();
+  void start(Accepted accepted);
+  void close();
+
+  /// Counts a client whose socket is not kept; the log names the first, second, fourth, ... one.
+  void refuse(const Endpoint& peer, const char* reason);
+  std::uint64_t refused() const { return refused_; }
+  /// Where it listens; what it is to be bound to, until it is open.
+  const Endpoint& local() const { return local_; }
+  /// "pose stream tcp 127.0.0.1:14601"
+  std::string description() const { return name_ + " " + endpoint_text(local_); }
+
+ private:
+  void accept();
+  void on_accepted(const boost::system::error_code& error, boost::asio::ip::tcp::socket socket);
+
+  std::string name_;
+  Endpoint local_;
+  AllowList allow_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer retry_;
+  Accepted accepted_;
+  std::uint64_t refused_ = 0;
+  PeerLog log_;
+};
+
+}  // namespace sonard::server
