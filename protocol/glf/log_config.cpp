@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 namespace sonard::glf {
 namespace {
@@ -45,23 +46,6 @@ std::string device_info(const std::vector<std::uint16_t>& device_ids) {
   return text;
 }
 
-/// The number that is the text of the first element of that name.
-std::optional<double> number_in(std::string_view xml, const std::string& element) {
-  const std::string opening = "<" + element + ">";
-  const auto start = xml.find(opening);
-  if (start == std::string_view::npos) {
-    return std::nullopt;
-  }
-  std::string_view text = xml.substr(start + opening.size());
-  text = text.substr(0, text.find('<'));
-  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  double value = 0.0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  const auto rest = text.substr(static_cast<std::size_t>(end.ptr - text.data()));
-  const bool whole = end.ec == std::errc{} && rest.find_first_not_of(" \t\r\n") == std::string_view::npos;
-  return whole && std::isfinite(value) ? std::optional{value} : std::nullopt;
-}
-
 }  // namespace
 
 std::string config_xml(const LogConfig& config) {
@@ -85,10 +69,6 @@ std::string config_xml(const LogConfig& config) {
          "</closeTime>\n"
          "  </logTerminator>\n"
          "</genesisLog>\n";
-}
-
-LogSpan read_log_span(std::string_view xml) {
-  return {.creation_time_s = number_in(xml, "creationTime"), .close_time_s = number_in(xml, "closeTime")};
 }
 
 }  // namespace sonard::glf

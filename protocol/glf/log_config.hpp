@@ -4,9 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace sonard::glf {
@@ -19,14 +17,5 @@ struct LogConfig {
 };
 
 std::string config_xml(const LogConfig& config);
-
-/// When a log was opened and closed, as far as its .cfg says so.
-struct LogSpan {
-  std::optional<double> creation_time_s;
-  std::optional<double> close_time_s;
-};
-
-/// Reads the two times out of XML of any program; what is missing or no number is left out.
-LogSpan read_log_span(std::string_view xml);
 
 }  // namespace sonard::glf

@@ -49,22 +49,6 @@ double francois_garrison_absorption_db_per_m(double frequency_hz, const Water& w
   return db_per_km / 1000.0;
 }
 
-double ainslie_mccolm_absorption_db_per_m(double frequency_hz, const Water& water) {
-  const double f = frequency_hz / 1000.0;
-  const double t = water.temperature_c;
-  const double s = water.salinity_ppt;
-  const double depth_km = water.depth_m / 1000.0;
-
-  const double boric_khz = 0.78 * std::sqrt(s / 35.0) * std::exp(t / 26.0);
-  const double magnesium_khz = 42.0 * std::exp(t / 17.0);
-
-  const double db_per_km =
-      0.106 * relaxation(boric_khz, f) * std::exp((water.ph - 8.0) / 0.56) +
-      0.52 * (1.0 + t / 43.0) * (s / 35.0) * relaxation(magnesium_khz, f) * std::exp(-depth_km / 6.0) +
-      0.00049 * f * f * std::exp(-(t / 27.0 + depth_km / 17.0));
-  return db_per_km / 1000.0;
-}
-
 bool in_absorption_range(double frequency_hz, const Water& water) {
   return frequency_hz >= 200.0 && frequency_hz <= 1.0e6 && water.temperature_c >= -2.0 &&
          water.temperature_c <= 30.0 && water.salinity_ppt >= 30.0 && water.salinity_ppt <= 35.0;

@@ -17,9 +17,6 @@ struct Water {
 /// trust it within 5-10 % where in_absorption_range() holds.
 double francois_garrison_absorption_db_per_m(double frequency_hz, const Water& water);
 
-/// One-way absorption after Ainslie & McColm (1998): a second opinion, 4-9 % above the first at 0.7-2 MHz.
-double ainslie_mccolm_absorption_db_per_m(double frequency_hz, const Water& water);
-
 /// Whether Francois & Garrison stated their formula for this case: 0.2 kHz to 1 MHz, -2 to 30 degC,
 /// 30 to 35 ppt. Outside it is an extrapolation worth a warning.
 bool in_absorption_range(double frequency_hz, const Water& water);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "protocol/glf/headers.hpp"
-#include "protocol/glf/log_config.hpp"
 #include "protocol/glf/log_view.hpp"
 #include "tests/fuzz/require.hpp"
 
@@ -81,7 +80,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       check_decoded(log->status(entry), entry, decode_status);
     }
   }
-  static_cast<void>(read_log_span(log->config_xml()));
   if (size > 0 && data[0] != 'P') {
     require(index.whole_size + index.tail_size + (index.closed ? 2 : 0) == size,
             "every byte is accounted for");

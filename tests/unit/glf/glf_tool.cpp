@@ -181,10 +181,7 @@ int read_log(const std::filesystem::path& path) {
       records.push_back(json(log->status(entry).value()));
     }
   }
-  const LogSpan span = read_log_span(log->config_xml());
-  fmt::print(R"({{"closed": {}, "creation_time_s": {}, "close_time_s": {}, "records": [{}]}})",
-             log->index().closed, span.creation_time_s.value_or(0.0), span.close_time_s.value_or(0.0),
-             fmt::join(records, ",\n"));
+  fmt::print(R"({{"closed": {}, "records": [{}]}})", log->index().closed, fmt::join(records, ",\n"));
   return 0;
 }
 

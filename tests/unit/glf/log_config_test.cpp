@@ -26,19 +26,5 @@ TEST(LogConfig, is_the_fixed_text) {
             "</genesisLog>\n");
 }
 
-TEST(LogConfig, times_are_read_where_they_stand) {
-  const LogSpan span = read_log_span("<a><logHeader><creationTime>\n 12.5 </creationTime></logHeader></a>");
-  EXPECT_EQ(span.creation_time_s, 12.5);
-  EXPECT_FALSE(span.close_time_s);
-}
-
-TEST(LogConfig, what_is_no_number_is_left_out) {
-  for (const char* text : {"", "<closeTime>", "<closeTime></closeTime>", "<closeTime>soon</closeTime>",
-                           "<closeTime>1 2</closeTime>", "<closeTime>nan</closeTime>",
-                           "<closeTime>1e999</closeTime>", "<closeTime> ", "<closeTime>1,5</closeTime>"}) {
-    EXPECT_FALSE(read_log_span(text).close_time_s) << text;
-  }
-}
-
 }  // namespace
 }  // namespace sonard::glf
