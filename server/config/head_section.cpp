@@ -127,7 +127,7 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                   [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
   section.boolean("motion_within_ping", model.motion_within_ping,
                   "receive beams turn with the vehicle while echoes return; needs a twist in the poses, or a "
-                  "trajectory. false: the whole ping is heard from where it was sent");
+                  "trajectory. false: the whole ping is received at the pose it was sent from");
 }
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {
@@ -215,7 +215,7 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
                   [&](YamlSection& inner) { read_mount(inner, head); });
   section.boolean("hides_vehicle", head.hides_vehicle,
                   "leaves the vehicle's own model (`world.vehicle_model`) out of the images of this head; "
-                  "other heads may hear it");
+                  "other heads may still show it");
   section.section("dump", "pings written to disk as the renderer handed them over", [&](YamlSection& inner) {
     inner.require("directory", "a folder to write to");
     inner.path("directory", head.dump_directory.emplace(), context.folder,
@@ -236,8 +236,8 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   section.choice(
       "elevation_pattern", settings.aperture.elevation,
       {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}, {"sinc_two_way", Elevation::sinc_two_way}},
-      "sharp vertical edges, the pattern of a line array, or its square, as where sending and hearing share "
-      "the array's height; the last two are followed to 1.25 beamwidths on either side");
+      "sharp vertical edges, the pattern of a line array, or its square, as where transmitting and receiving "
+      "share the array's height; the last two are followed to 1.25 beamwidths on either side");
   section.section("physical", "settings of mode `physical`",
                   [&](YamlSection& inner) { read_physical_model(inner, carrier_hz, settings.physical); });
   section.section("paper", "settings of mode `paper`",

@@ -92,13 +92,13 @@ void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const T
 
 SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder) {
   section.introduce(
-      "Any number of each kind, at least one in all. Every client hears every frame, and what they send "
-      "comes in the order in which it arrives. Clients may come and go at any byte. The log says where each "
-      "port is to be found.");
+      "Any number of each kind, at least one in all. Every client gets every frame, and what they send comes "
+      "in the order in which it arrives. Clients may come and go at any byte. The log says where each port "
+      "is to be found.");
   SerialLinkConfig link;
   read_sockets(section, "tcp", link.tcp,
                "raw bytes to and from each client, as serial device servers do; no telnet, no RFC 2217");
-  read_sockets(section, "udp", link.udp, "one datagram for each frame, to the peer that was heard last");
+  read_sockets(section, "udp", link.udp, "one datagram for each frame, to the peer that sent last");
   read_ptys(section, folder, link.pty);
   section.integer("baud", link.baud, 300, 4'000'000,
                   "bytes take ten bits each, in both directions. A head that keeps the pace of its line does "

@@ -181,7 +181,7 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
   using Taper = render::Aperture::Taper;
   using Azimuth = render::Aperture::Azimuth;
   section.choice("azimuth_pattern", aperture.azimuth, {{"array", Azimuth::array}, {"ideal", Azimuth::ideal}},
-                 "beams overlap and have side lobes as a straight array's do, or hear what lies between "
+                 "beams overlap and have side lobes as a straight array's do, or receive what lies between "
                  "their edges and nothing else");
   section.choice("taper", aperture.taper,
                  {{"hamming", Taper::hamming},
@@ -194,7 +194,7 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
   using Bearing = render::Aperture::Bearing;
   section.choice("bearing", aperture.bearing, {{"planar", Bearing::planar}, {"conical", Bearing::conical}},
                  "with `array`: a beam looks at an azimuth, or, as a straight array does, along a cone: what "
-                 "lies off the horizontal is heard nearer to the axis");
+                 "lies off the horizontal appears nearer to the axis");
   section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0),
                  "with `array`: standard deviation of the elements' amplitude errors, as a share; they let "
                  "strong echoes leak into all beams. The errors belong to `seed`");
