@@ -30,7 +30,7 @@ constexpr std::size_t batch_size = 64;         // datagrams per system call
 constexpr int receive_rounds_per_wake = 4;     // then others get their turn on the I/O thread
 constexpr int receive_buffer_bytes = 4 << 20;  // the kernel gives at most net.core.rmem_max
 // Small on purpose: on a slow link datagrams then wait in the head, which knows of it, and not in the kernel.
-constexpr int send_buffer_bytes = 256 << 10;
+constexpr int datagram_send_buffer_bytes = 256 << 10;
 
 constexpr std::size_t receive_control_bytes =
     CMSG_SPACE(sizeof(in_pktinfo)) + CMSG_SPACE(sizeof(std::uint32_t));
@@ -169,7 +169,7 @@ void UdpEndpoint::Impl::open(const Endpoint& bind, Sharing sharing) {
   set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1, "SO_RXQ_OVFL");
   set_option(fd, IPPROTO_IP, IP_PKTINFO, 1, "IP_PKTINFO");
   set_option(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer_bytes, "SO_RCVBUF");
-  set_option(fd, SOL_SOCKET, SO_SNDBUF, send_buffer_bytes, "SO_SNDBUF");
+  set_option(fd, SOL_SOCKET, SO_SNDBUF, datagram_send_buffer_bytes, "SO_SNDBUF");
   if (sharing == Sharing::with_others) {
     set_option(fd, SOL_SOCKET, SO_REUSEADDR, 1, "SO_REUSEADDR");
   }
