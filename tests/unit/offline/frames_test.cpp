@@ -201,10 +201,10 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   for (const char* line :
        {"\n  \"frame\": 1,\n", "\n  \"head\": \"bow\",\n", "\n  \"type\": \"gemini_720i\",\n",
         "\n  \"stamp_s\": 100.5,\n", "\n  \"device_id\": 777,\n", "\n  \"ping_number\": 1,\n",
-        "\n  \"stream\": 3,\n", "\n  \"seed\": 5,\n", "\"axes\": [\"line\", \"beam\"], \"shape\": [30, 256]}",
+        "\n  \"stream\": 3,\n", "\n  \"seed\": 5,\n", R"("axes":["line","beam"],"shape":[30,256]})",
         "\n  \"truth\": null\n",
-        "\n  \"settings\": {\"range_m\": 1, \"gain_percent\": 50, \"sound_speed_mps\": 1500, "
-        "\"compression\": 2, \"bits\": 8, \"native_lines\": 121, \"period_s\": 0.5},\n"}) {
+        R"("settings": {"range_m":1.0,"gain_percent":50.0,"sound_speed_mps":1500.0,)"
+        R"("compression":2,"bits":8,"native_lines":121,"period_s":0.5},)"}) {
     EXPECT_THAT(frame.sidecar, HasSubstr(line));
   }
   EXPECT_EQ(frame.sidecar.find("sonar_id"), std::string::npos);
@@ -253,10 +253,10 @@ TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   for (const char* line :
        {"\n  \"frame\": 1,\n", "\n  \"head\": \"mast\",\n", "\n  \"type\": \"micron\",\n",
         "\n  \"device_id\": 9,\n", "\n  \"first_ping_number\": 11,\n",
-        "\"axes\": [\"bin\", \"line\"], \"shape\": [40, 10]}",
-        "\n  \"settings\": {\"range_m\": 2, \"gain_percent\": 50, \"sound_speed_mps\": 1500, \"bins\": 40, "
-        "\"step_deg\": 9, \"sector_deg\": [-45",
-        "\"period_s\": 0.02},\n  \"stamps_s\": [100.22, "}) {
+        R"("axes":["bin","line"],"shape":[40,10]})",
+        R"("settings": {"range_m":2.0,"gain_percent":50.0,"sound_speed_mps":1500.0,"bins":40,)"
+        R"("step_deg":9.0,"sector_deg":[-45)",
+        "\"period_s\":0.02},\n  \"stamps_s\": [100.22,"}) {
     EXPECT_THAT(frame.sidecar, HasSubstr(line));
   }
   EXPECT_TRUE(parse_npy(frame.npy, 40, 10, false));
