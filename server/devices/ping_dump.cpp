@@ -9,7 +9,7 @@
 #include <spdlog/spdlog.h>
 #include <boost/crc.hpp>
 
-#include "server/npy/npy_file.hpp"
+#include "protocol/npy/npy_file.hpp"
 
 namespace sonard::server {
 std::uint32_t samples_crc32(const render::PingSamples& samples) {
@@ -38,7 +38,7 @@ void PingDump::write(const RenderJob& job, const render::PingSamples& samples) {
   const std::uint64_t number = job.request.ping_number;
   const std::filesystem::path path = folder_ / fmt::format("{}-{:08}.npy", head_, number);
   std::ofstream file(path, std::ios::binary);
-  file << npy_bytes({samples.lines, samples.beams, samples.u8, samples.u16});
+  file << npy::encode({samples.lines, samples.beams, samples.u8, samples.u16});
   file.close();
   index_ << fmt::format("{},{},{},{},{},{:08x},{}\n", number, number % 256, job.transmit_us, samples.lines,
                         samples.beams, samples_crc32(samples), job.pose_ns)

@@ -139,11 +139,11 @@ std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& reque
   return ids;
 }
 
-NpyTable BodyTruth::table(int rows, int columns, const std::vector<std::uint16_t>& ids) const {
+npy::Table BodyTruth::table(int rows, int columns, const std::vector<std::uint16_t>& ids) const {
   if (world_.bodies.size() > std::numeric_limits<std::uint8_t>::max()) {
     return {rows, columns, {}, ids};
   }
-  NpyTable table{rows, columns, {}, {}};
+  npy::Table table{rows, columns, {}, {}};
   std::transform(ids.begin(), ids.end(), std::back_inserter(table.u8),
                  [](std::uint16_t id) { return static_cast<std::uint8_t>(id); });
   return table;

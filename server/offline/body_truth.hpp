@@ -10,9 +10,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "protocol/npy/npy_file.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
-#include "server/npy/npy_file.hpp"
 
 namespace sonard::server {
 
@@ -36,7 +36,7 @@ class BodyTruth {
   std::vector<std::uint16_t> bodies_in(const render::PingRequest& request);
 
   /// `ids` as a table; of 8 bits where all ids of the world fit.
-  NpyTable table(int rows, int columns, const std::vector<std::uint16_t>& ids) const;
+  npy::Table table(int rows, int columns, const std::vector<std::uint16_t>& ids) const;
 
  private:
   /// A ball around a body, in the world.

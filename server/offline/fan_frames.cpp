@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/npy/npy_file.hpp"
 #include "server/devices/device_kind.hpp"
-#include "server/npy/npy_file.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
 #include "server/recording/glf_records.hpp"
@@ -75,12 +75,12 @@ Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
   place_vehicle(trajectory_, times_.at(frame), renderer, truth_);
   render::PingSamples rendered = renderer.render_ping(ping, place_.stream);
-  auto samples = std::make_shared<const NpyTable>(
-      NpyTable{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
+  auto samples = std::make_shared<const npy::Table>(
+      npy::Table{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
   Frame made;
-  made.npy = npy_bytes(*samples);
+  made.npy = npy::encode(*samples);
   if (truth_ != nullptr) {
-    made.bodies_npy = npy_bytes(truth_->table(samples->rows, samples->columns, truth_->bodies_in(ping)));
+    made.bodies_npy = npy::encode(truth_->table(samples->rows, samples->columns, truth_->bodies_in(ping)));
   }
   made.sidecar = sidecar(frame, ping);
   made.draw = [this, samples, frame] { return fan_.draw(eight_bit_matrix(*samples), caption(frame)); };
@@ -97,9 +97,9 @@ bool FanFrames::makes_glf() const {
 }
 
 std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view npy) const {
-  std::optional<NpyTable> samples =
-      parse_npy(npy, job_.bins(), static_cast<int>(bearings_rad_.size()), job_.sixteen_bit);
-  if (!samples) {
+  Result<npy::Table, std::string> samples = npy::parse(npy);
+  if (!samples || samples->rows != job_.bins() || samples->columns != std::ssize(bearings_rad_) ||
+      samples->u8.empty() != job_.sixteen_bit) {
     return std::nullopt;
   }
   std::optional<PingRecord> ping =

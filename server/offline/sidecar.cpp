@@ -53,7 +53,7 @@ std::string sidecar_text(const Json& object) {
   return text + "\n}\n";
 }
 
-cv::Mat eight_bit_matrix(const NpyTable& samples) {
+cv::Mat eight_bit_matrix(const npy::Table& samples) {
   if (samples.u16.empty()) {
     return cv::Mat(samples.rows, samples.columns, CV_8UC1, const_cast<std::uint8_t*>(samples.u8.data()))
         .clone();

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/mat.hpp>
 
+#include "protocol/npy/npy_file.hpp"
 #include "renderer/pose.hpp"
-#include "server/npy/npy_file.hpp"
 #include "server/offline/body_truth.hpp"
 
 namespace sonard::server {
@@ -41,7 +41,7 @@ Json pose_json(const render::Pose& pose);
 std::string sidecar_text(const Json& object);
 
 /// Samples for a picture: CV_8UC1, a row for each row.
-cv::Mat eight_bit_matrix(const NpyTable& samples);
+cv::Mat eight_bit_matrix(const npy::Table& samples);
 
 // Files of a frame, by its name.
 std::string npy_name(const std::string& name);

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/npy/npy_file.hpp"
 #include "server/devices/device_kind.hpp"
-#include "server/npy/npy_file.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
 
@@ -77,7 +77,7 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   const auto at = [columns](std::size_t bin, int column) {
     return bin * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   };
-  NpyTable samples{bins_, columns, std::vector<std::uint8_t>(at(bins, 0)), {}};
+  npy::Table samples{bins_, columns, std::vector<std::uint8_t>(at(bins, 0)), {}};
   std::vector<std::uint16_t> bodies(truth_ != nullptr ? samples.u8.size() : 0);
   auto lines = std::make_shared<std::vector<picture::SweepLine>>();
   for (int column = 0; column < columns; ++column) {
@@ -96,9 +96,9 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
     lines->push_back(std::move(line));
   }
   Frame made;
-  made.npy = npy_bytes(samples);
+  made.npy = npy::encode(samples);
   if (truth_ != nullptr) {
-    made.bodies_npy = npy_bytes(truth_->table(samples.rows, samples.columns, bodies));
+    made.bodies_npy = npy::encode(truth_->table(samples.rows, samples.columns, bodies));
   }
   made.sidecar = sidecar(frame);
   made.draw = [this, lines, frame] {

@@ -7,13 +7,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <system_error>
 
 #include "clients/sonarview/compare/glf_image.hpp"
-#include "clients/sonarview/compare/npy_file.hpp"
 #include "clients/sonarview/compare/sweep_file.hpp"
+#include "protocol/npy/npy_file.hpp"
 #include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {
@@ -99,7 +100,14 @@ std::filesystem::path file_of_ping(const std::filesystem::path& index, std::uint
 
 cv::Mat read_ping(const std::filesystem::path& file) {
   check_file(file);
-  return picture::raw_polar_image(read_npy(file));
+  std::ifstream in(file, std::ios::binary);
+  auto samples = npy::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+  if (!samples) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), samples.error()));
+  }
+  return picture::raw_polar_image(
+      samples->u16.empty() ? cv::Mat(samples->rows, samples->columns, CV_8UC1, samples->u8.data())
+                           : cv::Mat(samples->rows, samples->columns, CV_16UC1, samples->u16.data()));
 }
 
 }  // namespace

@@ -125,7 +125,8 @@ TEST_F(Frame, OtherFilesAreRefused) {
   expect_refused(write("short.npy", npy("|u1", "(2, 3)", "abcde")), "does not hold as many samples");
   expect_refused(write("long.npy", npy("|u1", "(2, 2)", "abcde")), "does not hold as many samples");
   expect_refused(write("none.npy", npy("|u1", "(0, 3)", "")), "has no samples");
-  expect_refused(write("huge.npy", npy("|u1", "(999999, 999999)", "")), "too many samples");
+  expect_refused(write("huge.npy", npy("|u1", "(999999, 999999)", "")), "does not hold as many samples");
+  expect_refused(write("longer.npy", npy("|u1", "(9999999999, 1)", "")), "too many samples");
   expect_refused(write("text.jsonl", "no line\n") + "#0", "text.jsonl:1:");
 }
 

@@ -86,9 +86,9 @@ TEST_F(BodyTruthTest, CompressedLinesBelongToWhatLiesInThem) {
 }
 
 TEST_F(BodyTruthTest, IdsAreOfEightBitsWhereTheyFit) {
-  EXPECT_EQ(BodyTruth(world, {}).table(1, 3, {0, 3, 1}), (NpyTable{1, 3, {0, 3, 1}, {}}));
+  EXPECT_EQ(BodyTruth(world, {}).table(1, 3, {0, 3, 1}), (npy::Table{1, 3, {0, 3, 1}, {}}));
   world.bodies.resize(256, world.bodies[0]);
-  EXPECT_EQ(BodyTruth(world, {}).table(1, 2, {0, 256}), (NpyTable{1, 2, {}, {0, 256}}));
+  EXPECT_EQ(BodyTruth(world, {}).table(1, 2, {0, 256}), (npy::Table{1, 2, {}, {0, 256}}));
 }
 
 TEST_F(BodyTruthTest, NamesBodiesInTheOrderOfTheirIds) {

@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "protocol/npy/npy_file.hpp"
 #include "server/devices/gemini/config.hpp"
 #include "server/devices/gemini/kind.hpp"
 #include "server/devices/micron/config.hpp"
 #include "server/devices/micron/kind.hpp"
-#include "server/npy/npy_file.hpp"
 #include "server/offline/fan_frames.hpp"
 #include "server/offline/sweep_frames.hpp"
 
@@ -106,7 +106,7 @@ TEST(FanFrames, RecordsAreThoseOfTheLog) {
   constexpr int lines = 121;  // 1 m of 1500 / 2 / 90422 m
   std::vector<std::uint8_t> pixels(lines * 256U, 7);
   pixels[1] = 200;
-  const auto record = frames.record(1, npy_bytes({lines, 256, pixels, {}}));
+  const auto record = frames.record(1, npy::encode({lines, 256, pixels, {}}));
   ASSERT_TRUE(record);
   EXPECT_EQ(record->pixels, pixels);
   EXPECT_EQ(record->lines, 121U);
@@ -116,7 +116,7 @@ TEST(FanFrames, RecordsAreThoseOfTheLog) {
   EXPECT_DOUBLE_EQ(record->transmit_time_s, 100.5);
   EXPECT_EQ(record->gain_percent, 30);
   EXPECT_GT(record->bearings_rad.front(), 1.0);  // beam 0, to port, is positive in a log
-  EXPECT_FALSE(frames.record(1, npy_bytes({lines, 255, std::vector<std::uint8_t>(lines * 255U), {}})));
+  EXPECT_FALSE(frames.record(1, npy::encode({lines, 255, std::vector<std::uint8_t>(lines * 255U), {}})));
 }
 
 TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
@@ -208,10 +208,11 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
     EXPECT_THAT(frame.sidecar, HasSubstr(line));
   }
   EXPECT_EQ(frame.sidecar.find("sonar_id"), std::string::npos);
-  ASSERT_TRUE(parse_npy(frame.npy, 30, 256, false));
+  const auto samples = npy::parse(frame.npy);
+  ASSERT_TRUE(samples);
   const auto record = frames.record(1, frame.npy);
   ASSERT_TRUE(record);
-  EXPECT_EQ(record->pixels, parse_npy(frame.npy, 30, 256, false)->u8);
+  EXPECT_EQ(record->pixels, samples->u8);
 }
 
 TEST(FanFrames, OfSixteenBitsTheLogHasTheHighOnes) {
@@ -224,12 +225,12 @@ TEST(FanFrames, OfSixteenBitsTheLogHasTheHighOnes) {
   const FanFrames frames = fans_of(head, {}, trajectory, options);
   std::vector<std::uint16_t> samples(121U * 256U, 0x1234);
   samples[0] = 0xFF01;
-  const auto record = frames.record(0, npy_bytes({121, 256, {}, samples}));
+  const auto record = frames.record(0, npy::encode({121, 256, {}, samples}));
   ASSERT_TRUE(record);
   std::vector<std::uint8_t> expected(samples.size(), 0x12);
   expected[0] = 0xFF;
   EXPECT_EQ(record->pixels, expected);
-  EXPECT_FALSE(frames.record(0, npy_bytes({121, 256, expected, {}}))) << "they are not of this frame";
+  EXPECT_FALSE(frames.record(0, npy::encode({121, 256, expected, {}}))) << "they are not of this frame";
 }
 
 TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
@@ -259,7 +260,10 @@ TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
         "\"period_s\":0.02},\n  \"stamps_s\": [100.22,"}) {
     EXPECT_THAT(frame.sidecar, HasSubstr(line));
   }
-  EXPECT_TRUE(parse_npy(frame.npy, 40, 10, false));
+  const auto samples = npy::parse(frame.npy);
+  ASSERT_TRUE(samples);
+  EXPECT_EQ(samples->rows, 40);
+  EXPECT_EQ(samples->columns, 10);
 }
 
 // ---- Pictures

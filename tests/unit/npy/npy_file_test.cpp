@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes as the documentation of numpy.lib.format gives them for version 1.0, written out by hand.
-#include "server/npy/npy_file.hpp"
+#include "protocol/npy/npy_file.hpp"
 
 #include <string>
 
 #include <gtest/gtest.h>
 
-namespace sonard::server {
+namespace sonard::npy {
 namespace {
 
 std::string eight_bit_file() {
@@ -20,11 +20,11 @@ std::string eight_bit_file() {
 }
 
 TEST(NpyFile, IsFormat10ToTheByte) {
-  EXPECT_EQ(npy_bytes({2, 3, {0, 1, 2, 253, 254, 255}, {}}), eight_bit_file());
+  EXPECT_EQ(encode({2, 3, {0, 1, 2, 253, 254, 255}, {}}), eight_bit_file());
 }
 
 TEST(NpyFile, SixteenBitSamplesAreLittleEndian) {
-  const std::string file = npy_bytes({1, 2, {}, {0x0102, 0xFFFE}});
+  const std::string file = encode({1, 2, {}, {0x0102, 0xFFFE}});
   ASSERT_EQ(file.size(), 128U + 4U);
   EXPECT_NE(file.find("'descr': '<u2'"), std::string::npos);
   EXPECT_EQ(file.substr(128), std::string("\x02\x01\xFE\xFF", 4));
@@ -32,28 +32,27 @@ TEST(NpyFile, SixteenBitSamplesAreLittleEndian) {
 
 TEST(NpyFile, SamplesBeginAtAMultipleOf64WhateverTheShape) {
   for (int rows = 1; rows < 2'000'000'000 / 10; rows *= 10) {
-    const std::string header = npy_header("|u1", rows, 7);
-    EXPECT_EQ(header.size() % 64, 0U) << rows;
-    EXPECT_EQ(header.back(), '\n');
-    EXPECT_EQ(static_cast<unsigned char>(header[8]) + 256U * static_cast<unsigned char>(header[9]),
-              header.size() - 10);
+    const std::string text = header("|u1", rows, 7);
+    EXPECT_EQ(text.size() % 64, 0U) << rows;
+    EXPECT_EQ(text.back(), '\n');
+    EXPECT_EQ(static_cast<unsigned char>(text[8]) + 256U * static_cast<unsigned char>(text[9]),
+              text.size() - 10);
   }
 }
 
 TEST(NpyFile, ReadsBackWhatItWrote) {
-  const NpyTable wide{1, 2, {}, {0x0102, 0xFFFE}};
-  EXPECT_EQ(parse_npy(npy_bytes(wide), 1, 2, true), wide);
-  EXPECT_EQ(parse_npy(eight_bit_file(), 2, 3, false), (NpyTable{2, 3, {0, 1, 2, 253, 254, 255}, {}}));
+  const Table wide{1, 2, {}, {0x0102, 0xFFFE}};
+  EXPECT_EQ(*parse(encode(wide)), wide);
+  EXPECT_EQ(*parse(eight_bit_file()), (Table{2, 3, {0, 1, 2, 253, 254, 255}, {}}));
 }
 
 TEST(NpyFile, RefusesAnyOtherFile) {
   const std::string file = eight_bit_file();
-  EXPECT_FALSE(parse_npy(file, 3, 2, false));
-  EXPECT_FALSE(parse_npy(file, 2, 3, true));
-  EXPECT_FALSE(parse_npy(file.substr(0, file.size() - 1), 2, 3, false));
-  EXPECT_FALSE(parse_npy(file + "x", 2, 3, false));
-  EXPECT_FALSE(parse_npy("", 2, 3, false));
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    EXPECT_FALSE(parse(file.substr(0, size))) << size;
+  }
+  EXPECT_FALSE(parse(file + "x"));
 }
 
 }  // namespace
-}  // namespace sonard::server
+}  // namespace sonard::npy

@@ -3,33 +3,34 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace sonard::server {
+#include "protocol/common/result.hpp"
+
+namespace sonard::npy {
 
 /// A table of unsigned samples, row after row: `u8`, or `u16` where that is not empty.
-struct NpyTable {
+struct Table {
   int rows = 0;
   int columns = 0;
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
 
-  bool operator==(const NpyTable&) const = default;
+  bool operator==(const Table&) const = default;
 };
 
 /// What stands before the samples: magic, version, length of the header, and a Python literal padded so that
 /// the samples begin at a multiple of 64.
 /// @param dtype "|u1" or "<u2"
-std::string npy_header(std::string_view dtype, int rows, int columns);
+std::string header(std::string_view dtype, int rows, int columns);
 
 /// The whole file. Requires rows * columns samples.
-std::string npy_bytes(const NpyTable& table);
+std::string encode(const Table& table);
 
-/// Parses a file with exactly that header and as many samples as it says.
-/// @return nullopt for any other file
-std::optional<NpyTable> parse_npy(std::string_view file, int rows, int columns, bool sixteen_bit);
+/// Parses any file of one sample or more in C order.
+/// @return what is wrong with another file: "is no NumPy file of format 1.0"
+Result<Table, std::string> parse(std::string_view file);
 
-}  // namespace sonard::server
+}  // namespace sonard::npy
