@@ -212,7 +212,7 @@ class Signals(DaemonCase):
         for number in (signal.SIGPIPE, signal.SIGHUP, signal.SIGPIPE, signal.SIGHUP):
             daemon.signal(number)
             self.lines(client, 3)
-        daemon.wait_for_line("SIGHUP changes nothing", PATIENCE_S, count=2)
+        daemon.wait_for_line("SIGHUP ignored", PATIENCE_S, count=2)
         code, _ = daemon.terminate(PATIENCE_S)
         self.assertEqual(code, 0)
 

@@ -80,7 +80,7 @@ class TopsideTest : public testing::Test {
     head.ext_mode = ext_bits::eight_bit;
     head.end_range = lines;
     head.transmit_time_us = head_us_at_0 + static_cast<std::uint64_t>(transmitted / 1us);
-    hear(head);
+    receive(head);
   }
   void hear_line(int id, int number, bool resent = false) {
     PingLine line = from_head(PingLine{});
@@ -89,7 +89,7 @@ class TopsideTest : public testing::Test {
     line.line_id = static_cast<std::uint16_t>(number | (resent ? 0x8000 : 0));
     line.line_info = make_line_info(data.size(), number == lines - 1, ext_bits::eight_bit);
     line.data = data;
-    hear(line);
+    receive(line);
   }
   void hear_lines(int id, int first, int count, bool resent = false) {
     for (int number = first; number < first + count; ++number) {
@@ -100,7 +100,7 @@ class TopsideTest : public testing::Test {
     PingTail tail = from_head(PingTail{});
     tail.ping_id = static_cast<std::uint8_t>(id);
     tail.flags = resent ? resent_tail : 0;
-    hear(tail);
+    receive(tail);
   }
   void hear_ping(int id) {
     hear_head(id);
@@ -156,8 +156,8 @@ class TopsideTest : public testing::Test {
 
   /// Status heard, first words said and forgotten, `pings` asked for.
   void meet_and_start(const PingConfig& wanted, std::uint64_t pings = 0) {
-    hear(status());
-    hear(from_head(Diagnostic{}));
+    receive(status());
+    receive(from_head(Diagnostic{}));
     topside_.start(now_, wanted, pings);
     topside_.advance(now_);
     ASSERT_THAT(said<PingConfig>(), SizeIs(1));
@@ -188,12 +188,12 @@ TEST_F(TopsideTest, PingsOfAnUnknownHeadAreIgnored) {
   pass(1s);
   EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
   now_ += 1s;
-  hear(status());
+  receive(status());
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
 
 TEST_F(TopsideTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
-  hear(status());
+  receive(status());
   const auto sent = topside_.take_outgoing();
   ASSERT_GE(sent.size(), 2U);
   // gemini.md 10; bytes 6 and 7 as the early library sends them.
@@ -205,19 +205,19 @@ TEST_F(TopsideTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
 }
 
 TEST_F(TopsideTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
-  hear(status());
+  receive(status());
   EXPECT_THAT(said<DiagnosticRequest>(), SizeIs(1));
   pass(1s);
-  hear(status());
+  receive(status());
   EXPECT_THAT(said<DiagnosticRequest>(), SizeIs(1));
-  hear(from_head(Diagnostic{}));
+  receive(from_head(Diagnostic{}));
   pass(1s);
-  hear(status());
+  receive(status());
   EXPECT_THAT(said<DiagnosticRequest>(), IsEmpty());
 }
 
 TEST_F(TopsideTest, KeepsTheHeadAwakeEverySecond) {
-  hear(status());
+  receive(status());
   pass(10s);
   EXPECT_THAT(said<StatusRequest>(), SizeIs(11));
 }
@@ -225,34 +225,34 @@ TEST_F(TopsideTest, KeepsTheHeadAwakeEverySecond) {
 TEST_F(TopsideTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
   Status nowhere = status();
   nowhere.alternate_ip = 0;
-  hear(nowhere);
+  receive(nowhere);
   Status production = status();
   production.sonar_id = production.header.sonar_id = 1;
-  hear(production);
+  receive(production);
   Status contradictory = status();
   contradictory.header.sonar_id = 77;
-  hear(contradictory);
+  receive(contradictory);
   EXPECT_FALSE(topside_.head());
   EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
 }
 
 TEST_F(TopsideTest, TalksToOneHeadOnly) {
-  hear(status());
+  receive(status());
   Status other = status();
   other.sonar_id = other.header.sonar_id = 777;
   other.alternate_ip = 0x0A0A0A0A;
-  hear(other);
+  receive(other);
   EXPECT_EQ(topside_.head()->status.sonar_id, sonar_id);
   EXPECT_EQ(topside_.statistics().other_heads, 1U);
 }
 
 TEST_F(TopsideTest, WaitsForTheHeadItWasToldToTalkTo) {
   topside_ = Topside(TopsideConfig{.sonar_id = 777, .head_address = 0x0A0A0A0A});
-  hear(status());
+  receive(status());
   EXPECT_FALSE(topside_.head());
   Status wanted = status();
   wanted.sonar_id = wanted.header.sonar_id = 777;
-  hear(wanted);
+  receive(wanted);
   ASSERT_TRUE(topside_.head());
   EXPECT_EQ(topside_.take_outgoing().at(0).to, 0x0A0A0A0AU);
 }
@@ -507,7 +507,7 @@ TEST_F(TopsideTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
   for (int id = 0; id < 5; ++id) {
     hear_ping(id);
     pass(1500ms);
-    hear(status());
+    receive(status());
   }
   EXPECT_LE(topside_.statistics().configs_sent, 2U);
 }
@@ -586,12 +586,12 @@ TEST_F(TopsideTest, ALineThatNeverComesEndsThePingIncomplete) {
 TEST_F(TopsideTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
   meet_and_start(config());
   now_ = 10s;
-  hear(status());
+  receive(status());
   static_cast<void>(topside_.take_outgoing());
   Status fresh = status();
   fresh.clock_us = 1'000;
   now_ += 6s;
-  hear(fresh);
+  receive(fresh);
   EXPECT_EQ(topside_.statistics().reboots, 1U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
@@ -679,7 +679,7 @@ TEST_F(TopsideTest, StopSilencesTheTopside) {
   topside_.advance(now_);
   EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
   hear_lines(5, 10, 3);
-  hear(status());
+  receive(status());
   pass(10s);
   EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
   EXPECT_TRUE(topside_.finished());
