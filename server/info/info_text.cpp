@@ -28,7 +28,7 @@ std::string offset_text(std::int32_t utc_offset_s) {
 }
 
 std::string title_of(const HeadSummary& head, LogKind log) {
-  const DeviceKind* const kind = kind_of_logged(head.device, log);
+  const DeviceKind* const kind = kind_of_logged(head.device, head.scanning, log);
   const std::string_view usual = head.scanning ? "scanning sonar" : "multibeam sonar";
   return fmt::format("{} {}{}", kind != nullptr ? kind->title() : usual, head.id,
                      head.name.empty() ? "" : fmt::format(" '{}'", head.name));
@@ -112,7 +112,7 @@ Json json_settings(const SettingsCount& count) {
 
 Json json_head(const HeadSummary& head, LogKind log) {
   const PingRate rate = ping_rate(head.times_ns);
-  const DeviceKind* const kind = kind_of_logged(head.device, log);
+  const DeviceKind* const kind = kind_of_logged(head.device, head.scanning, log);
   const std::string device = kind != nullptr ? std::string(kind->type()) : head.device;
   Json settings = Json::array();
   for (const SettingsCount& count : head.settings) {

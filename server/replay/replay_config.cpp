@@ -83,7 +83,7 @@ void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file,
 
 /// The kind that plays a head of a log: its own, and where the log does not say, the first that can.
 const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
-  if (const DeviceKind* own = kind_of_logged(logged.device, file.kind())) {
+  if (const DeviceKind* own = kind_of_logged(logged.device, logged.scanning, file.kind())) {
     return *own;
   }
   const auto kinds = device_kinds();
@@ -96,17 +96,17 @@ const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
                     logged.name.empty() ? std::to_string(logged.device_id) : "'" + logged.name + "'",
                     logged.device, fmt::join(types, " or ")));
   }
-  std::string reason = "it is of no kind that is known";
+  std::optional<std::string> reason;  // of the first that might have been it
   for (const DeviceKind* kind : kinds) {
     if (kind->scanning() == logged.scanning) {
       const std::optional<std::string> hindrance = kind->why_not_played(logged);
       if (!hindrance) {
         return *kind;
       }
-      reason = *hindrance;
+      reason = reason.value_or(*hindrance);
     }
   }
-  throw file.error(fmt::format("head {} cannot be played: {}", logged.device_id, reason));
+  throw file.error(reason.value_or(fmt::format("head {} is of no kind that is known", logged.device_id)));
 }
 
 }  // namespace

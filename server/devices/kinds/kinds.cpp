@@ -17,7 +17,7 @@ const DeviceKind* kind_of_type(std::string_view type) {
   return found == kinds.end() ? nullptr : *found;
 }
 
-const DeviceKind* kind_of_logged(std::string_view device, LogKind log) {
+const DeviceKind* kind_of_logged(std::string_view device, bool scanning, LogKind log) {
   if (!device.empty()) {
     return kind_of_type(device);
   }
@@ -25,7 +25,8 @@ const DeviceKind* kind_of_logged(std::string_view device, LogKind log) {
     return nullptr;
   }
   const auto kinds = device_kinds();
-  const auto found = std::ranges::find_if(kinds, &DeviceKind::writes_glf);
+  const auto found = std::ranges::find_if(
+      kinds, [&](const DeviceKind* kind) { return kind->writes_glf() && kind->scanning() == scanning; });
   return found == kinds.end() ? nullptr : *found;
 }
 

@@ -19,7 +19,7 @@ const DeviceKind* kind_of_type(std::string_view type);
 
 /// The kind of a head of a log: what the log says, or the kind whose users know such logs; null where neither
 /// tells.
-const DeviceKind* kind_of_logged(std::string_view device, LogKind log);
+const DeviceKind* kind_of_logged(std::string_view device, bool scanning, LogKind log);
 
 /// The first ping in a datagram of any kind of device.
 std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram);

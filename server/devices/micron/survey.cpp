@@ -48,7 +48,7 @@ micron::ScanSettings scan_settings(const SurveyOptions& options) {
     settings.sector = {micron::bearing_of_degrees(options.sector_deg[0]),
                        micron::bearing_of_degrees(options.sector_deg[1])};
     if (settings.sector->left == settings.sector->right) {
-      throw CLI::ValidationError("--sector", "FROM and TO are one bearing; leave it away to scan all round");
+      throw CLI::ValidationError("--sector", "FROM and TO are equal; omit --sector to scan all round");
     }
   }
   if (const int interval = micron::ad_interval(settings); interval < 1 || interval > most_ad_interval) {

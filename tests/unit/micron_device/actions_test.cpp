@@ -324,7 +324,7 @@ TEST(Counts, are_those_of_the_head) {
   EXPECT_EQ(counter(bench.device, "lines_sent").value().value, bench.all<HeadData>().size());
   EXPECT_EQ(counter(bench.device, "commands").value().value, bench.device.counters().commands);
   EXPECT_EQ(counter(bench.device, "not_ready").value().value, 1U);
-  EXPECT_EQ(counter(bench.device, "not_ready").value().warning, "{} requests came before any parameters");
+  EXPECT_EQ(counter(bench.device, "not_ready").value().warning, "{} requests came before the parameters");
   EXPECT_EQ(counter(bench.device, "wrong_node").value().value, 1U);
   EXPECT_EQ(counter(bench.device, "wrong_node").value().shown, Counter::Shown::warns);
   EXPECT_EQ(counter(bench.device, "wrong_node").value().warning, "{} commands were for another node");

@@ -10,7 +10,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr int lines = 200;
+constexpr int range_lines = 200;
 constexpr double step_m = 0.05;
 
 /// A square that faces the sonar at the origin: `x_m` ahead, from `left_m` to `right_m` (y, port is
@@ -35,7 +35,7 @@ struct BodyTruthTest : testing::Test {
     request.settings.aperture.beam_edges_rad = render::equal_angle_edges(64, 1.0);
     request.settings.aperture.azimuth =
         render::Aperture::Azimuth::array;  // with side lobes, that do not count
-    request.settings.range = {lines, step_m, 0, false};
+    request.settings.range = {range_lines, step_m, 0, false};
   }
 
   /// Of the bin at a range, of the beam at an azimuth.

@@ -25,14 +25,14 @@ using namespace std::chrono_literals;
 
 using testing::HasSubstr;
 
-constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 /// Along x from the origin, for `seconds`, from the stamp 100 s on.
 VehicleTrajectory ahead(int seconds, double speed_mps = 1.0) {
-  const std::int64_t start = 100 * second_ns;
+  const std::int64_t start = 100 * ns_per_s;
   return VehicleTrajectory(
       pose::Trajectory({{start, {{0, 0, 0}, {1, 0, 0, 0}}},
-                        {start + seconds * second_ns, {{speed_mps * seconds, 0, 0}, {1, 0, 0, 0}}}}));
+                        {start + seconds * ns_per_s, {{speed_mps * seconds, 0, 0}, {1, 0, 0, 0}}}}));
 }
 
 /// A Gemini whose device is set up by `change`.

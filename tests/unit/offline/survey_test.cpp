@@ -181,7 +181,7 @@ TEST(MicronSurvey, refuses_what_it_does_not_know_or_cannot_do) {
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.0)),
             "--step: expected a multiple of 0.05625 degrees, 14.34375 at most, found 1");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {30.0, 30.0})),
-            "--sector: FROM and TO are one bearing; leave it away to scan all round");
+            "--sector: FROM and TO are equal; omit --sector to scan all round");
   SurveyOptions too_fine = with(&SurveyOptions::range_m, 0.1);
   too_fine.bins = 1500;
   EXPECT_EQ(complaint(kind, too_fine), "--bins: 1500 bins over 0.1 m are too fine for a head");

@@ -159,7 +159,7 @@ TEST_F(ReplayConfigTest, images_of_other_heads_are_an_error_that_says_so) {
   const std::string why =
       "sonar 513 has an image of 482 lines of 512 beams, which a Gemini 720i cannot send (expected 256 "
       "beams)";
-  EXPECT_EQ(complaint(logged), why);
+  EXPECT_EQ(complaint(logged), "head 'gemini-513' cannot play it: " + why);
   config.heads = {gemini("a", 513)};
   EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
 }

@@ -140,7 +140,7 @@ TEST(CommandLine, MicronSettingsBecomeThoseOfAScan) {
   EXPECT_FALSE(options.scan.sector);
   EXPECT_EQ(options.host.node, 7);
   EXPECT_TRUE(options.host.reboot_first);
-  EXPECT_EQ(options.turns, 3U);
+  EXPECT_EQ(options.sweeps, 3U);
   EXPECT_EQ(options.lines, 9U);
   EXPECT_EQ(options.duration, 1500ms);
 }
@@ -167,7 +167,7 @@ TEST(CommandLine, SectorsAreDegreesFromAhead) {
   EXPECT_EQ(sector("135", "-135").right, 800);
   EXPECT_EQ(sector("135", "225").right, 800);  // the same
   EXPECT_EQ(sector("-180", "0").left, 0);
-  expect_refused({"micron", "--tty", "x", "--sector", "-180", "180"}, "leave it away to scan all round");
+  expect_refused({"micron", "--tty", "x", "--sector", "-180", "180"}, "omit --sector to scan all round");
   expect_refused({"micron", "--tty", "x", "--sector", "10"}, "--sector");
 }
 
