@@ -9,4 +9,5 @@
 set(SONARD_DEVICES
   gemini
   micron
+  ping360
 )

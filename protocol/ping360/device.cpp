@@ -132,9 +132,7 @@ class Device::Impl {
 Device::Impl::Client& Device::Impl::client_of(TimePoint now, const Peer& peer) {
   auto found = std::ranges::find_if(clients_, [&](const Client& it) { return same_client(it.peer, peer); });
   if (found == clients_.end()) {
-    if (clients_.empty()) {
-      notice(fmt::format("client {} connected", name_of(peer)));
-    }
+    notice(fmt::format("client {} connected", name_of(peer)));
     make_room();
     found = clients_.insert(clients_.end(), Client{});
   }
@@ -165,9 +163,7 @@ void Device::Impl::forget(TimePoint now, std::size_t index, std::string_view why
   }
   scanner_.forget(now, peer);
   clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
-  if (clients_.empty()) {
-    notice(fmt::format("client {} is gone: {}", name_of(peer), why));
-  }
+  notice(fmt::format("client {} is gone: {}", name_of(peer), why));
 }
 
 void Device::Impl::take(TimePoint now, const ClientGone& gone) {

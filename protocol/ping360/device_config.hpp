@@ -35,8 +35,9 @@ struct DeviceConfig {
   double time_scale = 1.0;
 
   /// A client that is silent for so long is forgotten, and the scan ends that it has begun; 0: never, as a
-  /// real head. Clients on a serial line are never forgotten. (3.3)
-  std::chrono::nanoseconds idle_timeout{std::chrono::seconds{30}};
+  /// real head, since clients may listen for a whole turn of 38 s without a word. Clients on a serial line
+  /// are never forgotten. (3.3)
+  std::chrono::nanoseconds idle_timeout{0};
   std::chrono::nanoseconds reset_silence{std::chrono::seconds{1}};       ///< >= 0 (3.5)
   std::chrono::nanoseconds bootloader_silence{std::chrono::seconds{5}};  ///< >= 0 (3.5)
 

@@ -122,14 +122,19 @@ void Host::order(TimePoint now) {
   }
 }
 
+/// A link may bring an answer twice. Each ping leads to the next command, so a copy must not count as one.
+/// Otherwise settings are not compared: where an old recording is played the head says what that was made
+/// with.
 void Host::on_report(TimePoint now, const DeviceData& data) {
+  const std::vector<std::uint8_t> before = std::exchange(last_data_, encode(data));
   if (phase_ == Phase::meeting) {
     head_.state = form_of(Report{data});
     ask_identity(now);
     return;
   }
   auto* const command = programme_ ? std::get_if<Transducer>(&programme_->command) : nullptr;
-  if (phase_ != Phase::pinging || command == nullptr) {
+  const bool unwanted = phase_ != Phase::pinging || command == nullptr;
+  if (unwanted || (last_data_ == before && form_of(Report{data}) != form_of(*command))) {
     ++statistics_.pings_unwanted;
     return;
   }
@@ -140,7 +145,7 @@ void Host::on_report(TimePoint now, const DeviceData& data) {
   }
 }
 
-/// Settings are not compared: where an old recording is played the head says what that was made with.
+/// Of the settings only those of the scan are compared, as above.
 void Host::on_report(TimePoint now, const AutoDeviceData& data) {
   const auto* const command = programme_ ? std::get_if<AutoTransmit>(&programme_->command) : nullptr;
   const bool wanted = phase_ == Phase::pinging && command != nullptr &&

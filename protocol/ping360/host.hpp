@@ -40,7 +40,7 @@ struct HostStatistics {
   std::uint64_t dropped_bytes = 0;   ///< part of no frame
   std::uint64_t bad_frames = 0;      ///< could not be read
   std::uint64_t pings = 0;           ///< delivered
-  std::uint64_t pings_unwanted = 0;  ///< of another scan, or none was asked for
+  std::uint64_t pings_unwanted = 0;  ///< of another scan, second copies, or none was asked for
   std::uint64_t commands = 0;        ///< that ask for pings, the first time and again
   std::uint64_t timeouts = 0;        ///< commands that no ping came for
 };
@@ -121,6 +121,7 @@ class Host {
   std::optional<TimePoint> sign_of_life_due_;  ///< while a scan goes on
   int stop_orders_ = 0;
   std::optional<Programme> programme_;
+  std::vector<std::uint8_t> last_data_;  ///< the last DeviceData that came, as a frame
   std::optional<Nack> refusal_;
   bool finished_ = false;
   std::vector<std::vector<std::uint8_t>> outgoing_;

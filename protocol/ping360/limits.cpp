@@ -22,7 +22,7 @@ template <class Command>
 std::optional<OutOfRange> ping_settings_out_of_range(const Command& command) {
   return first_of({{"gain_setting", command.gain_setting, 0, 2},
                    {"transmit_duration", command.transmit_duration_us, 1, 1000},
-                   {"sample_period", command.sample_period, 80, 40000},
+                   {"sample_period", command.sample_period, least_sample_period, most_sample_period},
                    {"transmit_frequency", command.transmit_frequency_khz, 500, 1000},
                    {"number_of_samples", command.number_of_samples, 1, 1200}});
 }

@@ -296,6 +296,7 @@ void Scanner::send_ping(std::uint8_t id, std::vector<Answer>& out) {
   keep_record(id);
   out.push_back({work_->asker, encode(message_of(work_->form, ping_->samples), id)});
   ++counters_.pings_sent;
+  last_settings_ = work_->form.settings;
   last_samples_ = std::move(ping_->samples);
   if (work_->form.scan && scan_) {
     scan_->has_pinged = true;
@@ -311,6 +312,7 @@ void Scanner::advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out) 
   }
   for (begin_work(); work_ && !work_->transmit && now >= work_->there_at; begin_work()) {
     out.push_back({work_->asker, encode(message_of(work_->form, {}), id)});
+    last_samples_.clear();
     end_work(work_->there_at);
   }
   if (const auto due = ping_due(); due && now >= *due) {
@@ -326,9 +328,12 @@ std::optional<TimePoint> Scanner::next_deadline() const {
 }
 
 DeviceData Scanner::state(TimePoint now) const {
-  DeviceData state = settings_;
-  state.angle = static_cast<std::uint16_t>(position(now));
+  DeviceData state = last_settings_;
   state.data = last_samples_;
+  if (last_samples_.empty()) {
+    state = settings_;
+    state.angle = static_cast<std::uint16_t>(position(now));
+  }
   return state;
 }
 
@@ -341,6 +346,7 @@ std::optional<AutoDeviceData> Scanner::scan_state(TimePoint now) const {
   copy_scan_settings(state, scan_->command);
   state.angle = static_cast<std::uint16_t>(position(now));
   if (scan_->has_pinged) {
+    state.angle = last_settings_.angle;
     state.data = last_samples_;
   }
   return state;

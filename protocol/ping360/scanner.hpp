@@ -60,7 +60,8 @@ class Scanner {
   /// See Actions::cancelled.
   std::optional<std::uint64_t> cancelled() const { return ping_ ? std::nullopt : unanswered_; }
 
-  /// How the head stands, with the samples of the last ping. Valid until the next call of another function.
+  /// The last ping, with its own settings and angle; before the first one and after a mere move how the head
+  /// stands, without samples. Valid until the next call of another function.
   DeviceData state(TimePoint now) const;
   /// The last ping of the scan that goes on, without data before the first; nullopt: there is no scan.
   std::optional<AutoDeviceData> scan_state(TimePoint now) const;
@@ -133,7 +134,8 @@ class Scanner {
   std::optional<FedPing> fed_;
 
   // What it does.
-  DeviceData settings_;  ///< of its present or last work
+  DeviceData settings_;       ///< of its present or last work
+  DeviceData last_settings_;  ///< of the last ping
   std::vector<std::uint8_t> last_samples_;
   std::optional<Work> work_;
   std::optional<Ping> ping_;

@@ -15,6 +15,8 @@ class Sweep {
   Sweep(int start, int stop, int step, bool to_stop);
 
   int angle() const;  ///< gradians, 0..399
+  /// It begins again at the start, and does not come back.
+  bool one_way() const { return one_way_; }
   void advance();
 
  private:

@@ -70,13 +70,13 @@ std::vector<std::string> tshark_command(const std::string& path, const std::vect
 }  // namespace
 
 std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
-                         const std::vector<std::string>& options) {
+                         const std::vector<std::string>& options, std::chrono::nanoseconds apart) {
   pcapng::Writer writer{"sonard tests"};
   const std::uint32_t interface = writer.add_interface("lab");
   std::uint64_t time_ns = 1'700'000'000'000'000'001;
   for (const pcapng::Bytes& packet : packets) {
     writer.add_packet(interface, time_ns, packet);
-    time_ns += 1000;
+    time_ns += static_cast<std::uint64_t>(apart.count());
   }
   const TemporaryFile file{writer.take()};
   const test::ProcessResult result =

@@ -2,6 +2,7 @@
 // Captures for tshark, and what it makes of them.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,10 +15,11 @@ namespace sonard::testing {
 /// between.
 using Row = std::map<std::string, std::string>;
 
-/// Writes `packets`, one microsecond after the other, and has tshark read them with all dissectors and all
+/// Writes `packets`, `apart` from each other, and has tshark read them with all dissectors and all
 /// checksums checked. @return one row for each packet. Fails the test when tshark cannot, or complains.
 std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
-                         const std::vector<std::string>& options = {});
+                         const std::vector<std::string>& options = {},
+                         std::chrono::nanoseconds apart = std::chrono::microseconds{1});
 
 /// A datagram between a topside and a head on the ports of the Gemini.
 pcapng::Bytes to_head(pcapng::ByteView payload);

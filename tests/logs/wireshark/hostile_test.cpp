@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string_view>
 
 #include "tests/logs/wireshark/captures.hpp"
 #include "tests/support/hex_fixture.hpp"
@@ -45,6 +46,56 @@ TEST(HostileBytes, gemini) {
 
 TEST(HostileBytes, micron) {
   expect_no_failure("micron", 4002);
+}
+
+TEST(HostileBytes, ping360) {
+  expect_no_failure("ping360", 12'345);
+}
+
+void expect_no_failure(const std::vector<pcapng::Bytes>& packets) {
+  for (const Row& row : dissect(packets, {"_ws.lua.error"})) {
+    EXPECT_EQ(row.at("_ws.lua.error"), "");
+  }
+}
+
+// Broken frames behind each other, in datagrams that cut them anywhere: one goes on with the last.
+TEST(HostileBytes, ping360_stream) {
+  const auto names = hex_fixture_names("ping360");
+  std::mt19937 random{2};
+  std::vector<pcapng::Bytes> packets;
+  for (int i = 0; i < packet_count; ++i) {
+    Bytes payload;
+    for (unsigned frames = 1 + random() % 4; frames > 0; --frames) {
+      const Bytes frame = broken(load_hex_fixture("ping360", names[random() % names.size()]), random);
+      payload.insert(payload.end(), frame.begin(), frame.end());
+    }
+    packets.push_back(pcapng::udp_packet({0x7F000001, 50'000}, {0x7F000001, 9092}, payload));
+  }
+  expect_no_failure(packets);
+}
+
+// Every four bytes begin a frame of the longest payload, and none has a right checksum. The time that tshark
+// is given is the limit.
+TEST(HostileBytes, ping360_frames_within_frames) {
+  Bytes payload;
+  while (payload.size() + 4 <= pcapng::max_udp_payload) {
+    payload.insert(payload.end(), {'B', 'R', 0x00, 0x10});
+  }
+  expect_no_failure(
+      std::vector<pcapng::Bytes>(20, pcapng::udp_packet({0x7F000001, 50'000}, {0x7F000001, 9092}, payload)));
+}
+
+TEST(HostileBytes, ping360_discovery) {
+  const std::string_view answer =
+      "SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 54-10-EC-79-7D-C5\r\nIP Address:- 192.168.002.004\r\n";
+  std::mt19937 random{3};
+  std::vector<pcapng::Bytes> packets;
+  for (int i = 0; i < packet_count; ++i) {
+    const std::string_view text = i % 3 == 0 ? "Discovery" : i % 3 == 1 ? "SetSS1IP 192.168.002.004" : answer;
+    const Bytes payload = broken({text.begin(), text.end()}, random);
+    packets.push_back(pcapng::udp_packet({0x7F000001, 30'303}, {0x7F000001, 30'303}, payload));
+  }
+  expect_no_failure(packets);
 }
 
 }  // namespace

@@ -68,8 +68,9 @@ class Namespace:
         """Command line that runs `arguments` here, in the process that is started (ip replaces itself)."""
         return ["ip", "netns", "exec", self.name, *arguments]
 
-    def udp_socket(self, address, port):
-        """A socket of this process that lives in this namespace: a socket keeps the one it was made in."""
+    def udp_socket(self, address, port, reuse=False):
+        """A socket of this process that lives in this namespace: a socket keeps the one it was made in. With `reuse` it
+        shares its port with others that share theirs."""
         own = os.open("/proc/self/ns/net", os.O_RDONLY)
         there = os.open(f"/run/netns/{self.name}", os.O_RDONLY)
         try:
@@ -78,6 +79,7 @@ class Namespace:
                 made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 # Beyond net.core.rmem_max: Python reads slower than a head sends.
                 made.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, 16 << 20)
+                made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(reuse))
                 made.bind((address, port))
                 return made
             finally:

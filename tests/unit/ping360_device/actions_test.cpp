@@ -211,17 +211,20 @@ TEST(Ping360Actions, what_happens_is_told_in_words) {
   bench.step(ClientGone{client_b});
   bench.step(ClientGone{client_a});
   bench.command(scan_of(5, 6), serial_client);
-  EXPECT_EQ(
-      bench.notices,
-      (std::vector<std::string>{
-          "client 127.0.0.1:4000 connected", "auto scan by client 127.0.0.1:4001: 0 to 399 gradians, step 1",
-          "auto scan by client 127.0.0.1:4001: 10 to 20 gradians, step 2", "auto scan ended: motor_off",
-          "client 127.0.0.1:4000 is gone: disconnected", "client on the serial line connected",
-          "auto scan by client on the serial line: 5 to 6 gradians, step 1"}));
+  EXPECT_EQ(bench.notices,
+            (std::vector<std::string>{
+                "client 127.0.0.1:4000 connected", "client 127.0.0.1:4001 connected",
+                "auto scan by client 127.0.0.1:4001: 0 to 399 gradians, step 1",
+                "auto scan by client 127.0.0.1:4001: 10 to 20 gradians, step 2", "auto scan ended: motor_off",
+                "client 127.0.0.1:4001 is gone: disconnected", "client 127.0.0.1:4000 is gone: disconnected",
+                "client on the serial line connected",
+                "auto scan by client on the serial line: 5 to 6 gradians, step 1"}));
 }
 
 TEST(Ping360Actions, nobody_is_there_before_the_first_and_after_the_last_client) {
-  Bench bench;
+  DeviceConfig config;
+  config.idle_timeout = 30s;
+  Bench bench(config);
   EXPECT_TRUE(bench.last.nobody_there);
   EXPECT_EQ(bench.last.wake_at, std::nullopt);
   bench.raw({}, client_a);

@@ -163,6 +163,21 @@ TEST(Ping360Host, asks_again_for_what_is_lost) {
   EXPECT_EQ(session.pings.size(), 40U);
 }
 
+// The second copy of an answer is none: a command for each would keep two on their way for ever.
+TEST(Ping360Host, a_link_that_doubles_what_it_carries_makes_no_command_more) {
+  Session session;
+  session.to_host = [](const Bytes& frame) { return std::vector<Bytes>{frame, frame}; };
+  session.host.start(0ns, ping_at(380), 15, 5);
+  session.run_to_end();
+  std::vector<int> angles;
+  for (const ReceivedPing& ping : session.pings) {
+    angles.push_back(ping.form.settings.angle);
+    EXPECT_EQ(ping.samples, test_samples(ping.number, 200));
+  }
+  EXPECT_EQ(angles, (std::vector{380, 395, 10, 25, 40}));
+  EXPECT_EQ(session.host.statistics().commands, 5U);
+}
+
 TEST(Ping360Host, reads_a_stream_cut_anywhere_among_noise) {
   Session session;
   session.to_host = [](const Bytes& frame) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clients/sonarview/ping360/options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/ping360/units.hpp"
+
+namespace sonard::client {
+namespace {
+
+std::chrono::nanoseconds to_ns(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+}  // namespace
+
+Ping360Arguments::Ping360Arguments(CLI::App& app) {
+  declare_link(app);
+  declare_sonar(app);
+  declare_run(app);
+}
+
+void Ping360Arguments::declare_link(CLI::App& app) {
+  link_.declare(app);
+  app.add_option("--wait", wait_s_,
+                 "Seconds to try to reach a link, at first or again, and to wait for the head's first word")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str()
+      ->group(LinkArguments::group);
+  app.add_option("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: for ever")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group(LinkArguments::group);
+}
+
+void Ping360Arguments::declare_sonar(CLI::App& app) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->capture_default_str()->group("Sonar");
+  };
+  add("--range", range_m_, "Metres; the head covers this or a little less")->check(CLI::Range(0.5, 100.0));
+  add("--samples", samples_, "Samples of a ping, 200 to 1200; 0: as many as the range allows")
+      ->check(CLI::Range(200, 1200) | CLI::IsMember({0}));
+  add("--step", step_, "Gradians from ping to ping, of 0.9 degrees each")->check(CLI::Range(1, 10));
+  add("--gain", gain_, "0 low, 1 normal, 2 high")->check(CLI::Range(0, 2));
+  add("--frequency", frequency_khz_, "kHz")->check(CLI::Range(500, 1000));
+  add("--sound-speed", options_.sound_speed_mps, "Metres per second, in which ranges are counted")
+      ->check(CLI::Range(1300.0, 1700.0));
+  add("--ahead", options_.ahead, "Angle of the head that looks straight ahead, gradians")
+      ->check(CLI::Range(0, 399));
+  app.add_flag("--auto", options_.automatic, "The head scans by itself, instead of ping by ping")
+      ->group("Sonar");
+  app.add_option(
+         "--sector", sector_deg_,
+         "FROM TO, degrees from ahead, positive to starboard, clockwise from FROM to TO: scans there, "
+         "by itself. Without it: all round")
+      ->expected(2)
+      ->check(CLI::Range(-360.0, 360.0))
+      ->group("Sonar");
+  add("--delay", delay_ms_, "Milliseconds in addition between two pings of --auto")
+      ->check(CLI::Range(0, 100));
+}
+
+void Ping360Arguments::declare_run(CLI::App& app) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group("Run");
+  };
+  add("--turns", options_.turns, "End after this many turns, or sweeps of the sector; 0: go on")
+      ->capture_default_str();
+  add("--pings", options_.pings, "End after this many pings; 0: go on")->capture_default_str();
+  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: go on")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  add("--out", options_.out, "Folder for pictures: turn or sector in colour, the samples in grey");
+  add("--every", options_.every, "Keep the pictures of each n-th turn; 0: only of the last")
+      ->capture_default_str();
+  add("--size", options_.radius_px, "Pixels from the apex to the full range")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  app.add_flag("--log-pings", options_.log_pings, "One line of key=value for each ping on standard output")
+      ->group("Run");
+  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+}
+
+void Ping360Arguments::set_scan(Ping360Options& options) const {
+  ping360::AutoTransmit& scan = options.scan;
+  const int samples = samples_ > 0 ? samples_ : ping360::usual_samples(range_m_, options.sound_speed_mps);
+  const int period = ping360::sample_period_for(range_m_, samples, options.sound_speed_mps);
+  if (period < ping360::least_sample_period || period > ping360::most_sample_period) {
+    throw CLI::ValidationError("--samples",
+                               fmt::format("{} samples over {} m are too {} for a head", samples, range_m_,
+                                           period < ping360::least_sample_period ? "fine" : "coarse"));
+  }
+  scan.gain_setting = static_cast<std::uint8_t>(gain_);
+  scan.number_of_samples = static_cast<std::uint16_t>(samples);
+  scan.sample_period = static_cast<std::uint16_t>(period);
+  scan.transmit_duration_us = ping360::transmit_duration_us(range_m_, period, options.sound_speed_mps);
+  scan.transmit_frequency_khz = static_cast<std::uint16_t>(frequency_khz_);
+  scan.num_steps = static_cast<std::uint8_t>(step_);
+  scan.delay_ms = static_cast<std::uint8_t>(delay_ms_);
+  scan.start_angle = static_cast<std::uint16_t>(options.ahead);
+  scan.stop_angle = static_cast<std::uint16_t>(ping360::wrapped(options.ahead - 1));
+  if (sector_deg_.empty()) {
+    return;
+  }
+  scan.start_angle = static_cast<std::uint16_t>(ping360::angle_of(sector_deg_[0], options.ahead));
+  scan.stop_angle = static_cast<std::uint16_t>(ping360::angle_of(sector_deg_[1], options.ahead));
+  if (scan.start_angle == scan.stop_angle) {
+    throw CLI::ValidationError("--sector", "FROM and TO are equal; omit --sector to scan all round");
+  }
+  options.all_round = false;
+  options.automatic = true;
+}
+
+Ping360Options Ping360Arguments::options() const {
+  Ping360Options options = options_;
+  options.line = link_.address();
+  set_scan(options);
+  options.duration = to_ns(seconds_);
+  options.wait = to_ns(wait_s_);
+  options.ping_wait = to_ns(ping_wait_s_);
+  return options;
+}
+
+}  // namespace sonard::client

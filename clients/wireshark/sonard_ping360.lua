@@ -1,0 +1,620 @@
+-- SPDX-License-Identifier: Apache-2.0
+-- Wireshark dissector for the Ping protocol of a Ping360, over UDP or TCP, both directions, and for the text by which
+-- such heads are found (docs/protocols/ping360.md; sections named below are its own). Put all sonard_*.lua files into
+-- the folder for personal Lua plugins, or name this one:
+--   tshark -X lua_script:sonard_ping360.lua -r capture.pcapng
+-- What begins with a frame is found on any port; ports are preferences of the protocols PING360_SONAR and
+-- PING360_DISCOVERY.
+local here = __DIR__ == "" and "" or __DIR__ .. "/"
+local tables = dofile(here .. "sonard_tables.lua")
+local layouts = dofile(here .. "sonard_ping360_fields.lua")
+
+local prefix = "ping360_sonar"
+local ping360 = Proto(prefix, "Ping360 scanning sonar")
+local header_size = 8
+local checksum_size = 2
+local overhead = header_size + checksum_size
+local length_end = 4           -- of what tells how long a frame is
+local max_payload_size = 4096  -- 1.1
+local give_up_s = 0.1          -- a frame that stops to come for so long is given up (1.1)
+
+local messages = layouts.messages
+messages.frame = {
+  minimum = header_size,
+  fields = { { 2, 2, "payload_length" }, { 4, 2, "message_id" }, { 6, 1, "source" }, { 7, 1, "destination" } },
+}
+-- Samples follow a table and their count (2.2), texts follow a table or stand alone (2.1).
+for _, name in ipairs({ "device_data", "auto_device_data" }) do
+  local layout = messages[name]
+  table.insert(layout.fields, { layout.size, 2, "data_length" })
+  layout.size = layout.size + 2
+  layout.minimum = layout.size
+end
+local has_rest = { device_data = true, auto_device_data = true, nack = true, ascii_text = true }
+-- An empty message with the number of one of these is an older spelling of the request for it (2.1).
+local asked_by_empty = { device_information = true, protocol_version = true, device_data = true }
+
+local extra = {
+  message = ProtoField.string(prefix .. ".message", "Message"),
+  from_head = ProtoField.bool(prefix .. ".from_head", "From the head"),
+  checksum = ProtoField.uint16(prefix .. ".checksum", "Checksum", base.HEX),
+  about = ProtoField.string(prefix .. ".about", "Message that this is about"),
+  text = ProtoField.string(prefix .. ".text", "Text"),
+  bearing = ProtoField.double(prefix .. ".bearing_deg", "Bearing off ahead, to starboard (degrees)"),
+  data = ProtoField.bytes(prefix .. ".data", "Data"),
+  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes of no frame"),
+  piece = ProtoField.bytes(prefix .. ".piece", "Piece of a frame"),
+  begun_in = ProtoField.framenum(prefix .. ".begun_in", "The first frame began in"),
+}
+ping360.fields = tables.make_fields(prefix, messages, {}, extra)
+
+local bad_checksum = ProtoExpert.new(prefix .. ".bad_checksum", "Wrong checksum: nobody takes this for a frame",
+                                     expert.group.CHECKSUM, expert.severity.ERROR)
+local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its message", expert.group.MALFORMED,
+                                  expert.severity.ERROR)
+local too_long = ProtoExpert.new(prefix .. ".too_long", "Longer than its message", expert.group.PROTOCOL,
+                                 expert.severity.NOTE)
+local no_frame = ProtoExpert.new(prefix .. ".no_frame", "Bytes that belong to no frame", expert.group.MALFORMED,
+                                 expert.severity.WARN)
+local between_frames = ProtoExpert.new(prefix .. ".between_frames", "What is known to come between frames",
+                                       expert.group.SEQUENCE, expert.severity.NOTE)
+local unfinished_frame = ProtoExpert.new(prefix .. ".unfinished", "A frame before this packet was never finished",
+                                         expert.group.SEQUENCE, expert.severity.WARN)
+local unknown = ProtoExpert.new(prefix .. ".unknown_id", "Message that the protocol description does not have",
+                                expert.group.UNDECODED, expert.severity.NOTE)
+ping360.experts = { bad_checksum, malformed, too_long, no_frame, between_frames, unfinished_frame, unknown }
+
+ping360.prefs.ahead = Pref.uint("Angle straight ahead (gradians)", 0,
+                                "Where the head is mounted to look ahead: 0 for ROS, 200 for ping-viewer")
+
+-- ---- Where frames begin and end (1.1)
+
+-- The bytes of `tvb`, with the sum of those before each offset: every checksum is then a difference.
+local function make_stream(tvb)
+  local stream = { tvb = tvb, raw = tvb:raw(), sums = { [0] = 0 } }
+  for i = 1, #stream.raw do
+    stream.sums[i] = stream.sums[i - 1] + stream.raw:byte(i)
+  end
+  return stream
+end
+
+local function u16(raw, offset)
+  local low, high = raw:byte(offset + 1, offset + 2)
+  return low + 256 * high
+end
+
+-- The size of the frame that may begin at `offset`: 0 when too little of it is there, nil when none begins.
+local function stated_size(raw, offset)
+  local front = raw:sub(offset + 1, offset + length_end)
+  if front == "" or front:sub(1, 2) ~= ("BR"):sub(1, #front) then
+    return nil
+  end
+  if #front < length_end then
+    return 0
+  end
+  local length = u16(raw, offset + 2)
+  return length <= max_payload_size and length + overhead or nil
+end
+
+local function sum_of(stream, offset, size)
+  return (stream.sums[offset + size - checksum_size] - stream.sums[offset]) % 65536
+end
+
+-- Whether a whole frame with a right checksum is at `offset`.
+local function is_right(stream, offset)
+  local size = stated_size(stream.raw, offset)
+  return size ~= nil and size > 0 and offset + size <= #stream.raw and
+         sum_of(stream, offset, size) == u16(stream.raw, offset + size - checksum_size)
+end
+
+local function payload_size(layout)
+  return layout and layout.size - header_size or 0
+end
+
+-- Whether a payload of `length` fits one of the messages with this number.
+local function fits(id, length)
+  local command, report = layouts.commands[id], layouts.reports[id]
+  if command and length == payload_size(messages[command]) then
+    return true
+  end
+  local least = payload_size(messages[report])
+  return report ~= nil and
+         (length == least or (length == 0 and asked_by_empty[report]) or (length > least and has_rest[report])) or false
+end
+
+-- Whether what begins at `offset` looks like a frame of this protocol, whole or not.
+local function is_plausible(raw, offset)
+  local size = stated_size(raw, offset)
+  return size ~= nil and size > 0 and offset + 6 <= #raw and fits(u16(raw, offset + 4), size - overhead)
+end
+
+-- How many bytes of a frame with a wrong checksum come before another frame: all of them, if none begins inside.
+local function bytes_of_broken_frame(stream, offset, size)
+  local inside = offset + 1
+  while true do
+    inside = (stream.raw:find("BR", inside + 1, true) or #stream.raw + 1) - 1
+    if inside >= offset + size then
+      return size
+    end
+    local whole = inside + (stated_size(stream.raw, inside) or 0) <= #stream.raw
+    if is_right(stream, inside) or (not whole and is_plausible(stream.raw, inside)) then
+      return inside - offset
+    end
+    inside = inside + 1
+  end
+end
+
+-- What is at `offset`: "frame", "garbage" or "more", and of how many bytes. "more" says how many are missing, 0 when
+-- that cannot be told yet.
+local function next_piece(stream, offset)
+  local raw = stream.raw
+  local left = #raw - offset
+  local size = stated_size(raw, offset)
+  if size and left < math.max(size, length_end) then
+    return "more", math.max(size - left, 0)
+  end
+  if size then
+    local bytes = is_right(stream, offset) and size or bytes_of_broken_frame(stream, offset, size)
+    return bytes == size and "frame" or "garbage", bytes
+  end
+  local following = offset
+  repeat
+    following = (raw:find("B", following + 2, true) or #raw + 1) - 1
+  until following >= #raw or stated_size(raw, following)
+  return "garbage", following - offset
+end
+
+-- ---- What each message has beyond its table; `tvb` is one frame without its checksum, and whole as far as its table
+-- goes. Each returns a text for the info column, or nil.
+local details = {}
+
+local function name_of(id)
+  return layouts.commands[id] or layouts.reports[id] or string.format("message %d", id)
+end
+
+local function add_about(tvb, tree)
+  local name = name_of(tvb(8, 2):le_uint())
+  tree:add(extra.about, tvb(8, 2), name):set_generated()
+  return name
+end
+
+local function add_text(tvb, tree, offset)
+  if tvb:len() == offset then
+    return ""
+  end
+  tree:add_packet_field(extra.text, tvb(offset), ENC_ASCII)
+  return '"' .. tvb:raw(offset, tvb:len() - offset):gsub("[^\32-\126]", "?") .. '"'
+end
+
+-- The angle is at the same place in all messages that have one.
+local function add_bearing(tvb, tree)
+  local angle = tvb(10, 2):le_uint()
+  local turn = (angle - ping360.prefs.ahead) % 400
+  local bearing = (turn > 200 and turn - 400 or turn) * 0.9
+  tree:add(extra.bearing, tvb(10, 2), bearing):set_generated()
+  return string.format("angle %d", angle)
+end
+
+local function add_samples(tvb, tree, layout)
+  local text = add_bearing(tvb, tree)
+  local count, there = tvb(layout.size - 2, 2):le_uint(), tvb:len() - layout.size
+  if there ~= count then
+    tree:add_proto_expert_info(there < count and malformed or too_long,
+                               string.format("%d bytes of data are said, %d are there", count, there))
+  end
+  if math.min(there, count) > 0 then
+    tree:add(extra.data, tvb(layout.size, math.min(there, count)))
+  end
+  return string.format("%s, %d samples", text, count)
+end
+
+details.general_request = add_about
+details.ack = add_about
+
+function details.nack(tvb, tree)
+  return add_about(tvb, tree) .. ", " .. add_text(tvb, tree, messages.nack.size)
+end
+
+function details.ascii_text(tvb, tree)
+  return add_text(tvb, tree, header_size)
+end
+
+function details.device_information(tvb)
+  return string.format("firmware %d.%d.%d", tvb(10, 1):uint(), tvb(11, 1):uint(), tvb(12, 1):uint())
+end
+
+function details.transducer(tvb, tree)
+  local text = add_bearing(tvb, tree)
+  return text .. (tvb(20, 1):uint() == 0 and ", moves only" or string.format(", %d samples", tvb(18, 2):le_uint()))
+end
+
+function details.auto_transmit(tvb)
+  return string.format("%d to %d gradians, step %d", tvb(18, 2):le_uint(), tvb(20, 2):le_uint(), tvb(22, 1):uint())
+end
+
+function details.device_data(tvb, tree)
+  return add_samples(tvb, tree, messages.device_data)
+end
+
+function details.auto_device_data(tvb, tree)
+  return add_samples(tvb, tree, messages.auto_device_data)
+end
+
+-- ---- Frames
+
+local function is_older_request(id, length)
+  return length == 0 and asked_by_empty[layouts.reports[id]]
+end
+
+-- Whether a head has sent a frame: what only one side sends says so, of all else the number of the sender.
+local function is_from_head(id, length, source)
+  local command, report = layouts.commands[id], layouts.reports[id]
+  if (command == nil) == (report == nil) then
+    return source ~= 0
+  end
+  return report ~= nil and not is_older_request(id, length)
+end
+
+-- One of them with a table of its own, or with none because it has no fields.
+local function add_message(tvb, tree, name)
+  local layout = messages[name]
+  if layout and not tables.add(tree, tvb, layout, 0) then
+    tree:add_proto_expert_info(malformed)
+    return nil
+  end
+  if not has_rest[name] and tvb:len() > header_size + payload_size(layout) then
+    tree:add_proto_expert_info(too_long)
+  end
+  return details[name] and details[name](tvb, tree)
+end
+
+local function dissect_frame(stream, offset, size, root)
+  local tvb = stream.tvb(offset, size):tvb()
+  local tree = root:add(ping360, tvb())
+  local body = tvb(0, size - checksum_size):tvb()
+  tables.add(tree, body, messages.frame, 0)
+  local length, id, source = tvb(2, 2):le_uint(), tvb(4, 2):le_uint(), tvb(6, 1):uint()
+  local from_head = is_from_head(id, length, source)
+  tree:add(extra.from_head, tvb(4, 2), from_head):set_generated()
+
+  local asked = is_older_request(id, length) and layouts.reports[id]
+  local name = asked and "general_request" or (from_head and layouts.reports or layouts.commands)[id]
+  local text = name or name_of(id)
+  if name then
+    tree:add(extra.message, tvb(4, 2), name):set_generated()
+  else
+    tree:add_proto_expert_info(unknown)
+  end
+  if asked then
+    tree:add(extra.about, tvb(4, 2), asked):set_generated()
+    text = text .. ": " .. asked .. ", in an older spelling"
+  elseif name then
+    local more = add_message(body, tree, name)
+    text = text .. (more and ": " .. more or "")
+  end
+
+  local checksum = tree:add_le(extra.checksum, tvb(size - checksum_size, checksum_size))
+  if not is_right(stream, offset) then
+    checksum:add_proto_expert_info(bad_checksum, string.format("Wrong checksum: the sum is 0x%04x",
+                                                               sum_of(stream, offset, size)))
+    text = text .. ", wrong checksum"
+  end
+  tree:append_text(", " .. text)
+  return text
+end
+
+-- What clients send that is no frame (1.1, 4.4).
+local function known_garbage(raw)
+  if raw == "\0\255" then
+    return "00 FF, as ping-cpp sends it when it opens UDP"
+  end
+  return raw:match("^U+%z?$") and "Bytes by which a serial head finds the speed of its line"
+end
+
+local function add_garbage(range, root)
+  local tree = root:add(ping360, range)
+  tree:append_text(", no frame")
+  tree:add(extra.garbage, range)
+  local known = known_garbage(range:raw())
+  if known then
+    tree:add_proto_expert_info(between_frames, known)
+  else
+    tree:add_proto_expert_info(no_frame)
+  end
+  return "no frame"
+end
+
+-- Goes through a stream up to its end, or up to a frame that is not whole. Returns where that begins, and how many of
+-- its bytes are missing, as next_piece() has it.
+local function dissect_stream(stream, root, texts)
+  local offset = 0
+  while offset < #stream.raw do
+    local kind, size = next_piece(stream, offset)
+    if kind == "more" then
+      return offset, size
+    end
+    if kind == "frame" then
+      table.insert(texts, dissect_frame(stream, offset, size, root))
+    else
+      table.insert(texts, add_garbage(stream.tvb(offset, size), root))
+    end
+    offset = offset + size
+  end
+  return offset, 0
+end
+
+-- ---- UDP: datagrams may cut frames anywhere (4.1, 4.2). Wireshark puts only TCP together.
+
+-- By the two ends, what a datagram left unfinished: { bytes, number of the packet where it began, time }. And for each
+-- packet what it goes on with, or what was given up when it came. Filled when a capture is gone through the first time.
+local unfinished, continued, given_up = {}, {}, {}
+-- By the two ends, the first packet that was taken for this protocol.
+local first_packet = {}
+function ping360.init()
+  unfinished, continued, given_up, first_packet = {}, {}, {}, {}
+end
+
+local function ends_of(pinfo)
+  local source, destination = tostring(pinfo.src) .. " " .. pinfo.src_port, tostring(pinfo.dst) .. " " .. pinfo.dst_port
+  return source .. " " .. destination, destination .. " " .. source
+end
+
+-- A datagram that begins with a whole frame begins anew.
+local function note_beginning(stream, pinfo, direction)
+  local before = unfinished[direction]
+  unfinished[direction] = nil
+  if before then
+    local in_time = pinfo.rel_ts - before.time < give_up_s
+    local place = in_time and not is_right(stream, 0) and continued or given_up
+    place[pinfo.number] = before
+  end
+end
+
+local function note_end(stream, offset, pinfo, direction, before)
+  unfinished[direction] = {
+    bytes = stream.raw:sub(offset + 1),
+    number = before and offset == 0 and before.number or pinfo.number,
+    time = pinfo.rel_ts,
+  }
+end
+
+local function add_note(range, root, text)
+  local tree = root:add(ping360, range)
+  tree:append_text(", " .. text)
+  return tree
+end
+
+local function add_beginning(tvb, pinfo, root)
+  local before, lost = continued[pinfo.number], given_up[pinfo.number]
+  if before then
+    add_note(tvb(), root, "goes on with a frame"):add(extra.begun_in, before.number):set_generated()
+  end
+  if lost then
+    add_note(tvb(), root, "begins anew"):add_proto_expert_info(
+      unfinished_frame, string.format("%d bytes from packet %d on were never made a frame", #lost.bytes, lost.number))
+  end
+end
+
+local function dissect_datagram(tvb, pinfo, root, texts)
+  local direction, back = ends_of(pinfo)
+  local stream = make_stream(tvb)
+  if not pinfo.visited then
+    note_beginning(stream, pinfo, direction)
+    first_packet[direction] = first_packet[direction] or pinfo.number
+    first_packet[back] = first_packet[direction]
+  end
+  add_beginning(tvb, pinfo, root)
+  local before = continued[pinfo.number]
+  if before then
+    local whole = ByteArray.new(before.bytes, true)
+    whole:append(tvb:bytes())
+    stream = make_stream(whole:tvb("Ping360 stream"))
+  end
+  local offset = dissect_stream(stream, root, texts)
+  if offset < #stream.raw then
+    local piece = tvb(math.max(offset - (before and #before.bytes or 0), 0))
+    add_note(piece, root, "piece of a frame"):add(extra.piece, piece)
+    table.insert(texts, "piece of a frame")
+    if not pinfo.visited and tvb:reported_len() == tvb:len() then
+      note_end(stream, offset, pinfo, direction, before)
+    end
+  end
+end
+
+function ping360.dissector(tvb, pinfo, root)
+  pinfo.cols.protocol = "PING360"
+  pinfo.conversation = ping360
+  local texts = {}
+  -- TCP hands over ports, UDP as well: the type of the port tells which it was.
+  if pinfo.port_type == 2 then
+    local offset, missing = dissect_stream(make_stream(tvb), root, texts)
+    if offset < tvb:len() then
+      pinfo.desegment_offset = offset
+      pinfo.desegment_len = missing > 0 and missing or DESEGMENT_ONE_MORE_SEGMENT
+    end
+  else
+    dissect_datagram(tvb, pinfo, root, texts)
+  end
+  if #texts > 0 then
+    pinfo.cols.info = table.concat(texts, "; ")
+  end
+  return tvb:len()
+end
+
+-- ---- Discovery (5): text in datagrams
+
+local discovery_prefix = "ping360_discovery"
+local discovery = Proto(discovery_prefix, "Ping360 discovery")
+local longest_text = 512
+local found = {
+  message = ProtoField.string(discovery_prefix .. ".message", "Message"),
+  device = ProtoField.string(discovery_prefix .. ".device", "Device"),
+  maker = ProtoField.string(discovery_prefix .. ".maker", "Maker"),
+  mac = ProtoField.string(discovery_prefix .. ".mac_address", "MAC address"),
+  ip = ProtoField.ipv4(discovery_prefix .. ".ip_address", "IP address"),
+}
+local bad_answer = ProtoExpert.new(discovery_prefix .. ".bad_answer", "Answer that known clients do not understand",
+                                   expert.group.MALFORMED, expert.severity.WARN)
+for _, field in pairs(found) do
+  table.insert(discovery.fields, field)
+end
+discovery.experts = { bad_answer }
+
+-- The address in "192.168.002.004", or nil.
+local function address_of(text)
+  local groups = { text:match("^(%d+)%.(%d+)%.(%d+)%.(%d+)$") }
+  for i, group in ipairs(groups) do
+    groups[i] = tonumber(group, 10)
+    if groups[i] > 255 then
+      return nil
+    end
+  end
+  return #groups == 4 and Address.ip(table.concat(groups, ".")) or nil
+end
+
+local function add_ip(range, tree, text)
+  local address = address_of(text)
+  if address then
+    tree:add(found.ip, range, address)
+  else
+    tree:add_proto_expert_info(bad_answer, "No IP address")
+  end
+end
+
+-- What each line of an answer holds.
+local lines_of_answer = {
+  function(range, tree, line) tree:add(found.device, range, line) end,
+  function(range, tree, line) tree:add(found.maker, range, line) end,
+  function(range, tree, line)
+    local mac = line:match("^MAC Address:%-%s*(%x%x%-%x%x%-%x%x%-%x%x%-%x%x%-%x%x)$")
+    if mac then
+      tree:add(found.mac, range, (mac:lower():gsub("-", ":")))
+    else
+      tree:add_proto_expert_info(bad_answer, "No MAC address")
+    end
+  end,
+  function(range, tree, line) add_ip(range, tree, line:match("^IP Address:%-%s*(.*)$") or "") end,
+}
+
+local function add_answer(tvb, tree, text)
+  local count, begin = 0, 1
+  for line, after in text:gmatch("(.-)\r\n()") do
+    count = count + 1
+    if count <= #lines_of_answer then
+      lines_of_answer[count](tvb(begin - 1, after - begin), tree, line)
+    end
+    begin = after
+  end
+  if count ~= #lines_of_answer or begin ~= #text + 1 then
+    tree:add_proto_expert_info(bad_answer, "ping-viewer takes four lines, each ended by CR LF")
+  end
+end
+
+-- What a text is called, or nil when it is none of these: other protocols have the port, too.
+local function name_of_text(text)
+  if text:match("^[%s\0]*Discovery[%s\0]*$") then
+    return "discovery"
+  end
+  if text:match("^[%s\0]*SetSS1IP ") then
+    return "set_ip"
+  end
+  return text:match("^[^\r\n]*PING360") and "answer"
+end
+
+function discovery.dissector(tvb, pinfo, root)
+  local text = tvb:len() > 0 and tvb:len() <= longest_text and tvb:raw() or ""
+  local name = name_of_text(text)
+  if not name then
+    return 0
+  end
+  pinfo.cols.protocol = "PING360"
+  pinfo.cols.info = name
+  local tree = root:add(discovery, tvb())
+  tree:append_text(", " .. name)
+  tree:add(found.message, tvb(), name):set_generated()
+  if name == "answer" then
+    add_answer(tvb, tree, text)
+  elseif name == "set_ip" then
+    add_ip(tvb(), tree, text:match("SetSS1IP (.-)[%s\0]*$"))
+  end
+  return tvb:len()
+end
+
+-- ---- Ports. A serial line, and a stream over TCP, is found by the front of its frames.
+
+-- Gives the ports to `proto`, with a preference for each transport. Returns those in use, by transport.
+local function listen(proto, ports, description)
+  local in_use, dissector_tables = {}, {}
+  for transport, default in pairs(ports) do
+    in_use[transport] = default
+    dissector_tables[transport] = DissectorTable.get(transport .. ".port")
+    proto.prefs[transport] = Pref.range(transport:upper() .. " ports", default, description, 65535)
+  end
+  local function add()
+    for transport, dissector_table in pairs(dissector_tables) do
+      if in_use[transport] ~= "" then
+        dissector_table:add(in_use[transport], proto)
+      end
+    end
+  end
+  add()
+  function proto.prefs_changed()
+    for transport, dissector_table in pairs(dissector_tables) do
+      if in_use[transport] ~= "" then
+        dissector_table:remove(in_use[transport], proto)
+      end
+      in_use[transport] = proto.prefs[transport]
+    end
+    add()
+  end
+  return in_use
+end
+local ports_of_heads = listen(ping360, { udp = "9092,12345", tcp = "" }, "Ports of heads, and of bridges of vehicles")
+listen(discovery, { udp = "30303" }, "Ports at which heads are found")
+
+for _, transport in ipairs({ "tcp", "udp" }) do
+  ping360:register_heuristic(transport, function(tvb, pinfo, root)
+    if tvb:len() < header_size or not is_plausible(tvb:raw(0, header_size), 0) then
+      return false
+    end
+    ping360.dissector(tvb, pinfo, root)
+    return true
+  end)
+end
+
+table.insert(tables.serial_devices, {
+  proto = ping360,
+  begins_with_frame = function(tvb) return tvb:raw(0, math.min(tvb:len(), 4)):match("^BR.?[\0-\16]?$") ~= nil end,
+})
+
+-- ---- Empty datagrams (4.3), which UDP hands to nobody: a dissector that comes after all others finds them.
+
+local udp_length = Field.new("udp.length")
+local udp_header_size = 8
+local after_all = Proto("ping360_empty", "Ping360: empty datagrams")
+
+local function is_within(port, ranges)
+  for first, last in ranges:gmatch("(%d+)%-?(%d*)") do
+    if port >= tonumber(first) and port <= tonumber(last == "" and first or last) then
+      return true
+    end
+  end
+  return false
+end
+
+local function is_of_this_protocol(pinfo)
+  local known_from = first_packet[ends_of(pinfo)]
+  return (known_from and known_from < pinfo.number) or is_within(pinfo.src_port, ports_of_heads.udp) or
+         is_within(pinfo.dst_port, ports_of_heads.udp)
+end
+
+function after_all.dissector(_, pinfo, root)
+  local length = pinfo.port_type == 3 and udp_length()
+  if length and length.value == udp_header_size and is_of_this_protocol(pinfo) then
+    pinfo.cols.protocol = "PING360"
+    pinfo.cols.info = "empty datagram"
+    add_note(length.range, root, "empty datagram"):add_proto_expert_info(
+      between_frames, "Empty datagram: ends a scan; a bridge makes a break of it")
+  end
+end
+register_postdissector(after_all)

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What only a head of type `ping360` has in the configuration (docs/configuration.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "protocol/ping360/device_config.hpp"
+#include "server/config/config.hpp"
+#include "server/net/serial_port.hpp"
+#include "server/net/udp_transport.hpp"
+
+namespace sonard::server {
+
+/// To which clients send that have found the head (docs/protocols/ping360.md 4.1).
+inline constexpr std::uint16_t ping360_data_port = 12345;
+
+/// The socket at which clients find the head (docs/protocols/ping360.md 5).
+struct DiscoveryConfig {
+  Endpoint bind{0, 30303};
+  Ipv4 address = 0;  ///< that the answer names: one at which a socket of `udp` is reached
+  std::array<std::uint8_t, 6> mac{0x54, 0x10, 0xEC, 0x12, 0x34, 0x56};
+  AllowList allow;
+};
+
+/// The head turns about the z axis of its mount, and looks along x at the angle `device.bearing_offset`. Its
+/// jobs fill in `range` of the acoustics.
+struct Ping360Config final : DeviceSettings {
+  ping360::DeviceConfig device;
+  std::vector<UdpTransportConfig> udp;  ///< channels 0, 1, ... of the device, all with the faults of one link
+  /// Behind them, as one channel more; without tcp, udp and pty: there is none.
+  SerialLinkConfig serial;
+  std::optional<DiscoveryConfig> discovery;
+};
+
+/// Of a head of this type.
+inline const Ping360Config& ping360_config(const HeadConfig& head) {
+  return static_cast<const Ping360Config&>(*head.device);
+}
+
+/// The acoustics of such a head, where nothing is configured.
+render::SonarSettings ping360_acoustics();
+
+}  // namespace sonard::server

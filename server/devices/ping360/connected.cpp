@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/devices/ping360/connected.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+
+#include "protocol/ping360/device.hpp"
+#include "protocol/ping360/discovery.hpp"
+#include "server/devices/ping360/config.hpp"
+#include "server/net/serial_transport.hpp"
+#include "server/net/several_transports.hpp"
+#include "server/net/udp_endpoint.hpp"
+#include "server/program_log/peer_log.hpp"
+
+namespace sonard::server {
+namespace {
+
+std::vector<std::unique_ptr<Transport>> open_transports(const Ping360Config& config,
+                                                        boost::asio::io_context& io, const Clock& clock) {
+  std::vector<std::unique_ptr<Transport>> transports;
+  for (const UdpTransportConfig& udp : config.udp) {
+    transports.push_back(std::make_unique<UdpTransport>(io, clock, udp));
+  }
+  if (config.device.serial_channel >= 0) {
+    transports.push_back(std::make_unique<SerialTransport>(io, clock, config.serial));
+  }
+  return transports;
+}
+
+/// Tells clients where the head is, and does not take the addresses that they give it.
+class Discovery {
+ public:
+  Discovery(const std::string& head, const DiscoveryConfig& config, boost::asio::io_context& io)
+      : head_(head), config_(config), socket_(io, config.bind, UdpEndpoint::Sharing::with_others) {}
+
+  void start() {
+    socket_.start([this](const Datagram& asked) { answer(asked); });
+  }
+  void stop() { socket_.close(); }
+
+ private:
+  void answer(const Datagram& asked) {
+    if (!allows(config_.allow, asked.remote.address)) {
+      return;
+    }
+    const std::span<const std::uint8_t> bytes(asked.bytes.data(), asked.bytes.size());
+    const std::optional<Ipv4> wanted = ping360::set_ip(bytes);
+    if (wanted) {
+      log_.warn("head={} was told by {} to take the address {}: this machine's network is left as it is",
+                head_, address_text(asked.remote.address), address_text(*wanted));
+    }
+    if (ping360::is_discovery(bytes) || wanted.value_or(0) != 0) {
+      const std::string text = ping360::discovery_reply(config_.mac, config_.address);
+      socket_.send({{asked.remote, 0, SharedBytes({text.begin(), text.end()})}});
+    }
+  }
+
+  const std::string head_;
+  const DiscoveryConfig config_;
+  UdpEndpoint socket_;
+  PeerLog log_;
+};
+
+class ConnectedPing360 final : public ConnectedDevice {
+ public:
+  ConnectedPing360(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
+      : device_(ping360_config(head).device, clock.now()),
+        transport_(open_transports(ping360_config(head), io, clock)) {
+    if (const auto& discovery = ping360_config(head).discovery) {
+      discovery_ = std::make_unique<Discovery>(head.name, *discovery, io);
+    }
+  }
+
+  Device& device() override { return device_; }
+  Transport& transport() override { return transport_; }
+
+  void start(std::function<void(Event)> /*happen*/) override {
+    if (discovery_) {
+      discovery_->start();
+    }
+  }
+  void stop() override {
+    if (discovery_) {
+      discovery_->stop();
+    }
+  }
+
+ private:
+  ping360::Device device_;
+  SeveralTransports transport_;
+  std::unique_ptr<Discovery> discovery_;
+};
+
+}  // namespace
+
+std::unique_ptr<ConnectedDevice> connect_ping360(const HeadConfig& head, boost::asio::io_context& io,
+                                                 const Clock& clock) {
+  return std::make_unique<ConnectedPing360>(head, io, clock);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/devices/ping360/section.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "server/config/network_section.hpp"
+#include "server/net/addresses.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr double carrier_hz = 740'000.0;  // what a head has at boot (docs/protocols/ping360.md 2.3)
+constexpr double minute_ms = 60'000.0;
+constexpr TextForm discovery_form{"an address and port such as 0.0.0.0:30303", endpoint_form.type,
+                                  endpoint_form.schema};
+constexpr TextForm address_form{"an IPv4 address such as 192.168.2.4", "address",
+                                R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}$")"};
+constexpr TextForm mac_form{"six hexadecimal octets such as 54:10:ec:12:34:56", "six octets",
+                            R"("type": "string", "pattern": "^[0-9A-Fa-f]{2}(:[0-9A-Fa-f]{2}){5}$")"};
+
+void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& config) {
+  const auto read = [&](YamlSection& inner) {
+    UdpTransportConfig socket;
+    read_socket(inner, socket.bind, socket.allow, endpoint_form,
+                "12345 is the port of the unit with an Ethernet plug, 9092 that of a vehicle's bridge",
+                "address blocks of clients that are answered");
+    const bool taken = std::ranges::any_of(config.udp, [&](const UdpTransportConfig& other) {
+      return other.bind == socket.bind && socket.bind.port != 0;
+    });
+    if (taken) {
+      inner.report("bind", fmt::format("{} is given twice (expected a socket of its own)",
+                                       endpoint_text(socket.bind)));
+    }
+    socket.link = link;
+    config.udp.push_back(std::move(socket));
+  };
+  section.sections("udp", "the sockets that clients send to; required without `serial`", read);
+}
+
+void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
+  section.parsed("bind", discovery.bind, &parse_endpoint, discovery_form,
+                 "where clients ask; several heads may have the same");
+  section.default_is("bind", endpoint_text(discovery.bind), '"' + endpoint_text(discovery.bind) + '"');
+  section.require("address", "the address that clients are told, at which a socket of udp is reached");
+  section.parsed("address", discovery.address, &parse_ipv4, address_form,
+                 "the address that clients are told, at which a socket of `udp` is reached");
+  section.parsed("mac", discovery.mac, &parse_mac, mac_form, "what clients are told of it");
+  section.default_is("mac", "54:10:ec:12:34:56");
+  if (!section.has("bind")) {
+    section.require("allow", "the address blocks to answer, as the socket is bound to all addresses");
+  }
+  read_allow_list(section, discovery.bind.address, discovery.allow, "address blocks that are answered");
+}
+
+/// Clients that have found the head send to the address that they were told, and know but one port.
+void warn_if_found_in_vain(const YamlSection& section, const Ping360Config& config,
+                           std::vector<ConfigWarning>& warnings) {
+  if (!config.discovery || config.discovery->address == 0) {
+    return;
+  }
+  const Endpoint told{config.discovery->address, ping360_data_port};
+  const bool served = std::ranges::any_of(config.udp, [&](const UdpTransportConfig& socket) {
+    return socket.bind.port == told.port && (socket.bind.address == 0 || socket.bind.address == told.address);
+  });
+  if (!served) {
+    warnings.push_back({section.path_of("discovery") + ".address",
+                        fmt::format("clients that find the head send to {}, where no socket of udp is bound",
+                                    endpoint_text(told))});
+  }
+}
+
+void read_device(YamlSection& section, ping360::DeviceConfig& device) {
+  section.integer("id", device.id, 1, 254, "the device ID in its frames, until a client sets another");
+  section.integer("revision", device.information.device_revision, 1, 255,
+                  "hardware revision that it reports");
+  section.integer("firmware_major", device.information.firmware_major, 0, 255, "firmware that it reports");
+  section.integer("firmware_minor", device.information.firmware_minor, 0, 255,
+                  "ping-viewer lets a head scan by itself if its firmware is newer than 3.3.0");
+  section.integer("firmware_patch", device.information.firmware_patch, 0, 255, "see there");
+  section.integer("bearing_offset", device.bearing_offset, 0, 399,
+                  "angle in gradians at which the head looks straight ahead; ping-viewer takes 200 for it, "
+                  "drivers of ROS 0");
+  section.integer("queue_length", device.queue_length, 1, 100,
+                  "commands that wait for the one that is done; beyond that the oldest is dropped");
+  section.boolean("accepts_angle_400", device.accepts_angle_400,
+                  "takes 400 gradians for 0, as a driver of ROS sends it");
+  section.boolean("obeys_set_common_device_id", device.obeys_set_common_device_id,
+                  "takes message 100 as message 2000; a real head refused it");
+  section.boolean("signed_scan_angles", device.signed_scan_angles,
+                  "reads limits of a scan as signed, so that 65336 is -200 gradians");
+  section.boolean("clamps_scan_to_stop", device.clamps_scan_to_stop,
+                  "a sector ends at its limit, not at the last whole step before it");
+  section.boolean("ignores_other_destinations", device.ignores_other_destinations,
+                  "drops frames to another ID than its own, 0 and 255");
+  section.choice("fan_out", device.fan_out,
+                 {{"requester", ping360::FanOut::requester}, {"all", ping360::FanOut::all}},
+                 "who hears an answer: the client that asked or began the scan, or every client, as behind a "
+                 "vehicle's bridge");
+  section.integer("max_clients", device.max_clients, 2, 1000,
+                  "clients told apart; beyond that the one that was silent longest is forgotten");
+  section.integer("max_datagram", device.max_datagram, 0, 65'507,
+                  "bytes; longer frames go out in several datagrams, for clients with short buffers. 0: each "
+                  "frame in one");
+}
+
+void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
+  section.duration("ping_overhead_ms", device.ping_overhead, Range::from(0.0, 10'000.0),
+                   "of each ping, beside turning and listening");
+  section.duration("gradian_ms", device.time_per_gradian, Range::from(0.0, 1000.0),
+                   "turning by one gradian (0.9 degrees)");
+  section.number("scale", device.time_scale, Range::from(0.0, 100.0),
+                 "factor on the time from ping to ping; 0: as fast as pings are rendered");
+  section.duration(
+      "idle_timeout_ms", device.idle_timeout, Range::from(0.0, 60.0 * minute_ms),
+      "a client that is silent for so long is forgotten, and its scan ends; 0: never, as clients "
+      "may only listen for longer than a turn takes");
+  section.duration("reset_ms", device.reset_silence, Range::from(0.0, minute_ms), "silence after a reset");
+  section.duration("bootloader_ms", device.bootloader_silence, Range::from(0.0, minute_ms),
+                   "silence after a reset to the bootloader");
+}
+
+void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Config& config) {
+  read_acoustics(section, carrier_hz, head);
+  render::Aperture& aperture = head.acoustics.aperture;
+  section.angle("beamwidth_deg", aperture.receive_beamwidth_rad, Range::above(0.0, 60.0),
+                "width of the beam in azimuth");
+  aperture.beam_edges_rad = {aperture.receive_beamwidth_rad / 2, -aperture.receive_beamwidth_rad / 2};
+  using Pulse = render::PhysicalModel::Pulse;
+  section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
+                 "response in range: as long as the client's pulse, or without length");
+  using Scale = render::OutputScale;
+  section.choice("output_scale", head.acoustics.output_scale,
+                 {{"half_decibels", Scale::half_decibels}, {"linear", Scale::linear}},
+                 "what one step of a sample is; the maker does not publish it");
+  section.number("normal_gain_db", config.device.gain_db[1], Range::from(-100.0, 100.0),
+                 "what the gain setting 1 adds to the level of setting 0");
+  section.number("high_gain_db", config.device.gain_db[2], Range::from(-100.0, 100.0),
+                 "what the gain setting 2 adds");
+}
+
+}  // namespace
+
+Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
+                                std::vector<ConfigWarning>& warnings) {
+  section.introduce(
+      "A Blue Robotics Ping360 on UDP or a serial line ([protocols/ping360.md](protocols/ping360.md)). It "
+      "turns "
+      "about the z axis of its mount and looks along x at the angle `device.bearing_offset`.");
+  Ping360Config config;
+  apply_water(context, carrier_hz, head, warnings);
+  config.device.waits_for_permission = context.pings_by_source;
+  if (context.water_sound_speed_mps > 0.0) {
+    config.device.water_sound_speed_mps = context.water_sound_speed_mps;
+  }
+  read_common(section, context, head);
+  LinkConfig link;
+  section.section("link", "faults of the link between `udp` and the clients",
+                  [&](YamlSection& inner) { read_link_faults(inner, link); });
+  read_udp(section, link, config);
+  section.section("serial", "a serial line beside the sockets, and how clients reach it",
+                  [&](YamlSection& inner) { config.serial = read_serial_link(inner, context.folder); });
+  if (config.udp.empty() && !section.has("serial")) {
+    section.report("udp", "no client could reach the head (expected udp with at least one item, or serial)");
+  }
+  section.section("discovery", "answers those who look for heads on the network; without it none is found",
+                  [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
+  warn_if_found_in_vain(section, config, warnings);
+  section.section("device", "what it says of itself, and choices in which firmware and clients differ",
+                  [&](YamlSection& inner) { read_device(inner, config.device); });
+  section.section("timing", "the pace of pings, silence, resets",
+                  [&](YamlSection& inner) { read_timing(inner, config.device); });
+  section.section("acoustics", "how its pings are formed",
+                  [&](YamlSection& inner) { read_ping360_acoustics(inner, head, config); });
+  if (section.has("serial")) {
+    config.device.serial_channel = static_cast<int>(config.udp.size());
+  }
+  return config;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the loader that reads a head of type `ping360`.
+#pragma once
+
+#include "server/config/head_section.hpp"
+#include "server/devices/ping360/config.hpp"
+
+namespace sonard::server {
+
+/// @param head has the defaults, and gets what the section says, but for `head.device`
+Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
+                                std::vector<ConfigWarning>& warnings);
+
+}  // namespace sonard::server

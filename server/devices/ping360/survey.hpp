@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sweeps of a Ping360 along a trajectory.
+#pragma once
+
+#include <memory>
+
+#include "server/config/config.hpp"
+#include "server/devices/survey.hpp"
+
+namespace sonard::server {
+
+/// The settings of the user go the way of a client's: through a transducer command. A frame is a turn, or a
+/// sweep of the sector from one limit to the other, and of whole ones only.
+/// @throws CLI::ValidationError
+std::unique_ptr<Survey> survey_of_ping360(const HeadConfig& head, const SurveyOptions& options);
+
+}  // namespace sonard::server

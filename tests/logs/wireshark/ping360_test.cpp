@@ -1,0 +1,535 @@
+// SPDX-License-Identifier: Apache-2.0
+// Byte examples of the Ping360 through the dissector, over UDP and TCP. What each field holds is read off
+// docs/protocols/ping360.md (sections 1, 2, 5) by hand; bearings are 0.9 degrees for each gradian (2.2).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <string_view>
+
+#include "tests/logs/wireshark/captures.hpp"
+#include "tests/support/hex_fixture.hpp"
+
+namespace sonard::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string prefix = "ping360_sonar.";
+const std::string discovery_prefix = "ping360_discovery.";
+
+constexpr pcapng::Endpoint host{0x7F000001, 50'000};
+constexpr pcapng::Endpoint head{0x7F000002, 12'345};
+constexpr pcapng::Endpoint discovery{0x7F000002, 30'303};
+
+/// In all examples the host is 0, and the head 2.
+bool is_command(const Bytes& frame) {
+  return frame[6] == 0;
+}
+
+pcapng::Bytes datagram_of(const Bytes& frame) {
+  return is_command(frame) ? pcapng::udp_packet(host, head, frame) : pcapng::udp_packet(head, host, frame);
+}
+
+Bytes text_bytes(std::string_view text) {
+  return {text.begin(), text.end()};
+}
+
+void append(std::vector<pcapng::Bytes>& packets, const std::vector<pcapng::Bytes>& more) {
+  packets.insert(packets.end(), more.begin(), more.end());
+}
+
+void append(Bytes& bytes, const Bytes& more) {
+  bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+/// A frame with a right checksum (1).
+Bytes frame(std::uint16_t id, std::uint8_t source, const Bytes& payload) {
+  const auto low = [](std::size_t value) { return static_cast<std::uint8_t>(value & 0xFFU); };
+  Bytes bytes{'B', 'R', low(payload.size()), low(payload.size() >> 8), low(id), low(id >> 8), source, 0};
+  append(bytes, payload);
+  const unsigned sum = std::accumulate(bytes.begin(), bytes.end(), 0U);
+  append(bytes, {low(sum), low(sum >> 8)});
+  return bytes;
+}
+
+struct Expectation {
+  std::string fixture;
+  std::string message;
+  Row fields;
+};
+
+const std::vector<Expectation> expectations{
+    {"request_protocol_version",
+     "general_request",
+     {{"frame.source", "0"},
+      {"frame.destination", "0"},
+      {"frame.payload_length", "2"},
+      {"from_head", "0"},
+      {"general_request.requested_id", "5"},
+      {"about", "protocol_version"},
+      {"checksum", "0x00a1"}}},
+    {"protocol_version",
+     "protocol_version",
+     {{"frame.source", "2"},
+      {"from_head", "1"},
+      {"protocol_version.version_major", "1"},
+      {"protocol_version.version_minor", "0"},
+      {"protocol_version.version_patch", "0"}}},
+    {"request_device_information", "general_request", {{"about", "device_information"}}},
+    {"device_information",
+     "device_information",
+     {{"device_information.device_type", "2"},
+      {"device_information.device_revision", "1"},
+      {"device_information.firmware_version_major", "3"},
+      {"device_information.firmware_version_minor", "3"},
+      {"device_information.firmware_version_patch", "8"}}},
+    {"request_device_data",
+     "general_request",
+     {{"general_request.requested_id", "2300"}, {"about", "device_data"}}},
+    {"device_data_at_boot",
+     "device_data",
+     {{"device_data.mode", "1"},
+      {"device_data.gain_setting", "0"},
+      {"device_data.angle", "0"},
+      {"device_data.transmit_duration", "32"},
+      {"device_data.sample_period", "80"},
+      {"device_data.transmit_frequency", "740"},
+      {"device_data.number_of_samples", "1024"},
+      {"device_data.data_length", "0"},
+      {"bearing_deg", "0"},
+      {"data", ""}}},
+    {"transducer",
+     "transducer",
+     {{"transducer.mode", "1"},
+      {"transducer.gain_setting", "1"},
+      {"transducer.angle", "200"},
+      {"transducer.transmit_duration", "11"},
+      {"transducer.sample_period", "88"},
+      {"transducer.transmit_frequency", "750"},
+      {"transducer.number_of_samples", "1200"},
+      {"transducer.transmit", "1"},
+      {"bearing_deg", "180"}}},
+    {"device_data",
+     "device_data",
+     {{"device_data.gain_setting", "1"},
+      {"device_data.angle", "200"},
+      {"device_data.transmit_duration", "11"},
+      {"device_data.sample_period", "88"},
+      {"device_data.number_of_samples", "8"},
+      {"device_data.data_length", "8"},
+      {"bearing_deg", "180"},
+      {"data", "0010203040ff8001"}}},
+    {"nack_sample_period",
+     "nack",
+     {{"nack.nacked_id", "2601"}, {"about", "transducer"}, {"text", "sample_period out of range"}}},
+    {"nack_not_recognised",
+     "nack",
+     {{"nack.nacked_id", "100"}, {"about", "set_common_device_id"}, {"text", "command not recognised"}}},
+    {"auto_transmit",
+     "auto_transmit",
+     {{"auto_transmit.mode", "1"},
+      {"auto_transmit.gain_setting", "0"},
+      {"auto_transmit.transmit_duration", "80"},
+      {"auto_transmit.sample_period", "80"},
+      {"auto_transmit.transmit_frequency", "750"},
+      {"auto_transmit.number_of_samples", "1024"},
+      {"auto_transmit.start_angle", "0"},
+      {"auto_transmit.stop_angle", "399"},
+      {"auto_transmit.num_steps", "1"},
+      {"auto_transmit.delay", "0"}}},
+    {"auto_device_data",
+     "auto_device_data",
+     {{"auto_device_data.angle", "399"},
+      {"auto_device_data.transmit_duration", "80"},
+      {"auto_device_data.sample_period", "80"},
+      {"auto_device_data.transmit_frequency", "750"},
+      {"auto_device_data.start_angle", "0"},
+      {"auto_device_data.stop_angle", "399"},
+      {"auto_device_data.num_steps", "1"},
+      {"auto_device_data.delay", "0"},
+      {"auto_device_data.number_of_samples", "4"},
+      {"auto_device_data.data_length", "4"},
+      {"bearing_deg", "-0.9"},
+      {"data", "09080706"}}},
+    {"motor_off", "motor_off", {{"frame.message_id", "2903"}, {"frame.payload_length", "0"}}},
+    {"ack_motor_off", "ack", {{"ack.acked_id", "2903"}, {"about", "motor_off"}}},
+    {"reset", "reset", {{"reset.bootloader", "0"}}},
+    {"set_device_id", "set_device_id", {{"set_device_id.id", "7"}, {"from_head", "0"}}},
+    {"set_common_device_id",
+     "set_common_device_id",
+     {{"frame.destination", "2"}, {"set_common_device_id.device_id", "3"}}},
+    {"ascii_text", "ascii_text", {{"text", "hello"}}},
+    {"transducer_brping",
+     "transducer",
+     {{"transducer.mode", "0"},
+      {"transducer.angle", "100"},
+      {"transducer.number_of_samples", "400"},
+      {"bearing_deg", "90"}}},
+    {"transducer_ros_python",
+     "transducer",
+     {{"transducer.gain_setting", "1"}, {"transducer.angle", "10"}, {"bearing_deg", "9"}}},
+    {"transducer_pnarvor",
+     "transducer",
+     {{"transducer.transmit_duration", "100"},
+      {"transducer.sample_period", "4000"},
+      {"transducer.transmit_frequency", "800"},
+      {"transducer.number_of_samples", "512"}}},
+};
+
+TEST(Ping360Dissector, fields_of_examples) {
+  std::vector<pcapng::Bytes> packets;
+  std::vector<std::string> fields{prefix + "message", expert_field};
+  std::set<std::string> names;
+  for (const Expectation& expected : expectations) {
+    packets.push_back(datagram_of(load_hex_fixture("ping360", expected.fixture)));
+    names.insert(expected.fixture);
+    for (const auto& [field, value] : expected.fields) {
+      fields.push_back(prefix + field);
+    }
+  }
+  const auto all = hex_fixture_names("ping360");
+  EXPECT_EQ(names, std::set<std::string>(all.begin(), all.end()));
+
+  const auto rows = dissect(packets, fields);
+  for (std::size_t i = 0; i < expectations.size(); ++i) {
+    SCOPED_TRACE(expectations[i].fixture);
+    EXPECT_EQ(rows[i].at(prefix + "message"), expectations[i].message);
+    EXPECT_EQ(rows[i].at(expert_field), "");
+    for (const auto& [field, value] : expectations[i].fields) {
+      EXPECT_EQ(rows[i].at(prefix + field), value) << field;
+    }
+  }
+}
+
+// What only one side sends tells the direction, of all else the number of the sender (1, 2).
+TEST(Ping360Dissector, directions_and_requests_in_the_older_spelling) {
+  const auto rows = dissect({datagram_of(frame(2000, 5, {5, 0})), datagram_of(frame(2601, 9, Bytes(14))),
+                             datagram_of(frame(2300, 0, {})), datagram_of(frame(4, 0, {}))},
+                            {prefix + "message", prefix + "from_head", prefix + "about", expert_field});
+  EXPECT_EQ(rows[0].at(prefix + "message"), "set_device_id");
+  EXPECT_EQ(rows[0].at(prefix + "from_head"), "1");
+  EXPECT_EQ(rows[1].at(prefix + "message"), "transducer");
+  EXPECT_EQ(rows[1].at(prefix + "from_head"), "0");
+  EXPECT_EQ(rows[2].at(prefix + "message"), "general_request");
+  EXPECT_EQ(rows[2].at(prefix + "about"), "device_data");
+  EXPECT_EQ(rows[3].at(prefix + "about"), "device_information");
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.at(expert_field), "");
+  }
+}
+
+// ping-viewer's straight ahead is 200, and 400 means 0 (2.3, 6).
+TEST(Ping360Dissector, straight_ahead_is_a_preference) {
+  Bytes settings(14);
+  const auto at = [&](std::uint8_t low, std::uint8_t high) {
+    settings[2] = low;
+    settings[3] = high;
+    return datagram_of(frame(2601, 0, settings));
+  };
+  const std::vector<pcapng::Bytes> packets{at(200, 0), at(201, 0), at(0x8F, 1), at(0x90, 1)};
+  const auto bearings = [&](const std::vector<std::string>& options) {
+    std::string all;
+    for (const Row& row : dissect(packets, {prefix + "bearing_deg"}, options)) {
+      all += row.at(prefix + "bearing_deg") + " ";
+    }
+    return all;
+  };
+  EXPECT_EQ(bearings({}), "180 -179.1 -0.9 0 ");
+  EXPECT_EQ(bearings({"-o", "ping360_sonar.ahead:200"}), "0 0.9 179.1 180 ");
+}
+
+// ---- Streams
+
+const std::vector<std::string> complaints{
+    prefix + "bad_checksum", prefix + "malformed",      prefix + "too_long",   prefix + "no_frame",
+    prefix + "unfinished",   prefix + "between_frames", prefix + "unknown_id", "_ws.malformed"};
+
+/// All examples of one direction, one behind the other.
+Bytes stream(bool commands) {
+  Bytes all;
+  for (const std::string& name : hex_fixture_names("ping360")) {
+    const Bytes bytes = load_hex_fixture("ping360", name);
+    if (is_command(bytes) == commands) {
+      append(all, bytes);
+    }
+  }
+  return all;
+}
+
+/// The numbers of those examples in the same order.
+std::string ids_of(bool commands) {
+  std::string ids;
+  for (const std::string& name : hex_fixture_names("ping360")) {
+    const Bytes bytes = load_hex_fixture("ping360", name);
+    ids += is_command(bytes) == commands ? std::to_string(bytes[4] | bytes[5] << 8) + "," : "";
+  }
+  return ids;
+}
+
+std::vector<pcapng::ByteView> pieces_of(const Bytes& bytes, std::size_t size) {
+  std::vector<pcapng::ByteView> pieces;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += size) {
+    pieces.push_back(pcapng::ByteView{bytes}.subspan(begin, std::min(size, bytes.size() - begin)));
+  }
+  return pieces;
+}
+
+/// What the dissector found in all of `packets` and complained about, by field.
+Row found_in(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& options = {}) {
+  std::vector<std::string> fields{prefix + "frame.message_id"};
+  fields.insert(fields.end(), complaints.begin(), complaints.end());
+  Row all;
+  for (const Row& row : dissect(packets, fields, options)) {
+    for (const auto& [field, value] : row) {
+      if (!value.empty()) {
+        all[field] += value + ",";
+      }
+    }
+  }
+  return all;
+}
+
+/// Both streams in a TCP connection, in pieces that begin and end anywhere in frames.
+std::vector<pcapng::Bytes> over_tcp(pcapng::TcpConversation line, std::size_t piece) {
+  std::vector<pcapng::Bytes> packets = line.open();
+  const Bytes commands = stream(true);
+  const Bytes reports = stream(false);
+  for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
+    append(packets, line.from_client(bytes));
+  }
+  for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
+    append(packets, line.from_server(bytes));
+  }
+  append(packets, line.close());
+  return packets;
+}
+
+/// The same in datagrams.
+std::vector<pcapng::Bytes> over_udp(std::size_t piece) {
+  std::vector<pcapng::Bytes> packets;
+  const Bytes commands = stream(true);
+  const Bytes reports = stream(false);
+  for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
+    packets.push_back(pcapng::udp_packet(host, head, bytes));
+  }
+  for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
+    packets.push_back(pcapng::udp_packet(head, host, bytes));
+  }
+  return packets;
+}
+
+// The serial line of a recording is on a port that the dissector of the Micron has, too.
+TEST(Ping360Dissector, a_stream_over_tcp_is_put_together_from_any_pieces) {
+  for (const std::size_t piece : {2000U, 50U, 3U}) {
+    for (const std::uint16_t port : {std::uint16_t{12'345}, pcapng::serial_head.port}) {
+      SCOPED_TRACE(std::to_string(piece) + " bytes, port " + std::to_string(port));
+      const Row all = found_in(
+          over_tcp(pcapng::TcpConversation{pcapng::serial_client, {pcapng::serial_head.address, port}},
+                   piece),
+          {"-o", "ping360_sonar.tcp:12345"});
+      EXPECT_EQ(all, (Row{{prefix + "frame.message_id", ids_of(true) + ids_of(false)}}));
+    }
+  }
+}
+
+// Datagrams hold several frames, and cut them anywhere (1.1). tshark's second pass sees what its first has
+// noted.
+TEST(Ping360Dissector, datagrams_are_put_together_from_any_pieces) {
+  for (const std::size_t piece : {2000U, 100U, 7U, 1U}) {
+    for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"-2"}}) {
+      SCOPED_TRACE(std::to_string(piece) + " bytes");
+      EXPECT_EQ(found_in(over_udp(piece), options),
+                (Row{{prefix + "frame.message_id", ids_of(true) + ids_of(false)}}));
+    }
+  }
+}
+
+TEST(Ping360Dissector, a_frame_in_pieces_names_the_packet_where_it_began) {
+  const Bytes data = load_hex_fixture("ping360", "device_data");
+  std::vector<pcapng::Bytes> packets;
+  for (const pcapng::ByteView bytes : pieces_of(data, 12)) {
+    packets.push_back(pcapng::udp_packet(head, host, bytes));
+  }
+  const auto rows =
+      dissect(packets, {prefix + "message", prefix + "begun_in", prefix + "piece", "_ws.col.Info"});
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].at(prefix + "piece"),
+            "42521600fc08020001"
+            "01c800");
+  EXPECT_EQ(rows[0].at("_ws.col.Info"), "piece of a frame");
+  EXPECT_EQ(rows[1].at(prefix + "begun_in"), "1");
+  EXPECT_EQ(rows[2].at(prefix + "begun_in"), "1");
+  EXPECT_EQ(rows[2].at(prefix + "message"), "device_data");
+}
+
+// 1.1: after 100 ms the rest of a frame is none. A whole frame is not taken for the rest of another.
+TEST(Ping360Dissector, frames_that_are_never_finished) {
+  const Bytes data = load_hex_fixture("ping360", "device_data");
+  const auto front = pcapng::ByteView{data}.first(12);
+  const auto rest = pcapng::ByteView{data}.subspan(12);
+  const std::vector<std::string> fields{prefix + "message", prefix + "piece", prefix + "no_frame",
+                                        prefix + "unfinished", expert_field};
+  const auto late = dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, rest)},
+                            fields, {}, std::chrono::milliseconds{101});
+  EXPECT_THAT(late[1].at(expert_field), HasSubstr("12 bytes from packet 1 on were never made a frame"));
+  EXPECT_EQ(late[1].at(prefix + "message"), "");
+  EXPECT_NE(late[1].at(prefix + "no_frame"), "");
+  const auto in_time = dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, rest)},
+                               fields, {}, std::chrono::milliseconds{99});
+  EXPECT_EQ(in_time[1].at(prefix + "message"), "device_data");
+  EXPECT_EQ(in_time[1].at(expert_field), "");
+  const auto anew =
+      dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, data)}, fields);
+  EXPECT_EQ(anew[1].at(prefix + "message"), "device_data");
+  EXPECT_NE(anew[1].at(prefix + "unfinished"), "");
+}
+
+// ---- What is wrong, and what is between frames
+
+TEST(Ping360Dissector, a_wrong_checksum_is_said) {
+  Bytes wrong = load_hex_fixture("ping360", "transducer");
+  wrong.at(10) = 0xC9;  // angle 201, which makes the sum one more than the 0x03a7 that is there
+  append(wrong, load_hex_fixture("ping360", "motor_off"));
+  const auto row = dissect({datagram_of(wrong)}, {prefix + "message", prefix + "transducer.angle",
+                                                  prefix + "bad_checksum", expert_field, "_ws.col.Info"})[0];
+  EXPECT_EQ(row.at(prefix + "message"), "transducer,motor_off");
+  EXPECT_EQ(row.at(prefix + "transducer.angle"), "201");
+  EXPECT_NE(row.at(prefix + "bad_checksum"), "");
+  EXPECT_EQ(row.at(expert_field), "Wrong checksum: the sum is 0x03a8");
+  EXPECT_THAT(row.at("_ws.col.Info"), HasSubstr("1200 samples, wrong checksum; motor_off"));
+}
+
+// A length that is wrong would hide the frames behind it (1.1).
+TEST(Ping360Dissector, frames_inside_of_a_broken_one_are_found) {
+  Bytes bytes = load_hex_fixture("ping360", "request_protocol_version");
+  bytes.at(2) = 30;
+  append(bytes, load_hex_fixture("ping360", "motor_off"));
+  append(bytes, load_hex_fixture("ping360", "transducer"));
+  append(bytes, load_hex_fixture("ping360", "reset"));
+  pcapng::TcpConversation line{pcapng::serial_client, pcapng::serial_head};
+  std::vector<pcapng::Bytes> packets = line.from_client(bytes);
+  packets.push_back(datagram_of(bytes));
+  for (const Row& row : dissect(packets, {prefix + "message", prefix + "garbage"})) {
+    EXPECT_EQ(row.at(prefix + "message"), "motor_off,transducer,reset");
+    EXPECT_EQ(row.at(prefix + "garbage"), "42521e00060000000500a100");
+  }
+}
+
+TEST(Ping360Dissector, junk_is_shown_and_the_frame_behind_it_found) {
+  const Bytes motor_off = load_hex_fixture("ping360", "motor_off");
+  Bytes behind{0x00, 0xFF, 'U', 'U', 'U', 'B'};
+  append(behind, motor_off);
+  const auto rows = dissect(
+      {datagram_of(behind), pcapng::udp_packet(host, head, Bytes{0x00, 0xFF}),
+       pcapng::udp_packet(host, head, text_bytes(std::string_view{"UUUUUUUUUU\0", 11})),
+       pcapng::udp_packet(host, head, {}),
+       pcapng::udp_packet({host.address, 50'001}, {host.address, 40'001}, {})},
+      {prefix + "message", prefix + "garbage", prefix + "no_frame", prefix + "between_frames", expert_field});
+  EXPECT_EQ(rows[0].at(prefix + "message"), "motor_off");
+  EXPECT_EQ(rows[0].at(prefix + "garbage"), "00ff55555542");
+  EXPECT_NE(rows[0].at(prefix + "no_frame"), "");
+  for (const std::size_t i : {1U, 2U, 3U}) {
+    EXPECT_EQ(rows[i].at(prefix + "no_frame"), "") << i;
+    EXPECT_NE(rows[i].at(prefix + "between_frames"), "") << i;
+  }
+  EXPECT_THAT(rows[1].at(expert_field), HasSubstr("ping-cpp"));
+  EXPECT_THAT(rows[2].at(expert_field), HasSubstr("speed of its line"));
+  EXPECT_THAT(rows[3].at(expert_field), HasSubstr("Empty datagram"));
+  EXPECT_EQ(rows[4].at(expert_field), "");
+}
+
+TEST(Ping360Dissector, payloads_that_do_not_fit_their_message) {
+  const auto rows = dissect(
+      {datagram_of(frame(2601, 0, Bytes(13))), datagram_of(frame(2601, 0, Bytes(15))),
+       datagram_of(frame(2300, 2, {1, 0, 0, 0, 32, 0, 80, 0, 0xE4, 2, 4, 0, 4, 0, 9, 8, 7})),
+       datagram_of(frame(1, 2, {5})), datagram_of(frame(1001, 0, {}))},
+      {expert_field, prefix + "malformed", prefix + "too_long", prefix + "unknown_id", prefix + "data"});
+  EXPECT_NE(rows[0].at(prefix + "malformed"), "");
+  EXPECT_NE(rows[1].at(prefix + "too_long"), "");
+  EXPECT_THAT(rows[2].at(expert_field), HasSubstr("4 bytes of data are said, 3 are there"));
+  EXPECT_EQ(rows[2].at(prefix + "data"), "090807");
+  EXPECT_NE(rows[3].at(prefix + "malformed"), "");
+  EXPECT_NE(rows[4].at(prefix + "unknown_id"), "");
+}
+
+// ---- Ports
+
+TEST(Ping360Dissector, frames_are_found_on_any_port) {
+  const Bytes request = load_hex_fixture("ping360", "request_protocol_version");
+  const pcapng::Endpoint elsewhere{0x7F000002, 40'001};
+  pcapng::TcpConversation line{host, elsewhere};
+  std::vector<pcapng::Bytes> packets = line.from_client(request);
+  packets.push_back(pcapng::udp_packet(host, elsewhere, request));
+  packets.push_back(pcapng::udp_packet(elsewhere, host, {}));
+  // A length of no message, a number of no message, and what begins as a frame does not.
+  const pcapng::Endpoint other{0x7F000003, 40'002};
+  packets.push_back(pcapng::udp_packet(host, other, frame(6, 0, {1, 2, 3})));
+  packets.push_back(pcapng::udp_packet(host, other, frame(1001, 0, {})));
+  packets.push_back(pcapng::udp_packet(host, other, text_bytes("BROKEN LINK")));
+  const auto rows = dissect(packets, {prefix + "message", prefix + "between_frames", "frame.protocols"});
+  EXPECT_EQ(rows[0].at(prefix + "message"), "general_request");
+  EXPECT_EQ(rows[1].at(prefix + "message"), "general_request");
+  EXPECT_NE(rows[2].at(prefix + "between_frames"), "");
+  for (const std::size_t i : {3U, 4U, 5U}) {
+    EXPECT_EQ(rows[i].at("frame.protocols").find("ping360"), std::string::npos) << i;
+  }
+}
+
+TEST(Ping360Dissector, ports_are_a_preference) {
+  const Bytes junk{0x00, 0xFF};
+  const auto at = [&](std::uint16_t port) { return pcapng::udp_packet(host, {head.address, port}, junk); };
+  const std::vector<pcapng::Bytes> packets{at(12'345), at(9092), at(40'001)};
+  const auto found = [&](const std::vector<std::string>& options) {
+    std::string ports;
+    for (const Row& row : dissect(packets, {prefix + "garbage", "udp.dstport"}, options)) {
+      ports += row.at(prefix + "garbage").empty() ? "" : row.at("udp.dstport") + ",";
+    }
+    return ports;
+  };
+  EXPECT_EQ(found({}), "12345,9092,");
+  EXPECT_EQ(found({"-o", "ping360_sonar.udp:40000-40005"}), "40001,");
+}
+
+// ---- Discovery (5)
+
+const std::string answer =
+    "SONAR PING360  \r\nBlue Robotics\r\nMAC Address:- 54-10-EC-79-7D-C5\r\nIP Address:- 192.168.002.004\r\n";
+
+TEST(Ping360Dissector, discovery) {
+  const auto to_head = [](std::string_view text) {
+    return pcapng::udp_packet(discovery, discovery, text_bytes(text));
+  };
+  const auto from_head = [](std::string_view text) {
+    return pcapng::udp_packet(discovery, host, text_bytes(text));
+  };
+  const auto rows =
+      dissect({to_head("Discovery"), to_head(" Discovery\r\n"), from_head(answer),
+               to_head("SetSS1IP 192.168.002.010"), from_head(answer + "Port:- 12345\r\n"),
+               from_head("SONAR PING360\r\n"),
+               from_head("SONAR PING360\r\nx\r\nMAC Address:- 54\r\nIP Address:- 1.2.3.400\r\n"),
+               to_head("Discover")},
+              {discovery_prefix + "message", discovery_prefix + "device", discovery_prefix + "maker",
+               discovery_prefix + "mac_address", discovery_prefix + "ip_address", expert_field});
+  EXPECT_EQ(rows[0].at(discovery_prefix + "message"), "discovery");
+  EXPECT_EQ(rows[1].at(discovery_prefix + "message"), "discovery");
+  EXPECT_EQ(rows[2].at(discovery_prefix + "message"), "answer");
+  EXPECT_EQ(rows[2].at(discovery_prefix + "device"), "SONAR PING360  ");
+  EXPECT_EQ(rows[2].at(discovery_prefix + "maker"), "Blue Robotics");
+  EXPECT_EQ(rows[2].at(discovery_prefix + "mac_address"), "54:10:ec:79:7d:c5");
+  EXPECT_EQ(rows[2].at(discovery_prefix + "ip_address"), "192.168.2.4");
+  EXPECT_EQ(rows[3].at(discovery_prefix + "message"), "set_ip");
+  EXPECT_EQ(rows[3].at(discovery_prefix + "ip_address"), "192.168.2.10");
+  for (const std::size_t i : {0U, 1U, 2U, 3U, 7U}) {
+    EXPECT_EQ(rows[i].at(expert_field), "") << i;
+  }
+  EXPECT_THAT(rows[4].at(expert_field), HasSubstr("four lines"));
+  EXPECT_THAT(rows[5].at(expert_field), HasSubstr("four lines"));
+  EXPECT_EQ(rows[6].at(expert_field), "No MAC address,No IP address");
+  EXPECT_EQ(rows[7].at(discovery_prefix + "message"), "");
+}
+
+}  // namespace
+}  // namespace sonard::testing
