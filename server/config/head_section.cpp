@@ -170,7 +170,7 @@ void read_mount(YamlSection& section, HeadConfig& head) {
             "as in `poses.initial`; [0, 20, 0] turns the x axis 20 degrees down");
   section.text("from_world", head.mount_from_world,
                "instead of the other two: the sonar of the world ([worlds.md](worlds.md#sonars)) that says "
-               "both, `gemini`, or as much of `rov::sonar_link::gemini` as tells it from others. It has to "
+               "both, `bow`, or as much of `rov::sonar_link::bow` as tells it from others. It has to "
                "be of this head's type");
   for (const char* key : {"position_m", "rpy_deg"}) {
     if (section.has("from_world") && section.has(key)) {

@@ -13,7 +13,7 @@ namespace sonard::server {
 /// For one kind of device. @throws CLI::ValidationError from all functions
 class OptionsOf {
  public:
-  /// @param device as messages name it: "Gemini"
+  /// @param device as messages name it: "Example 100"
   explicit OptionsOf(std::string device) : device_(std::move(device)) {}
 
   void refuse(const char* option, bool given) const {
