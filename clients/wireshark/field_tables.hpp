@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The field tables of the dissectors for Wireshark, as Lua, made from protocol/DEVICE/layout.hpp: what a
 // capture shows is where the codecs have it. The results are checked in beside the dissectors, for Wireshark
-// loads files; tests/unit/wireshark_fields holds them to these functions.
+// loads files; tests/unit/clients/wireshark holds them to these functions.
 #pragma once
 
 #include <span>

@@ -270,7 +270,7 @@ def mcap_string(text):
 
 
 def mcap_files():
-    """Laid out by the MCAP specification, as tests/unit/mcap/bytes_test.cpp is."""
+    """Laid out by the MCAP specification, as tests/unit/protocol/mcap/bytes_test.cpp is."""
     magic = b"\x89MCAP0\r\n"
     head = magic + mcap_record(1, mcap_string(b"") + mcap_string(b"w"))
     schema = mcap_record(3, struct.pack("<H", 1) + mcap_string(b"S") + mcap_string(b"pb") + mcap_string(b"\7"))

@@ -9,7 +9,7 @@
 #include "tests/scenes/scenes.hpp"
 #include "tests/scenes/terrain.hpp"
 #include "tests/support/backend_test.hpp"
-#include "tests/unit/scene/scene_files.hpp"
+#include "tests/unit/renderer/scene/scene_files.hpp"
 
 namespace sonard::render {
 namespace {

@@ -10,8 +10,8 @@
 #include <cstdlib>
 
 #include "server/pose/pose_history.hpp"
-#include "tests/unit/pose_input/child_process.hpp"
-#include "tests/unit/pose_input/source_fixture.hpp"
+#include "tests/unit/server/pose/child_process.hpp"
+#include "tests/unit/server/pose/source_fixture.hpp"
 
 namespace sonard::server {
 namespace {

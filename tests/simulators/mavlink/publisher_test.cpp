@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "server/pose/mavlink_pose_source.hpp"
-#include "tests/unit/pose/pose_matchers.hpp"
-#include "tests/unit/pose_input/child_process.hpp"
-#include "tests/unit/pose_input/source_fixture.hpp"
+#include "tests/unit/protocol/pose/pose_matchers.hpp"
+#include "tests/unit/server/pose/child_process.hpp"
+#include "tests/unit/server/pose/source_fixture.hpp"
 
 namespace sonard::server {
 namespace {

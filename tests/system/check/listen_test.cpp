@@ -14,7 +14,7 @@
 #include "server/net/addresses.hpp"
 #include "tests/support/loopback.hpp"
 #include "tests/support/run_process.hpp"
-#include "tests/unit/pose_input/child_process.hpp"
+#include "tests/unit/server/pose/child_process.hpp"
 
 namespace sonard::test {
 namespace {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a socket may bring: cut, padded, foreign and contradictory datagrams.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <span>
+
+#include "protocol/gemini/codec.hpp"
+#include "tests/unit/protocol/gemini/codec/examples.hpp"
+#include "tests/unit/protocol/gemini/codec/fixture.hpp"
+
+namespace sonard::gemini::testing {
+namespace {
+
+/// Shortest datagram that still is the message, where that is not all of it (sections 3.6, 3.10, 6.2).
+std::size_t shortest_form(const std::string& fixture, std::size_t size) {
+  static const std::map<std::string, std::size_t> shorter{
+      {"network_config", 20}, {"observed_network_config", 20}, {"production_test", 20}, {"ping_head", 46}};
+  const auto found = shorter.find(fixture);
+  return found == shorter.end() ? size : found->second;
+}
+
+/// A copy on the heap of exactly this length, so that sanitizers see a read beyond it.
+Bytes cut(const Bytes& bytes, std::size_t length) {
+  return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
+}
+
+TEST(Malformed, commands_cut_anywhere_are_refused) {
+  for (const auto& example : command_examples()) {
+    const Bytes bytes = load_fixture(example.fixture);
+    for (std::size_t length = 0; length < shortest_form(example.fixture, bytes.size()); ++length) {
+      const auto decoded = decode_command(cut(bytes, length));
+      ASSERT_FALSE(decoded) << example.fixture << " cut to " << length;
+      EXPECT_EQ(decoded.error().reason, WireErrorReason::truncated)
+          << example.fixture << " cut to " << length;
+      EXPECT_LE(decoded.error().offset, length) << example.fixture;
+      EXPECT_FALSE(decoded.error().field.empty()) << example.fixture;
+    }
+  }
+}
+
+TEST(Malformed, reports_cut_anywhere_are_refused) {
+  for (const auto& example : report_examples()) {
+    const Bytes bytes = load_fixture(example.fixture);
+    for (std::size_t length = 0; length < shortest_form(example.fixture, bytes.size()); ++length) {
+      if (example.fixture == "serial_data" && length >= 8 && length % 8 == 0) {
+        continue;  // fewer blocks, but whole ones
+      }
+      ASSERT_FALSE(decode_report(cut(bytes, length))) << example.fixture << " cut to " << length;
+    }
+  }
+}
+
+TEST(Malformed, short_forms_are_taken_and_what_is_absent_keeps_its_default) {
+  const Bytes network_config = load_fixture("network_config");
+  for (const std::size_t length : {20U, 21U}) {
+    const auto decoded = decode_command(cut(network_config, length));
+    ASSERT_TRUE(decoded) << length;
+    EXPECT_EQ(std::get<NetworkConfig>(*decoded).extension, std::nullopt);
+    EXPECT_EQ(std::get<NetworkConfig>(*decoded).serial_routing, 0x0100);
+  }
+  Bytes head = load_fixture("ping_head");
+  head[46] = 3;
+  for (const std::size_t length : {46U, 47U, 48U}) {
+    const auto decoded = decode_report(cut(head, length));
+    ASSERT_TRUE(decoded) << length;
+    EXPECT_EQ(std::get<PingHead>(*decoded).decimation, length == 46 ? 0 : 3);
+    EXPECT_EQ(std::get<PingHead>(*decoded).sound_speed_used, 0xBA90);
+  }
+  const Bytes production_test = load_fixture("production_test");
+  for (std::size_t length = 20; length <= 24; ++length) {
+    const auto decoded = decode_command(cut(production_test, length));
+    ASSERT_TRUE(decoded) << length;
+    EXPECT_EQ(std::get<ProductionTest>(*decoded).seed, 0x8102030405060708U);
+  }
+}
+
+TEST(Malformed, trailing_bytes_change_nothing) {
+  for (const auto& example : command_examples()) {
+    if (example.fixture == "network_config_early") {
+      continue;  // two more bytes make it the long form
+    }
+    Bytes bytes = load_fixture(example.fixture);
+    for (int extra = 1; extra <= 64; ++extra) {
+      bytes.push_back(0xA5);
+      const auto decoded = decode_command(bytes);
+      ASSERT_TRUE(decoded && *decoded == example.value) << example.fixture << " and " << extra << " bytes";
+    }
+  }
+  for (const auto& example : report_examples()) {
+    if (example.fixture == "serial_data") {
+      continue;  // its length is its count
+    }
+    Bytes bytes = load_fixture(example.fixture);
+    for (int extra = 1; extra <= 64; ++extra) {
+      bytes.push_back(0xA5);
+      const auto decoded = decode_report(bytes);
+      ASSERT_TRUE(decoded && *decoded == example.value) << example.fixture << " and " << extra << " bytes";
+    }
+  }
+}
+
+TEST(Malformed, error_names_the_first_field_that_is_not_there) {
+  const auto decoded = decode_command(cut(load_fixture("ping_config"), 31));
+  ASSERT_FALSE(decoded);
+  EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::truncated, 30, "tx_angle"}));
+}
+
+TEST(Malformed, each_direction_takes_the_other_for_unknown) {
+  for (const auto& example : report_examples()) {
+    const Bytes bytes = load_fixture(example.fixture);
+    const auto decoded = decode_command(bytes);
+    ASSERT_TRUE(decoded) << example.fixture;
+    const auto* unknown = std::get_if<Unknown>(&*decoded);
+    ASSERT_NE(unknown, nullptr) << example.fixture;
+    EXPECT_EQ(unknown->type, bytes[0]);
+    EXPECT_EQ(unknown->header.sonar_id, 601);
+  }
+  for (const auto& example : command_examples()) {
+    const Bytes bytes = load_fixture(example.fixture);
+    const auto decoded = decode_report(bytes);
+    ASSERT_TRUE(decoded && std::holds_alternative<Unknown>(*decoded)) << example.fixture;
+  }
+}
+
+TEST(Malformed, exactly_the_documented_types_are_known) {
+  const std::map<bool, std::vector<int>> documented{
+      {true, {0x20, 0x21, 0x22, 0x23, 0x24, 0x25, 0x2A, 0x2B, 0x2C, 0x2D,
+              0x2E, 0x2F, 0x30, 0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0xC8}},
+      {false, {0x40, 0x41, 0x42, 0x43, 0x44, 0x45, 0x47, 0x48, 0x49, 0x4A, 0x4B, 0x4C, 0x4D}}};
+  std::map<bool, std::vector<int>> known;
+  for (int type = 0; type < 256; ++type) {
+    Bytes bytes(2048, 0);
+    bytes[0] = static_cast<std::uint8_t>(type);
+    bytes[8] = 2;  // keeps the MDIO length and the bank of an info block in order
+    if (const auto command = decode_command(bytes); command && !std::holds_alternative<Unknown>(*command)) {
+      EXPECT_EQ(type_of(*command), type);
+      known[true].push_back(type);
+    }
+    if (const auto report = decode_report(bytes); report && !std::holds_alternative<Unknown>(*report)) {
+      EXPECT_EQ(type_of(*report), type);
+      known[false].push_back(type);
+    }
+  }
+  EXPECT_EQ(known, documented);
+}
+
+TEST(Malformed, odd_and_impossible_mdio_lengths_are_refused) {
+  for (const std::uint8_t length : {0, 1, 9, 11}) {
+    Bytes bytes = load_fixture("mdio_commands");
+    bytes[8] = length;
+    bytes.resize(64);
+    const auto decoded = decode_command(bytes);
+    ASSERT_FALSE(decoded) << int{length};
+    EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::bad_length, 8, "length"}));
+  }
+  Bytes longer_than_the_datagram = load_fixture("mdio_commands");
+  longer_than_the_datagram[8] = 12;
+  const auto decoded = decode_command(longer_than_the_datagram);
+  ASSERT_FALSE(decoded);
+  EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::truncated, 10, "words"}));
+}
+
+TEST(Malformed, info_block_banks_beyond_2_are_refused) {
+  Bytes bytes = load_fixture("observed_info_block_write");
+  for (const std::uint8_t bank : {3, 255}) {
+    bytes[8] = bank;
+    const auto decoded = decode_command(bytes);
+    ASSERT_FALSE(decoded);
+    EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::bad_value, 8, "bank"}));
+  }
+}
+
+TEST(Malformed, short_identity_block_does_not_pass_for_a_long_bank) {
+  Bytes bytes = load_fixture("info_block_write_identity");
+  bytes[8] = 2;
+  const auto decoded = decode_command(bytes);
+  ASSERT_FALSE(decoded);
+  EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::truncated, 24, "filler"}));
+}
+
+TEST(Malformed, serial_data_with_a_broken_block_is_refused) {
+  Bytes bytes = load_fixture("serial_data");
+  bytes.pop_back();
+  const auto decoded = decode_report(bytes);
+  ASSERT_FALSE(decoded);
+  EXPECT_EQ(decoded.error().reason, WireErrorReason::bad_length);
+}
+
+TEST(Malformed, line_data_follow_the_word_count) {
+  Bytes bytes = load_fixture("ping_line");
+  bytes[14] = 0x84;  // one word more than there is
+  const auto longer = decode_report(bytes);
+  ASSERT_FALSE(longer);
+  EXPECT_EQ(longer.error(), (WireError{WireErrorReason::truncated, 16, "data"}));
+  bytes[14] = 0x84;
+  bytes[15] = 0x1F;  // one word less
+  const auto shorter = decode_report(bytes);
+  ASSERT_TRUE(shorter);
+  EXPECT_EQ(std::get<PingLine>(*shorter).data.size(), 252U);
+}
+
+}  // namespace
+}  // namespace sonard::gemini::testing

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages of a vehicle become poses. Expected values are geometry worked out by hand: where a wall is from
+// where the vehicle is.
+#include "server/pose/mavlink_poses.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "server/pose/pose_history.hpp"
+#include "tests/unit/protocol/pose/pose_matchers.hpp"
+
+namespace sonard::server {
+namespace {
+
+using mavlink::Attitude;
+using mavlink::AttitudeQuaternion;
+using mavlink::LocalPositionNed;
+using mavlink::MavFrame;
+using mavlink::Odometry;
+using pose::IsRotation;
+using pose::IsVec3;
+using pose::Vec3;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float quarter = static_cast<float>(std::numbers::pi / 2);
+
+struct MavlinkPosesTest : testing::Test {
+  MavlinkPosesTest() { spdlog::set_level(spdlog::level::off); }
+
+  void take(const mavlink::Message& message) {
+    if (const auto sample = poses.take(message, now)) {
+      samples.push_back(*sample);
+    }
+    now += milliseconds{1};
+  }
+  void use(const MavlinkPoseInput& input) { poses = MavlinkPoses{input}; }
+
+  TimePoint now = seconds{1000};
+  MavlinkPoses poses{MavlinkPoseInput{}};
+  std::vector<pose::PoseSample> samples;
+};
+
+/// How far ahead, along the x axis of the vehicle, the plane {p: normal . p = offset_m} of the world is.
+double range_ahead_m(const pose::PoseSample& sample, const Vec3& normal, double offset_m) {
+  const Vec3 ahead = rotate(sample.T_world_vehicle.orientation, {1, 0, 0});
+  const Vec3& p = sample.T_world_vehicle.position_m;
+  return (offset_m - (normal.x * p.x + normal.y * p.y + normal.z * p.z)) /
+         (normal.x * ahead.x + normal.y * ahead.y + normal.z * ahead.z);
+}
+
+constexpr Vec3 east{1, 0, 0};
+constexpr Vec3 north{0, 1, 0};
+constexpr Vec3 up{0, 0, 1};
+
+TEST_F(MavlinkPosesTest, AWallToTheNorthIsAheadOfAVehicleThatHeadsNorth) {
+  // 4 m north, 2 m east, 3 m deep.
+  take(Odometry{0, 4, 2, 3});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_THAT(samples[0].T_world_vehicle.position_m, IsVec3(Vec3{2, 4, -3}, 1e-9));
+  EXPECT_NEAR(range_ahead_m(samples[0], north, 10), 6, 1e-6);
+}
+
+TEST_F(MavlinkPosesTest, AWallToTheEastIsAheadAtHeading90) {
+  take(Attitude{10, 0, 0, quarter});
+  take(LocalPositionNed{10, 4, 2, 3});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_NEAR(range_ahead_m(samples[0], east, 10), 8, 1e-5);
+  // Its left is north, and its top is up.
+  EXPECT_THAT(rotate(samples[0].T_world_vehicle.orientation, {0, 1, 0}), IsVec3(north, 1e-6));
+  EXPECT_THAT(rotate(samples[0].T_world_vehicle.orientation, {0, 0, 1}), IsVec3(up, 1e-6));
+}
+
+TEST_F(MavlinkPosesTest, PositivePitchLooksUpAndPositiveRollLowersStarboard) {
+  const double angle = 0.3;
+  take(Attitude{10, 0, static_cast<float>(angle), 0});
+  take(LocalPositionNed{10, 0, 0, 3});
+  take(Attitude{20, static_cast<float>(angle), 0, 0});
+  take(LocalPositionNed{20, 0, 0, 3});
+  ASSERT_EQ(samples.size(), 2U);
+  // From 3 m deep the surface, z = 0, is 3 m / sin away.
+  EXPECT_NEAR(range_ahead_m(samples[0], up, 0), 3 / std::sin(angle), 1e-5);
+  EXPECT_THAT(rotate(samples[1].T_world_vehicle.orientation, {0, -1, 0}),
+              IsVec3(Vec3{std::cos(angle), 0, -std::sin(angle)}, 1e-6));
+}
+
+TEST_F(MavlinkPosesTest, AnglesAreTurnedInTheOrderYawPitchRoll) {
+  // Heading east, nose straight up, then rolled by 90 degrees about what now is the vertical.
+  take(Attitude{10, quarter, quarter, quarter});
+  take(LocalPositionNed{10, 0, 0, 0});
+  ASSERT_EQ(samples.size(), 1U);
+  const pose::Quat& q = samples[0].T_world_vehicle.orientation;
+  EXPECT_THAT(rotate(q, {1, 0, 0}), IsVec3(up, 1e-6));
+  // Starboard was south; it goes where the belly was, which looked east.
+  EXPECT_THAT(rotate(q, {0, -1, 0}), IsVec3(east, 1e-6));
+}
+
+TEST_F(MavlinkPosesTest, TheQuaternionSaysTheSameAsTheAngles) {
+  const float half = static_cast<float>(std::sqrt(0.5));
+  take(AttitudeQuaternion{10, half, 0, 0, half});  // heading east
+  take(LocalPositionNed{10, 0, 0, 0});
+  Odometry odometry{0, 0, 0, 0, {half, 0, 0, half}};
+  take(odometry);
+  ASSERT_EQ(samples.size(), 2U);
+  for (const auto& sample : samples) {
+    EXPECT_THAT(sample.T_world_vehicle.orientation, IsRotation(pose::Quat{}, 1e-6));
+  }
+}
+
+TEST_F(MavlinkPosesTest, VelocityOfThePositionIsThatOfTheWorldInAxesOfTheVehicle) {
+  // Heads east, drifts north at 1 m/s, sinks at 0.5 m/s: to port, and down. Turns to starboard.
+  take(Attitude{10, 0, 0, quarter, 0, 0, 0.2F});
+  take(LocalPositionNed{10, 0, 0, 0, 1, 0, 0.5F});
+  ASSERT_TRUE(samples.size() == 1 && samples[0].twist);
+  EXPECT_THAT(samples[0].twist->linear_mps, IsVec3(Vec3{0, 1, -0.5}, 1e-6));
+  EXPECT_THAT(samples[0].twist->angular_radps, IsVec3(Vec3{0, 0, -0.2}, 1e-6));
+}
+
+TEST_F(MavlinkPosesTest, VelocityOfOdometryIsInTheAxesThatItNames) {
+  const float half = static_cast<float>(std::sqrt(0.5));
+  Odometry heading_east{0, 0, 0, 0, {half, 0, 0, half}, 1, 2, 3, 0.1F, 0.2F, 0.3F};
+  for (const auto axes : {MavFrame::body_frd, MavFrame::body_ned, MavFrame::local_ned, MavFrame{4}}) {
+    heading_east.child_frame_id = axes;
+    heading_east.time_usec += 1000;
+    take(heading_east);
+  }
+  ASSERT_EQ(samples.size(), 4U);
+  for (const std::size_t body : {0U, 1U}) {
+    EXPECT_THAT(samples[body].twist.value().linear_mps, IsVec3(Vec3{1, -2, -3}, 1e-6));
+  }
+  // 1 north, 2 east, 3 down: 2 ahead, 1 to port.
+  EXPECT_THAT(samples[2].twist.value().linear_mps, IsVec3(Vec3{2, 1, -3}, 1e-6));
+  EXPECT_THAT(samples[2].twist.value().angular_radps, IsVec3(Vec3{0.1, -0.2, -0.3}, 1e-6));
+  EXPECT_FALSE(samples[3].twist);
+}
+
+TEST_F(MavlinkPosesTest, FramesWithoutAPlaceInTheWorldAreDropped) {
+  for (const int frame : {0, 4, 8, 12, 21, 255}) {
+    Odometry odometry;
+    odometry.frame_id = static_cast<MavFrame>(frame);
+    take(odometry);
+  }
+  EXPECT_TRUE(samples.empty());
+  EXPECT_EQ(poses.counters().unknown_frame, 6U);
+}
+
+TEST_F(MavlinkPosesTest, TheOriginPutsALocalFrameIntoTheWorld) {
+  // LOCAL_FRD with its x axis along east of the world: x is read as north, so a quarter turn to starboard.
+  MavlinkPoseInput input;
+  input.T_world_local.position_m = {100, 200, -10};
+  input.T_world_local.orientation = glm::angleAxis(-std::numbers::pi / 2, glm::dvec3(0, 0, 1));
+  use(input);
+  Odometry odometry{0, 5, 1, 2};
+  odometry.frame_id = MavFrame::local_frd;
+  take(odometry);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_THAT(samples[0].T_world_vehicle.position_m, IsVec3(Vec3{105, 199, -12}, 1e-6));
+  EXPECT_NEAR(range_ahead_m(samples[0], east, 110), 5, 1e-6);
+}
+
+TEST_F(MavlinkPosesTest, APositionWaitsForTheNextAttitudeAndTakesWhatIsBetween) {
+  take(Attitude{100, 0, 0, 0.2F, 0, 0, 1});
+  take(LocalPositionNed{125, 0, 0, 0});
+  EXPECT_TRUE(samples.empty());
+  take(Attitude{200, 0, 0, 0.6F, 0, 0, 3});
+  ASSERT_EQ(samples.size(), 1U);
+  // A quarter of the way: heading 0.3 rad from north; the rate 1.5 rad/s.
+  EXPECT_THAT(samples[0].T_world_vehicle.orientation,
+              IsRotation(pose::yaw(std::numbers::pi / 2 - 0.3), 1e-6));
+  EXPECT_NEAR(samples[0].twist.value().angular_radps.z, -1.5, 1e-6);
+  EXPECT_EQ(poses.counters().without_attitude, 0U);
+}
+
+TEST_F(MavlinkPosesTest, WithoutANextAttitudeTheNearestIsTurnedOn) {
+  take(Attitude{100, 0, 0, 0.2F, 0, 0, 1});
+  take(LocalPositionNed{150, 0, 0, 0});
+  take(LocalPositionNed{350, 0, 0, 0});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_THAT(samples[0].T_world_vehicle.orientation,
+              IsRotation(pose::yaw(std::numbers::pi / 2 - 0.25), 1e-6));
+  take(LocalPositionNed{450, 0, 0, 0});  // 250 ms after the only attitude
+  EXPECT_EQ(samples.size(), 1U);
+  EXPECT_EQ(poses.counters().without_attitude, 1U);
+}
+
+TEST_F(MavlinkPosesTest, AnAttitudeThatIsTooOldIsNotJoined) {
+  take(Attitude{1000, 0, 0, 0});
+  take(LocalPositionNed{1800, 0, 0, 0});
+  take(Attitude{2600, 0, 0, 0});
+  EXPECT_TRUE(samples.empty());
+  EXPECT_EQ(poses.counters().without_attitude, 1U);
+}
+
+TEST_F(MavlinkPosesTest, ALateAttitudeFindsItsPlace) {
+  take(Attitude{200, 0, 0, 0.6F});
+  take(Attitude{100, 0, 0, 0.2F});
+  take(LocalPositionNed{150, 0, 0, 0});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_THAT(samples[0].T_world_vehicle.orientation,
+              IsRotation(pose::yaw(std::numbers::pi / 2 - 0.4), 1e-6));
+}
+
+TEST_F(MavlinkPosesTest, StampsKeepTheirSpacingFromTheFirstArrivalOn) {
+  now = seconds{50};
+  take(Odometry{1'700'000'000'000'000, 0, 0, 0});  // Unix time
+  now = seconds{50} + milliseconds{37};            // late by 17 ms
+  take(Odometry{1'700'000'000'020'000, 0, 0, 0});
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_EQ(samples[0].time_ns, 50'000'000'000);
+  EXPECT_EQ(samples[1].time_ns, 50'020'000'000);
+}
+
+TEST_F(MavlinkPosesTest, AClockThatBeginsAgainForgetsWhatWasBefore) {
+  PoseHistory history{PoseConfig{}};
+  const auto follow = [&](const mavlink::Message& message) {
+    if (const auto sample = poses.take(message, now)) {
+      history.insert(*sample, now);
+    }
+    now += milliseconds{10};
+  };
+  follow(Attitude{90'000, 0, 0, 0});
+  follow(LocalPositionNed{90'000, 5, 0, 0});
+  follow(LocalPositionNed{90'020, 5, 0, 0});  // waits, and is forgotten
+  follow(LocalPositionNed{1'000, 0, 7, 0});   // no attitude of this life yet
+  follow(Attitude{1'010, 0, 0, 0});
+  follow(LocalPositionNed{1'010, 0, 7, 0});
+  EXPECT_EQ(poses.counters().clock_restarts, 1U);
+  EXPECT_EQ(history.counters().clock_restarts, 1U);
+  const auto estimate = history.at(now);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->T_world_vehicle.position_m.x, 7, 1e-6);
+  EXPECT_NEAR(estimate->T_world_vehicle.position_m.y, 0, 1e-6);
+}
+
+TEST_F(MavlinkPosesTest, OdometryGoesBeforeThePairWhileItComes) {
+  take(Odometry{1'000'000, 1, 0, 0});
+  take(Attitude{1000, 0, 0, 0});
+  take(LocalPositionNed{1000, 2, 0, 0});
+  EXPECT_EQ(samples.size(), 1U);
+  EXPECT_EQ(poses.counters().not_wanted, 2U);
+  now += MavlinkPoses::odometry_precedence;
+  take(Attitude{3000, 0, 0, 0});
+  take(LocalPositionNed{3000, 2, 0, 0});
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_NEAR(samples[1].T_world_vehicle.position_m.y, 2, 1e-6);
+}
+
+TEST_F(MavlinkPosesTest, OnlyWhatIsConfiguredIsTaken) {
+  MavlinkPoseInput input;
+  input.messages = MavlinkMessages::local_position;
+  use(input);
+  take(Odometry{0, 1, 0, 0});
+  EXPECT_TRUE(samples.empty());
+  input.messages = MavlinkMessages::odometry;
+  use(input);
+  take(Attitude{1000, 0, 0, 0});
+  take(LocalPositionNed{1000, 2, 0, 0});
+  EXPECT_TRUE(samples.empty());
+  EXPECT_EQ(poses.counters().not_wanted, 2U);
+}
+
+TEST_F(MavlinkPosesTest, WhatMeansNothingIsCountedAndDropped) {
+  take(Odometry{0, nan, 0, 0});
+  take(Odometry{0, 2e8F, 0, 0});
+  take(Odometry{0, 0, 0, 0, {0, 0, 0, 0}});
+  take(Odometry{std::numeric_limits<std::uint64_t>::max(), 0, 0, 0});
+  take(Attitude{10, nan, 0, 0});
+  take(AttitudeQuaternion{10, 0, 0, 0, 0});
+  EXPECT_TRUE(samples.empty());
+  EXPECT_EQ(poses.counters().bad_value, 6U);
+}
+
+TEST_F(MavlinkPosesTest, ASpeedThatIsNotKnownIsNone) {
+  take(Odometry{0, 0, 0, 0, {1, 0, 0, 0}, nan, nan, nan});
+  take(Attitude{10, 0, 0, 0, nan, nan, nan});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_FALSE(samples[0].twist);
+}
+
+}  // namespace
+}  // namespace sonard::server

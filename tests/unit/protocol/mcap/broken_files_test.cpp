@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that are wrong in one place, and in any.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "protocol/mcap/recovery.hpp"
+#include "tests/unit/protocol/mcap/files.hpp"
+
+namespace sonard::mcap::testing {
+namespace {
+
+constexpr std::size_t first_chunk = 8 + 9 + 12;  // behind magic and a header that holds "test"
+
+TEST(McapBroken, a_wrong_byte_in_a_chunk_is_an_error_that_names_its_crc) {
+  Bytes file = finished_file();
+  file[first_chunk + 9 + 40 + 20] ^= 1;  // among the records
+  const auto reader = Reader::open(file);
+  ASSERT_TRUE(reader);
+  MessageCursor cursor = reader->messages();
+  EXPECT_FALSE(cursor.next());
+  ASSERT_TRUE(cursor.error());
+  EXPECT_EQ(cursor.error()->field, "chunk.uncompressed_crc");
+  EXPECT_EQ(cursor.error()->offset, first_chunk + 9 + 24);
+}
+
+TEST(McapBroken, a_compressed_chunk_is_refused_and_never_cut_off) {
+  Bytes file = finished_file();
+  file.resize(file.size() - 1);
+  const Bytes name{2, 0, 0, 0, 'z', 's'};
+  const std::size_t compression = first_chunk + 9 + 28;
+  file.erase(file.begin() + compression, file.begin() + compression + 4);
+  file.insert(file.begin() + compression, name.begin(), name.end());
+  file[first_chunk + 1] = static_cast<std::uint8_t>(file[first_chunk + 1] + 2);  // the length of the chunk
+  const auto recovery = recover(file);
+  ASSERT_FALSE(recovery);
+  EXPECT_EQ(recovery.error().field, "chunk.compression");
+  const auto reader = Reader::open(file);
+  ASSERT_TRUE(reader);
+  ASSERT_TRUE(reader->stopped_by());
+  EXPECT_EQ(reader->stopped_by()->field, "chunk.compression");
+}
+
+TEST(McapBroken, sizes_beyond_the_file_are_no_whole_record) {
+  Bytes file = finished_file();
+  file.resize(file.size() - 1);
+  for (std::size_t i = 1; i <= 8; ++i) {
+    file[first_chunk + i] = 0xFF;
+  }
+  const auto section = scan_data_section(file);
+  ASSERT_TRUE(section);
+  EXPECT_EQ(section->end, first_chunk);
+  EXPECT_TRUE(section->summary.chunks.empty());
+}
+
+TEST(McapBroken, a_summary_with_a_wrong_byte_is_not_used) {
+  Bytes file = finished_file();
+  const auto summary_start = scan_data_section(file)->end + 13;
+  file[summary_start + 9] ^= 1;
+  const auto reader = Reader::open(file);
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->finished());
+  EXPECT_EQ(all_of(reader->messages()), messages_in_order);
+}
+
+TEST(McapBroken, a_summary_whose_chunks_overlap_is_not_used) {
+  const Bytes file = finished_file();
+  const auto section = scan_data_section(file);
+  ASSERT_TRUE(section);
+  Summary twice = section->summary;
+  twice.chunks.push_back(twice.chunks.back());
+  Bytes hostile{file.begin(), file.begin() + static_cast<std::ptrdiff_t>(section->end)};
+  append(hostile, make_end(twice, hostile.size(), 0));
+  const auto reader = Reader::open(hostile);
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->finished());
+  EXPECT_EQ(all_of(reader->messages()), messages_in_order);
+}
+
+// Every error must lie inside the file, and every message too; the sanitizers see the rest.
+/// Its last chunk is open.
+Bytes growing_file() {
+  Writer writer{"test", 100};
+  const auto channel =
+      writer.add_channel(writer.add_schema("S", "protobuf", bytes_of("d")), "/a", "protobuf");
+  for (std::uint64_t i = 0; i < 7; ++i) {
+    writer.add_message(channel, i, i, bytes_of("some bytes"));
+  }
+  writer.flush();
+  return writer.take().append;
+}
+
+void flip_bits(const Bytes& whole) {
+  std::mt19937 random{1};
+  for (int i = 0; i < 20'000; ++i) {
+    Bytes file = whole;
+    for (unsigned flips = 1 + random() % 4; flips > 0; --flips) {
+      file[random() % file.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    }
+    if (const auto reader = Reader::open(file)) {
+      MessageCursor cursor = reader->messages();
+      while (const auto message = cursor.next()) {
+        ASSERT_LE(message->data.size(), file.size());
+      }
+    }
+    if (const auto recovery = recover(file)) {
+      ASSERT_LE(recovery->keep_size, file.size());
+    } else {
+      ASSERT_LE(recovery.error().offset, file.size());
+    }
+  }
+}
+
+TEST(McapBroken, flipped_bits_never_crash) {
+  flip_bits(finished_file());
+  flip_bits(growing_file());
+}
+
+}  // namespace
+}  // namespace sonard::mcap::testing

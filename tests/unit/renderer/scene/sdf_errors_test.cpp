@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a user gets to read when a world is wrong: always the file, the line and the element.
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/scene/world.hpp"
+#include "tests/unit/renderer/scene/scene_files.hpp"
+
+namespace sonard::render {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string shape = "<geometry><sphere><radius>1</radius></sphere></geometry>";
+
+std::string load_error(const std::filesystem::path& file) {
+  try {
+    load_world(file, {});
+  } catch (const WorldError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+struct Case {
+  const char* name;
+  std::string world;  ///< children of <world>, from line 3 on
+  std::vector<std::string> expected;
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
+
+std::string model(const std::string& visual_content) {
+  return "<model name=\"m\"><link name=\"l\">\n<visual name=\"v\">" + visual_content +
+         "</visual></link></model>";
+}
+
+class BadWorld : public testing::TestWithParam<Case> {};
+
+TEST_P(BadWorld, IsNamedWithItsPlace) {
+  const test::TempFolder folder;
+  folder.write("quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("points.obj", "v 0 0 0\nv 1 1 1\n");
+  folder.write("n.png", "not a picture");
+  folder.write("broken/model.sdf",
+               "<sdf version=\"1.9\"><model name=\"b\"><link name=\"l\">\n<visual name=\"v\">" + shape +
+                   "</visual></link>\n<include><uri>model://gone</uri></include></model></sdf>");
+  const auto file =
+      folder.write("world.sdf", "<sdf version=\"1.9\" xmlns:sonard=\"x\">\n<world name=\"w\">\n" +
+                                    GetParam().world + "\n</world></sdf>");
+  const std::string message = load_error(file);
+  for (const std::string& part : GetParam().expected) {
+    EXPECT_THAT(message, HasSubstr(part));
+  }
+  EXPECT_EQ(message.find('\n'), std::string::npos) << "one line";
+  EXPECT_EQ(message.find('\033'), std::string::npos) << "no colours";
+}
+
+const std::vector<Case> cases{
+    {"missing_mesh",
+     model("<geometry><mesh><uri>hull.obj</uri></mesh></geometry>"),
+     {"world.sdf:4: m::l::v: 'hull.obj' not found; looked for /"}},
+    {"missing_model",
+     "<include><uri>model://gone</uri></include>",
+     {"world.sdf:3: ", "'model://gone' not found; looked in /"}},
+    {"missing_in_include", "<include><uri>broken</uri></include>", {"broken/model.sdf:3: ", "model://gone"}},
+    {"url_mesh",
+     model("<geometry><mesh><uri>http://127.0.0.1/hull.obj</uri></mesh></geometry>"),
+     {"world.sdf:4: m::l::v: 'http://127.0.0.1/hull.obj': nothing is fetched from a network"}},
+    {"url_include",
+     "<include><uri>https://fuel.gazebosim.org/1.0/a/models/b</uri></include>",
+     {"world.sdf:3: ", "nothing is fetched from a network"}},
+    {"unknown_format",
+     model("<geometry><mesh><uri>world.sdf</uri></mesh></geometry>"),
+     {"world.sdf:4: m::l::v: ", "'sdf' is not a mesh format", "obj, stl, ply, dae"}},
+    {"zero_triangles",
+     model("<geometry><mesh><uri>points.obj</uri></mesh></geometry>"),
+     {"world.sdf:4: m::l::v: ", "points.obj: "}},
+    {"empty_world",
+     "<model name=\"m\"><link name=\"l\"/></model>",
+     {"world.sdf: the world has no triangles"}},
+    {"unknown_material",
+     model(shape + "<sonard:material>conrete</sonard:material>"),
+     {"world.sdf:4: m::l::v: unknown material 'conrete' (did you mean 'concrete'?)"}},
+    {"unknown_material_above",
+     "<model name=\"m\">\n<sonard:material>conrete</sonard:material><link name=\"l\"><visual name=\"v\">" +
+         shape + "</visual></link></model>",
+     {"m::l::v: from <model> at ", "world.sdf:3: unknown material 'conrete'"}},
+    {"negative_reflectance",
+     model(shape + "<sonard:material reflectance=\"-1\"/>"),
+     {"world.sdf:4: m::l::v: reflectance is -1"}},
+    {"reflectance_no_number",
+     model(shape + "<sonard:material reflectance=\"high\"/>"),
+     {"world.sdf:4: m::l::v: reflectance 'high': expected a number"}},
+    {"rms_slope_out_of_range",
+     model(shape + "<sonard:material rms_slope=\"2\">steel</sonard:material>"),
+     {"world.sdf:4: m::l::v: rms_slope is 2: expected a number from 0.01 to 0.5"}},
+    {"misspelt_attribute",
+     model(shape + "<sonard:material refletance=\"1\">steel</sonard:material>"),
+     {"world.sdf:4: <sonard:material> has no attribute 'refletance'"}},
+    {"misspelt_element",
+     model(shape + "<sonard:materiel>steel</sonard:materiel>"),
+     {"world.sdf:4: unknown element <sonard:materiel>"}},
+    {"misplaced_element",
+     model("<geometry><sphere><radius>1</radius></sphere><sonard:material>mud</sonard:material></geometry>"),
+     {"world.sdf:4: <sonard:material> inside <geometry>"}},
+    {"two_materials",
+     model(shape + "<sonard:material>mud</sonard:material><sonard:material>mud</sonard:material>"),
+     {"world.sdf:4: <sonard:material> is given twice"}},
+    {"empty_material",
+     model(shape + "<sonard:material/>"),
+     {"world.sdf:4: m::l::v: <sonard:material> is empty"}},
+    {"water_surface_no_number",
+     "<sonard:water_surface_z>high</sonard:water_surface_z>" + model(shape),
+     {"world.sdf:2: sonard:water_surface_z 'high': expected a number"}},
+    {"negative_retro",
+     model(shape + "<laser_retro>-2</laser_retro>"),
+     {"world.sdf:4: m::l::v: laser_retro is -2"}},
+    {"negative_radius",
+     model("<geometry><sphere><radius>-1</radius></sphere></geometry>"),
+     {"world.sdf:4: m::l::v: radius is -1"}},
+    {"radius_no_number",
+     model("<geometry><sphere><radius>one</radius></sphere></geometry>"),
+     {"world.sdf:4: ", "radius"}},
+    {"zero_scale",
+     model("<geometry><mesh><uri>quad.obj</uri><scale>1 0 1</scale></mesh></geometry>"),
+     {"world.sdf:4: m::l::v: ", "quad.obj: scale 1 0 1"}},
+    {"no_such_submesh",
+     model("<geometry><mesh><uri>quad.obj</uri><submesh><name>keel</name></submesh></mesh></geometry>"),
+     {"world.sdf:4: m::l::v: ", "quad.obj: no submesh 'keel'"}},
+    {"no_geometry", model(""), {"world.sdf:4: m::l::v: there is no geometry"}},
+    {"normal_map_without_texcoords",
+     model("<geometry><mesh><uri>quad.obj</uri></mesh></geometry><material><pbr><metal><normal_map>" +
+           std::string(SONARD_SOURCE_DIR) +
+           "/tests/data/worlds/normal_map.png</normal_map></metal></pbr></material>"),
+     {"world.sdf:4: m::l::v: ", "quad.obj: a normal map needs texture coordinates"}},
+    {"bad_normal_map",
+     model(shape + "<material><pbr><metal><normal_map>n.png</normal_map></metal></pbr></material>"),
+     {"world.sdf:4: m::l::v: ", "n.png: "}},
+    {"missing_normal_map",
+     model(shape + "<material><pbr><metal><normal_map>gone.png</normal_map></metal></pbr></material>"),
+     {"world.sdf:4: m::l::v: 'gone.png' not found"}},
+    {"object_space_normal_map",
+     model(shape +
+           "<material><pbr><metal><normal_map type=\"object\">n.png</normal_map></metal></pbr></material>"),
+     {"world.sdf:4: m::l::v: object-space normal maps are not supported"}},
+    {"duplicate_body", model(shape) + "\n" + model(shape), {"world.sdf:5: ", "[m]"}},
+    {"nan_pose",
+     "<model name=\"m\"><pose>nan 0 0 0 0 0</pose><link name=\"l\"/></model>",
+     {"world.sdf:3: ", "finite"}},
+    {"unknown_frame",
+     "<model name=\"m\"><pose relative_to=\"nobody\">0 0 0 0 0 0</pose><link name=\"l\"/></model>",
+     {"world.sdf:3: ", "nobody"}},
+    {"no_link", "<model name=\"m\"/>", {"world.sdf:3: ", "link"}},
+    {"nameless", "<model><link name=\"l\"/></model>", {"world.sdf:3: ", "name"}},
+    {"unbalanced", "<model name=\"m\">", {"world.sdf:", "not well-formed XML"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Cases, BadWorld, testing::ValuesIn(cases),
+                         [](const testing::TestParamInfo<Case>& test) { return test.param.name; });
+
+TEST(BadWorldFile, IsNamed) {
+  const test::TempFolder folder;
+  EXPECT_EQ(load_error("/nowhere/w.sdf"), "/nowhere/w.sdf: world file not found");
+  EXPECT_THAT(load_error(folder.path()), HasSubstr("world file not found"));
+  EXPECT_THAT(load_error(folder.write("empty.sdf", "")), HasSubstr("empty.sdf:1: not well-formed XML"));
+  EXPECT_THAT(load_error(folder.write("two.sdf",
+                                      "<sdf version=\"1.9\"><world name=\"a\"/><world name=\"b\"/></sdf>")),
+              AllOf(HasSubstr("two.sdf"), HasSubstr("2 worlds")));
+  EXPECT_THAT(load_error(folder.write("none.sdf", "<sdf version=\"1.9\"/>")), HasSubstr("none.sdf"));
+  EXPECT_THAT(load_error(folder.write(
+                  "model.sdf", "<sdf version=\"1.9\"><model name=\"m\"><link name=\"l\"/></model></sdf>")),
+              HasSubstr("no triangles"));
+}
+
+}  // namespace
+}  // namespace sonard::render

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/scene/world.hpp"
+#include "tests/unit/renderer/scene/scene_files.hpp"
+
+namespace sonard::render {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::filesystem::path data = std::filesystem::path(SONARD_SOURCE_DIR) / "tests/data/worlds";
+
+/// One model "m" with one link "l" that holds `visuals`.
+std::string world_of(const std::string& visuals) {
+  return "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\" xmlns:sonard=\"https://sonard.dev/sdf\">\n<world "
+         "name=\"w\">"
+         "<model name=\"m\"><link name=\"l\">\n" +
+         visuals + "\n</link></model></world></sdf>\n";
+}
+
+std::string visual(const std::string& name, const std::string& content) {
+  return "<visual name=\"" + name + "\">" + content + "</visual>\n";
+}
+
+std::string geometry(const std::string& shape) {
+  return "<geometry>" + shape + "</geometry>";
+}
+
+const std::string ball = geometry("<sphere><radius>1</radius></sphere>");
+
+void expect_near(const glm::dvec3& actual, const glm::dvec3& expected) {
+  EXPECT_NEAR(glm::distance(actual, expected), 0.0, 1e-9) << actual.x << " " << actual.y << " " << actual.z;
+}
+
+class Harbour : public testing::Test {
+ protected:
+  const World world_ = load_world(data / "harbour/harbour.sdf", {});
+};
+
+TEST_F(Harbour, HasItsBodiesAndItsWaterSurface) {
+  EXPECT_EQ(world_.name, "harbour");
+  EXPECT_EQ(world_.water_surface_z_m, -0.25);
+  std::vector<std::string> names;
+  for (const Body& body : world_.bodies) {
+    names.push_back(body.name);
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("crane_1", "quay", "far_buoy"));
+  EXPECT_EQ(world_.find_body("crane"), nullptr);
+  EXPECT_THAT(world_.warnings, IsEmpty());
+}
+
+// The crane stands at (1 2 3), turned 90 degrees to the left; poses inside it were worked out by hand.
+TEST_F(Harbour, ResolvesPosesOfLinksAndVisuals) {
+  const Body& crane = *world_.find_body("crane_1");
+  ASSERT_EQ(crane.parts.size(), 4U);
+  expect_near(crane.T_world_body.position_m, {1, 2, 3});
+  expect_near(crane.T_world_body * glm::dvec3(1, 0, 0), {1, 3, 3});
+  // tower 1 0 0, column 0 0 1 above
+  expect_near(crane.parts[0].T_body_part.position_m, {1, 0, 1});
+  expect_near((crane.T_world_body * crane.parts[0].T_body_part).position_m, {1, 3, 4});
+  // arm 0 0 2 above the tower, rolled by 90 degrees: its y is up; the jib is 1 along that
+  expect_near(crane.parts[1].T_body_part.position_m, {1, 0, 3});
+  expect_near(crane.parts[1].T_body_part * glm::dvec3(0, 0, 1), {1, -1, 3});
+  expect_near(crane.T_world_body * (crane.parts[1].T_body_part * glm::dvec3(0, 0, 1)), {2, 3, 6});
+}
+
+TEST_F(Harbour, ResolvesPosesOfNestedModels) {
+  const Body& crane = *world_.find_body("crane_1");
+  // hook 0 0 1, rolled by 90 degrees; its block is 0 1 0 in it, which is up
+  expect_near(crane.parts[3].T_body_part.position_m, {0, 0, 2});
+  expect_near((crane.T_world_body * crane.parts[3].T_body_part).position_m, {1, 2, 5});
+  EXPECT_EQ(crane.parts[3].material.name, "steel");  // from its model
+  EXPECT_EQ(crane.parts[0].material.name, "default");
+}
+
+TEST_F(Harbour, ResolvesPosesRelativeToFrames) {
+  expect_near(world_.find_body("quay")->T_world_body.position_m, {100, 5, 0});
+}
+
+TEST_F(Harbour, KeepsLargeCoordinatesInDouble) {
+  EXPECT_EQ(world_.find_body("far_buoy")->T_world_body.position_m, glm::dvec3(5000000.25, -4000000.5, -2.0));
+}
+
+TEST_F(Harbour, ReadsAMeshOnceAndScalesIt) {
+  const Body& crane = *world_.find_body("crane_1");
+  EXPECT_EQ(crane.parts[1].mesh, crane.parts[2].mesh);
+  EXPECT_EQ(test::bounds(*crane.parts[1].mesh).low.z, -6.0);
+  EXPECT_NEAR(test::volume_m3(*crane.parts[1].mesh), 8.0, 1e-5);
+}
+
+TEST_F(Harbour, TakesVisualsAndNotCollisions) {
+  const Body& quay = *world_.find_body("quay");
+  ASSERT_EQ(quay.parts.size(), 1U);
+  EXPECT_NEAR(test::area_m2(*quay.parts[0].mesh), 200.0, 1e-3);
+  EXPECT_NEAR(glm::distance(quay.parts[0].mesh->normals[0], glm::vec3(1, 0, 0)), 0.0, 1e-6);
+}
+
+TEST(SdfWorld, MayBeASingleModel) {
+  const World world = load_world(data / "harbour/models/hook/model.sdf", {});
+  ASSERT_EQ(world.bodies.size(), 1U);
+  EXPECT_EQ(world.bodies[0].name, "hook");
+  EXPECT_FALSE(world.water_surface_z_m);
+}
+
+TEST(SdfWorld, FindsModelsInTheGivenFolders) {
+  const test::TempFolder folder;
+  const auto file = folder.write(
+      "w.sdf",
+      "<sdf version=\"1.9\"><world name=\"w\"><include><uri>model://hook</uri></include></world></sdf>");
+  EXPECT_THROW(load_world(file, {}), WorldError);
+  EXPECT_NE(load_world(file, {data / "harbour/models"}).find_body("hook"), nullptr);
+}
+
+/// libsdformat looks into the working directory before it asks us.
+TEST(SdfWorld, IsNotMisledByTheWorkingDirectory) {
+  const std::string model = "<sdf version=\"1.9\"><model name=\"m\"><link name=\"l\"><visual name=\"v\">";
+  const test::TempFolder folder;
+  folder.write("decoy/models/rock/model.sdf", model + ball + "</visual></link></model></sdf>");
+  folder.write("world/models/rock/model.sdf",
+               model + geometry("<box><size>1 1 1</size></box>") + "</visual></link></model></sdf>");
+  const auto file = folder.write("world/w.sdf",
+                                 "<sdf version=\"1.9\"><world name=\"w\">\n<include>"
+                                 "<uri>models/rock/model.sdf</uri></include></world></sdf>");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path() / "decoy");
+  std::string message;
+  try {
+    load_world(file, {});
+  } catch (const WorldError& error) {
+    message = error.what();
+  }
+  std::filesystem::current_path(before);
+  EXPECT_THAT(message, HasSubstr("was read from"));
+  EXPECT_EQ(load_world(file, {}).triangle_count(), 12U);
+}
+
+TEST(SdfWorld, KnowsEveryShape) {
+  const test::TempFolder folder;
+  const auto file = folder.write(
+      "w.sdf", world_of(visual("a", geometry("<box><size>1 2 3</size></box>")) + visual("b", ball) +
+                        visual("c", geometry("<cylinder><radius>1</radius><length>2</length></cylinder>")) +
+                        visual("d", geometry("<capsule><radius>1</radius><length>2</length></capsule>")) +
+                        visual("e", geometry("<ellipsoid><radii>1 2 3</radii></ellipsoid>")) +
+                        visual("f", geometry("<plane><normal>0 0 1</normal><size>2 3</size></plane>")) +
+                        visual("g", geometry("<heightmap><uri>" + (data / "grey16.png").string() +
+                                             "</uri><size>4 2 8</size><pos>0 0 -5</pos></heightmap>")) +
+                        visual("h", geometry("<mesh><uri>file://" + (data / "tetrahedron.ply").string() +
+                                             "</uri></mesh>")) +
+                        visual("i", geometry("<empty/>"))));
+  const World world = load_world(file, {});
+  const auto& parts = world.bodies.at(0).parts;
+  ASSERT_EQ(parts.size(), 8U);
+  const double pi = 3.14159265358979;
+  const double expected_volume[] = {6.0, 4.0 / 3.0 * pi, 2.0 * pi, 2.0 * pi + 4.0 / 3.0 * pi, 8.0 * pi};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(test::volume_m3(*parts[i].mesh), expected_volume[i], 0.01 * expected_volume[i]) << i;
+  }
+  EXPECT_NEAR(test::area_m2(*parts[5].mesh), 6.0, 1e-5);
+  EXPECT_EQ(test::bounds(*parts[6].mesh).high, glm::dvec3(2.0, 1.0, 8.0));  // 40000, the brightest, is 8 m up
+  EXPECT_EQ(parts[6].T_body_part.position_m, glm::dvec3(0.0, 0.0, -5.0));
+  EXPECT_NEAR(test::volume_m3(*parts[7].mesh), 1.0, 1e-6);
+}
+
+TEST(SdfWorld, TakesMaterialsInTheDocumentedOrder) {
+  const test::TempFolder folder;
+  const std::string obj = geometry("<mesh><uri>" + (data / "tetrahedron.obj").string() + "</uri></mesh>");
+  const auto file = folder.write(
+      "w.sdf",
+      world_of(
+          visual("own", ball + "<laser_retro>0.7</laser_retro><sonard:material> mud </sonard:material>") +
+          visual("changed", ball + "<sonard:material reflectance=\"1.40\">concrete</sonard:material>") +
+          visual("retro", ball + "<laser_retro>0.7</laser_retro>") + visual("none", ball) +
+          visual("mesh", obj + "<laser_retro>0.7</laser_retro>") +
+          visual("mesh_own", obj + "<sonard:material>pvc</sonard:material>")));
+  const World world = load_world(file, {});
+  std::vector<std::string> names;
+  for (const BodyPart& part : world.bodies.at(0).parts) {
+    names.push_back(part.material.name);
+  }
+  // The OBJ has parts "Rock.001" and "steel".
+  EXPECT_THAT(names, ElementsAre("mud", "concrete", "laser_retro", "default", testing::AnyOf("rock", "steel"),
+                                 testing::AnyOf("rock", "steel"), "pvc", "pvc"));
+  EXPECT_NE(names[4], names[5]);
+  EXPECT_EQ(world.bodies[0].parts[1].material.reflectance, 1.4);
+  EXPECT_EQ(world.bodies[0].parts[2].material.reflectance, 0.7);
+}
+
+TEST(SdfWorld, HandsMaterialsDownFromLinkAndModel) {
+  const test::TempFolder folder;
+  const auto file =
+      folder.write("w.sdf",
+                   "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\"><model name=\"m\">"
+                   "<sonard:material>wood</sonard:material>"
+                   "<link name=\"a\"><sonard:material>rubber</sonard:material>" +
+                       visual("v", ball + "<laser_retro>1</laser_retro>") + "</link><link name=\"b\">" +
+                       visual("v", ball) + "</link></model></world></sdf>");
+  const World world = load_world(file, {});
+  EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "rubber");
+  EXPECT_EQ(world.bodies.at(0).parts.at(1).material.name, "wood");
+}
+
+TEST(SdfWorld, SaysWhenAMeshMaterialIsNotAcoustic) {
+  const test::TempFolder folder;
+  folder.write("paint.mtl", "newmtl RedPaint\nKd 1 0 0\n");
+  folder.write("hull.obj", "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl RedPaint\nf 1 2 3\n");
+  const World world = load_world(
+      folder.write("w.sdf", world_of(visual("v", geometry("<mesh><uri>hull.obj</uri></mesh>")))), {});
+  ASSERT_EQ(world.warnings.size(), 1U);
+  EXPECT_THAT(world.warnings[0],
+              testing::AllOf(HasSubstr("w.sdf:4"), HasSubstr("m::l::v"), HasSubstr("RedPaint")));
+}
+
+TEST(SdfWorld, FallsBackToCollisionsOfAModelWithoutVisuals) {
+  const test::TempFolder folder;
+  const auto file =
+      folder.write("w.sdf", world_of("<collision name=\"c\"><pose>0 0 2 0 0 0</pose>" +
+                                     geometry("<box><size>1 1 1</size></box>") +
+                                     "<sonard:material>concrete</sonard:material></collision>"));
+  const World world = load_world(file, {});
+  ASSERT_EQ(world.bodies.at(0).parts.size(), 1U);
+  EXPECT_EQ(world.bodies[0].parts[0].material.name, "concrete");
+  expect_near(world.bodies[0].parts[0].T_body_part.position_m, {0, 0, 2});
+  ASSERT_EQ(world.warnings.size(), 1U);
+  EXPECT_THAT(world.warnings[0], HasSubstr("collision shapes"));
+}
+
+TEST(SdfWorld, LoadsNormalMapsOfBothKindsOnce) {
+  const test::TempFolder folder;
+  std::filesystem::copy_file(data / "normal_map.png", folder.path() / "ripples.png");
+  const auto file = folder.write(
+      "w.sdf",
+      world_of(
+          visual("shader", ball +
+                               "<material><shader type=\"normal_map_tangent_space\"><normal_map>ripples.png"
+                               "</normal_map></shader></material>") +
+          visual("pbr",
+                 geometry("<plane><normal>0 0 1</normal><size>2 3</size></plane>") +
+                     "<material><pbr><metal><normal_map>ripples.png</normal_map></metal></pbr></material>") +
+          visual("smooth", ball)));
+  const World world = load_world(file, {});
+  const auto& parts = world.bodies.at(0).parts;
+  ASSERT_NE(parts[0].normal_map, nullptr);
+  EXPECT_EQ(parts[0].normal_map->width_px, 2);
+  EXPECT_EQ(parts[0].normal_map, parts[1].normal_map);
+  EXPECT_EQ(parts[2].normal_map, nullptr);
+  EXPECT_TRUE(parts[2].mesh->tangents.empty());
+  // u grows along x on a plane, eastward on a sphere: the tangent is horizontal and across the normal.
+  for (const glm::vec4& tangent : parts[1].mesh->tangents) {
+    EXPECT_NEAR(glm::distance(tangent, glm::vec4(1, 0, 0, 1)), 0.0, 1e-6);
+  }
+  const TriangleMesh& sphere = *parts[0].mesh;
+  for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
+    const glm::vec3 east(-sphere.positions[i].y, sphere.positions[i].x, 0.0F);
+    if (glm::length(east) > 0.3F) {
+      ASSERT_NEAR(glm::dot(glm::vec3(sphere.tangents[i]), glm::normalize(east)), 1.0, 0.01);
+    }
+  }
+}
+
+TEST(SdfWorld, WarnsOfUnknownElements) {
+  const test::TempFolder folder;
+  const World world =
+      load_world(folder.write("w.sdf", world_of(visual("v", ball + "<colour>red</colour>"))), {});
+  ASSERT_EQ(world.warnings.size(), 1U);
+  EXPECT_THAT(world.warnings[0], HasSubstr("colour"));
+}
+
+TEST(SdfWorld, PrintsNothing) {
+  const test::TempFolder folder;
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  load_world(folder.write("w.sdf", world_of(visual("v", ball + "<colour>red</colour>"))), {});
+  EXPECT_THROW(load_world(folder.write("x.sdf", "<sdf><world"), {}), WorldError);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(SdfWorld, ReadsOldVersions) {
+  const test::TempFolder folder;
+  const World world = load_world(
+      folder.write("w.sdf",
+                   "<sdf version=\"1.4\"><world name=\"w\"><model name=\"m\"><pose>1 2 3 0 0 0</pose>"
+                   "<link name=\"l\">" +
+                       visual("v", ball) + "</link></model></world></sdf>"),
+      {});
+  expect_near(world.bodies.at(0).T_world_body.position_m, {1, 2, 3});
+}
+
+}  // namespace
+}  // namespace sonard::render

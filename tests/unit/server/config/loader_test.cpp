@@ -1,0 +1,611 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the loader makes of good configurations, and what it says about bad ones.
+#include "server/config/loader.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/config/overlaps.hpp"
+#include "server/devices/gemini/config.hpp"
+#include "server/devices/gemini/kind.hpp"
+#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/micron/kind.hpp"
+#include "tests/unit/server/config/config_text.hpp"
+
+namespace sonard::server {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Loader : public ConfigFolder {};
+
+/// The first head, which is a Gemini.
+const GeminiConfig& gemini_of(const DaemonConfig& config) {
+  return gemini_config(config.heads.at(0));
+}
+
+TEST_F(Loader, gives_defaults_for_what_is_left_out) {
+  const LoadedConfig loaded = load(minimal_config);
+  const DaemonConfig& config = loaded.config;
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  EXPECT_EQ(config.log_level, LogLevel::info);
+  EXPECT_EQ(config.world_file, folder_ / "world.sdf");
+  EXPECT_EQ(config.backend, render::Backend::automatic);
+  ASSERT_TRUE(config.poses.T_world_vehicle_initial);
+  EXPECT_EQ(config.poses.T_world_vehicle_initial->position_m, glm::dvec3(1, 2, 3));
+  EXPECT_FALSE(config.poses.udp || config.poses.tcp || config.poses.trajectory);
+  EXPECT_EQ(config.poses.extrapolation_limit, milliseconds{500});
+  EXPECT_EQ(config.poses.stale_policy, StalePolicy::hold);
+
+  ASSERT_EQ(config.heads.size(), 1U);
+  const HeadConfig& head = config.heads[0];
+  EXPECT_EQ(head.kind, &gemini_kind());
+  EXPECT_EQ(head.name, "front");
+  EXPECT_EQ(head.acoustics.model, render::Model::physical);
+  EXPECT_FALSE(head.dump_directory);
+  const GeminiConfig& gemini = gemini_config(head);
+  EXPECT_EQ(gemini.device.sonar_id, 513);
+  EXPECT_EQ(gemini.device.alternate_address, 0x7F000002U);
+  EXPECT_EQ(gemini.device.netmask, 0xFF000000U);
+  EXPECT_EQ(gemini.device.fixed_address, 0x0A3D13C8U);  // 10.61.19.200, docs/protocols/gemini.md 1.2
+  EXPECT_EQ(gemini.device.min_ping_period, std::chrono::microseconds{33'300});  // 8.4
+  EXPECT_EQ(gemini.device.water_sound_speed_mps, 0.0);
+  EXPECT_EQ(gemini.bind_address, 0x7F000002U);
+  EXPECT_EQ(gemini.command_port, 52901);
+  EXPECT_EQ(gemini.device.topside_port, 52900);
+  EXPECT_EQ(gemini.status.mode, StatusDestination::Mode::limited_broadcast);
+  EXPECT_THAT(gemini.allow, ElementsAre(Cidr{0x7F000000, 8}));
+  EXPECT_TRUE(gemini.link.to_client.transparent());
+  EXPECT_TRUE(gemini.link.from_client.transparent());
+  EXPECT_FALSE(gemini.trigger);
+}
+
+TEST_F(Loader, reads_the_backend) {
+  EXPECT_EQ(load(minimal_config + "backend: auto\n").config.backend, render::Backend::automatic);
+  EXPECT_EQ(load(minimal_config + "backend: raster\n").config.backend, render::Backend::raster);
+  EXPECT_EQ(load(minimal_config + "backend: ray\n").config.backend, render::Backend::ray);
+}
+
+TEST_F(Loader, reads_where_grids_are_binned) {
+  EXPECT_EQ(load(minimal_config).config.gpu_binning, render::GpuBinning::automatic);
+  EXPECT_EQ(load(minimal_config + "gpu_binning: auto\n").config.gpu_binning, render::GpuBinning::automatic);
+  EXPECT_EQ(load(minimal_config + "gpu_binning: on\n").config.gpu_binning, render::GpuBinning::on);
+  EXPECT_EQ(load(minimal_config + "gpu_binning: off\n").config.gpu_binning, render::GpuBinning::off);
+}
+
+TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
+  const LoadedConfig loaded =
+      load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");
+  const render::PaperModel& paper = loaded.config.heads.at(0).acoustics.paper;
+  EXPECT_EQ(paper.speckle, render::PaperModel::Speckle::folded_gaussian);
+  EXPECT_EQ(paper.speckle_mean, 0.9);
+  EXPECT_EQ(paper.speckle_sd, 0.30);  // docs/physics.md 1.2, A8
+  EXPECT_EQ(paper.speckle_floor, 0.03);
+  EXPECT_GT(paper.attenuation_per_m, 0.0);
+}
+
+TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device) {
+  // Fresh water: only the f^2 term is left, so 161.088 dB/km at 720 kHz (docs/physics.md 2.2) scales exactly.
+  const LoadedConfig loaded =
+      load(minimal_config + "water: {temperature_c: 10, salinity_ppt: 0, depth_m: 5, ph: 7}\n");
+  const double expected_db_per_m = 0.161088 * std::pow(723.38 / 720.0, 2);
+  const render::PhysicalModel& model = loaded.config.heads.at(0).acoustics.physical;
+  EXPECT_NEAR(model.absorption_db_per_m, expected_db_per_m, 1e-6);
+  EXPECT_NEAR(model.tvg_absorption_db_per_m, expected_db_per_m, 1e-6);
+}
+
+TEST_F(Loader, takes_water_properties_that_are_given_outright) {
+  const LoadedConfig loaded = load(minimal_config +
+                                   "    acoustics: {physical: {tvg_absorption_db_per_km: 120}}\n"
+                                   "water: {absorption_db_per_km: 80, sound_speed_mps: 1482.5}\n");
+  const render::PhysicalModel& model = loaded.config.heads.at(0).acoustics.physical;
+  EXPECT_DOUBLE_EQ(model.absorption_db_per_m, 0.080);
+  EXPECT_DOUBLE_EQ(model.tvg_absorption_db_per_m, 0.120);
+  EXPECT_DOUBLE_EQ(gemini_of(loaded.config).device.water_sound_speed_mps, 1482.5);
+}
+
+TEST_F(Loader, computes_the_speed_of_sound_when_asked_to) {
+  const std::string water = "water: {temperature_c: 10, salinity_ppt: 35, depth_m: 10, sound_speed_mps: ";
+  const auto speed_mps = [&](const std::string& word) {
+    return gemini_of(load(minimal_config + water + word + "}\n").config).device.water_sound_speed_mps;
+  };
+  EXPECT_NEAR(speed_mps("computed"), 1489.97, 5e-3);  // Mackenzie, docs/physics.md 2.2
+  EXPECT_EQ(speed_mps("ping_configuration"), 0.0);
+}
+
+TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
+  const LoadedConfig down =
+      load(minimal_config + "    mount: {position_m: [0.5, 0, -0.25], rpy_deg: [0, 20, 0]}\n");
+  const render::Pose& mount = down.config.heads.at(0).T_vehicle_sonar;
+  EXPECT_EQ(mount.position_m, glm::dvec3(0.5, 0, -0.25));
+  // A down tilt of 20 degrees: the acoustic axis points forward and down.
+  const glm::dvec3 axis = mount.orientation * glm::dvec3(1, 0, 0);
+  EXPECT_NEAR(axis.x, std::cos(20 * std::numbers::pi / 180), 1e-12);
+  EXPECT_NEAR(axis.y, 0, 1e-12);
+  EXPECT_NEAR(axis.z, -std::sin(20 * std::numbers::pi / 180), 1e-12);
+
+  // Rz(90) Ry(0) Rx(90): the body's y axis goes up by the roll and stays there; x turns to the left.
+  const LoadedConfig rolled = load(minimal_config + "    mount: {rpy_deg: [90, 0, 90]}\n");
+  const glm::dquat& q = rolled.config.heads.at(0).T_vehicle_sonar.orientation;
+  EXPECT_NEAR(glm::length(q * glm::dvec3(0, 1, 0) - glm::dvec3(0, 0, 1)), 0, 1e-12);
+  EXPECT_NEAR(glm::length(q * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)), 0, 1e-12);
+}
+
+TEST_F(Loader, reads_the_link_and_its_units) {
+  const LoadedConfig loaded = load(minimal_config +
+                                   "    link:\n"
+                                   "      seed: 18446744073709551615\n"
+                                   "      to_surface: {loss: 0.05, delay_ms: 1.5, jitter_ms: 0.25}\n"
+                                   "      from_surface: {reorder: 0.01, duplicate: 1}\n");
+  const LinkConfig& link = gemini_of(loaded.config).link;
+  EXPECT_EQ(link.seed, 18446744073709551615U);
+  EXPECT_EQ(link.to_client.loss, 0.05);
+  EXPECT_EQ(link.to_client.delay, std::chrono::microseconds{1500});
+  EXPECT_EQ(link.to_client.jitter, std::chrono::microseconds{250});
+  EXPECT_EQ(link.from_client.reorder, 0.01);
+  EXPECT_EQ(link.from_client.duplicate, 1.0);
+  EXPECT_FALSE(link.to_client.transparent());
+}
+
+TEST_F(Loader, resolves_paths_against_the_folder_of_the_file) {
+  const LoadedConfig loaded = load(
+      "world: {file: /somewhere/else.sdf}\n"
+      "poses: {trajectory: {file: sub/t.csv, loop: true, speed: 2, axes: ned_frd}}\n" +
+      minimal_config.substr(minimal_config.find("heads:")) + "    dump: {directory: pings}\n");
+  EXPECT_EQ(loaded.config.world_file, "/somewhere/else.sdf");
+  EXPECT_EQ(loaded.config.poses.trajectory->file, folder_ / "sub/t.csv");
+  EXPECT_EQ(loaded.config.poses.trajectory->speed, 2.0);
+  EXPECT_TRUE(loaded.config.poses.trajectory->loop);
+  EXPECT_EQ(loaded.config.poses.trajectory->axes, pose::Axes::ned_frd);
+  EXPECT_EQ(loaded.config.heads.at(0).dump_directory, folder_ / "pings");
+}
+
+TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
+  const LoadedConfig loaded = load(minimal_config);
+  EXPECT_THAT(loaded.problem_with("world.file", "no such file"),
+              HasSubstr("config.yaml:1:15: world.file: no such"));
+  // A default has no place of its own: it stands where it comes from, or else in the mapping around it.
+  EXPECT_THAT(loaded.problem_with("heads[0].network.bind", "in use"),
+              HasSubstr("config.yaml:9:26: heads[0].network.bind: in use"));
+  EXPECT_THAT(loaded.problem_with("heads[0].network.command_port", "?"),
+              HasSubstr("config.yaml:9:7: heads[0].net"));
+}
+
+// --- what goes wrong
+// -----------------------------------------------------------------------------------------------
+
+TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
+  EXPECT_THAT(
+      complaints(minimal_config + "    moutn: {}\n"),
+      ElementsAre(AllOf(StartsWith("config.yaml:11:5: heads[0].moutn: unknown key, did you mean 'mount'?"),
+                        HasSubstr("expected one of type, name,"))));
+  EXPECT_THAT(complaints(minimal_config + "wibble: 1\n"),
+              ElementsAre(StartsWith("config.yaml:11:1: wibble: unknown key (expected one of log, world")));
+}
+
+TEST_F(Loader, suggests_the_key_with_its_unit) {
+  EXPECT_THAT(
+      complaints(minimal_config + "    link: {to_surface: {delay: 5s}}\n"),
+      ElementsAre(StartsWith(
+          "config.yaml:11:25: heads[0].link.to_surface.delay: unknown key, did you mean 'delay_ms'?")));
+}
+
+TEST_F(Loader, refuses_units_in_values) {
+  EXPECT_THAT(complaints(minimal_config + "water: {temperature_c: 10C, depth_m: 5 m}\n"),
+              ElementsAre(AllOf(StartsWith("config.yaml:11:24: water.temperature_c: '10C' carries a unit"),
+                                HasSubstr("expected a number from -4 to 45, in degrees Celsius")),
+                          AllOf(StartsWith("config.yaml:11:38: water.depth_m: '5 m' carries a unit"),
+                                HasSubstr("expected a number from 0 to 11000, in m)"))));
+}
+
+TEST_F(Loader, refuses_duplicate_keys_at_every_depth) {
+  EXPECT_THAT(
+      complaints(minimal_config + "      netmask: 255.0.0.0\n"),
+      ElementsAre("config.yaml:11:7: heads[0].network.netmask: duplicate key (expected once; first given on "
+                  "line 10)"));
+  EXPECT_THAT(complaints(minimal_config + "world: {file: b.sdf}\n"),
+              ElementsAre("config.yaml:11:1: world: duplicate key (expected once; first given on line 1)"));
+}
+
+TEST_F(Loader, refuses_wrong_types) {
+  EXPECT_THAT(complaints("world: [a, b]\n" + minimal_config.substr(minimal_config.find("poses:"))),
+              ElementsAre(StartsWith("config.yaml:1:8: world: is a list (expected a mapping")));
+  EXPECT_THAT(
+      complaints(minimal_config + "water: {depth_m: \"5\"}\n"),
+      ElementsAre(StartsWith("config.yaml:11:18: water.depth_m: is a quoted text, '5' (expected a number")));
+  EXPECT_THAT(complaints(minimal_config + "water: {depth_m: deep}\n"),
+              ElementsAre(StartsWith("config.yaml:11:18: water.depth_m: 'deep' is not a finite number")));
+  EXPECT_THAT(complaints(minimal_config + "water: {depth_m: }\n"),
+              ElementsAre(HasSubstr("water.depth_m: is empty (expected a number")));
+  EXPECT_THAT(
+      complaints(minimal_config + "      accept_id_zero: yes\n"),
+      ElementsAre("config.yaml:11:23: heads[0].network.accept_id_zero: is 'yes' (expected true or false)"));
+  EXPECT_THAT(
+      complaints(minimal_config + "    mount: {position_m: [1, 2]}\n"),
+      ElementsAre(HasSubstr("heads[0].mount.position_m: is a list of 2 (expected a list of three numbers)")));
+  EXPECT_THAT(
+      complaints(minimal_config + "    mount: {position_m: [1, 2, x]}\n"),
+      ElementsAre(StartsWith("config.yaml:11:32: heads[0].mount.position_m[2]: 'x' is not a finite number")));
+  EXPECT_THAT(complaints(minimal_config + "    timing: {burst_lines: 2.5}\n"),
+              ElementsAre(HasSubstr(
+                  "heads[0].timing.burst_lines: is '2.5' (expected a whole number from 1 to 1024)")));
+  EXPECT_THAT(complaints("heads: {}\n" + minimal_config.substr(0, minimal_config.find("heads:"))),
+              ElementsAre(HasSubstr("heads: is a mapping (expected a list, each item starting with '-')")));
+}
+
+TEST_F(Loader, noise_follows_from_a_budget) {
+  const auto physical = [&](const std::string& text) {
+    return load(minimal_config + "    acoustics: {physical: " + text + "}\n");
+  };
+  const auto level_db = [&](const std::string& text) {
+    return physical(text).config.heads.at(0).acoustics.physical.noise_level_db;
+  };
+  // -15 + 20 log10 723.38 - 30 + 10 log10 94000 - 200
+  EXPECT_NEAR(level_db("{noise_budget: {}}"), -138.08, 0.01);
+  EXPECT_NEAR(level_db("{noise_budget: {source_level_db: 210, spectral_level_db: 50, directivity_db: 20, "
+                       "bandwidth_khz: 10}}"),
+              -140, 1e-9);
+  EXPECT_THAT(
+      complaints(minimal_config + "    acoustics: {physical: {noise_level_db: -140, noise_budget: {}}}\n"),
+      ElementsAre(HasSubstr("physical.noise_budget: sets noise_level_db, which is given too")));
+}
+
+TEST_F(Loader, refuses_ends_before_beginnings) {
+  const std::string begin = minimal_config + "    acoustics: {physical: ";
+  EXPECT_THAT(complaints(begin + "{ring_down: {on: true, peak_m: 0.5, end_m: 0.4}}}\n"),
+              ElementsAre(HasSubstr("ring_down.end_m: is not beyond peak_m")));
+  EXPECT_THAT(complaints(begin + "{interference: {least_db: 12}}}\n"),
+              ElementsAre(HasSubstr("interference.most_db: is less than least_db")));
+}
+
+TEST_F(Loader, refuses_numbers_out_of_range) {
+  EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {near_field_blank_m: -0.5}}\n"),
+              ElementsAre(HasSubstr(
+                  "near_field_blank_m: -0.5 is out of range (expected a number from 0 to 120, in m)")));
+  EXPECT_THAT(complaints(minimal_config + "    link: {to_surface: {loss: 1.5}}\n"),
+              ElementsAre(HasSubstr("loss: 1.5 is out of range (expected a number from 0 to 1)")));
+  EXPECT_THAT(complaints(minimal_config + "    timing: {min_ping_period_ms: .nan}\n"),
+              ElementsAre(HasSubstr("min_ping_period_ms: '.nan' is not a finite number")));
+  EXPECT_THAT(complaints(minimal_config + "    timing: {min_ping_period_ms: nan}\n"),
+              ElementsAre(HasSubstr("min_ping_period_ms: 'nan' is not a finite number")));
+  EXPECT_THAT(complaints(minimal_config + "    timing: {retry_hold_ms: 20, retry_hold_max_ms: 10}\n"),
+              ElementsAre(HasSubstr("timing.retry_hold_max_ms: is shorter than retry_hold_ms")));
+  EXPECT_THAT(complaints(minimal_config + "    acoustics: {vertical_beamwidth_deg: 0}\n"),
+              ElementsAre(HasSubstr("0 is out of range (expected a number above 0 to 170, in degrees)")));
+}
+
+TEST_F(Loader, says_which_words_stand_beside_a_number) {
+  EXPECT_THAT(
+      complaints(minimal_config + "water: {sound_speed_mps: guessed}\n"),
+      ElementsAre(HasSubstr("(expected a number from 1000 to 2000, in m/s, or 'ping_configuration', or "
+                            "'computed')")));
+}
+
+TEST_F(Loader, refuses_ids_that_clients_never_talk_to) {
+  for (const char* id : {"0", "1", "65536", "-2"}) {
+    std::string text = minimal_config;
+    text.replace(text.find("513"), 3, id);
+    EXPECT_THAT(complaints(text), ElementsAre(AllOf(StartsWith("config.yaml:7:15: heads[0].sonar_id: is"),
+                                                    HasSubstr("(expected a whole number from 2 to 65535)"))))
+        << id;
+  }
+}
+
+TEST_F(Loader, refuses_addresses_that_are_no_host) {
+  const auto with_address = [](const std::string& address) {
+    std::string text = minimal_config;
+    return text.replace(text.find("127.0.0.2"), 9, address);
+  };
+  EXPECT_THAT(complaints(with_address("0.0.0.0")),
+              ElementsAre(HasSubstr(
+                  "config.yaml:9:26: heads[0].network.alternate_address: 0.0.0.0 is not the address")));
+  EXPECT_THAT(complaints(with_address("239.1.2.3") + "      allow: [127.0.0.0/8]\n"),
+              ElementsAre(HasSubstr("239.1.2.3 is not the address of one host")));
+  EXPECT_THAT(complaints(with_address("127.255.255.255")),
+              ElementsAre(HasSubstr("is the broadcast address of its network")));
+  EXPECT_THAT(
+      complaints(with_address("127.0.0.300")),
+      ElementsAre(HasSubstr("'127.0.0.300' is not understood (expected an IPv4 address such as 127.0.0.2)")));
+}
+
+TEST_F(Loader, refuses_masks_with_holes) {
+  std::string text = minimal_config;
+  text.replace(text.find("255.0.0.0"), 9, "255.0.255.0");
+  EXPECT_THAT(complaints(text),
+              ElementsAre(StartsWith("config.yaml:10:16: heads[0].network.netmask: 255.0.255.0 is not")));
+}
+
+TEST_F(Loader, wants_an_allow_list_for_everything_but_loopback) {
+  std::string text = minimal_config;
+  text.replace(text.find("127.0.0.2"), 9, "10.61.19.200");
+  EXPECT_THAT(complaints(text),
+              ElementsAre(HasSubstr("heads[0].network.allow: missing (expected the address blocks")));
+  EXPECT_THAT(complaints(text + "      allow: []\n"), ElementsAre(HasSubstr("nobody is listed")));
+  EXPECT_THAT(complaints(text + "      allow: [10.61.19.0/24]\n"), IsEmpty());
+  EXPECT_THAT(
+      complaints(minimal_config + "      allow: [127.0.0.1/8]\n"),
+      ElementsAre(HasSubstr("heads[0].network.allow[0]: is '127.0.0.1/8' (expected an address block")));
+}
+
+TEST_F(Loader, reads_where_status_packets_go) {
+  const auto status = [&](const std::string& text) {
+    return gemini_of(load(minimal_config + "      status: " + text + "\n").config).status;
+  };
+  EXPECT_THAT(status("[127.0.0.1, 127.0.0.9]").hosts, ElementsAre(0x7F000001U, 0x7F000009U));
+  EXPECT_EQ(status("directed_broadcast").mode, StatusDestination::Mode::directed_broadcast);
+  EXPECT_THAT(complaints(minimal_config + "      status: []\n"), ElementsAre(HasSubstr("no host is listed")));
+  EXPECT_THAT(complaints(minimal_config + "      status: multicast\n"),
+              ElementsAre(HasSubstr("'multicast' is not understood (expected one of limited_broadcast")));
+}
+
+TEST_F(Loader, warns_of_what_cannot_work_but_may_be_meant) {
+  EXPECT_THAT(
+      load(minimal_config + "      bind: 127.0.0.7\n").warnings,
+      ElementsAre(HasSubstr("config.yaml:11:13: heads[0].network.bind: clients send to the alternate address "
+                            "127.0.0.2, but only 127.0.0.7 is listened on")));
+  EXPECT_THAT(load(minimal_config + "      status: [10.0.0.1]\n").warnings,
+              ElementsAre(HasSubstr("10.0.0.1 gets status packets but is not in `allow`")));
+}
+
+TEST_F(Loader, reads_mavlink) {
+  const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
+  const auto with = [&](const std::string& mavlink) {
+    std::string text = minimal_config;
+    return text.replace(text.find(initial), initial.size(), "  mavlink: {" + mavlink + "}\n");
+  };
+  EXPECT_THAT(complaints(with("system_id: 0, messages: all")),
+              testing::UnorderedElementsAre(HasSubstr("poses.mavlink.bind: missing"),
+                                            HasSubstr("poses.mavlink.system_id: is"),
+                                            HasSubstr("poses.mavlink.messages: 'all' is not understood")));
+  const MavlinkPoseInput plain = load(with("bind: 127.0.0.1:14660")).config.poses.mavlink.value();
+  EXPECT_EQ(plain.bind, (Endpoint{0x7F000001, 14660}));
+  EXPECT_EQ(plain.system_id, 1);
+  EXPECT_EQ(plain.component_id, 1);
+  EXPECT_EQ(plain.messages, MavlinkMessages::automatic);
+  EXPECT_EQ(plain.T_world_local.position_m, glm::dvec3(0));
+  const MavlinkPoseInput full =
+      load(with("bind: 127.0.0.1:1, system_id: 7, component_id: 197, messages: local_position, "
+                "origin: {position_m: [1, 2, 3], rpy_deg: [0, 0, -90]}"))
+          .config.poses.mavlink.value();
+  EXPECT_EQ(full.system_id, 7);
+  EXPECT_EQ(full.component_id, 197);
+  EXPECT_EQ(full.messages, MavlinkMessages::local_position);
+  EXPECT_EQ(full.T_world_local.position_m, glm::dvec3(1, 2, 3));
+  // North of the vehicle is east of the world.
+  EXPECT_NEAR((full.T_world_local.orientation * glm::dvec3(0, 1, 0)).x, 1, 1e-12);
+}
+
+TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
+  const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
+  const std::string world = "world: {file: w.sdf}\n";
+  const auto loaded = [&](const std::string& clock) {
+    return load(world + "poses: {udp: {bind: 127.0.0.1:1}" + clock + "}\n" + heads).config;
+  };
+  EXPECT_EQ(loaded("").poses.clock, PingClock::wall);
+  EXPECT_FALSE(gemini_of(loaded("")).device.waits_for_permission);
+  EXPECT_EQ(loaded(", clock: source").poses.clock, PingClock::source);
+  EXPECT_EQ(loaded(", clock: lock_step").poses.clock, PingClock::lock_step);
+  EXPECT_TRUE(gemini_of(loaded(", clock: lock_step")).device.waits_for_permission);
+  EXPECT_THAT(complaints(world + "poses: {udp: {bind: 127.0.0.1:1}, clock: sim}\n" + heads),
+              ElementsAre(HasSubstr("poses.clock: ")));
+  EXPECT_THAT(complaints(world + "poses: {initial: {position_m: [0, 0, 0]}, clock: source}\n" + heads),
+              ElementsAre(HasSubstr("poses.clock: no source of poses has a clock")));
+}
+
+TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
+  const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
+  const auto with = [&](const std::string& ignition) {
+    std::string text = minimal_config;
+    return text.replace(text.find(initial), initial.size(), "  ignition: {topic: /p, " + ignition + "}\n");
+  };
+  EXPECT_EQ(load(with("frame: relative")).config.poses.ignition->vehicle.name, "");
+  EXPECT_EQ(load(with("frame: world, vehicle: rov")).config.poses.ignition->vehicle.name, "rov");
+  EXPECT_THAT(complaints(with("frame: relative, parents: [a], mount: {position_m: [0, 0, 1]}")),
+              testing::UnorderedElementsAre(HasSubstr("poses.ignition.parents: is of `vehicle`"),
+                                            HasSubstr("poses.ignition.mount: is of `vehicle`")));
+  EXPECT_THAT(complaints(with("frame: relative, vehicle: rov")),
+              ElementsAre(HasSubstr("poses.ignition.parents: missing")));
+}
+
+TEST_F(Loader, leaves_a_mount_to_the_world) {
+  const HeadConfig head =
+      load(minimal_config + "    mount: {from_world: bow}\n    hides_vehicle: true\n").config.heads.at(0);
+  EXPECT_EQ(head.mount_from_world, "bow");
+  EXPECT_TRUE(head.hides_vehicle);
+  EXPECT_THAT(complaints(minimal_config + "    mount: {from_world: bow, rpy_deg: [0, 1, 0]}\n"),
+              ElementsAre(HasSubstr("heads[0].mount.rpy_deg: the world says where the head sits")));
+}
+
+TEST_F(Loader, wants_a_source_of_poses) {
+  const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
+  const std::string world = "world: {file: w.sdf}\n";
+  EXPECT_THAT(complaints(world + "poses: {stale: silence}\n" + heads),
+              ElementsAre(HasSubstr("poses.initial: nothing gives a pose")));
+  EXPECT_THAT(complaints(world + "poses: {udp: {bind: 127.0.0.1:1}, trajectory: {file: t.csv}}\n" + heads),
+              ElementsAre(HasSubstr("poses.trajectory: the trajectory and a live input would fight")));
+  EXPECT_THAT(complaints(world + heads),
+              ElementsAre(StartsWith("config.yaml:1:1: poses: missing (expected")));
+  EXPECT_THAT(complaints(world + "poses: {tcp: {bind: 0.0.0.0:14600}}\n" + heads),
+              ElementsAre(HasSubstr("poses.tcp.allow: missing")));
+}
+
+TEST_F(Loader, refuses_heads_that_overlap) {
+  const std::string same =
+      "  - name: front\n"
+      "    type: gemini_720i\n"
+      "    sonar_id: 513\n"
+      "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n";
+  EXPECT_THAT(
+      complaints(minimal_config + same),
+      ElementsAre(HasSubstr(":11:11: heads[1].name: 'front' already belongs to heads[0]"),
+                  HasSubstr(":13:15: heads[1].sonar_id: 513 already belongs to heads[0]"),
+                  HasSubstr(":14:34: heads[1].network.bind: UDP 127.0.0.2:52901 overlaps 127.0.0.2:52901 of "
+                            "heads[0].network.bind"),
+                  HasSubstr(":14:34: heads[1].network.alternate_address: 127.0.0.2 already belongs")));
+}
+
+TEST_F(Loader, knows_that_a_socket_on_all_addresses_overlaps_every_other) {
+  const std::string any =
+      "  - name: back\n"
+      "    type: gemini_720i\n"
+      "    sonar_id: 514\n"
+      "    network: {alternate_address: 127.0.0.3, netmask: 255.0.0.0, bind: 0.0.0.0, allow: [127.0.0.0/8]";
+  EXPECT_THAT(complaints(minimal_config + any + "}\n"),
+              ElementsAre(HasSubstr("heads[1].network.bind: UDP 0.0.0.0:52901 overlaps 127.0.0.2:52901")));
+  EXPECT_THAT(complaints(minimal_config + any + ", command_port: 52911}\n"), IsEmpty());
+}
+
+/// A head that goes on in the list of heads, reached as `serial` says.
+std::string micron_of(const std::string& name, int node, const std::string& serial) {
+  return "  - {name: " + name + ", type: micron, serial: {" + serial +
+         "}, device: {node: " + std::to_string(node) + "}}\n";
+}
+
+TEST_F(Loader, lets_heads_of_two_kinds_have_the_same_id) {
+  std::string text = minimal_config + micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
+  text.replace(text.find("513"), 3, "2");
+  const DaemonConfig config = load(text).config;
+  ASSERT_EQ(config.heads.size(), 2U);
+  for (const HeadConfig& head : config.heads) {
+    EXPECT_EQ(head.kind->device_id(head), 2);
+  }
+  EXPECT_THAT(complaints(minimal_config + micron_of("front", 2, "tcp: [{bind: 127.0.0.9:4001}]")),
+              ElementsAre(HasSubstr("heads[1].name: 'front' already belongs to heads[0]")))
+      << "names are those of the daemon";
+}
+
+TEST_F(Loader, lets_heads_of_two_lines_be_the_same_node_but_not_have_the_same_terminal) {
+  EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
+                         micron_of("b", 2, "pty: [{link: b}, {}]")),
+              IsEmpty());
+  EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
+                         micron_of("b", 3, "pty: [{link: b}, {link: ./a}, {}]")),
+              ElementsAre(HasSubstr("config.yaml:12:43: heads[2].serial.pty: '" + (folder_ / "a").string() +
+                                    "' already belongs to heads[1] (expected one of its own)")));
+}
+
+TEST_F(Loader, knows_the_sockets_of_all_inputs_and_heads_by_their_transport) {
+  const std::string text =
+      "world: {file: world.sdf}\n"
+      "poses: {tcp: {bind: 127.0.0.1:1}, mavlink: {bind: 127.0.0.1:2}, udp: {bind: 127.0.0.1:3}}\n" +
+      minimal_config.substr(minimal_config.find("heads:")) + "    trigger: {bind: 127.0.0.1:4}\n" +
+      micron_of("mast", 2, "tcp: [{bind: 127.0.0.1:3}, {bind: 127.0.0.1:5}], udp: [{bind: 127.0.0.1:1}]");
+  using Transport = PlannedSocket::Transport;
+  std::vector<std::tuple<Transport, Endpoint, std::string>> sockets;
+  for (const PlannedSocket& socket : planned_sockets(load(text).config)) {
+    sockets.emplace_back(socket.transport, socket.endpoint, socket.key);
+  }
+  const auto at = [](std::uint16_t port) { return Endpoint{0x7F000001, port}; };
+  EXPECT_THAT(sockets, testing::UnorderedElementsAre(
+                           std::tuple(Transport::udp, at(3), "poses.udp.bind"),
+                           std::tuple(Transport::udp, at(2), "poses.mavlink.bind"),
+                           std::tuple(Transport::tcp, at(1), "poses.tcp.bind"),
+                           std::tuple(Transport::udp, Endpoint{0x7F000002, 52901}, "heads[0].network.bind"),
+                           std::tuple(Transport::udp, at(4), "heads[0].trigger.bind"),
+                           std::tuple(Transport::udp, at(1), "heads[1].serial.udp[0].bind"),
+                           std::tuple(Transport::tcp, at(3), "heads[1].serial.tcp[0].bind"),
+                           std::tuple(Transport::tcp, at(5), "heads[1].serial.tcp[1].bind")));
+}
+
+TEST_F(Loader, refuses_a_socket_of_a_head_that_an_input_has) {
+  const std::string poses = "world: {file: w.sdf}\nposes: {tcp: {bind: 127.0.0.9:4001}}\nheads:\n";
+  EXPECT_THAT(
+      complaints(poses + micron_of("mast", 2, "tcp: [{bind: 0.0.0.0:4001, allow: [127.0.0.0/8]}]")),
+      ElementsAre(HasSubstr("heads[0].serial.tcp[0].bind: TCP 0.0.0.0:4001 overlaps 127.0.0.9:4001 of "
+                            "poses.tcp.bind")));
+}
+
+TEST_F(Loader, names_the_types_that_a_head_can_be_of) {
+  std::vector<std::string_view> types;
+  for (const HeadKind* kind : head_kinds()) {
+    types.push_back(kind->type());
+  }
+  ASSERT_THAT(types, testing::IsSupersetOf({"gemini_720i", "micron"}));
+  std::string text = minimal_config;
+  text.replace(text.find("gemini_720i"), 11, "gemini_7200");
+  EXPECT_THAT(complaints(text),
+              ElementsAre(fmt::format(
+                  "config.yaml:6:11: heads[0].type: 'gemini_7200' is not understood (expected one of {})",
+                  fmt::join(types, ", "))));
+  text = minimal_config;
+  text.erase(text.find("    type"), std::string("    type: gemini_720i\n").size());
+  EXPECT_THAT(complaints(text),
+              ElementsAre(fmt::format("config.yaml:5:5: heads[0].type: missing (expected {})",
+                                      fmt::join(types, " or "))));
+}
+
+TEST_F(Loader, takes_no_other_types_than_it_is_given) {
+  const std::string micron = micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
+  load(minimal_config + micron);  // which writes the file
+  const HeadKind* const kinds[] = {&gemini_kind()};
+  try {
+    load_config(folder_ / "config.yaml", kinds);
+    FAIL() << "a head of a type that is not among the kinds";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(
+        error.lines(),
+        testing::Contains(HasSubstr(
+            "config.yaml:11:24: heads[1].type: 'micron' is not understood (expected one of gemini_720i)")));
+  }
+}
+
+TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
+  std::string text = minimal_config + "sampling: {preset: grid, views: 0}\nwater: {ph: 15}\nbogus: 1\n";
+  text.replace(text.find("513"), 3, "1");
+  EXPECT_THAT(complaints(text),
+              ElementsAre(HasSubstr(":7:15: heads[0].sonar_id"), HasSubstr(":11:33: sampling.views"),
+                          HasSubstr(":12:13: water.ph"), HasSubstr(":13:1: bogus")));
+}
+
+TEST_F(Loader, reads_the_error_that_is_aimed_at) {
+  const auto preset = [&](const std::string& section) {
+    return load(minimal_config + section).config.heads.at(0).acoustics.sampling.preset;
+  };
+  using Preset = render::Sampling::Preset;
+  EXPECT_EQ(preset(""), Preset::normal);
+  EXPECT_EQ(preset("sampling: {preset: fast}\n"), Preset::fast);
+  EXPECT_EQ(preset("sampling: {preset: reference}\n"), Preset::reference);
+  EXPECT_EQ(preset("sampling: {preset: grid, rows: 64}\n"), Preset::grid);
+  EXPECT_THAT(complaints(minimal_config + "sampling: {rows: 64}\n"),
+              ElementsAre(AllOf(HasSubstr("sampling.rows"), HasSubstr("preset: grid"))));
+  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: fine}\n"),
+              ElementsAre(AllOf(HasSubstr("sampling.preset"), HasSubstr("reference"))));
+}
+
+TEST_F(Loader, points_at_malformed_yaml) {
+  EXPECT_THAT(complaints(minimal_config + "water: {ph: 8\n"),
+              ElementsAre(AllOf(StartsWith("config.yaml:1"), HasSubstr("(expected valid YAML)"))));
+  EXPECT_THAT(complaints("world: [\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
+  EXPECT_THAT(complaints("a: 1\n\tb: 2\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
+}
+
+TEST_F(Loader, wants_one_document_that_is_a_mapping) {
+  EXPECT_THAT(complaints(""), ElementsAre("config.yaml: holds 0 YAML documents (expected one)"));
+  EXPECT_THAT(complaints(minimal_config + "---\na: 1\n"),
+              ElementsAre("config.yaml: holds 2 YAML documents (expected one)"));
+  EXPECT_THAT(complaints("- 1\n")[0], HasSubstr("is a list (expected a mapping"));
+}
+
+TEST_F(Loader, says_why_a_file_cannot_be_read) {
+  try {
+    load_config(folder_ / "absent.yaml", head_kinds());
+    FAIL() << "loaded a file that is not there";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("absent.yaml: cannot be read: No such file or directory"));
+  }
+  EXPECT_THROW(load_config(folder_, head_kinds()), ConfigError);
+}
+
+}  // namespace
+}  // namespace sonard::server

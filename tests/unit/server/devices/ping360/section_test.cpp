@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the loader makes of a head of type ping360, and what it says about bad ones.
+#include "server/devices/ping360/section.hpp"
+
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/devices/ping360/kind.hpp"
+#include "tests/unit/server/config/config_text.hpp"
+
+namespace sonard::server {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Ping360Section : public ConfigFolder {
+ protected:
+  static std::string document(const std::string& head) {
+    return "world: {file: world.sdf}\nposes:\n  initial: {position_m: [1, 2, 3]}\nheads:\n" + item(head);
+  }
+  static std::string item(const std::string& head) { return "  - {type: ping360, " + head + "}\n"; }
+  Ping360Config read(const std::string& head) const {
+    return ping360_config(load(document(head)).config.heads.at(0));
+  }
+};
+
+TEST_F(Ping360Section, gives_defaults_for_what_is_left_out) {
+  const LoadedConfig loaded = load(document("name: mast, udp: [{bind: 127.0.0.1:12345}]"));
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  const HeadConfig& head = loaded.config.heads.at(0);
+  EXPECT_EQ(head.kind, &ping360_kind());
+  const Ping360Config& config = ping360_config(head);
+  ASSERT_EQ(config.udp.size(), 1U);
+  EXPECT_EQ(endpoint_text(config.udp[0].bind), "127.0.0.1:12345");
+  EXPECT_EQ(config.device.id, 2);
+  EXPECT_EQ(config.device.serial_channel, -1);
+  EXPECT_EQ(config.device.idle_timeout, 0ns);
+  EXPECT_FALSE(config.discovery);
+  EXPECT_EQ(head.kind->summary(head), "ID 2, UDP 127.0.0.1:12345");
+}
+
+TEST_F(Ping360Section, reads_what_is_written) {
+  const Ping360Config config = read(
+      "name: mast, udp: [{bind: 127.0.0.1:12345}, {bind: 127.0.0.1:9092}], serial: {pty: [{}]}, "
+      "discovery: {bind: 0.0.0.0:30303, allow: [192.168.2.0/24], address: 192.168.2.4, mac: "
+      "'54:10:ec:79:7d:c5'}, "
+      "device: {id: 7, firmware_minor: 2, bearing_offset: 200, fan_out: all, max_datagram: 1000}, "
+      "timing: {ping_overhead_ms: 1.5, gradian_ms: 2, scale: 0.5, idle_timeout_ms: 30000}");
+  ASSERT_EQ(config.udp.size(), 2U);
+  EXPECT_EQ(config.device.serial_channel, 2) << "behind the sockets";
+  ASSERT_TRUE(config.discovery);
+  EXPECT_EQ(address_text(config.discovery->address), "192.168.2.4");
+  EXPECT_THAT(config.discovery->mac, ElementsAre(0x54, 0x10, 0xEC, 0x79, 0x7D, 0xC5));
+  EXPECT_EQ(config.device.id, 7);
+  EXPECT_EQ(config.device.information.firmware_minor, 2);
+  EXPECT_EQ(config.device.bearing_offset, 200);
+  EXPECT_EQ(config.device.fan_out, ping360::FanOut::all);
+  EXPECT_EQ(config.device.max_datagram, 1000U);
+  EXPECT_EQ(config.device.ping_overhead, 1500us);
+  EXPECT_EQ(config.device.time_per_gradian, 2ms);
+  EXPECT_EQ(config.device.time_scale, 0.5);
+  EXPECT_EQ(config.device.idle_timeout, 30s);
+}
+
+TEST_F(Ping360Section, a_beamwidth_is_that_of_the_one_beam) {
+  const std::string text = document("name: m, udp: [{bind: 127.0.0.1:1}], acoustics: {beamwidth_deg: 3}");
+  const render::Aperture aperture = load(text).config.heads.at(0).acoustics.aperture;
+  const double half_rad = 1.5 * std::numbers::pi / 180.0;
+  EXPECT_NEAR(aperture.receive_beamwidth_rad, 2.0 * half_rad, 1e-12);
+  ASSERT_EQ(aperture.beam_edges_rad.size(), 2U);
+  EXPECT_NEAR(aperture.beam_edges_rad[0], half_rad, 1e-12);
+  EXPECT_NEAR(aperture.beam_edges_rad[1], -half_rad, 1e-12);
+}
+
+TEST_F(Ping360Section, says_what_is_wrong) {
+  EXPECT_THAT(complaints(document("name: m")), ElementsAre(HasSubstr("no client could reach the head")));
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}, {bind: 127.0.0.1:1}]")),
+              ElementsAre(HasSubstr("127.0.0.1:1 is given twice")));
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], discovery: {allow: [10.0.0.0/8]}")),
+              ElementsAre(HasSubstr("discovery.address")));
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], discovery: {bind: 127.0.0.1:30303, "
+                                  "address: 127.0.0.1, mac: 5}")),
+              ElementsAre(HasSubstr("expected six hexadecimal octets")));
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], device: {id: 255}")),
+              ElementsAre(HasSubstr("device.id")));
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], devise: {id: 5}")),
+              ElementsAre(HasSubstr("devise")));
+}
+
+// Its socket is at all addresses where `bind` is left out; nobody would be answered.
+TEST_F(Ping360Section, discovery_is_told_whom_to_answer_unless_bound_to_loopback) {
+  const std::string head = "name: m, udp: [{bind: 127.0.0.1:1}], discovery: {address: 127.0.0.1";
+  EXPECT_THAT(complaints(document(head + "}")), ElementsAre(HasSubstr("discovery.allow")));
+  EXPECT_THAT(complaints(document(head + ", bind: 0.0.0.0:30303}")),
+              ElementsAre(HasSubstr("discovery.allow")));
+  EXPECT_THAT(complaints(document(head + ", allow: [10.0.0.0/8]}")), IsEmpty());
+  EXPECT_THAT(complaints(document(head + ", bind: 127.0.0.1:30303}")), IsEmpty());
+}
+
+// 5: the answer names no port.
+TEST_F(Ping360Section, warns_of_a_head_that_is_found_where_it_is_not) {
+  const auto warnings = [this](const std::string& udp) {
+    return load(document("name: m, udp: [" + udp +
+                         "], discovery: {address: 192.168.2.4, allow: [192.168.2.0/24]}"))
+        .warnings;
+  };
+  EXPECT_THAT(warnings("{bind: 192.168.2.4:12345, allow: [192.168.2.0/24]}"), IsEmpty());
+  EXPECT_THAT(warnings("{bind: 127.0.0.1:1}, {bind: 0.0.0.0:12345, allow: [192.168.2.0/24]}"), IsEmpty());
+  for (const std::string udp : {"{bind: 127.0.0.1:12345}", "{bind: 0.0.0.0:9092, allow: [192.168.2.0/24]}"}) {
+    const auto found = warnings(udp);
+    ASSERT_EQ(found.size(), 1U) << udp;
+    EXPECT_THAT(found[0], HasSubstr("send to 192.168.2.4:12345, where no socket of udp is bound"));
+  }
+}
+
+TEST_F(Ping360Section, no_two_heads_of_any_kind_may_have_the_same_terminal) {
+  EXPECT_THAT(complaints(document("name: a, serial: {pty: [{link: a}]}") +
+                         "  - {name: b, type: micron, serial: {pty: [{link: ./a}]}}\n"),
+              ElementsAre(HasSubstr("already belongs to heads[0] (expected one of its own)")));
+}
+
+TEST_F(Ping360Section, heads_may_share_the_port_of_discovery_and_an_id) {
+  const std::string of_a = "discovery: {address: 127.0.0.1, allow: [127.0.0.0/8]}";
+  const std::string of_b = "discovery: {address: 127.0.0.2, allow: [127.0.0.0/8]}";
+  EXPECT_THAT(complaints(document("name: a, udp: [{bind: 127.0.0.1:1}], " + of_a) +
+                         item("name: b, udp: [{bind: 127.0.0.2:1}], " + of_b)),
+              IsEmpty());
+  EXPECT_THAT(complaints(document("name: a, udp: [{bind: 127.0.0.1:1}]") +
+                         item("name: b, udp: [{bind: 127.0.0.1:1}]")),
+              ElementsAre(HasSubstr("heads[1].udp[0].bind")));
+}
+
+}  // namespace
+}  // namespace sonard::server

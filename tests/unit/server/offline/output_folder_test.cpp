@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/offline/output_folder.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/server/offline/temporary_folder.hpp"
+
+namespace sonard::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct OutputFolderTest : testing::Test {
+  test::TemporaryFolder temporary;
+  OutputFolder folder{temporary.path() / "a" / "b"};
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+      found.push_back(entry.path().filename().string());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+};
+
+TEST_F(OutputFolderTest, HoldsWhatWasWritten) {
+  EXPECT_FALSE(folder.has("x"));
+  folder.write("x", std::string_view("a\0b", 3));
+  EXPECT_TRUE(folder.has("x"));
+  EXPECT_EQ(folder.read("x"), std::string("a\0b", 3));
+  folder.write("x", "other");
+  EXPECT_EQ(folder.read("x"), "other");
+  EXPECT_THAT(names(), ElementsAre("x"));
+}
+
+TEST_F(OutputFolderTest, AnUnfinishedFileHasNoNameAndGoes) {
+  {
+    PartFile part(folder.path());
+    part.write("half");
+    EXPECT_THAT(names(), ElementsAre(StartsWith(".part-")));
+  }
+  EXPECT_THAT(names(), ElementsAre());
+}
+
+TEST_F(OutputFolderTest, WhatAKilledProcessLeavesIsNoFileAndCanBeRemoved) {
+  if (fork() == 0) {
+    PartFile part(folder.path());
+    part.write("half");
+    _exit(0);  // no destructor runs, as after SIGKILL
+  }
+  wait(nullptr);
+  folder.write("x", "whole");
+  EXPECT_EQ(names().size(), 2U);
+  folder.remove_parts();
+  EXPECT_THAT(names(), ElementsAre("x"));
+}
+
+TEST_F(OutputFolderTest, ARunThatIsTheSameMayGoOn) {
+  folder.claim("{1}", false);
+  folder.write("ping_000000.png", "picture");
+  folder.claim("{1}", false);
+  folder.claim("{1}", true);
+  EXPECT_THAT(names(), ElementsAre("ping_000000.png", "run.json"));
+}
+
+TEST_F(OutputFolderTest, AnotherRunIsRefusedByName) {
+  folder.claim("{1}", false);
+  try {
+    folder.claim("{2}", false);
+    FAIL() << "taken";
+  } catch (const OutputError& error) {
+    EXPECT_THAT(error.what(), StartsWith((folder.path() / "run.json").string() + ": "));
+    EXPECT_THAT(error.what(), HasSubstr("--overwrite"));
+  }
+  EXPECT_EQ(folder.read("run.json"), "{1}");
+}
+
+TEST_F(OutputFolderTest, OverwritingTakesFramesAndLogsOfTheOtherRunAndNothingElse) {
+  folder.claim("{1}", false);
+  for (const char* name : {"ping_000000.png", "scan_000001.npy", "log_1980-01-01-000000.glf", "notes.txt"}) {
+    folder.write(name, "x");
+  }
+  folder.claim("{2}", true);
+  EXPECT_THAT(names(), ElementsAre("notes.txt", "run.json"));
+  EXPECT_EQ(folder.read("run.json"), "{2}");
+}
+
+TEST_F(OutputFolderTest, OneLockAtATime) {
+  std::atomic<bool> second_had_it = false;
+  std::thread second;
+  {
+    const OutputFolder::Lock first(folder);
+    second = std::thread([&] {
+      const OutputFolder::Lock lock(folder);
+      second_had_it = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(second_had_it);
+  }
+  second.join();
+  EXPECT_TRUE(second_had_it);
+}
+
+TEST(OutputFolder, SaysWhatItCannotMakeOrWrite) {
+  try {
+    OutputFolder("/proc/sonard");
+    FAIL() << "made";
+  } catch (const OutputError& error) {
+    EXPECT_THAT(error.what(), StartsWith("/proc/sonard: cannot make the folder: "));
+  }
+  EXPECT_THROW(OutputFolder("/proc").write("x", "y"), OutputError);
+}
+
+TEST(OutputFolder, SaysWhatItCannotRead) {
+  const test::TemporaryFolder temporary;
+  EXPECT_THROW((void)OutputFolder(temporary.path()).read("missing"), OutputError);
+}
+
+}  // namespace
+}  // namespace sonard::server

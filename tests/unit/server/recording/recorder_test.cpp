@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/recorder.hpp"
+
+#include <cstdlib>
+#include <ctime>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "protocol/glf/log_view.hpp"
+#include "protocol/log/log_messages.hpp"
+#include "protocol/mcap/reader.hpp"
+#include "protocol/pcapng/blocks.hpp"
+#include "tests/support/wait_for.hpp"
+#include "tests/unit/server/recording/fixture.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr int lines = 200;  // 51 kB of samples
+
+struct RecorderTest : testing::Test {
+  test::TemporaryFolder folder;
+  RecordingConfig config;
+  SteadyClock clock;
+
+  RecorderTest() {
+    config.directory = folder.path() / "made" / "by it";
+    config.sync = RecordingSync::never;
+  }
+
+  std::vector<fs::path> files(const std::string& suffix) const {
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(config.directory)) {
+      if (entry.path().string().ends_with(suffix)) {
+        found.push_back(entry.path());
+      }
+    }
+    return found;
+  }
+
+  // Numbers of the pings of all .glf, found by their pixels, and of all MCAP files, as these say.
+  std::multiset<std::uint64_t> glf_pings(std::uint64_t most) const {
+    std::multiset<std::uint64_t> numbers;
+    for (const fs::path& path : files(".glf")) {
+      const Bytes bytes = test::contents(path);
+      const auto log = glf::LogView::open(bytes);
+      EXPECT_TRUE(log && log->index().closed);
+      for (const glf::RecordEntry& record : log->index().records) {
+        const auto image = log->image(record);
+        EXPECT_TRUE(image);
+        for (std::uint64_t number = 0; number < most; ++number) {
+          if (image->pixels[0] == test::sample(number, 0, 0) &&
+              image->pixels[1] == test::sample(number, 0, 1) &&
+              image->pixels[300] == test::sample(number, 1, 44)) {
+            numbers.insert(number);
+          }
+        }
+      }
+    }
+    return numbers;
+  }
+  std::multiset<std::uint64_t> mcap_pings() const {
+    std::multiset<std::uint64_t> numbers;
+    for (const fs::path& path : files(".mcap")) {
+      const Bytes bytes = test::contents(path);
+      const auto reader = mcap::Reader::open(bytes);
+      EXPECT_TRUE(reader && reader->finished());
+      mcap::MessageCursor cursor = reader->messages();
+      while (const auto message = cursor.next()) {
+        if (reader->summary().channel(message->channel_id)->topic == "/bow/image") {
+          numbers.insert(log::decode<log::SonarImage>(message->data)->ping_number());
+        }
+      }
+    }
+    return numbers;
+  }
+  std::uint64_t packets() const {
+    std::uint64_t count = 0;
+    for (const fs::path& path : files(".pcapng")) {
+      const Bytes bytes = test::contents(path);
+      count += pcapng::recover(bytes)->packets;
+    }
+    return count;
+  }
+};
+
+std::multiset<std::uint64_t> numbers_up_to(std::uint64_t count) {
+  std::multiset<std::uint64_t> numbers;
+  for (std::uint64_t number = 0; number < count; ++number) {
+    numbers.insert(number);
+  }
+  return numbers;
+}
+
+TEST_F(RecorderTest, WritesWhatItWasGivenIntoEveryLog) {
+  Recorder recorder(config, test::one_head());
+  for (std::uint64_t number = 0; number < 10; ++number) {
+    recorder.push(test::ping_event(number, lines, clock.now()));
+    recorder.push(test::wire_event(100, clock.now()));
+  }
+  recorder.stop();
+  EXPECT_EQ(glf_pings(10), numbers_up_to(10));
+  EXPECT_EQ(mcap_pings(), numbers_up_to(10));
+  EXPECT_EQ(packets(), 10U);
+  EXPECT_EQ(recorder.counters().images, 10U);
+  EXPECT_EQ(recorder.counters().logs_written, 3U);
+  EXPECT_EQ(recorder.counters().logs_failed, 0U);
+  EXPECT_EQ(recorder.counters().dropped.total(), 0U);
+}
+
+TEST_F(RecorderTest, WritesOnlyTheKindsThatAreAskedFor) {
+  config.mcap = config.pcapng = false;
+  Recorder recorder(config, test::one_head());
+  recorder.push(test::ping_event(0, lines, clock.now()));
+  recorder.stop();
+  EXPECT_EQ(files("").size(), 1U);
+  EXPECT_EQ(files(".glf").size(), 1U);
+}
+
+TEST_F(RecorderTest, MakesNoFileWithoutAnEvent) {
+  Recorder(config, test::one_head()).stop();
+  EXPECT_TRUE(files("").empty());
+}
+
+TEST_F(RecorderTest, BeginsNewFilesWhenOneIsFull) {
+  config.rotate_bytes = 300'000;
+  {
+    Recorder recorder(config, test::one_head());
+    for (std::uint64_t number = 0; number < 30; ++number) {
+      recorder.push(test::ping_event(number, lines, clock.now()));
+    }
+  }
+  EXPECT_GE(files(".glf").size(), 4U);
+  EXPECT_EQ(files(".glf").size(), files(".mcap").size());
+  for (const fs::path& path : files("")) {
+    EXPECT_LT(fs::file_size(path), 300'000U + 60'000U) << path;  // one ping more at most
+  }
+  EXPECT_EQ(glf_pings(30), numbers_up_to(30));
+  EXPECT_EQ(mcap_pings(), numbers_up_to(30));
+}
+
+TEST_F(RecorderTest, BeginsNewFilesWhenTimeIsOver) {
+  config.rotate_after = std::chrono::minutes{10};
+  Recorder recorder(config, test::one_head());
+  const TimePoint begin = clock.now();
+  for (std::uint64_t number = 0; number < 30; ++number) {  // one a minute
+    recorder.push(test::ping_event(number, 32, begin + number * std::chrono::minutes{1}));
+  }
+  recorder.stop();
+  EXPECT_EQ(files(".mcap").size(), 3U);
+  EXPECT_EQ(files(".glf").size(), 3U);
+  EXPECT_EQ(mcap_pings(), numbers_up_to(30));
+}
+
+TEST_F(RecorderTest, DropsAndCountsWhatDoesNotFitTheQueue) {
+  config.queue_bytes = 200'000;
+  Recorder recorder(config, test::one_head());
+  constexpr std::uint64_t pushed = 400;
+  for (std::uint64_t number = 0; number < pushed; ++number) {
+    recorder.push(test::ping_event(number, lines, clock.now()));
+  }
+  recorder.push(test::ping_event(pushed, 1000, clock.now()));  // never fits
+  recorder.stop();
+  EXPECT_GE(recorder.counters().dropped.images, 1U);
+  EXPECT_EQ(recorder.counters().images + recorder.counters().dropped.images, pushed + 1);
+  EXPECT_EQ(mcap_pings().size(), recorder.counters().images);
+}
+
+// A disk that is full for one file is full for the others a little later.
+TEST_F(RecorderTest, GivesUpFilesThatCannotBeWrittenAndKeepsWhatIsWhole) {
+  std::uint64_t lost = 0;
+  {
+    const test::FileSizeLimit limit(400'000);
+    Recorder recorder(config, test::one_head());
+    for (std::uint64_t number = 0; number < 20; ++number) {
+      recorder.push(test::wire_event(1000, clock.now()));
+      recorder.push(test::ping_event(number, lines, clock.now()));
+    }
+    recorder.stop();
+    EXPECT_EQ(recorder.counters().logs_failed, 2U);  // the MCAP file and the .dat
+    EXPECT_EQ(recorder.counters().logs_written, 1U);
+    EXPECT_EQ(recorder.counters().images, 20U);
+    lost = recorder.counters().images_lost;
+    EXPECT_EQ(packets(), 20U) << "a small file is not full";
+  }
+  Recorder(config, test::one_head()).stop();  // there is room again
+  const std::multiset<std::uint64_t> kept = glf_pings(20);
+  EXPECT_EQ(kept, numbers_up_to(kept.size()));
+  EXPECT_GE(kept.size(), 6U);
+  EXPECT_LT(kept.size(), 8U);
+  EXPECT_EQ(mcap_pings(), numbers_up_to(mcap_pings().size()));
+  EXPECT_GE(mcap_pings().size(), 6U);
+  EXPECT_EQ(lost, 0U) << "the capture could still be written";
+  EXPECT_TRUE(files(".dat").empty());
+}
+
+TEST_F(RecorderTest, TriesAgainWithTheNextFiles) {
+  config.pcapng = config.glf = false;
+  config.rotate_after = std::chrono::minutes{10};
+  Recorder recorder(config, test::one_head());
+  const TimePoint begin = clock.now();
+  {
+    const test::FileSizeLimit limit(100'000);
+    for (std::uint64_t number = 0; number < 5; ++number) {
+      recorder.push(test::ping_event(number, lines, begin));
+    }
+    ASSERT_TRUE(test::wait_for([&] { return recorder.counters().images == 5; }));
+  }
+  recorder.push(test::ping_event(5, lines, begin + std::chrono::minutes{11}));
+  recorder.stop();
+  EXPECT_EQ(recorder.counters().images_lost, 4U);
+  EXPECT_EQ(recorder.counters().logs_failed, 1U);
+  EXPECT_EQ(recorder.counters().logs_written, 1U);
+}
+
+TEST_F(RecorderTest, LocksItsFolder) {
+  const Recorder first(config, test::one_head());
+  try {
+    const Recorder second(config, test::one_head());
+    FAIL() << "two recorders share a folder";
+  } catch (const RecordingError& error) {
+    EXPECT_NE(std::string(error.what()).find(config.directory.string()), std::string::npos);
+  }
+}
+
+TEST_F(RecorderTest, SaysWhyAFolderCannotBeUsed) {
+  test::write_file(folder.path() / "made", {1});
+  EXPECT_THROW(Recorder(config, test::one_head()), RecordingError);
+}
+
+TEST_F(RecorderTest, NamesAndTimesFollowTheZone) {
+  for (const char* zone : {"UTC0", "XYZ-5:30"}) {  // POSIX counts to the west
+    setenv("TZ", zone, 1);
+    tzset();
+    config.zone = RecordingZone::local;
+    config.directory = folder.path() / zone;
+    const double before_s = static_cast<double>(std::time(nullptr)) - 315'532'800.0;
+    Recorder recorder(config, test::one_head());
+    recorder.push(test::ping_event(0, lines, clock.now()));
+    recorder.stop();
+    const Bytes bytes = test::contents(files(".glf").front());
+    const auto log = glf::LogView::open(bytes);
+    const double offset_s = std::string(zone) == "UTC0" ? 0.0 : 5.5 * 3600;
+    EXPECT_NEAR(log->index().records.front().origin.time_s, before_s + offset_s, 5.0);
+  }
+  unsetenv("TZ");
+  tzset();
+}
+
+}  // namespace
+}  // namespace sonard::server

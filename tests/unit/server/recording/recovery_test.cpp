@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/recovery.hpp"
+
+#include <gtest/gtest.h>
+
+#include "protocol/glf/dat_index.hpp"
+#include "protocol/mcap/reader.hpp"
+#include "protocol/pcapng/blocks.hpp"
+#include "server/recording/glf_log.hpp"
+#include "server/recording/glf_packing.hpp"
+#include "server/recording/mcap_log.hpp"
+#include "server/recording/pcapng_log.hpp"
+#include "tests/unit/server/recording/fixture.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr int pings = 3;
+
+// Three pings with a datagram each, as a daemon leaves them that is killed. An MCAP file has two chunks that
+// are closed and one that is open.
+struct RecoveryTest : testing::Test {
+  test::TemporaryFolder folder;
+  RecordingConfig config;
+  std::vector<HeadToRecord> heads = test::one_head();
+  LogSetting setting{config, heads, {}, 0, "stem"};
+
+  RecoveryTest() { config.directory = folder.path(); }
+
+  template <class Kind, class... Arguments>
+  Bytes killed(Arguments... arguments) {
+    Kind log(setting, arguments...);
+    for (int number = 0; number < pings; ++number) {
+      const TimePoint time = TimePoint{1'795'184'553'000'000'000} + number * McapLog::longest_chunk;
+      log.write(test::ping_event(static_cast<std::uint64_t>(number), 32, time));
+      log.flush(time);
+      log.write(test::wire_event(100, time));
+      log.flush(time + McapLog::longest_wait);
+    }
+    path = log.file().path();
+    return test::contents(path);
+  }
+
+  fs::path path;
+};
+
+std::uint64_t messages_in(const Bytes& file) {
+  const auto reader = mcap::Reader::open(file);
+  EXPECT_TRUE(reader);
+  EXPECT_TRUE(reader->finished());
+  mcap::MessageCursor cursor = reader->messages();
+  std::uint64_t count = 0;
+  while (cursor.next()) {
+    ++count;
+  }
+  EXPECT_FALSE(cursor.error());
+  return count;
+}
+
+TEST_F(RecoveryTest, EndsAnMcapFile) {
+  killed<McapLog>();
+  EXPECT_TRUE(recover_logs(folder.path()).empty());
+  EXPECT_EQ(messages_in(test::contents(path)), 2U * pings);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"log_stem.mcap"});
+}
+
+TEST_F(RecoveryTest, CutsAnMcapFileAnywhere) {
+  const Bytes whole = killed<McapLog>();
+  std::uint64_t before = 0;
+  for (std::size_t size = 200; size < whole.size(); size += 173) {
+    test::write_file(path, Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    recover_logs(folder.path());
+    const std::uint64_t now = messages_in(test::contents(path));
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  EXPECT_GE(before, 2U * pings - 1);
+  EXPECT_EQ(folder.names().size(), 1U);
+}
+
+TEST_F(RecoveryTest, LeavesAloneWhatIsWhole) {
+  killed<McapLog>();
+  recover_logs(folder.path());
+  const Bytes whole = test::contents(path);
+  recover_logs(folder.path());
+  EXPECT_EQ(test::contents(path), whole);
+}
+
+TEST_F(RecoveryTest, CutsACaptureAnywhere) {
+  const Bytes whole = killed<PcapngLog>();
+  const std::uint64_t all = pcapng::recover(whole)->packets;
+  EXPECT_EQ(all, static_cast<std::uint64_t>(pings));
+  std::uint64_t before = 0;
+  for (std::size_t size = 80; size <= whole.size(); ++size) {
+    test::write_file(path, Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    recover_logs(folder.path());
+    const Bytes file = test::contents(path);
+    const auto left = pcapng::recover(file);
+    ASSERT_TRUE(left) << size;
+    EXPECT_EQ(left->keep_size, file.size()) << size;
+    EXPECT_GE(left->packets, before);
+    before = left->packets;
+  }
+  EXPECT_EQ(before, all);
+  EXPECT_EQ(folder.names().size(), 1U);
+}
+
+TEST_F(RecoveryTest, NamesADatToBePacked) {
+  killed<GlfLog>(0);
+  EXPECT_EQ(recover_logs(folder.path()), std::vector<fs::path>{path});
+}
+
+TEST_F(RecoveryTest, RemovesADatThatWasPacked) {
+  const Bytes dat = killed<GlfLog>(0);
+  GlfPacking packing(path, RecordingSync::never);
+  while (packing.step()) {
+  }
+  ASSERT_FALSE(fs::exists(path));
+  test::write_file(path, dat);
+  EXPECT_TRUE(recover_logs(folder.path()).empty());
+  EXPECT_EQ(folder.names(".dat").size(), 0U);
+  EXPECT_EQ(folder.names(".glf").size(), 1U);
+}
+
+TEST_F(RecoveryTest, KeepsWhatIsDamagedAndWhatWasWholeBeforeIt) {
+  Bytes dat = killed<GlfLog>(0);
+  const glf::DatIndex index = glf::index_dat(glf::PiecewiseBytes(dat));
+  ASSERT_EQ(index.records.size(), 3U);
+  dat[index.records[1].offset] = 0;  // no record begins like that
+  test::write_file(path, dat);
+  EXPECT_EQ(recover_logs(folder.path()), std::vector<fs::path>{path});
+  EXPECT_EQ(test::contents(path.string() + ".damaged"), dat);
+  EXPECT_EQ(test::contents(path),
+            Bytes(dat.begin(), dat.begin() + static_cast<std::ptrdiff_t>(index.records[1].offset)));
+}
+
+TEST_F(RecoveryTest, KeepsAnMcapFileWithADamagedChunk) {
+  Bytes file = killed<McapLog>();
+  file[file.size() * 4 / 5] ^= 1;  // in the second chunk
+  test::write_file(path, file);
+  recover_logs(folder.path());
+  EXPECT_EQ(test::contents(path.string() + ".damaged"), file);
+  EXPECT_GE(messages_in(test::contents(path)), 1U);
+}
+
+TEST_F(RecoveryTest, KeepsWhatIsNoLogUntouched) {
+  const Bytes text{'h', 'e', 'l', 'l', 'o', ' ', 'w', 'o', 'r', 'l', 'd', '.', '.'};
+  for (const char* name : {"log_a.mcap", "log_a.pcapng", "data_a.dat", "notes.txt", "log_a.glf"}) {
+    test::write_file(folder.path() / name, text);
+  }
+  EXPECT_TRUE(recover_logs(folder.path()).empty());
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"data_a.dat.damaged", "log_a.glf", "log_a.mcap.damaged",
+                                                      "log_a.pcapng.damaged", "notes.txt"}));
+  for (const std::string& name : folder.names()) {
+    EXPECT_EQ(test::contents(folder.path() / name), text) << name;
+  }
+}
+
+TEST_F(RecoveryTest, RemovesEmptyFilesAndHalfPackedOnes) {
+  for (const char* name : {"log_a.mcap", "log_a.pcapng", "data_a.dat", "log_a.glf.part"}) {
+    test::write_file(folder.path() / name, {});
+  }
+  EXPECT_TRUE(recover_logs(folder.path()).empty());
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace sonard::server
