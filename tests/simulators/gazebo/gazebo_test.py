@@ -72,8 +72,8 @@ class Gazebo(link_test.LinkTest):
                                      head=self.head_config(noisy=False, more=more)))
         self.daemon = self.lab.start(self.lab.head, os.path.join(link_test.PROGRAMS, "sonard"), "run", path)
         self.daemon.wait_for_line(r"sonard ready heads=", link_test.START_S)
-        self.surface = link_test.RawSurface(self.lab)
-        self.addCleanup(self.surface.close)
+        self.topside = link_test.RawTopside(self.lab)
+        self.addCleanup(self.topside.close)
 
     def publish(self, *entities, kind="ignition.msgs.Pose_V"):
         """Until the test ends, or this is called again. An entity is (name, x, y, z, roll, pitch, yaw), in degrees."""
@@ -86,9 +86,9 @@ class Gazebo(link_test.LinkTest):
 
     def range_ahead(self, sonar_id, address):
         """Of the first echo in the middle beam, metres; None without one, or without a ping: there is no pose yet."""
-        self.surface.send(wire.ping_config(sonar_id, lines=840, spreading=293), address)  # 7 m
+        self.topside.send(wire.ping_config(sonar_id, lines=840, spreading=293), address)  # 7 m
         try:
-            ping = self.surface.next_ping(seconds=2)
+            ping = self.topside.next_ping(seconds=2)
         except AssertionError:
             return None
         first = next((i for i in range(ping.count) if ping.lines[i][128] > 0), None)
