@@ -223,6 +223,12 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
   });
 }
 
+void read_single_beam(YamlSection& section, render::Aperture& aperture) {
+  section.angle("beamwidth_deg", aperture.receive_beamwidth_rad, Range::above(0.0, 60.0),
+                "width of the beam in azimuth");
+  aperture.beam_edges_rad = {aperture.receive_beamwidth_rad / 2, -aperture.receive_beamwidth_rad / 2};
+}
+
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   render::SonarSettings& settings = head.acoustics;
   section.choice("mode", settings.model,

@@ -39,6 +39,8 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
 /// What the acoustics of all heads have. What stands in `head` is the default; the frequency gives that of
 /// the noise budget.
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head);
+/// The width of the one beam of a scanning head.
+void read_single_beam(YamlSection& section, render::Aperture& aperture);
 /// Absorption at the frequency of the head. To be called before the acoustics are read.
 void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,
                  std::vector<ConfigWarning>& warnings);

@@ -24,13 +24,7 @@ void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket
     Socket socket;
     read_socket(inner, socket.bind, socket.allow, serial_endpoint_form, "where clients come",
                 "who may; up to 16 connections at a time");
-    const bool taken = std::any_of(sockets.begin(), sockets.end(), [&](const Socket& other) {
-      return other.bind == socket.bind && socket.bind.port != 0;
-    });
-    if (taken) {
-      inner.report("bind", fmt::format("{} is given twice (expected a socket of its own)",
-                                       endpoint_text(socket.bind)));
-    }
+    report_if_taken(inner, socket.bind, sockets);
     sockets.push_back(std::move(socket));
   });
   section.default_is(key, "[]", "[]");

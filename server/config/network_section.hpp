@@ -2,10 +2,13 @@
 // The parts of the loader that read how clients reach a head.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "server/config/yaml_section.hpp"
+#include "server/net/addresses.hpp"
 #include "server/net/faulty_link.hpp"
 #include "server/net/serial_port.hpp"
 
@@ -15,6 +18,11 @@ inline constexpr TextForm endpoint_form{
     "an address and port such as 127.0.0.1:14600", "address:port",
     R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}:[0-9]{1,5}$")"};
 
+inline constexpr std::string_view address_schema =
+    R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}$")";
+inline constexpr std::string_view mac_schema =
+    R"("type": "string", "pattern": "^[0-9A-Fa-f]{2}(:[0-9A-Fa-f]{2}){5}$")";
+
 /// "allow" beside a bind address: a list of address blocks. Left out, loopback peers are served if the socket
 /// is bound to loopback; for any other address it has to be given.
 void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, std::string_view meaning);
@@ -22,6 +30,15 @@ void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, 
 /// The required key `bind`, and `allow` beside it.
 void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const TextForm& form,
                  std::string_view bind_meaning, std::string_view allow_meaning);
+
+/// Reports a `bind` that one of the other sockets of a list has; port 0 is free for all.
+template <typename Socket>
+void report_if_taken(YamlSection& section, const Endpoint& bind, const std::vector<Socket>& others) {
+  const auto same = [&](const Socket& other) { return other.bind == bind && bind.port != 0; };
+  if (std::any_of(others.begin(), others.end(), same)) {
+    section.report("bind", endpoint_text(bind) + " is given twice (expected a socket of its own)");
+  }
+}
 
 /// The keys `tcp`, `udp`, `pty` (lists) and `baud`. Reports a link without any transport, and transports of
 /// one link that would get in each other's way.

@@ -11,15 +11,12 @@ namespace sonard::server {
 namespace {
 
 constexpr double minute_ms = 60'000.0;
-constexpr std::string_view address_schema =
-    R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}$")";
 constexpr TextForm address_form{"an IPv4 address such as 127.0.0.2", "address", address_schema};
 constexpr TextForm addresses_form{address_form.expected, "addresses", address_schema};
 constexpr TextForm netmask_form{"a netmask such as 255.255.255.0", "netmask", address_schema};
 constexpr TextForm bind_form{"an address of this machine, or 0.0.0.0 for all of them", "address",
                              address_schema};
-constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets",
-                            R"("type": "string", "pattern": "^[0-9A-Fa-f]{2}(:[0-9A-Fa-f]{2}){5}$")"};
+constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets", mac_schema};
 constexpr TextForm trigger_form{"an address and port such as 127.0.0.1:14700", endpoint_form.type,
                                 endpoint_form.schema};
 

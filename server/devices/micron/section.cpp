@@ -77,10 +77,7 @@ void read_timing(YamlSection& section, micron::DeviceConfig& device) {
 
 void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig& config) {
   read_acoustics(section, micron::carrier_hz, head);
-  render::Aperture& aperture = head.acoustics.aperture;
-  section.angle("beamwidth_deg", aperture.receive_beamwidth_rad, Range::above(0.0, 60.0),
-                "width of the beam in azimuth");
-  aperture.beam_edges_rad = {aperture.receive_beamwidth_rad / 2, -aperture.receive_beamwidth_rad / 2};
+  read_single_beam(section, head.acoustics.aperture);
   section.number("nominal_gain_db", config.nominal_gain_db, Range::from(0.0, 80.0),
                  "initial gain of the client, of 80 dB, at which the level is that of `physical.gain_db`");
   using Pulse = render::PhysicalModel::Pulse;

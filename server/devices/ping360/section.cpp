@@ -16,10 +16,8 @@ constexpr double carrier_hz = 740'000.0;  // what a head has at boot (docs/proto
 constexpr double minute_ms = 60'000.0;
 constexpr TextForm discovery_form{"an address and port such as 0.0.0.0:30303", endpoint_form.type,
                                   endpoint_form.schema};
-constexpr TextForm address_form{"an IPv4 address such as 192.168.2.4", "address",
-                                R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}$")"};
-constexpr TextForm mac_form{"six hexadecimal octets such as 54:10:ec:12:34:56", "six octets",
-                            R"("type": "string", "pattern": "^[0-9A-Fa-f]{2}(:[0-9A-Fa-f]{2}){5}$")"};
+constexpr TextForm address_form{"an IPv4 address such as 192.168.2.4", "address", address_schema};
+constexpr TextForm mac_form{"six hexadecimal octets such as 54:10:ec:12:34:56", "six octets", mac_schema};
 
 void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& config) {
   const auto read = [&](YamlSection& inner) {
@@ -27,13 +25,7 @@ void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& confi
     read_socket(inner, socket.bind, socket.allow, endpoint_form,
                 "12345 is the port of the unit with an Ethernet plug, 9092 that of a vehicle's bridge",
                 "address blocks of clients that are answered");
-    const bool taken = std::ranges::any_of(config.udp, [&](const UdpTransportConfig& other) {
-      return other.bind == socket.bind && socket.bind.port != 0;
-    });
-    if (taken) {
-      inner.report("bind", fmt::format("{} is given twice (expected a socket of its own)",
-                                       endpoint_text(socket.bind)));
-    }
+    report_if_taken(inner, socket.bind, config.udp);
     socket.link = link;
     config.udp.push_back(std::move(socket));
   };
@@ -124,10 +116,7 @@ void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
 
 void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Config& config) {
   read_acoustics(section, carrier_hz, head);
-  render::Aperture& aperture = head.acoustics.aperture;
-  section.angle("beamwidth_deg", aperture.receive_beamwidth_rad, Range::above(0.0, 60.0),
-                "width of the beam in azimuth");
-  aperture.beam_edges_rad = {aperture.receive_beamwidth_rad / 2, -aperture.receive_beamwidth_rad / 2};
+  read_single_beam(section, head.acoustics.aperture);
   using Pulse = render::PhysicalModel::Pulse;
   section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
                  "response in range: as long as the client's pulse, or without length");

@@ -5,15 +5,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <iterator>
 #include <regex>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "server/config/loader.hpp"
 #include "server/devices/kinds/kinds.hpp"
@@ -30,9 +29,7 @@ using Keys = std::vector<KeyReference>;
 // ---- The schema
 
 std::string json_string(const std::string& text) {
-  std::ostringstream out;
-  out << std::quoted(text);
-  return out.str();
+  return nlohmann::json(text).dump();
 }
 
 /// What an editor shows: without links, which lead from docs/.
