@@ -3,7 +3,6 @@
 // to the turn, clockwise seen from above.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -43,24 +42,6 @@ constexpr std::chrono::nanoseconds listening_time(int number_of_samples, int sam
   return number_of_samples * sample_period * sample_tick;
 }
 
-// ---- What known clients choose for a range; they count it at a speed of sound of their own (2.3)
-
 inline constexpr int least_sample_period = 80, most_sample_period = 40'000;
-
-/// As many as there may be, but no finer than a head samples.
-inline int usual_samples(double range_m, double sound_speed_mps) {
-  const double finest = 2.0 * range_m / (sample_time_s(least_sample_period) * sound_speed_mps);
-  return static_cast<int>(std::min(1200.0, finest));
-}
-/// May be out of these limits.
-inline int sample_period_for(double range_m, int samples, double sound_speed_mps) {
-  return static_cast<int>(2.0 * range_m / (samples * sample_time_s(1) * sound_speed_mps));
-}
-/// Longer for a longer range, and of two and a half samples at least.
-inline std::uint16_t transmit_duration_us(double range_m, int sample_period, double sound_speed_mps) {
-  const double sample_us = 1e6 * sample_time_s(sample_period);
-  const double wanted_us = std::max(std::round(8000.0 * range_m / sound_speed_mps), 2.5 * sample_us);
-  return static_cast<std::uint16_t>(std::clamp(wanted_us, 5.0, std::min(500.0, 64.0 * sample_us)));
-}
 
 }  // namespace sonard::ping360

@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "protocol/ping360/units.hpp"
+#include "protocol/ping360/usual_scan.hpp"
 
 namespace sonard::client {
 namespace {
@@ -86,23 +88,18 @@ void Ping360Arguments::declare_run(CLI::App& app) {
 }
 
 void Ping360Arguments::set_scan(Ping360Options& options) const {
-  ping360::AutoTransmit& scan = options.scan;
-  const int samples = samples_ > 0 ? samples_ : ping360::usual_samples(range_m_, options.sound_speed_mps);
-  const int period = ping360::sample_period_for(range_m_, samples, options.sound_speed_mps);
-  if (period < ping360::least_sample_period || period > ping360::most_sample_period) {
-    throw CLI::ValidationError("--samples",
-                               fmt::format("{} samples over {} m are too {} for a head", samples, range_m_,
-                                           period < ping360::least_sample_period ? "fine" : "coarse"));
+  const auto samples = samples_ > 0 ? std::optional(samples_) : std::nullopt;
+  const auto usual = ping360::usual_scan(range_m_, samples, options.sound_speed_mps, options.ahead);
+  if (!usual) {
+    throw CLI::ValidationError(
+        "--samples", fmt::format("{} samples over {} m are too fine for a head", samples_, range_m_));
   }
+  ping360::AutoTransmit& scan = options.scan;
+  scan = *usual;
   scan.gain_setting = static_cast<std::uint8_t>(gain_);
-  scan.number_of_samples = static_cast<std::uint16_t>(samples);
-  scan.sample_period = static_cast<std::uint16_t>(period);
-  scan.transmit_duration_us = ping360::transmit_duration_us(range_m_, period, options.sound_speed_mps);
   scan.transmit_frequency_khz = static_cast<std::uint16_t>(frequency_khz_);
   scan.num_steps = static_cast<std::uint8_t>(step_);
   scan.delay_ms = static_cast<std::uint8_t>(delay_ms_);
-  scan.start_angle = static_cast<std::uint16_t>(options.ahead);
-  scan.stop_angle = static_cast<std::uint16_t>(ping360::wrapped(options.ahead - 1));
   if (sector_deg_.empty()) {
     return;
   }

@@ -12,6 +12,7 @@
 #include "protocol/ping360/make_job.hpp"
 #include "protocol/ping360/sweep.hpp"
 #include "protocol/ping360/units.hpp"
+#include "protocol/ping360/usual_scan.hpp"
 #include "server/devices/ping360/config.hpp"
 #include "server/devices/survey_options.hpp"
 
@@ -65,24 +66,18 @@ Asked asked_of(const SurveyOptions& options, const ping360::DeviceConfig& device
   taken.take("--range", options.range_m, 0.5, 100.0, asked.range_m);
   taken.take("--gain", options.gain_percent, 0.0, 100.0, gain_percent);
   taken.take("--sound-speed", options.sound_speed_mps, 1300.0, 1700.0, asked.sound_speed_mps);
-  asked.scan.gain_setting = static_cast<std::uint8_t>(std::lround(gain_percent / 50.0));
-  const int samples = options.bins.value_or(ping360::usual_samples(asked.range_m, asked.sound_speed_mps));
-  if (samples < 200 || samples > 1200) {
+  if (options.bins && (*options.bins < 200 || *options.bins > 1200)) {
     throw CLI::ValidationError(
-        "--bins", fmt::format("{} is out of range for a Ping360 (expected 200 to 1200)", samples));
+        "--bins", fmt::format("{} is out of range for a Ping360 (expected 200 to 1200)", *options.bins));
   }
-  const int period = ping360::sample_period_for(asked.range_m, samples, asked.sound_speed_mps);
-  if (period < ping360::least_sample_period || period > ping360::most_sample_period) {
-    throw CLI::ValidationError("--bins",
-                               fmt::format("{} bins over {} m are too {} for a head", samples, asked.range_m,
-                                           period < ping360::least_sample_period ? "fine" : "coarse"));
+  const auto scan =
+      ping360::usual_scan(asked.range_m, options.bins, asked.sound_speed_mps, device.bearing_offset);
+  if (!scan) {
+    throw CLI::ValidationError("--bins", fmt::format("{} bins over {} m are too fine for a head",
+                                                     options.bins.value_or(0), asked.range_m));
   }
-  asked.scan.number_of_samples = static_cast<std::uint16_t>(samples);
-  asked.scan.sample_period = static_cast<std::uint16_t>(period);
-  asked.scan.transmit_duration_us =
-      ping360::transmit_duration_us(asked.range_m, period, asked.sound_speed_mps);
-  asked.scan.start_angle = static_cast<std::uint16_t>(device.bearing_offset);
-  asked.scan.stop_angle = static_cast<std::uint16_t>(ping360::wrapped(device.bearing_offset - 1));
+  asked.scan = *scan;
+  asked.scan.gain_setting = static_cast<std::uint8_t>(std::lround(gain_percent / 50.0));
   take_step(options.step_deg, asked.scan);
   take_sector(options.sector_deg, device.bearing_offset, asked);
   return asked;

@@ -48,6 +48,8 @@ TEST(Ping360Options, a_short_range_has_fewer_samples) {
   const Ping360Options scan = options({"--range", "1"});
   EXPECT_EQ(scan.scan.number_of_samples, 666);
   EXPECT_EQ(scan.scan.sample_period, 80);
+  EXPECT_EQ(options({"--range", "0.72"}).scan.sample_period, 80)
+      << "480 samples of 80 units, in whole numbers";
 }
 
 TEST(Ping360Options, a_sector_is_in_degrees_from_ahead) {
