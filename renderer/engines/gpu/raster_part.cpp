@@ -162,16 +162,14 @@ void add_normal_map(const NormalMap& map, osg::StateSet& state) {
   state.addUniform(new osg::Uniform("map_level_count", level_count));
 }
 
-enum Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
+}  // namespace
 
 Shading shading_of(const BodyPart& part) {
   if (part.normal_map && part.mesh->can_be_mapped()) {
-    return normal_mapped;
+    return Shading::normal_mapped;
   }
-  return part.mesh->normals.empty() ? geometric_normal : vertex_normals;
+  return part.mesh->normals.empty() ? Shading::geometric_normal : Shading::vertex_normals;
 }
-
-}  // namespace
 
 osg::Matrixd to_osg(const Pose& T_a_b) {
   const glm::dquat& q = T_a_b.orientation;
@@ -196,11 +194,9 @@ bool same_surface(const BodyPart& a, const BodyPart& b) {
 
 osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part) {
   osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
-  const Shading shading = shading_of(part);
-  if (shading == normal_mapped) {
+  if (shading_of(part) == Shading::normal_mapped) {
     add_normal_map(*part.normal_map, *state);
   }
-  state->addUniform(new osg::Uniform("shading", static_cast<int>(shading)));
   state->addUniform(new osg::Uniform("reflectance", static_cast<float>(part.material.reflectance)));
   const Backscatter backscatter(part.material);
   state->addUniform(new osg::Uniform("lambert_mu", backscatter.lambert_mu));

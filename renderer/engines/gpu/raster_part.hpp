@@ -7,6 +7,7 @@
 #include <osg/Matrixd>
 #include <osg/StateSet>
 
+#include "renderer/engines/gpu/surface_shader.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 
@@ -20,6 +21,8 @@ osg::Matrixd to_osg(const Pose& T_a_b);
 /// Adds the triangles of a mesh to the node of their part.
 /// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
 void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
+
+Shading shading_of(const BodyPart& part);
 
 /// What the shader wants to know of the surface of a part. Parts with the same surface share one.
 osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <list>
+#include <map>
 
 #include <osg/Camera>
 #include <osg/ClipControl>
@@ -130,15 +131,22 @@ struct RasterSampler::Impl {
     osg::ref_ptr<osg::MatrixTransform> transform;  // T_sonar_body of the current ping
   };
 
+  struct Surface {
+    osg::ref_ptr<osg::StateSet> state;
+    Shading shading;
+  };
+
   osg::ref_ptr<EglContext> context;
   std::string description;
   osg::ref_ptr<osg::Group> scene;
   std::vector<BodyNode> bodies;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
-  MeshCache<osg::ref_ptr<osg::Group>> replacements;       // chunks of meshes
-  std::list<ViewTarget> targets;                          // the last used first
-  double target_pixels = 0;                               // of all of them
-  std::uint64_t calls = 0;                                // of sample()
+  std::vector<Surface> surfaces;
+  std::map<std::string, osg::ref_ptr<osg::Program>> programs;  // by surface_shader_head()
+  MeshCache<osg::ref_ptr<osg::Group>> replacements;            // chunks of meshes
+  std::list<ViewTarget> targets;                               // the last used first
+  double target_pixels = 0;                                    // of all of them
+  std::uint64_t calls = 0;                                     // of sample()
   float max_range_m = 0.0F;
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
@@ -152,13 +160,15 @@ struct RasterSampler::Impl {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());
-    const BodyPart* last = nullptr;  // tiles of a terrain follow each other and share the surface
+    program(Shading::geometric_normal, {});  // so that an OpenGL that cannot build it is found out here
+    const BodyPart* last = nullptr;          // tiles of a terrain follow each other and share the surface
     osg::ref_ptr<osg::StateSet> surface;
     for (const Body& body : world.bodies) {
       BodyNode node{body.T_world_body, new osg::MatrixTransform};
       for (const BodyPart& part : body.parts) {
         if (last == nullptr || !same_surface(*last, part)) {
           surface = make_surface(part);
+          surfaces.push_back({surface, shading_of(part)});
         }
         last = &part;
         parts.push_back(make_part(part, surface, &max_range_m));
@@ -189,17 +199,6 @@ struct RasterSampler::Impl {
   }
 
   void set_up_state(osg::StateSet& state) {
-    osg::ref_ptr<osg::Program> program = new osg::Program;
-    program->addShader(new osg::Shader(osg::Shader::VERTEX, surface_vertex_shader));
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surface_fragment_shader));
-    program->compileGLObjects(*context->getState());
-    osg::Program::PerContextProgram* linked = program->getPCP(*context->getState());
-    if (!linked->isLinked()) {
-      std::string reason;
-      linked->getInfoLog(reason);
-      throw RendererError("the surface shader does not build on " + description + ": " + reason);
-    }
-    state.setAttributeAndModes(program);
     state.setAttributeAndModes(
         new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
     state.setAttributeAndModes(new osg::Depth(osg::Depth::GREATER, 0.0, 1.0));
@@ -209,10 +208,31 @@ struct RasterSampler::Impl {
     state.addUniform(new osg::Uniform("normal_map", normal_map_unit));
   }
 
-  void set_surface(const SurfaceModel& surface) const {
+  /// Built when first asked for.
+  osg::ref_ptr<osg::Program> program(Shading shading, const SurfaceModel& surface) {
+    const std::string head = surface_shader_head(shading, surface);
+    osg::ref_ptr<osg::Program>& known = programs[head];
+    if (!known) {
+      osg::ref_ptr<osg::Program> made = new osg::Program;
+      made->addShader(new osg::Shader(osg::Shader::VERTEX, head + surface_vertex_shader));
+      made->addShader(new osg::Shader(osg::Shader::FRAGMENT, head + surface_fragment_shader));
+      made->compileGLObjects(*context->getState());
+      osg::Program::PerContextProgram* linked = made->getPCP(*context->getState());
+      if (!linked->isLinked()) {
+        std::string reason;
+        linked->getInfoLog(reason);
+        throw RendererError("the surface shader does not build on " + description + ": " + reason);
+      }
+      known = made;
+    }
+    return known;
+  }
+
+  void set_surface(const SurfaceModel& surface) {
+    for (const Surface& one : surfaces) {
+      one.state->setAttributeAndModes(program(one.shading, surface));
+    }
     osg::StateSet& state = *scene->getStateSet();
-    state.getOrCreateUniform("model", osg::Uniform::INT)->set(surface.model == Model::physical ? 1 : 0);
-    state.getOrCreateUniform("facets", osg::Uniform::INT)->set(static_cast<int>(surface.facets));
     state.getOrCreateUniform("sigmoid", osg::Uniform::FLOAT_VEC2)
         ->set(
             osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));

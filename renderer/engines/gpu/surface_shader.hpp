@@ -1,16 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 // The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the
 // shader.
+//
+// Each kind of surface has a program of its own, which begins with surface_shader_head() and holds only what
+// that kind takes: a software OpenGL runs both sides of every branch.
 #pragma once
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "renderer/surface/surface_model.hpp"
 
 namespace sonard::render {
 
-inline constexpr char surface_vertex_shader[] = R"glsl(#version 450 compatibility
+/// What of a surface decides which program draws it.
+enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
+
+/// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere.
+inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface) {
+  return fmt::format(
+      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {}\n",
+      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical ? 1 : 0);
+}
+
+inline constexpr char surface_vertex_shader[] = R"glsl(
 layout(location = 6) in vec4 tangent;  // xyz unit, w handedness
 uniform vec4 refraction;                 // Refraction in eye coordinates: up, per_m
 out vec3 normal_eye;
+#if SHADING == 2
 out vec4 tangent_eye;
 out vec2 texcoord;
+#endif
 
 void main() {
   gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
@@ -23,8 +44,10 @@ void main() {
     gl_Position = gl_ProjectionMatrix * vec4(lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30)), 1.0);
     normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(normal_eye, refraction.xyz));
   }
+#if SHADING == 2
   tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
   texcoord = gl_MultiTexCoord0.xy;
+#endif
 }
 )glsl";
 
@@ -32,28 +55,28 @@ void main() {
 // with tangents t. On the plane n.p = 1 seen along p = depth * q the inverse depth is n.q, so it is affine in
 // t: its screen derivatives give the plane, and with it the exact range derivatives (docs/physics.md 2.3,
 // equation 2), without differences of positions and without trouble where the plane is seen edge-on.
-inline constexpr char surface_fragment_shader[] = R"glsl(#version 450 compatibility
+inline constexpr char surface_fragment_shader[] = R"glsl(
 in vec3 normal_eye;
-in vec4 tangent_eye;
-in vec2 texcoord;
 layout(location = 0) out vec4 surface_sample;
 
 uniform vec2 tan_half;        // of the view
 uniform vec2 pixels;
-uniform int shading;          // 0 geometric normal, 1 vertex normals, 2 normal map
+#if SHADING == 2
+in vec4 tangent_eye;
+in vec2 texcoord;
 uniform isampler2D normal_map;  // texels of all levels, one after the other, in rows of 4096
 uniform ivec3 map_levels[16];    // width, height, first texel
 uniform int map_level_count;
+#endif
 uniform float reflectance;
 uniform float lambert_mu;
 uniform float facet_strength;   // see Backscatter
 uniform float slope_variance;
 uniform float facets_least_cosine;
-uniform int facets;             // 0 none, 1 near normal incidence, 2 everywhere
-uniform int model;            // 0 paper, 1 physical
 uniform vec2 sigmoid;         // slope, centre
 uniform float attenuation_per_m;
 
+#if SHADING == 2
 // NormalPyramid::mean_normal() and its helper, term by term, on the same texels in the same order. Filters of the
 // texture unit will not do: they weigh texels in steps of 1/256, and llvmpipe gives four pixels one level.
 vec3 texel(int i) {
@@ -93,20 +116,25 @@ float map_level(float inverse_depth, vec2 inverse_depth_step) {
   vec2 dy = (dFdy(over_depth) - texcoord * inverse_depth_step.y) * texels_per_step;
   return 0.5 * log2(max(dot(dx, dx), dot(dy, dy)));
 }
+#endif
 
 // Not of unit length where a map averages.
-vec3 shading_normal(vec3 plane, float level) {
-  if (shading == 0) return plane;
+vec3 shading_normal(vec3 plane, float inverse_depth, vec2 step) {
+#if SHADING == 0
+  return plane;
+#else
   vec3 n = normalize(normal_eye);
-  if (shading == 2) {
-    vec3 t = normalize(tangent_eye.xyz - n * dot(n, tangent_eye.xyz));
-    vec3 b = cross(n, t) * tangent_eye.w;
-    vec3 m = mean_normal(texcoord, level);
-    n = t * m.x + b * m.y + n * m.z;
-  }
+#if SHADING == 2
+  vec3 t = normalize(tangent_eye.xyz - n * dot(n, tangent_eye.xyz));
+  vec3 b = cross(n, t) * tangent_eye.w;
+  vec3 m = mean_normal(texcoord, map_level(inverse_depth, step));
+  n = t * m.x + b * m.y + n * m.z;
+#endif
   return any(isnan(n)) ? plane : n;
+#endif
 }
 
+#if FACETS != 0
 // Backscatter::facets() and variance_of_mean_normal(), term by term.
 float facet_response(float cos_phi, float added_variance) {
   float variance = min(slope_variance + added_variance, 0.25);
@@ -121,11 +149,14 @@ float variance_of_mean_normal(float mean_length) {
 
 // Facets need a direction; what is missing of the length of a mean normal widens their slopes.
 float facet_response(vec3 n, float cos_phi) {
-  float mean_length = shading == 2 ? length(n) : 1.0;
+  float mean_length = SHADING == 2 ? length(n) : 1.0;
   float cosine = min(cos_phi / mean_length, 1.0);
-  bool responds = facets == 2 || (facets == 1 && (shading == 2 ? facet_strength > 0.0 : cosine > facets_least_cosine));
-  return responds ? facet_response(cosine, variance_of_mean_normal(mean_length)) : 0.0;
+#if FACETS == 1
+  if (!(SHADING == 2 ? facet_strength > 0.0 : cosine > facets_least_cosine)) return 0.0;
+#endif
+  return facet_response(cosine, variance_of_mean_normal(mean_length));
 }
+#endif
 
 void main() {
   vec2 t = (gl_FragCoord.xy / pixels * 2.0 - 1.0) * tan_half;
@@ -139,16 +170,17 @@ void main() {
   vec2 range_d = range * (t / qq - slope / inverse_depth);
 
   vec3 plane = normalize(vec3(slope, dot(slope, t) - inverse_depth));
-  float level = shading == 2 ? map_level(inverse_depth, step) : 0.0;
-  vec3 n = shading_normal(plane, level);
+  vec3 n = shading_normal(plane, inverse_depth, step);
   float cos_phi = clamp(abs(dot(n, q)) * inversesqrt(qq), 0.0, 1.0);
-  float response;
-  if (model == 1) {
-    response = lambert_mu * cos_phi + facet_response(n, cos_phi);
-  } else {
-    float echo = min(1.0, reflectance * cos_phi * exp(-2.0 * attenuation_per_m * range));
-    response = 1.0 / (1.0 + exp(-sigmoid.x * (echo - sigmoid.y)));
-  }
+#if PHYSICAL
+  float response = lambert_mu * cos_phi;
+#if FACETS != 0
+  response += facet_response(n, cos_phi);
+#endif
+#else
+  float echo = min(1.0, reflectance * cos_phi * exp(-2.0 * attenuation_per_m * range));
+  float response = 1.0 / (1.0 + exp(-sigmoid.x * (echo - sigmoid.y)));
+#endif
   vec4 result = vec4(range, response, range_d);
   surface_sample = any(isnan(result)) || any(isinf(result)) ? vec4(-1.0, 0.0, 0.0, 0.0) : result;
 }
