@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which method finds the visible surfaces, where samples are binned, on how many threads a ping is made, and
-// what may be skipped.
+// Which method finds the visible surfaces, on how many threads a ping is made, and what may be skipped.
 #pragma once
 
 #include <string_view>
@@ -15,14 +14,6 @@ enum class Backend {
   ray,        ///< Embree on the CPU; never opens EGL
 };
 
-/// Whether the backend `raster` bins fixed grids on the GPU (docs/architecture.md). It does what it can: an
-/// image or a grid that is too large for OpenGL's buffers is binned on the CPU.
-enum class GpuBinning {
-  automatic,  ///< where OpenGL runs on hardware
-  on,
-  off,
-};
-
 /// The name under the key `backend` of a configuration: "auto", "raster", "ray".
 std::string_view name_of(Backend backend);
 
@@ -30,7 +21,6 @@ struct RendererOptions {
   Backend backend = Backend::automatic;
   unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
   SkipSwitches skip{};   ///< all rules are on by default
-  GpuBinning gpu_binning = GpuBinning::automatic;
   /// g / c: how much faster sound gets per metre upwards, over its speed at the sonar. Positive where rays
   /// sink, their radius of curvature is 1 / this; 0: rays are straight (docs/physics.md 2.12).
   double ray_curvature_per_m = 0.0;

@@ -57,8 +57,10 @@ struct PingStatistics {
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
   /// Echoes beyond what the sums of GpuBinner hold, taken as that: 2^14 times unit response or more.
   std::uint64_t saturated_samples = 0;
-  /// Why a fixed grid that was to be binned on the GPU was binned on the CPU; empty otherwise. One line.
-  std::string gpu_binning_obstacle;
+  // Of the GPU engine: how often it drew, what it read back, and how often it waited for that.
+  std::uint64_t passes = 0;
+  std::uint64_t bytes_read_back = 0;
+  std::uint64_t synchronisations = 0;
   SkipCounts skipped;  ///< what was left out; stages that did not run have counted nothing
 };
 

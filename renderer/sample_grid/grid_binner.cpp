@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include "renderer/binning/beam_sums.hpp"
@@ -52,7 +51,6 @@ std::uint64_t make_patches(const SampleGrid& grid, const std::vector<const Surfa
                            const ColumnPart& part, std::vector<EchoPatch>& patches) {
   const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
   const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
-  const float* weights = &grid.weights[part.weights];
   const auto x = static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width());
   const auto bottom = static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height());
   const auto pixel_height = static_cast<float>(view.pixel_height());
@@ -71,7 +69,7 @@ std::uint64_t make_patches(const SampleGrid& grid, const std::vector<const Surfa
       cell = {part.x_offset, part.last_y_offset, part.width, part.last_height, part.limit_slope};
     }
     const float y = bottom + static_cast<float>(row) * pixel_height;
-    patches.push_back(patch_of(sample, x, y, cell, weights[row - part.row_begin]));
+    patches.push_back(patch_of(sample, x, y, cell, grid.weight(part, row)));
   }
   return invalid;
 }
@@ -82,7 +80,7 @@ void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>&
   const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
   for (int row = part.row_begin; row < part.row_end; ++row) {
     const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
-    const float weight = grid.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)];
+    const float weight = grid.weight(part, row);
     if (sample.range_m > 0) {
       sums.add_point(std::floor(static_cast<double>(sample.range_m) * lines_per_m), weight * sample.response,
                      weight);
@@ -92,23 +90,19 @@ void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>&
 }
 
 double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
-  const auto begin = static_cast<std::size_t>(grid.beam_parts[beam]);
-  const auto end = static_cast<std::size_t>(grid.beam_parts[beam + 1]);
-  const std::size_t first = begin < end ? grid.parts[begin].weights : 0;
-  const std::size_t last = end < grid.parts.size() ? grid.parts[end].weights : grid.weights.size();
-  return begin < end ? std::accumulate(grid.weights.begin() + static_cast<std::ptrdiff_t>(first),
-                                       grid.weights.begin() + static_cast<std::ptrdiff_t>(last), 0.0)
-                     : 0.0;
+  double sum = 0.0;
+  for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
+    const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+    for (int row = part.row_begin; row < part.row_end; ++row) {
+      sum += static_cast<double>(grid.weight(part, row));
+    }
+  }
+  return sum;
 }
 
 /// The part of a column, with its patches.
 PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std::vector<EchoPatch>& patches) {
-  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
-  const double middle =
-      -view.tan_half_width + (part.column + 0.5) * view.pixel_width() + static_cast<double>(part.x_offset);
-  const double half = static_cast<double>(part.width) / 2;
-  return {view.azimuth_rad - std::atan(middle - half), view.azimuth_rad - std::atan(middle + half),
-          patches.data(), patches.data() + patches.size()};
+  return {grid.port_rad(part), grid.starboard_rad(part), patches.data(), patches.data() + patches.size()};
 }
 
 BinningResult bin_grid_by_cones(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,

@@ -63,8 +63,8 @@ SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, cons
 class GridBuilder {
  public:
   GridBuilder(const Aperture& aperture, const GridOptions& options, SampleGrid& grid)
-      : aperture_(aperture), options_(options), grid_(grid) {
-    grid_.elevation_limit_rad = aperture.elevation_limit_rad();
+      : options_(options), grid_(grid), tan_limit_(std::tan(aperture.elevation_limit_rad())) {
+    grid_.aperture = aperture;
     grid_.beam_parts.push_back(0);
   }
 
@@ -72,11 +72,11 @@ class GridBuilder {
   void add_run(const BeamRun& run) {
     const std::size_t first_view = grid_.views.size();
     for (const ViewSpan& span : run.views) {
-      grid_.views.push_back(make_view(aperture_, span, run.rows, options_));
+      grid_.views.push_back(make_view(grid_.aperture, span, run.rows, options_));
     }
     for (int beam = run.begin; beam < run.end; ++beam) {
       const auto b = static_cast<std::size_t>(beam);
-      add_beam(first_view, aperture_.beam_edges_rad[b], aperture_.beam_edges_rad[b + 1]);
+      add_beam(first_view, grid_.aperture.beam_edges_rad[b], grid_.aperture.beam_edges_rad[b + 1]);
       if (grid_.beam_parts.back() == *std::prev(grid_.beam_parts.end(), 2)) {
         throw RequestError("sampling: beam " + std::to_string(beam) +
                            " gets no column; raise columns per view");
@@ -128,8 +128,7 @@ class GridBuilder {
     const SubView& view = grid_.views[static_cast<std::size_t>(view_index)];
     const double x = (x_from + x_to) / 2;
     const double centre = -view.tan_half_width + (column + 0.5) * view.pixel_width();
-    const double limit = options_.elevation_mask ? std::tan(grid_.elevation_limit_rad) * std::hypot(1.0, x)
-                                                 : view.tan_half_height;
+    const double limit = options_.elevation_mask ? tan_limit_ * std::hypot(1.0, x) : view.tan_half_height;
     ColumnPart part;
     part.view = view_index;
     part.column = column;
@@ -137,52 +136,88 @@ class GridBuilder {
     part.x_offset = whole ? 0.0F : static_cast<float>(x - centre);
     part.width = static_cast<float>(x_to - x_from);
     if (options_.elevation_mask) {
-      part.limit_slope = static_cast<float>(std::tan(grid_.elevation_limit_rad) * x / std::hypot(1.0, x));
+      part.limit_slope = static_cast<float>(tan_limit_ * x / std::hypot(1.0, x));
     }
-    add_rows(view, x, std::min(limit, view.tan_half_height), part);
+    add_rows(view, std::min(limit, view.tan_half_height), part);
     grid_.parts.push_back(part);
   }
 
-  void add_rows(const SubView& view, double x, double limit, ColumnPart& part) {
+  static void add_rows(const SubView& view, double limit, ColumnPart& part) {
     const double step = view.pixel_height();
     const auto row_of = [&](double y) { return (y + view.tan_half_height) / step; };
     part.row_begin = std::clamp(static_cast<int>(std::floor(row_of(-limit) + 1e-9)), 0, view.rows - 1);
     part.row_end =
         std::clamp(static_cast<int>(std::ceil(row_of(limit) - 1e-9)), part.row_begin + 1, view.rows);
-    part.weights = grid_.weights.size();
-    for (int row = part.row_begin; row < part.row_end; ++row) {
+    // What of a row lies between the limits: its middle relative to the pixel's, and its height.
+    const auto cut = [&](int row, float& offset, float& height) {
       const double bottom = -view.tan_half_height + row * step;
       const double from = std::max(bottom, -limit);
       const double to = std::min(bottom + step, limit);
-      const double y = (from + to) / 2;
-      const double height = std::max(0.0, to - from);
-      if (row == part.row_begin) {
-        part.first_y_offset = static_cast<float>(y - bottom - step / 2);
-        part.first_height = static_cast<float>(height);
-      }
-      if (row + 1 == part.row_end) {
-        part.last_y_offset = static_cast<float>(y - bottom - step / 2);
-        part.last_height = static_cast<float>(height);
-      }
-      const double q = 1 + x * x + y * y;
-      const double solid_angle = part.width * height / (q * std::sqrt(q));
-      grid_.weights.push_back(static_cast<float>(solid_angle * elevation_weight(x, y)));
-    }
+      offset = static_cast<float>((from + to) / 2 - bottom - step / 2);
+      height = static_cast<float>(std::max(0.0, to - from));
+    };
+    cut(part.row_begin, part.first_y_offset, part.first_height);
+    cut(part.row_end - 1, part.last_y_offset, part.last_height);
   }
 
-  /// Weight of a ray. Without a pattern the angle is not computed: it is most of the cost of a grid.
-  double elevation_weight(double x, double y) const {
-    return aperture_.elevation == Aperture::Elevation::top_hat
-               ? 1.0
-               : aperture_.elevation_weight(std::atan(y / std::hypot(1.0, x)));
-  }
-
-  const Aperture& aperture_;
   const GridOptions& options_;
   SampleGrid& grid_;
+  const double tan_limit_;
 };
 
 }  // namespace
+
+namespace {
+
+double azimuth_at(const SubView& view, double x) {
+  return view.azimuth_rad - std::atan(x);
+}
+
+}  // namespace
+
+double SampleGrid::middle(const ColumnPart& part) const {
+  const SubView& view = views[static_cast<std::size_t>(part.view)];
+  return -view.tan_half_width + (part.column + 0.5) * view.pixel_width() + static_cast<double>(part.x_offset);
+}
+
+double SampleGrid::column_rad(const ColumnPart& part) const {
+  return azimuth_at(views[static_cast<std::size_t>(part.view)],
+                    middle(part) - static_cast<double>(part.x_offset));
+}
+
+double SampleGrid::port_rad(const ColumnPart& part) const {
+  return azimuth_at(views[static_cast<std::size_t>(part.view)],
+                    middle(part) - static_cast<double>(part.width) / 2);
+}
+
+double SampleGrid::starboard_rad(const ColumnPart& part) const {
+  return azimuth_at(views[static_cast<std::size_t>(part.view)],
+                    middle(part) + static_cast<double>(part.width) / 2);
+}
+
+float SampleGrid::weight(const ColumnPart& part, int row) const {
+  const SubView& view = views[static_cast<std::size_t>(part.view)];
+  const bool first = row == part.row_begin, last = row + 1 == part.row_end;
+  const double height = first  ? static_cast<double>(part.first_height)
+                        : last ? static_cast<double>(part.last_height)
+                               : view.pixel_height();
+  const double offset = static_cast<double>(first ? part.first_y_offset : last ? part.last_y_offset : 0.0F);
+  const double x = middle(part);
+  const double y = -view.tan_half_height + (row + 0.5) * view.pixel_height() + offset;
+  const double q = 1 + x * x + y * y;
+  const double pattern = aperture.elevation == Aperture::Elevation::top_hat
+                             ? 1.0
+                             : aperture.elevation_weight(std::atan(y / std::hypot(1.0, x)));
+  return static_cast<float>(static_cast<double>(part.width) * height / (q * std::sqrt(q)) * pattern);
+}
+
+std::size_t SampleGrid::cell_count() const {
+  std::size_t cells = 0;
+  for (const ColumnPart& part : parts) {
+    cells += static_cast<std::size_t>(part.row_end - part.row_begin);
+  }
+  return cells;
+}
 
 double BeamRun::samples() const {
   double columns = 0;
@@ -224,6 +259,16 @@ SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>
     builder.add_run(run);
   }
   return grid;
+}
+
+SampleGrid part_of(const SampleGrid& grid, int begin, int end) {
+  const auto at = [&](int beam) { return grid.beam_parts[static_cast<std::size_t>(beam)]; };
+  SampleGrid part{
+      grid.aperture, grid.views, {grid.parts.begin() + at(begin), grid.parts.begin() + at(end)}, {}};
+  for (int beam = begin; beam <= end; ++beam) {
+    part.beam_parts.push_back(at(beam) - at(begin));
+  }
+  return part;
 }
 
 }  // namespace sonard::render

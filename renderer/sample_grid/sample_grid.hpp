@@ -54,19 +54,26 @@ struct ColumnPart {
   float last_y_offset = 0.0F, last_height = 0.0F;
   /// dy/dx of the upper elevation limit in this column; the lower one has the opposite slope.
   float limit_slope = 0.0F;
-  /// Index into SampleGrid::weights of row `row_begin`.
-  std::size_t weights = 0;
 };
 
 /// The sampling of one aperture: pure geometry, made once per configuration and shared by both samplers.
 struct SampleGrid {
+  Aperture aperture;  ///< of all beams; the grid may be of some of them only
   std::vector<SubView> views;
   std::vector<ColumnPart> parts;  ///< sorted by beam
   std::vector<int> beam_parts;    ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
-  std::vector<float> weights;     ///< solid angle times elevation pattern, steradians; per part and row
-  double elevation_limit_rad = 0.0;
 
   int beam_count() const { return static_cast<int>(beam_parts.size()) - 1; }
+  /// Tangent of the middle of a part, in its view.
+  double middle(const ColumnPart& part) const;
+  /// Azimuths of the middle of a part's column, and of the two sides of the part.
+  double column_rad(const ColumnPart& part) const;
+  double port_rad(const ColumnPart& part) const;
+  double starboard_rad(const ColumnPart& part) const;
+  /// Solid angle times elevation pattern of what of the pixel in this row lies in the part, steradians.
+  float weight(const ColumnPart& part, int row) const;
+  /// Number of pixels, each counted once for every part that it has.
+  std::size_t cell_count() const;
 };
 
 /// How the fan is cut into pixels. The defaults are what accuracy wants; the others reproduce the paper.
@@ -108,5 +115,8 @@ struct BeamRun {
 /// @param runs in the order of the beams, none twice; no view wider than 60 degrees.
 /// @throws RequestError when a beam gets no column.
 SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs);
+
+/// Some beams of a grid, [begin, end) of it, in the same views.
+SampleGrid part_of(const SampleGrid& grid, int begin, int end);
 
 }  // namespace sonard::render

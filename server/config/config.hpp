@@ -180,7 +180,6 @@ struct DaemonConfig {
   /// the sonars that heads are mounted from (resolve_mounts() fills it in).
   std::string vehicle_model;
   render::Backend backend = render::Backend::automatic;
-  render::GpuBinning gpu_binning = render::GpuBinning::automatic;
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;

@@ -341,15 +341,7 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
               "what finds the visible surfaces: OpenGL 4.5, or ray tracing on all cores of the CPU, which "
               "needs no OpenGL. `auto` takes OpenGL where it runs on graphics hardware. Both give the same "
               "image ([accuracy.md](accuracy.md)); the log says which one runs on what");
-  root.choice(
-      "gpu_binning", config.gpu_binning,
-      {{"auto", render::GpuBinning::automatic},
-       {"on", render::GpuBinning::on},
-       {"off", render::GpuBinning::off}},
-      "whether backend `raster` bins fixed grids (`sampling.preset: grid`, mode `paper` with "
-      "`legacy_columns` and the like) on the GPU too, so that only the echo image is read back. `auto`: "
-      "where OpenGL runs on graphics hardware; `on`: also where it is software. An image too large for "
-      "OpenGL's buffers is binned on the CPU, with a line in the log. No meaning for backend `ray`");
+  root.retired("gpu_binning", "remove it; backend `raster` bins on the GPU in any case");
   root.section("skip", "what need not be worked out",
                [&](YamlSection& section) { read_skip(section, config.skip); });
   root.section("water", "what they swim in", [&](YamlSection& section) { read_water(section, context); });

@@ -426,6 +426,12 @@ void YamlSection::report_bad_value(std::string_view key, std::string_view value,
 }
 
 void YamlSection::report_unknown(const Entry& entry) {
+  for (const auto& [key, what_to_do] : retired_) {
+    if (entry.name == key) {
+      problem(entry.key_at, path_of(entry.name), fmt::format("is no longer a key: {}", what_to_do));
+      return;
+    }
+  }
   const std::string_view meant = closest(entry.name, known_);
   std::string message = "unknown key";
   if (!meant.empty()) {

@@ -69,6 +69,8 @@ class YamlSection {
   void require(std::string_view key, std::string_view expected);
   /// Reports a problem with the value of a key that a reader accepted, or with the key's absence.
   void report(std::string_view key, const std::string& message);
+  /// A key of earlier versions: what to do without it, where a file still has it. Both outlive the section.
+  void retired(std::string_view key, std::string_view what_to_do) { retired_.emplace_back(key, what_to_do); }
   std::string path_of(std::string_view key) const;
   /// Lets a key that is not given stand where the key that its default comes from does.
   void place_default(std::string_view key, std::string_view source);
@@ -201,6 +203,7 @@ class YamlSection {
   bool is_map_ = true;
   std::vector<Entry> entries_;
   std::vector<KeyReference> known_;
+  std::vector<std::pair<std::string_view, std::string_view>> retired_;
   std::string introduction_;
 };
 

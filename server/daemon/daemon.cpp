@@ -50,9 +50,7 @@ class WorldRenderer final : public PingRenderer {
     return renderer_.set_body_pose(body, T_world_body);
   }
   render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
-    render::PingSamples samples = renderer_.render_ping(request, stream);
-    tell_where_grids_are_binned();
-    return samples;
+    return renderer_.render_ping(request, stream);
   }
   void warm_up(const render::PingRequest& request, int stream) override {
     renderer_.render_echo(request,
@@ -61,16 +59,7 @@ class WorldRenderer final : public PingRenderer {
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
  private:
-  void tell_where_grids_are_binned() {
-    const std::string& obstacle = renderer_.last_statistics().gpu_binning_obstacle;
-    if (obstacle != gpu_binning_obstacle_ && !obstacle.empty()) {
-      spdlog::warn("binning on the CPU: {}", obstacle);
-    }
-    gpu_binning_obstacle_ = obstacle;
-  }
-
   render::SonarRenderer renderer_;
-  std::string gpu_binning_obstacle_;  // of the last ping
 };
 
 // Runs on the render thread. The self-test comes first: a backend that draws nothing must not get as far as a
@@ -389,7 +378,7 @@ render::World load_world_of(DaemonConfig& config) {
 }
 
 render::RendererOptions renderer_options(const DaemonConfig& config) {
-  return {config.backend, 0, config.skip, config.gpu_binning,
+  return {config.backend, 0, config.skip,
           config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
 }
 

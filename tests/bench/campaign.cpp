@@ -44,8 +44,7 @@ void Campaign::run_in_renderer(render::Backend backend, const test::Scene& scene
   const std::string name(render::name_of(backend));
   std::optional<SceneRun> run;
   try {
-    run.emplace(scene, render::RendererOptions{backend, plan.threads, {}, plan.gpu_binning}, results_,
-                plan.bodies_drift);
+    run.emplace(scene, render::RendererOptions{backend, plan.threads, {}}, results_, plan.bodies_drift);
   } catch (const render::RendererError& error) {
     note(name, error);
     backends_.erase(std::remove(backends_.begin(), backends_.end(), backend), backends_.end());

@@ -38,10 +38,9 @@ struct PlannedReceiver {
 struct Plan {
   std::vector<PlannedPoint> points;
   std::vector<PlannedReceiver> receivers;
-  std::optional<Repetition> reception = std::nullopt;              ///< of array and pulse, at preset `fast`
-  bool bodies_drift = false;                                       ///< all bodies but the first, every ping
-  unsigned threads = 0;                                            ///< as render::RendererOptions
-  render::GpuBinning gpu_binning = render::GpuBinning::automatic;  ///< the same
+  std::optional<Repetition> reception = std::nullopt;  ///< of array and pulse, at preset `fast`
+  bool bodies_drift = false;                           ///< all bodies but the first, every ping
+  unsigned threads = 0;                                ///< as render::RendererOptions
 };
 
 class Campaign {

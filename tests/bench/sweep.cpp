@@ -108,21 +108,6 @@ class Sweep {
     }
   }
 
-  /// What `raster` draws, read back and binned on the CPU, or binned where it is.
-  void binning() {
-    for (const auto& [where, choice] :
-         {std::pair{"cpu", render::GpuBinning::off}, {"gpu", render::GpuBinning::on}}) {
-      Plan plan;
-      plan.gpu_binning = choice;
-      for (const Point& point : {grid_point(2, 256), grid_point(4, 512), grid_point(8, 1024),
-                                 point_binning(4, 512), paper_point()}) {
-        plan.points.push_back({point, usual, render::Backend::raster});
-      }
-      const std::string name = fmt::format("swell100k@binning={}", where);
-      run(name, plan, [&] { return renamed(test::make_scene("swell100k"), name); });
-    }
-  }
-
   /// 200 bodies that rest, and the same that all move from ping to ping, to be compared.
   void bodies() {
     for (const bool drift : {false, true}) {
@@ -166,7 +151,6 @@ void run_sweep(Campaign& campaign, const std::vector<std::string>& only) {
   sweep.beams();
   sweep.bins();
   sweep.cores();
-  sweep.binning();
   sweep.bodies();
   sweep.terrain();
 }

@@ -2,63 +2,57 @@
 // Grids of samples that are as fine as each beam needs (docs/accuracy.md).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "renderer/binning/binning.hpp"
+#include "renderer/engine.hpp"
+#include "renderer/engines/gpu/gpu_binner.hpp"
 #include "renderer/engines/gpu/grid_choice.hpp"
 #include "renderer/engines/gpu/raster_sampler.hpp"
-#include "renderer/pose.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "renderer/surface/surface_model.hpp"
-#include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
-/// Samples the whole fan with an even grid, estimates the error of every beam, and samples those that may
-/// miss the preset's targets again. All passes depend on the request alone, so the image does. One thread
-/// uses it.
+/// Samples the whole fan with an even grid, lets the GPU estimate the error of every beam, and samples those
+/// that may miss the preset's targets again. All passes depend on the request alone, so the image does. One
+/// thread uses it.
 class BeamRefinement {
  public:
-  /// @param sampler, workers outlive this object.
-  BeamRefinement(RasterSampler& sampler, WorkerPool& workers) : sampler_(sampler), workers_(workers) {}
+  /// @param sampler, binner outlive this object; the context of the sampler is current when it ends.
+  BeamRefinement(RasterSampler& sampler, GpuBinner& binner) : sampler_(sampler), binner_(binner) {}
 
-  /// What all passes of a ping share.
-  struct Request {
-    const Pose& T_world_sonar;
-    const SonarSettings& settings;
-    const SurfaceModel& surface;
-    double max_range_m;
-    const BinningOptions& binning;
-    /// What the echo of each line is yet to be multiplied with; empty: 1.
-    const std::vector<float>& line_weight;
-  };
-  struct Result {
-    BinningResult bins;         ///< `samples` and `invalid_samples` are those of all passes
-    double visibility_s = 0.0;  ///< of the time taken
-    bool known_grid = false;    ///< the grid of the first pass was that of the last ping
-  };
-
+  /// Puts the beams of a request into the image that the binner has begun.
   /// @param keep_grid the grid of the first pass may be that of the last ping, where it is equal.
+  /// @return whether it was.
   /// @throws RequestError when the aperture cannot be gridded.
   /// @throws RendererError as the sampler.
-  Result refine(const Request& request, bool keep_grid);
+  bool refine(const EchoRequest& request, const SurfaceModel& surface, bool keep_grid,
+              PingStatistics& statistics);
 
  private:
-  /// The even grid of the first pass, and that grid thinned.
-  struct EvenGrid {
+  /// A grid of some beams, and what of it the GPU holds.
+  struct Grid {
+    SampleGrid samples;
+    std::shared_ptr<const GpuGrid> on_gpu;
+  };
+  /// The even grids of the first pass, one for each page of the image.
+  struct EvenGrids {
     Aperture aperture;
     BeamDensity density;
-    SampleGrid grid, coarse;
+    int beams_per_page;
+    std::vector<Grid> grids;
   };
-
   struct Ping;
-  const EvenGrid& even_grid(const Aperture& aperture, const BeamDensity& density);
+
+  Grid make_grid(const Aperture& aperture, const std::vector<BeamRun>& runs, bool with_estimate) const;
+  const EvenGrids& even_grids(const Aperture& aperture, const BeamDensity& density);
 
   RasterSampler& sampler_;
-  WorkerPool& workers_;
-  std::optional<EvenGrid> even_;
+  GpuBinner& binner_;
+  std::optional<EvenGrids> even_;
 };
 
 }  // namespace sonard::render

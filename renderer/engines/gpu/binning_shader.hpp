@@ -1,19 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 // The GLSL of GpuBinner: what grid_binner and RangeProfile do, for one texture of samples, and the sums of
 // it. Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the
-// same however the work is shared out (docs/physics.md 4.2).
+// same however the work is shared out (docs/physics.md 4.2). What is added up in floating point, for the
+// error estimates, is added in a fixed order.
 #pragma once
 
 namespace sonard::render {
 
-/// What both shaders know of the sums.
-inline constexpr char binning_shader_head[] = R"glsl(#version 430
-// [echo, then weight][beam][line]: by how many units a line differs from the one before; low word first. As in
-// RangeProfile, what is spread over many lines costs no more than its ends.
-layout(std430, binding = 0) buffer Differences { uint differences[]; };
+/// Locations of the uniforms of all these shaders.
+enum BinningUniform : int {
+  at_lines,
+  at_bottom,
+  at_pixel,
+  at_lines_per_m,
+  at_pattern_scale,
+  at_first,
+  at_units_per_sr,
+  at_most_units,
+  at_most_rows,
+  at_left,
+  at_tan_limit,
+  at_part_count,
+  at_image_beams,
+  at_sr_per_unit,
+  at_mean,
+  at_open_water,
+  at_least_share,
+  at_least_open,
+  at_estimating,
+  at_least_level,
+  at_first_estimate,
+  at_most_error,
+  at_most_rest,
+  at_first_beam,
+};
+
+/// What all shaders know.
+inline constexpr char binning_shader_head[] = R"glsl(
 layout(location = 0) uniform int lines;
-layout(location = 1) uniform int beams;
-layout(location = 2) uniform bool weighed;  // the weights are summed too
+
+// ColumnPart, the tangent of its column's centre, and its neighbours: parts of the next columns, also where another
+// beam begins, with the distances of the centres in radians; the part itself where there is none.
+struct Part {
+  int column, row_begin, row_end, beam;
+  float x, x_offset, width, limit_slope;
+  float first_y_offset, first_height, last_y_offset, last_height;
+  int before, after;
+  float to_before, to_after, width_rad;
+};
+
+// A beam of the grid.
+struct Beam {
+  int in_image;
+  float solid_angle;
+  int part_begin, part_end;
+  int rows;
+};
+
+// BeamEstimate.
+struct Estimate {
+  float columns_total, columns_centroid_lines, rows_total, rows_centroid_lines;
+  float bin_squares;
+  uint bins;
+  uint thin;
+  int zone_begin, zone_end;
+  float zone_miss;
+};
+
+// A sum begins here: small numbers that come and go then hardly ever reach the high word.
+const uint start_of_sum = 0x80000000u;  // GpuBinner knows it
 
 uvec2 plus(uvec2 a, uvec2 b) {
   uint carry;
@@ -28,34 +83,73 @@ uvec2 minus(uvec2 a, uvec2 b) {
 }
 )glsl";
 
+/// What looks at samples.
+inline constexpr char sample_shader_head[] = R"glsl(
+layout(binding = 7) uniform sampler2D view;  // SurfaceSample
+layout(std430, binding = 2) readonly buffer Parts { Part parts[]; };
+
+layout(location = 1) uniform float bottom;        // tangent of the lowest row's centre
+layout(location = 2) uniform vec2 pixel;          // tangent units
+layout(location = 3) uniform vec3 lines_per_m;    // in three parts, of 12, 12 and 24 bits
+layout(location = 4) uniform float pattern_scale; // of the elevation pattern: sinc(this * sine of the elevation)
+
+// Of a pixel what lies in the part: a parallelogram (Cell in grid_binner).
+struct Cell {
+  vec2 offset;  // of its centre from the pixel's
+  float height, slope;
+};
+
+Cell cell_of(Part part, int row) {
+  if (row == part.row_begin) {
+    return Cell(vec2(part.x_offset, part.first_y_offset), part.first_height, -part.limit_slope);
+  }
+  if (row + 1 == part.row_end) {
+    return Cell(vec2(part.x_offset, part.last_y_offset), part.last_height, part.limit_slope);
+  }
+  return Cell(vec2(part.x_offset, 0.0), pixel.y, 0.0);
+}
+
+vec2 tangents_of(Part part, int row) {
+  return vec2(part.x, bottom + float(row) * pixel.y);
+}
+
+// SampleGrid::weight(), Aperture::elevation_weight().
+float weight_of(vec2 t, float width, float height) {
+  float qq = 1.0 + dot(t, t);
+  float weight = width * height / (qq * sqrt(qq));
+#if PATTERN != 0
+    float y = pattern_scale * t.y * inversesqrt(qq);
+    float amplitude = abs(y) < 1e-3 ? 1.0 - y * y / 6.0 : sin(y) / y;
+    float one_way = amplitude * amplitude;
+    weight *= PATTERN == 2 ? one_way * one_way : one_way;
+#endif
+  return weight;
+}
+)glsl";
+
 /// One work group per ColumnPart of a view.
 inline constexpr char splat_shader[] = R"glsl(
 layout(local_size_x = 64) in;
 
-// ColumnPart, and the tangent of its column's centre.
-struct Part {
-  int column, row_begin, row_end, beam;
-  uint weights;
-  float x, x_offset, width, limit_slope;
-  float first_y_offset, first_height, last_y_offset, last_height;
-};
-layout(std430, binding = 1) readonly buffer Parts { Part parts[]; };
-layout(std430, binding = 2) readonly buffer Weights { float weights[]; };
-layout(std430, binding = 3) buffer Counts { uint samples, invalid, saturated; };
-layout(rgba32f, binding = 0) readonly uniform image2D view;  // SurfaceSample
+// [beam][line]: by how many units a line differs from the one before; low word first. As in RangeProfile, what is
+// spread over many lines costs no more than its ends.
+layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
+layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
+layout(std430, binding = 3) readonly buffer PartsOfView { int parts_of_view[]; };
+layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, unused; };
+#if ESTIMATE
+layout(std430, binding = 5) writeonly buffer PartialColumns { vec2 partial_columns[]; };  // [part][invocation]
+vec2 own_echo = vec2(0.0);
+#endif
 
-layout(location = 3) uniform int first_part;       // of the view
-layout(location = 4) uniform float bottom;         // tangent of the lowest row's centre
-layout(location = 5) uniform float pixel_height;   // tangent units
-layout(location = 6) uniform vec3 lines_per_m;     // in three parts, of 12, 12 and 24 bits
-layout(location = 7) uniform float units_per_sr;
-layout(location = 8) uniform float most_units;     // of one sample: so many of them cannot overflow
-layout(location = 9) uniform bool footprint;
+layout(location = 5) uniform int first_part;       // in parts_of_view
+layout(location = 6) uniform float units_per_sr;
+layout(location = 7) uniform float most_units;    // of one sample: so many of them cannot overflow
 
 const float least_spread = 1e-3;   // lines
 const float widest_smear = 512.0;  // lines
 
-shared uint group_samples, group_invalid, group_saturated;
+uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u;
 
 // A place on the range axis. A single float would say where in line 16384 no closer than to a thousandth.
 struct Place {
@@ -99,35 +193,38 @@ vec3 move_plane(vec3 plane, vec2 t, vec2 offset) {
   return vec3(farther, range * (to / (qq + qq * growth) - slope / (1.0 + fall)));
 }
 
+// Rounded, not cut off: of the weakest echoes a line holds few.
 uvec2 whole_units(float amount) {
   float high = floor(amount / 4294967296.0);
-  return uvec2(uint(amount - high * 4294967296.0), uint(high));
-}
-
-// The two words may be added to by others in between: every carry out of the low word is seen by exactly one
-// of them, so that in the end all are in the high one.
-void add(uint line, uvec2 units) {
-  uint high = units.y;
-  if (units.x != 0u) {
-    uint before = atomicAdd(differences[2u * line], units.x);
-    high += before + units.x < before ? 1u : 0u;
-  }
-  if (high != 0u) atomicAdd(differences[2u * line + 1u], high);
+  float low = floor(amount - high * 4294967296.0 + 0.5);
+  return low < 4294967296.0 ? uvec2(uint(low), uint(high)) : uvec2(0u, uint(high) + 1u);
 }
 
 float echo_units, weight_units;  // of the sample at hand
-uint echo_lines, weight_lines;   // where those of its beam begin
+uint first_line;                 // of its beam
 
-// To the line `k` the units of `here` that the line before did not have.
+// To the line `k` the units of `here` that the line before did not have. The two words may be added to by others in
+// between: every carry out of the low word is seen by exactly one of them, so that in the end all are in the high one.
 void step_to(int k, float share, inout uvec2 echo_before, inout uvec2 weight_before) {
+  uint low = 2u * (first_line + uint(k));
   uvec2 here = whole_units(echo_units * share);
-  add(echo_lines + uint(k), minus(here, echo_before));
+  uvec2 units = minus(here, echo_before);
   echo_before = here;
-  if (weighed) {
-    here = whole_units(weight_units * share);
-    add(weight_lines + uint(k), minus(here, weight_before));
-    weight_before = here;
+  if (units.x != 0u) {
+    uint before = atomicAdd(echo_differences[low], units.x);
+    units.y += before + units.x < before ? 1u : 0u;
   }
+  if (units.y != 0u) atomicAdd(echo_differences[low + 1u], units.y);
+#if WEIGHED
+    here = whole_units(weight_units * share);
+    units = minus(here, weight_before);
+    weight_before = here;
+    if (units.x != 0u) {
+      uint before = atomicAdd(weight_differences[low], units.x);
+      units.y += before + units.x < before ? 1u : 0u;
+    }
+    if (units.y != 0u) atomicAdd(weight_differences[low + 1u], units.y);
+#endif
 }
 
 void add_point(Place place) {
@@ -174,89 +271,93 @@ void add_trapezoid(Place centre, float spread, float smear) {
 }
 
 void bin(Part part, int row) {
-  vec4 seen = imageLoad(view, ivec2(part.column, row));  // range, response, range derivatives
-  if (!(seen.x > 0.0)) {
-    if (seen.x < 0.0) atomicAdd(group_invalid, 1u);
+  vec4 seen = texelFetch(view, (THINNED + 1) * ivec2(part.column, row), 0);
+  if (!(seen.x > 0.0)) {  // range, response, range derivatives
+    if (seen.x < 0.0) ++own_invalid;
     return;
   }
-  // What of the pixel counts: a parallelogram (Cell in grid_binner).
-  vec2 offset = vec2(part.x_offset, 0.0);
-  float height = pixel_height, slope = 0.0;
-  if (row == part.row_begin) {
-    offset.y = part.first_y_offset;
-    height = part.first_height;
-    slope = -part.limit_slope;
-  } else if (row + 1 == part.row_end) {
-    offset.y = part.last_y_offset;
-    height = part.last_height;
-    slope = part.limit_slope;
-  }
+  vec2 t = tangents_of(part, row);
+#if THINNED  // a larger pixel, sampled off its middle
+  vec3 middle = move_plane(seen.xzw, t - 0.25 * pixel, 0.25 * pixel);
+  seen.xzw = vec3(seen.x + seen.x * middle.x, middle.yz);
+#endif
+  Cell cell = cell_of(part, row);
   vec3 plane = vec3(0.0, seen.zw);
-  if (footprint && offset != vec2(0.0)) {
-    plane = move_plane(seen.xzw, vec2(part.x, bottom + float(row) * pixel_height), offset);
-  }
+  if (FOOTPRINT == 1 && cell.offset != vec2(0.0)) plane = move_plane(seen.xzw, t, cell.offset);
   float per_m = lines_per_m.x + lines_per_m.y + lines_per_m.z;
-  float across = abs(plane.y + slope * plane.z) * part.width * per_m;
-  float along = abs(plane.z) * height * per_m;
-  float weight = weights[part.weights + uint(row - part.row_begin)];
+  float across = abs(plane.y + cell.slope * plane.z) * part.width * per_m;
+  float along = abs(plane.z) * cell.height * per_m;
+#if ESTIMATE
+  own_echo += echo_of(seen, t + cell.offset, part.width, cell.height).xy;
+#endif
+  float weight = weight_of(t + cell.offset, part.width, cell.height);
   float echo = weight * seen.y;
   float all = seen.x + plane.x + across + along + echo;
   if (isnan(all) || isinf(all)) {
-    atomicAdd(group_invalid, 1u);
+    ++own_invalid;
     return;
   }
-  atomicAdd(group_samples, 1u);
+  ++own_samples;
   echo_units = max(0.0, echo * units_per_sr);
   weight_units = weight * units_per_sr;
   if (echo_units > most_units) {
     echo_units = most_units;
-    atomicAdd(group_saturated, 1u);
+    ++own_saturated;
   }
-  if (footprint) {
+#if FOOTPRINT
     Place centre = moved(place_of(seen.x), seen.x * plane.x * per_m);
     add_trapezoid(centre, max(across, along), min(across, along));
-  } else {
+#else
     add_point(place_of(seen.x));
-  }
+#endif
 }
 
 void main() {
-  if (gl_LocalInvocationIndex == 0u) {
-    group_samples = 0u;
-    group_invalid = 0u;
-    group_saturated = 0u;
-  }
-  barrier();
-  Part part = parts[first_part + int(gl_WorkGroupID.x)];
-  echo_lines = uint(part.beam) * uint(lines);
-  weight_lines = uint(beams + part.beam) * uint(lines);
+  int p = parts_of_view[first_part + int(gl_WorkGroupID.x)];
+  Part part = parts[p];
+  first_line = uint(part.beam) * uint(lines);
   for (int row = part.row_begin + int(gl_LocalInvocationIndex); row < part.row_end; row += 64) {
     bin(part, row);
   }
-  barrier();
-  if (gl_LocalInvocationIndex == 0u) {
-    atomicAdd(samples, group_samples);
-    if (group_invalid != 0u) atomicAdd(invalid, group_invalid);
-    if (group_saturated != 0u) atomicAdd(saturated, group_saturated);
-  }
+#if ESTIMATE
+  partial_columns[64 * p + int(gl_LocalInvocationIndex)] = own_echo;
+#endif
+#if !THINNED
+  atomicAdd(samples, own_samples);
+  if (own_invalid != 0u) atomicAdd(invalid, own_invalid);
+  if (own_saturated != 0u) atomicAdd(saturated, own_saturated);
+#endif
 }
 )glsl";
 
-/// One work group per beam: from differences to lines. Leaves zeros behind for the next ping.
+/// One work group per beam: from differences to lines of the image, and how far those of the thinned samples
+/// are off. Leaves zeros behind for the next grid.
 inline constexpr char sum_shader[] = R"glsl(
 layout(local_size_x = 256) in;
 
-// [beam][line], as in BinningResult.
-layout(std430, binding = 4) writeonly buffer Echo { float echo[]; };
-layout(std430, binding = 5) writeonly buffer Open { float open_sr[]; };
-layout(std430, binding = 6) readonly buffer SolidAngles { float solid_angle[]; };  // of beams
-layout(location = 3) uniform float sr_per_unit;
-layout(location = 4) uniform bool mean;
-layout(location = 5) uniform bool open_water;
-layout(location = 6) uniform float least_share;
-layout(location = 7) uniform float least_open;
+layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
+layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
+layout(std430, binding = 2) buffer ThinnedDifferences { uint thinned_differences[]; };
+layout(std430, binding = 3) buffer ThinnedWeights { uint thinned_weights[]; };
+// The echo [beam][line] as in BinningResult, then open_sr.
+layout(std430, binding = 4) buffer Image { uint counts[4]; float image[]; };
+layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
+layout(std430, binding = 6) readonly buffer LineWeights { float line_weight[]; };
+layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
+
+layout(location = 12) uniform int image_beams;  // of the page
+layout(location = 23) uniform int first_beam;   // of the page
+layout(location = 13) uniform float sr_per_unit;
+layout(location = 14) uniform bool mean;
+layout(location = 15) uniform bool open_water;
+layout(location = 16) uniform float least_share;
+layout(location = 17) uniform float least_open;
+layout(location = 18) uniform bool estimating;
+layout(location = 19) uniform float least_level;
+layout(location = 20) uniform int first_estimate;
 
 shared uvec2 up_to[2][256];
+shared vec2 gathered[256];
 
 // What the invocations before this one hold together.
 uvec2 sum_before(uvec2 own) {
@@ -276,60 +377,121 @@ uvec2 sum_before(uvec2 own) {
   return before;
 }
 
-uvec2 difference(uint line) {
-  return uvec2(differences[2u * line], differences[2u * line + 1u]);
+float strongest_of_all(float own) {
+  uint me = gl_LocalInvocationIndex;
+  gathered[me].x = own;
+  barrier();
+  for (uint half_of = 128u; half_of > 0u; half_of /= 2u) {
+    if (me < half_of) gathered[me].x = max(gathered[me].x, gathered[me + half_of].x);
+    barrier();
+  }
+  float strongest = gathered[0].x;
+  barrier();
+  return strongest;
 }
 
-uvec2 sum_of_differences(uint first, uint count) {
-  uvec2 sum = uvec2(0u);
-  for (uint i = 0u; i < count; ++i) sum = plus(sum, difference(first + i));
-  return sum;
-}
-
-uvec2 take(uint line) {
-  uvec2 units = difference(line);
-  differences[2u * line] = 0u;
-  differences[2u * line + 1u] = 0u;
-  return units;
+vec2 sum_of_all(vec2 own) {
+  uint me = gl_LocalInvocationIndex;
+  gathered[me] = own;
+  barrier();
+  for (uint half_of = 128u; half_of > 0u; half_of /= 2u) {
+    if (me < half_of) gathered[me] += gathered[me + half_of];
+    barrier();
+  }
+  return gathered[0];
 }
 
 float steradians(uvec2 units) {
   return (float(units.y) * 4294967296.0 + float(units.x)) * sr_per_unit;
 }
 
+float line_value(float echo, float weight, float whole) {
+  if (!mean) return echo;
+  return weight > least_share * whole ? min(1.0, echo / weight) : 0.0;
+}
+
+// What has been added to a sum, and that to those of some lines. take_...() leaves a sum that begins anew.
+#define SUMS(take, sum_of, buffer) \
+  uvec2 sum_of(uint first, uint count) { \
+    uvec2 sum = uvec2(0u); \
+    for (uint i = first; i < first + count; ++i) { \
+      sum = plus(sum, minus(uvec2(buffer[2u * i], buffer[2u * i + 1u]), uvec2(start_of_sum, 0u))); \
+    } \
+    return sum; \
+  } \
+  uvec2 take(uint line) { \
+    uvec2 units = sum_of(line, 1u); \
+    buffer[2u * line] = start_of_sum; \
+    buffer[2u * line + 1u] = 0u; \
+    return units; \
+  }
+SUMS(take_echo, sum_of_echo, echo_differences)
+SUMS(take_weight, sum_of_weight, weight_differences)
+SUMS(take_thinned, sum_of_thinned, thinned_differences)
+SUMS(take_thinned_weight, sum_of_thinned_weights, thinned_weights)
+
 void main() {
+  Beam beam = beams[gl_WorkGroupID.x];
   int each = (lines + 255) / 256;
   int begin = min(int(gl_LocalInvocationIndex) * each, lines);
   uint count = uint(min(each, lines - begin));
   uint first = gl_WorkGroupID.x * uint(lines) + uint(begin);
-  uint first_weight = first + uint(beams) * uint(lines);
-  float whole = solid_angle[gl_WorkGroupID.x];
+  uint to = uint(beam.in_image - first_beam) * uint(lines) + uint(begin);
+  uint open_to = to + uint(image_beams) * uint(lines);
+  float whole = beam.solid_angle;
 
-  uvec2 echo_units = sum_before(sum_of_differences(first, count));
+  uvec2 echo_units = sum_before(sum_of_echo(first, count));
   uvec2 weight_units = uvec2(0u), blocked = uvec2(0u);
-  if (weighed) weight_units = sum_before(sum_of_differences(first_weight, count));
+  if (WEIGHED == 1) weight_units = sum_before(sum_of_weight(first, count));
   if (open_water) {
     uvec2 here = weight_units;
     for (uint i = 0u; i < count; ++i) {
-      here = plus(here, difference(first_weight + i));
+      here = plus(here, sum_of_weight(first + i, 1u));
       blocked = plus(blocked, here);
     }
     blocked = sum_before(blocked);
   }
+  float strongest = 0.0;
   for (uint i = 0u; i < count; ++i) {
-    echo_units = plus(echo_units, take(first + i));
-    float value = steradians(echo_units);
-    if (weighed) {
-      weight_units = plus(weight_units, take(first_weight + i));
-      float weight = steradians(weight_units);
-      if (mean) value = weight > least_share * whole ? min(1.0, value / weight) : 0.0;
+    echo_units = plus(echo_units, take_echo(first + i));
+    float weight = 0.0;
+    if (WEIGHED == 1) {
+      weight_units = plus(weight_units, take_weight(first + i));
+      weight = steradians(weight_units);
       if (open_water) {
         float open = whole - steradians(blocked) - 0.5 * weight;
-        open_sr[first + i] = open > least_open * whole ? open : 0.0;
+        image[open_to + i] = open > least_open * whole ? open : 0.0;
         blocked = plus(blocked, weight_units);
       }
     }
-    echo[first + i] = value;
+    float value = line_value(steradians(echo_units), weight, whole);
+    image[to + i] = value;
+    if (estimating) strongest = max(strongest, value * line_weight[uint(begin) + i]);
+  }
+  if (!estimating) return;
+
+  strongest = strongest_of_all(strongest);
+  echo_units = sum_before(sum_of_thinned(first, count));
+  if (mean) weight_units = sum_before(sum_of_thinned_weights(first, count));
+  vec2 off = vec2(0.0);  // squares, bins
+  for (uint i = 0u; i < count; ++i) {
+    echo_units = plus(echo_units, take_thinned(first + i));
+    float weight = 0.0;
+    if (mean) {
+      weight_units = plus(weight_units, take_thinned_weight(first + i));
+      weight = steradians(weight_units);
+    }
+    float value = image[to + i];
+    if (value * line_weight[uint(begin) + i] > least_level * strongest) {
+      float ratio = line_value(steradians(echo_units), weight, whole) / value - 1.0;
+      off += vec2(ratio * ratio, 1.0);
+    }
+  }
+  off = sum_of_all(off);
+  if (gl_LocalInvocationIndex == 0u) {
+    uint at = uint(first_estimate) + gl_WorkGroupID.x;
+    estimates[at].bin_squares = off.x;
+    estimates[at].bins = uint(off.y);
   }
 }
 )glsl";

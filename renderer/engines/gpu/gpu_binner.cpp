@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,53 +18,38 @@
 
 #include "renderer/engines/gpu/binning_shader.hpp"
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/estimate_shader.hpp"
+#include "renderer/engines/gpu/gpu_buffer.hpp"
+#include "renderer/engines/gpu/gpu_grid.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-// Bindings and locations of binning_shader.hpp.
-enum Binding : GLuint { at_differences, at_parts, at_weights, at_counts, at_echo, at_open, at_solid_angles };
-constexpr GLint at_lines = 0, at_beams = 1, at_weighed = 2;
-constexpr GLint at_first_part = 3, at_bottom = 4, at_pixel_height = 5, at_lines_per_m = 6,
-                at_units_per_sr = 7, at_most_units = 8, at_footprint = 9;
-constexpr GLint at_sr_per_unit = 3, at_mean = 4, at_open_water = 5, at_least_share = 6, at_least_open = 7;
-
-// A sum stays below 2^62 whatever the samples hold. That a beam full of unit response makes 2^48 leaves each
-// sample 2^14 times its share of that: specular facets need it, a bed at grazing incidence the digits.
-constexpr double units_of_fullest_beam = 0x1p48;
+// A sum stays below 2^62 whatever the samples hold. That a beam full of unit response makes 2^40, as in
+// RangeProfile, leaves each sample 2^22 times its share of that: specular facets need some of it. Means of
+// mode `paper` divide the little that is seen of a line by its little weight, so they take more digits; their
+// responses are below 1.
+constexpr double units_of_fullest_beam = 0x1p40;
+constexpr double units_of_fullest_beam_of_means = 0x1p48;
 constexpr double most_units_of_beam = 0x1p62;
 
-/// The layout in the shader.
-struct GpuPart {
-  std::int32_t column, row_begin, row_end, beam;
-  std::uint32_t weights;
-  float x, x_offset, width, limit_slope;
-  float first_y_offset, first_height, last_y_offset, last_height;
-};
-static_assert(sizeof(GpuPart) == 13 * 4, "must match std430");
+constexpr double least_level = 1e-2;  // of the beam's maximum; errors are taken over bins above it
+constexpr double zone_rest = 0.5;     // of the error that counts as 1, what lies outside of a zone may miss
+// What the shaders know too:
+constexpr std::uint64_t start_of_sum = 0x80000000;
+constexpr std::size_t group_size = 64;  // of all but sum_shader
+constexpr unsigned samples_unit = 7;    // of textures; OpenSceneGraph uses the first
+constexpr std::size_t image_header_bytes = 16;
+constexpr std::size_t most_view_rows = 16384;
 
-struct GpuCounts {
-  std::uint32_t samples = 0, invalid = 0, saturated = 0;
+/// The layout in the shaders.
+struct ImageHeader {
+  std::uint32_t samples = 0, invalid = 0, saturated = 0, unused = 0;
 };
-
-GpuPart gpu_part(const SampleGrid& grid, const ColumnPart& part, int beam) {
-  const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
-  return {part.column,
-          part.row_begin,
-          part.row_end,
-          beam,
-          static_cast<std::uint32_t>(part.weights),
-          static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width()),
-          part.x_offset,
-          part.width,
-          part.limit_slope,
-          part.first_y_offset,
-          part.first_height,
-          part.last_y_offset,
-          part.last_height};
-}
+static_assert(sizeof(ImageHeader) == image_header_bytes, "must match std430");
+static_assert(sizeof(BeamEstimate) == 10 * 4, "must match std430");
 
 /// `value` as a sum of three floats of which the first two have no more than 12 bits.
 std::array<float, 3> in_three_parts(double value) {
@@ -78,44 +66,9 @@ std::array<float, 3> in_three_parts(double value) {
   return {high, middle, static_cast<float>(value - static_cast<double>(high) - static_cast<double>(middle))};
 }
 
-/// A buffer of the GPU that shaders see at one binding.
-class StorageBuffer {
- public:
-  StorageBuffer(osg::GLExtensions& gl, Binding binding) : gl_(gl), binding_(binding) {
-    gl_.glGenBuffers(1, &name_);
-  }
-  /// The context is current.
-  ~StorageBuffer() { gl_.glDeleteBuffers(1, &name_); }
-  StorageBuffer(const StorageBuffer&) = delete;
-  StorageBuffer& operator=(const StorageBuffer&) = delete;
-
-  template <class T>
-  void fill(const std::vector<T>& values, GLenum usage) {
-    gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_);
-    gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(T)),
-                     values.data(), usage);
-    words_ = values.size() * sizeof(T) / sizeof(std::uint32_t);
-  }
-  /// If there are not so many words, makes as many, of zeros.
-  void hold(std::size_t words) {
-    if (words_ < words) {
-      fill(std::vector<std::uint32_t>(words), GL_DYNAMIC_COPY);
-    }
-  }
-  /// The next hold() starts over.
-  void forget() { words_ = 0; }
-  void bind() const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding_, name_); }
-  void read(void* to, std::size_t bytes) const {
-    gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_);
-    gl_.glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), to);
-  }
-
- private:
-  osg::GLExtensions& gl_;
-  Binding binding_;
-  GLuint name_ = 0;
-  std::size_t words_ = 0;
-};
+GLuint groups_of(std::size_t invocations) {
+  return static_cast<GLuint>((invocations + group_size - 1) / group_size);
+}
 
 /// Whether OpenGL has run out of memory since errors were asked for last.
 bool is_out_of_memory() {
@@ -131,54 +84,86 @@ bool is_out_of_memory() {
 struct GpuBinner::Impl {
   EglContext& context;
   osg::GLExtensions& gl;
-  osg::ref_ptr<osg::Program> splat, sum;
-  StorageBuffer differences, parts, weights, counts, echo, open, solid_angles;
+  std::map<std::string, osg::ref_ptr<osg::Program>> programs;  // by their source
+  // Differences from line to line of the grid at hand; between grids, sums that begin.
+  GpuBuffer echo, weight, thinned, thinned_weight;
+  std::vector<std::unique_ptr<GpuBuffer>> pages;  // of the image
+  GpuBuffer line_weight, partial_columns, columns, rows, column_misses, estimates;
   std::size_t most_bytes = 0;  // of a buffer
+  std::vector<float> line_weights;
 
-  // The grid:
-  std::vector<SubView> views;
-  std::vector<int> view_parts;  // parts of view v: [view_parts[v], view_parts[v + 1])
-  int beams = 0;
-  double units_per_sr = 1.0;
-  double most_units = 1.0;  // of one sample
-  std::string grid_obstacle;
-  // The image:
-  int lines = 0;
-  bool weighed = false;
+  std::optional<ImageRequest> request;  // the image at hand
+  std::size_t estimated = 0;            // beams whose estimates have not been taken
+  std::uint64_t bytes_read = 0, synchronisations = 0;
 
   explicit Impl(EglContext& made_current)
       : context(made_current),
         gl(*osg::GLExtensions::Get(context.getState()->getContextID(), true)),
-        splat(program(splat_shader)),
-        sum(program(sum_shader)),
-        differences(gl, at_differences),
-        parts(gl, at_parts),
-        weights(gl, at_weights),
-        counts(gl, at_counts),
-        echo(gl, at_echo),
-        open(gl, at_open),
-        solid_angles(gl, at_solid_angles) {
+        echo(gl),
+        weight(gl),
+        thinned(gl),
+        thinned_weight(gl),
+        line_weight(gl),
+        partial_columns(gl),
+        columns(gl),
+        rows(gl),
+        column_misses(gl),
+        estimates(gl) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     // Shaders count words in 32 bits.
     most_bytes = static_cast<std::size_t>(
         std::clamp<GLint64>(most, 0, std::int64_t{4} * std::numeric_limits<std::uint32_t>::max()));
+    // What a preset takes, so that an OpenGL that cannot build it is found out here.
+    for (const std::vector<const char*>& shader : {splatting, std::vector{column_shader}, row_summing,
+                                                   std::vector{sum_shader}, std::vector{estimate_shader}}) {
+      use({}, shader);
+    }
+    gl.glUseProgram(0);
   }
 
-  osg::ref_ptr<osg::Program> program(const char* shader) const {
+  inline static const std::vector<const char*> splatting{sample_shader_head, strip_shader_head, splat_shader};
+  inline static const std::vector<const char*> row_summing{sample_shader_head, strip_shader_head, row_shader};
+
+  /// What a shader is compiled for: a software OpenGL runs both sides of every branch.
+  struct Variant {
+    bool weighed = false;   ///< the weights are summed too
+    bool thinned = false;   ///< of the samples every second column and row
+    bool estimate = false;  ///< what the columns hold is summed too
+    bool footprint = true;
+    Aperture::Elevation elevation = Aperture::Elevation::top_hat;
+  };
+
+  /// Makes the program current. It is built when first asked for.
+  void use(const Variant& variant, const std::vector<const char*>& shader) {
+    std::string source = fmt::format(
+        "#version 430\n#define WEIGHED {:d}\n#define THINNED {:d}\n#define ESTIMATE {:d}\n#define FOOTPRINT "
+        "{:d}\n#define PATTERN {}\n",
+        variant.weighed, variant.thinned, variant.estimate, variant.footprint,
+        static_cast<int>(variant.elevation));
+    source += binning_shader_head;
+    for (const char* part : shader) {
+      source += part;
+    }
+    osg::ref_ptr<osg::Program>& program = programs[source];
+    if (!program) {
+      program = build(source);
+    }
+    program->getPCP(*context.getState())->useProgram();
+    gl.glUniform1i(at_lines, request ? lines() : 1);
+  }
+
+  osg::ref_ptr<osg::Program> build(const std::string& source) const {
     osg::ref_ptr<osg::Program> made = new osg::Program;
-    made->addShader(new osg::Shader(osg::Shader::COMPUTE, std::string(binning_shader_head) + shader));
+    made->addShader(new osg::Shader(osg::Shader::COMPUTE, source));
     made->compileGLObjects(*context.getState());
-    if (!linked(*made).isLinked()) {
+    const osg::Program::PerContextProgram& linked = *made->getPCP(*context.getState());
+    if (!linked.isLinked()) {
       std::string reason;
-      linked(*made).getInfoLog(reason);
-      throw RendererError("the binning shader does not build on " + context.describe() + ": " + reason);
+      linked.getInfoLog(reason);
+      throw RendererError("a binning shader does not build on " + context.describe() + ": " + reason);
     }
     return made;
-  }
-
-  osg::Program::PerContextProgram& linked(const osg::Program& made) const {
-    return *made.getPCP(*context.getState());
   }
 
   void make_current() const {
@@ -187,187 +172,331 @@ struct GpuBinner::Impl {
     }
   }
 
-  std::string obstacle_of(const char* what, double bytes) const {
-    return bytes <= static_cast<double>(most_bytes)
-               ? std::string()
-               : fmt::format("{} of {:.0f} MiB, but a buffer of this OpenGL holds {} MiB", what,
-                             bytes / 0x1p20, most_bytes >> 20U);
+  /// @throws RequestError
+  void hold(GpuBuffer& buffer, std::size_t bytes, const char* what) const {
+    if (bytes > most_bytes) {
+      throw RequestError(fmt::format("sampling: {} of {} MiB, but a buffer of this OpenGL holds {} MiB", what,
+                                     bytes >> 20U, most_bytes >> 20U));
+    }
+    buffer.hold(bytes);
   }
 
-  void set_grid(const SampleGrid& grid) {
-    views = grid.views;
-    beams = grid.beam_count();
-    grid_obstacle = obstacle_of("a grid", static_cast<double>(grid.weights.size()) * sizeof(float));
-    if (!grid_obstacle.empty()) {
-      return;
+  /// Sums that are as they begin, which is how sum_shader leaves them.
+  void hold_sums(GpuBuffer& buffer, std::size_t bytes) const {
+    if (buffer.bytes() < bytes) {
+      hold(buffer, bytes, "beams");
+      buffer.fill(std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t), start_of_sum), GL_DYNAMIC_COPY);
     }
-    std::vector<std::vector<GpuPart>> of_view(views.size());
-    std::vector<double> solid_angle(static_cast<std::size_t>(beams), 0.0);
-    std::size_t most_samples = 1;
-    for (int beam = 0; beam < beams; ++beam) {
-      const auto b = static_cast<std::size_t>(beam);
-      std::size_t samples = 0;
-      for (int p = grid.beam_parts[b]; p < grid.beam_parts[b + 1]; ++p) {
-        const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
-        of_view[static_cast<std::size_t>(part.view)].push_back(gpu_part(grid, part, beam));
-        for (int row = part.row_begin; row < part.row_end; ++row) {
-          solid_angle[b] += static_cast<double>(
-              grid.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)]);
-        }
-        samples += static_cast<std::size_t>(part.row_end - part.row_begin);
+  }
+
+  /// What sums are whole multiples of: a power of two of them makes a steradian.
+  double units_per_sr(const GpuGrid& grid) const {
+    const double fullest = request->options.mean ? units_of_fullest_beam_of_means : units_of_fullest_beam;
+    return std::exp2(std::floor(std::log2(fullest / std::max(grid.fullest_beam_sr, 1e-30))));
+  }
+  bool weighed() const { return request->options.mean || request->options.open_water; }
+  int lines() const { return request->range.count; }
+  std::size_t bins_of(int beams) const {
+    return static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines());
+  }
+
+  // ---- pages
+
+  int beams_per_page() const {
+    const std::size_t of_lines = most_bytes / (bins_of(1) * sizeof(std::uint64_t) + image_header_bytes);
+    const std::size_t of_rows = most_bytes / (most_view_rows * 4 * sizeof(float));
+    return static_cast<int>(std::clamp<std::size_t>(std::min(of_lines, of_rows), 1, 1U << 20U));
+  }
+  int beams_of_page(int page) const {
+    return std::min(beams_per_page(), request->beams - page * beams_per_page());
+  }
+  std::size_t bytes_of_page(int page) const {
+    return image_header_bytes +
+           bins_of(beams_of_page(page)) * (request->options.open_water ? 2 : 1) * sizeof(float);
+  }
+  int page_count() const { return (request->beams + beams_per_page() - 1) / beams_per_page(); }
+  int page_of(const GpuGrid& grid) const { return grid.first_beam / beams_per_page(); }
+
+  void begin(const ImageRequest& what) {
+    request.emplace(what);
+    estimated = 0;
+    bytes_read = 0;
+    synchronisations = 0;
+    for (int page = 0; page < page_count(); ++page) {
+      if (pages.size() == static_cast<std::size_t>(page)) {
+        pages.push_back(std::make_unique<GpuBuffer>(gl));
       }
-      most_samples = std::max(most_samples, samples);
+      GpuBuffer& buffer = *pages[static_cast<std::size_t>(page)];
+      hold(buffer, bytes_of_page(page), "an image");
+      buffer.write(0, std::vector<ImageHeader>(1));
     }
-    const double fullest = *std::max_element(solid_angle.begin(), solid_angle.end());
-    units_per_sr = std::exp2(std::floor(std::log2(units_of_fullest_beam / std::max(fullest, 1e-30))));
-    most_units = most_units_of_beam / static_cast<double>(most_samples);
-    upload(of_view, grid.weights, solid_angle);
+    std::vector<float> weights = what.line_weight;
+    weights.resize(static_cast<std::size_t>(lines()), 1.0F);
+    if (weights != line_weights) {
+      line_weight.fill(weights);
+      line_weights = std::move(weights);
+    }
+    check_memory("an image");
   }
 
-  void upload(const std::vector<std::vector<GpuPart>>& of_view, const std::vector<float>& weight,
-              const std::vector<double>& solid_angle) {
-    std::vector<GpuPart> all;
-    view_parts.assign(1, 0);
-    for (const std::vector<GpuPart>& some : of_view) {
-      all.insert(all.end(), some.begin(), some.end());
-      view_parts.push_back(static_cast<int>(all.size()));
-    }
-    parts.fill(all, GL_STATIC_DRAW);
-    weights.fill(weight, GL_STATIC_DRAW);
-    solid_angles.fill(std::vector<float>(solid_angle.begin(), solid_angle.end()), GL_STATIC_DRAW);
+  void check_memory(const char* what) {
     if (is_out_of_memory()) {
-      grid_obstacle = "OpenGL has no memory for a grid of this size";
+      forget();
+      throw RequestError(fmt::format("sampling: OpenGL has no memory for {} of this size", what));
     }
   }
 
-  /// Zeros, which every image leaves behind for the next one, whatever its layout.
-  std::string make_room(int wanted_lines, const BinningOptions& options) {
-    lines = wanted_lines;
-    weighed = options.mean || options.open_water;
-    const std::size_t words = bins() * (weighed ? 4 : 2);
-    std::string obstacle = grid_obstacle.empty()
-                               ? obstacle_of("an image", static_cast<double>(words) * sizeof(std::uint32_t))
-                               : grid_obstacle;
-    if (!obstacle.empty()) {
-      return obstacle;
-    }
-    differences.hold(words);
-    echo.hold(bins());
-    open.hold(options.open_water ? bins() : 0);
-    if (is_out_of_memory()) {
-      forget_images();
-      return "OpenGL has no memory for an image of this size";
-    }
-    return {};
-  }
-
-  void forget_images() {
-    for (StorageBuffer* buffer : {&differences, &echo, &open}) {
+  /// What is left in buffers is not known.
+  void forget() {
+    for (GpuBuffer* buffer : {&echo, &weight, &thinned, &thinned_weight, &partial_columns, &columns, &rows,
+                              &column_misses, &estimates}) {
       buffer->forget();
     }
+    pages.clear();
   }
 
-  void splat_views(const std::vector<unsigned>& textures, const RangeLines& range,
-                   const BinningOptions& options) {
-    linked(*splat).useProgram();
-    set_image_uniforms();
-    const double legacy = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
-    const std::array<float, 3> lines_per_m = in_three_parts(legacy / range.step_m);
+  void make_room(const GpuGrid& grid) {
+    const std::size_t words = grid.beam_count * static_cast<std::size_t>(lines()) * sizeof(std::uint64_t);
+    hold_sums(echo, words);
+    hold_sums(weight, weighed() ? words : sizeof(std::uint64_t));
+    if (grid.thinned) {
+      hold_sums(thinned, words);
+      hold_sums(thinned_weight, request->options.mean ? words : sizeof(std::uint64_t));
+      hold(partial_columns, grid.part_count * group_size * 2 * sizeof(float), "columns");
+      hold(columns, grid.part_count * 2 * sizeof(float), "columns");
+      hold(column_misses, grid.part_count * sizeof(float), "columns");
+      hold(rows, grid.beam_count * static_cast<std::size_t>(grid.most_rows) * 4 * sizeof(float), "rows");
+    }
+    hold(estimates, static_cast<std::size_t>(request->beams) * sizeof(BeamEstimate), "estimates");
+    check_memory("beams");
+  }
+
+  /// What all that looks at samples knows.
+  void set_pattern(const GpuGrid& grid) const {
+    const double legacy = request->options.legacy_bin_index ? (lines() - 1.0) / lines() : 1.0;
+    const std::array<float, 3> lines_per_m = in_three_parts(legacy / request->range.step_m);
     gl.glUniform3fv(at_lines_per_m, 1, lines_per_m.data());
-    gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr));
-    gl.glUniform1f(at_most_units, static_cast<float>(most_units));
-    gl.glUniform1i(at_footprint, options.footprint ? 1 : 0);
+    gl.glUniform1f(at_pattern_scale, grid.pattern_scale);
+  }
+
+  void look_at(const SubView& view, unsigned texture) const {
+    gl.glUniform1f(at_bottom, static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height()));
+    gl.glUniform2f(at_pixel, static_cast<float>(view.pixel_width()), static_cast<float>(view.pixel_height()));
+    gl.glActiveTexture(GL_TEXTURE0 + samples_unit);
+    glBindTexture(GL_TEXTURE_2D, texture);
+  }
+
+  /// Calls `run` with the first and the number of what a view has.
+  template <class Run>
+  void each_view(const std::vector<SubView>& views, const std::vector<int>& begin,
+                 const std::vector<unsigned>& textures, Run run) const {
     for (std::size_t v = 0; v < views.size(); ++v) {
-      const SubView& view = views[v];
-      gl.glUniform1i(at_first_part, view_parts[v]);
-      gl.glUniform1f(at_bottom, static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height()));
-      gl.glUniform1f(at_pixel_height, static_cast<float>(view.pixel_height()));
-      gl.glBindImageTexture(0, textures[v], 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F_ARB);
-      if (const int count = view_parts[v + 1] - view_parts[v]; count > 0) {
-        gl.glDispatchCompute(static_cast<GLuint>(count), 1, 1);
+      if (const int count = begin[v + 1] - begin[v]; count > 0) {
+        look_at(views[v], textures[v]);
+        run(views[v], begin[v], static_cast<GLuint>(count));
       }
     }
-    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   }
 
-  void sum_beams(const BinningOptions& options) {
-    linked(*sum).useProgram();
-    set_image_uniforms();
+  void splat_views(const GpuGrid& grid, const GpuColumns& of, bool is_thinned,
+                   const std::vector<unsigned>& textures) {
+    const bool estimating = grid.thinned && !is_thinned;
+    use({is_thinned ? request->options.mean : weighed(), is_thinned, estimating, request->options.footprint,
+         grid.elevation},
+        splatting);
+    partial_columns.bind(5);
+    line_weight.bind(6);
+    set_pattern(grid);
+    (is_thinned ? thinned : echo).bind(0);
+    (is_thinned ? thinned_weight : weight).bind(1);
+    of.parts.bind(2);
+    of.order.bind(3);
+    pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
+    gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr(grid)));
+    gl.glUniform1f(at_most_units, static_cast<float>(most_units_of_beam / grid.most_samples));
+    each_view(of.views, of.view_begin, textures, [&](const SubView&, int first, GLuint count) {
+      gl.glUniform1i(at_first, first);
+      gl.glDispatchCompute(count, 1, 1);
+    });
+  }
+
+  void sum_strips(const GpuGrid& grid, const std::vector<unsigned>& textures) {
+    use({}, {column_shader});
+    partial_columns.bind(0);
+    columns.bind(1);
+    gl.glUniform1i(at_part_count, static_cast<GLint>(grid.part_count));
+    gl.glDispatchCompute(groups_of(grid.part_count), 1, 1);
+
+    use({false, false, false, true, grid.elevation}, row_summing);
+    set_pattern(grid);
+    rows.bind(0);
+    grid.view_beams.bind(3);
+    line_weight.bind(6);
+    gl.glUniform1i(at_most_rows, grid.most_rows);
+    gl.glUniform1f(at_tan_limit, grid.tan_limit);
+    each_view(grid.columns.views, grid.view_beams_begin, textures,
+              [&](const SubView& view, int first, GLuint count) {
+                gl.glUniform1i(at_first, first);
+                gl.glUniform1f(at_left, static_cast<float>(-view.tan_half_width + 0.5 * view.pixel_width()));
+                gl.glDispatchCompute(count, groups_of(static_cast<std::size_t>(view.rows)), 1);
+                gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+              });
+  }
+
+  void sum_beams(const GpuGrid& grid) {
+    const BinningOptions& options = request->options;
+    use({weighed()}, {sum_shader});
+    echo.bind(0);
+    weight.bind(1);
+    thinned.bind(2);
+    thinned_weight.bind(3);
+    pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
+    grid.beams.bind(5);
+    line_weight.bind(6);
+    estimates.bind(7);
+    gl.glUniform1i(at_image_beams, beams_of_page(page_of(grid)));
+    gl.glUniform1i(at_first_beam, page_of(grid) * beams_per_page());
+    gl.glUniform1f(at_sr_per_unit, static_cast<float>(1.0 / units_per_sr(grid)));
     gl.glUniform1i(at_mean, options.mean ? 1 : 0);
     gl.glUniform1i(at_open_water, options.open_water ? 1 : 0);
     gl.glUniform1f(at_least_share, least_share);
     gl.glUniform1f(at_least_open, static_cast<float>(least_open));
-    gl.glUniform1f(at_sr_per_unit, static_cast<float>(1.0 / units_per_sr));
-    gl.glDispatchCompute(static_cast<GLuint>(beams), 1, 1);
-    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl.glUniform1i(at_estimating, grid.thinned ? 1 : 0);
+    gl.glUniform1f(at_least_level, static_cast<float>(least_level));
+    gl.glUniform1i(at_first_estimate, static_cast<GLint>(estimated));
+    gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count), 1, 1);
   }
 
-  void set_image_uniforms() const {
-    gl.glUniform1i(at_lines, lines);
-    gl.glUniform1i(at_beams, beams);
-    gl.glUniform1i(at_weighed, weighed ? 1 : 0);
+  void estimate_beams(const GpuGrid& grid) {
+    use({}, {estimate_shader});
+    columns.bind(0);
+    rows.bind(1);
+    grid.columns.parts.bind(2);
+    column_misses.bind(3);
+    grid.beams.bind(5);
+    estimates.bind(7);
+    gl.glUniform1i(at_most_rows, grid.most_rows);
+    gl.glUniform1i(at_first_estimate, static_cast<GLint>(estimated));
+    gl.glUniform2f(at_most_error, static_cast<float>(request->most_error.total),
+                   static_cast<float>(request->most_error.centroid_lines));
+    gl.glUniform1f(at_most_rest, static_cast<float>(zone_rest * zone_rest));
+    gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count), 1, 1);
   }
 
-  BinningResult bin(const std::vector<unsigned>& textures, const RangeLines& range,
-                    const BinningOptions& options, std::vector<float> memory) {
-    counts.fill(std::vector<GpuCounts>(1), GL_DYNAMIC_READ);
-    for (const StorageBuffer* buffer :
-         {&differences, &parts, &weights, &counts, &echo, &open, &solid_angles}) {
-      buffer->bind();
+  void add(const GpuGrid& grid, const std::vector<unsigned>& textures) {
+    make_room(grid);
+    splat_views(grid, grid.columns, false, textures);
+    if (grid.thinned) {
+      splat_views(grid, *grid.thinned, true, textures);
+      gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+      sum_strips(grid, textures);
     }
-    splat_views(textures, range, options);
-    sum_beams(options);
+    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    sum_beams(grid);
+    if (grid.thinned) {
+      estimate_beams(grid);
+      estimated += grid.beam_count;
+    }
+    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    gl.glActiveTexture(GL_TEXTURE0 + context.getState()->getActiveTextureUnit());
     gl.glUseProgram(0);
     context.getState()->setLastAppliedProgramObject(nullptr);
+  }
 
-    BinningResult result;
-    result.beams = beams;
-    result.lines = lines;
-    result.echo = std::move(memory);
-    result.echo.resize(bins());
-    echo.read(result.echo.data(), bins() * sizeof(float));
-    if (options.open_water) {
-      result.open_sr.resize(bins());
-      open.read(result.open_sr.data(), bins() * sizeof(float));
+  void read(const GpuBuffer& buffer, void* to, std::size_t from_byte, std::size_t bytes) {
+    buffer.read(to, from_byte, bytes);
+    bytes_read += bytes;
+  }
+
+  std::vector<BeamEstimate> take_estimates() {
+    std::vector<BeamEstimate> found(estimated);
+    if (estimated > 0) {
+      read(estimates, found.data(), 0, found.size() * sizeof(BeamEstimate));
+      ++synchronisations;
     }
-    GpuCounts counted;
-    counts.read(&counted, sizeof counted);
-    result.samples = counted.samples;
-    result.invalid_samples = counted.invalid;
-    result.saturated_samples = counted.saturated;
+    estimated = 0;
+    return found;
+  }
+
+  BinningResult finish(std::vector<float> memory) {
+    BinningResult result;
+    result.beams = request->beams;
+    result.lines = lines();
+    result.echo = std::move(memory);
+    result.echo.resize(bins_of(request->beams));
+    result.open_sr.resize(request->options.open_water ? result.echo.size() : 0);
+    ++synchronisations;
+    for (int page = 0; page < page_count(); ++page) {
+      const GpuBuffer& buffer = *pages[static_cast<std::size_t>(page)];
+      const std::size_t first = bins_of(page * beams_per_page());
+      const std::size_t bytes = bins_of(beams_of_page(page)) * sizeof(float);
+      ImageHeader counted;
+      read(buffer, &counted, 0, sizeof counted);
+      read(buffer, &result.echo[first], image_header_bytes, bytes);
+      if (request->options.open_water) {
+        read(buffer, &result.open_sr[first], image_header_bytes + bytes, bytes);
+      }
+      result.samples += counted.samples;
+      result.invalid_samples += counted.invalid;
+      result.saturated_samples += counted.saturated;
+    }
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-      forget_images();  // what is left in there is not known
+      forget();
       throw RendererError("OpenGL error " + std::to_string(error) + " while binning");
     }
     return result;
   }
-
-  std::size_t bins() const { return static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines); }
 };
 
 GpuBinner::GpuBinner(RasterSampler& sampler) : impl_(std::make_unique<Impl>(sampler.current_context())) {}
 
 GpuBinner::~GpuBinner() {
   if (impl_->context.makeCurrent()) {
-    impl_->splat->releaseGLObjects(impl_->context.getState());
-    impl_->sum->releaseGLObjects(impl_->context.getState());
+    for (const auto& [source, program] : impl_->programs) {
+      program->releaseGLObjects(impl_->context.getState());
+    }
   }
 }
 
-void GpuBinner::set_grid(const SampleGrid& grid) {
+std::shared_ptr<const GpuGrid> GpuBinner::load(const SampleGrid& grid, const std::vector<int>& beams,
+                                               const SampleGrid* thinned) {
   impl_->make_current();
-  impl_->set_grid(grid);
+  auto made = std::make_shared<const GpuGrid>(impl_->gl, grid, beams, thinned);
+  impl_->check_memory("a grid");
+  return made;
 }
 
-std::string GpuBinner::make_room(int lines, const BinningOptions& options) {
+void GpuBinner::begin(const ImageRequest& request) {
   impl_->make_current();
-  return impl_->make_room(lines, options);
+  impl_->begin(request);
 }
 
-BinningResult GpuBinner::bin(const std::vector<unsigned>& textures, const RangeLines& range,
-                             const BinningOptions& options, std::vector<float> memory) {
+int GpuBinner::beams_per_page() const {
+  return impl_->beams_per_page();
+}
+
+void GpuBinner::add(const GpuGrid& grid, const std::vector<unsigned>& textures) {
   impl_->make_current();
-  return impl_->bin(textures, range, options, std::move(memory));
+  impl_->add(grid, textures);
+}
+
+std::vector<BeamEstimate> GpuBinner::take_estimates() {
+  impl_->make_current();
+  return impl_->take_estimates();
+}
+
+BinningResult GpuBinner::finish(std::vector<float> memory) {
+  impl_->make_current();
+  return impl_->finish(std::move(memory));
+}
+
+std::uint64_t GpuBinner::bytes_read() const {
+  return impl_->bytes_read;
+}
+
+std::uint64_t GpuBinner::synchronisations() const {
+  return impl_->synchronisations;
 }
 
 }  // namespace sonard::render

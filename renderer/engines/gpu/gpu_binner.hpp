@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binning where the samples are: on the GPU that drew them. Only the image is read back.
+// Binning where the samples are: on the GPU that drew them. Read back are the image and a few numbers a beam.
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "renderer/binning/binning.hpp"
+#include "renderer/engines/gpu/beam_estimate.hpp"
 #include "renderer/engines/gpu/raster_sampler.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 
-/// Does what bin_echoes() does for a grid, in compute shaders: the same cells, cut at the same edges, the
-/// same trapezoids. Sums are whole numbers, so on one OpenGL the same samples make the same bits; against
-/// bin_echoes(), which has doubles, bins differ by roundings (docs/accuracy.md). The thread of the sampler
-/// uses it.
+struct GpuGrid;
+
+/// An image in the making: grids are added to it, each of some of its beams. Of one grid it does what
+/// bin_echoes() does: the same cells, cut at the same edges, the same trapezoids. Sums are whole numbers, so
+/// on one OpenGL the same samples make the same bits; against bin_echoes(), which has doubles, bins differ by
+/// roundings (docs/accuracy.md). The thread of the sampler uses it.
 class GpuBinner {
  public:
   /// @param sampler draws the samples; outlives this object.
@@ -26,19 +29,47 @@ class GpuBinner {
   GpuBinner(const GpuBinner&) = delete;
   GpuBinner& operator=(const GpuBinner&) = delete;
 
-  /// Hands the grid's columns and weights to the GPU, which keeps them until there is another grid.
-  void set_grid(const SampleGrid& grid);
+  /// How many beams of the image that was begun lie on one page of it: a buffer holds no more. The beams of
+  /// a grid all lie on one page, of which the first is that of beams [0, beams_per_page()).
+  int beams_per_page() const;
 
-  /// Makes room for images of the grid's beams and so many lines.
-  /// @return why it is not available, in one line: use bin_echoes() then. Empty: it is available.
-  std::string make_room(int lines, const BinningOptions& options);
+  /// @param beams of the image, in the order of those of the grid.
+  /// @param thinned the grid of every second column and row: then add() estimates errors too. Null: it does
+  /// not.
+  /// @return to be given up before this object.
+  std::shared_ptr<const GpuGrid> load(const SampleGrid& grid, const std::vector<int>& beams,
+                                      const SampleGrid* thinned = nullptr);
 
+  struct ImageRequest {
+    int beams = 0;
+    const RangeLines& range;
+    const BinningOptions& options;
+    /// What each line is yet to be multiplied with, which estimates weigh errors by; empty: 1.
+    const std::vector<float>& line_weight;
+    /// The error of a beam that counts as 1 in BeamEstimate::zone_miss.
+    BeamError most_error{1.0, 1.0};
+  };
+  /// Begins an image. All that the request refers to outlives its last add().
+  /// @throws RequestError when this OpenGL has no memory for it.
+  void begin(const ImageRequest& request);
+
+  /// Puts the beams of a grid into the image, in place of what it has of them.
   /// @param textures what RasterSampler::draw() returned for the grid.
-  /// @param range, options what make_room() has made room for.
+  /// @throws RequestError when the buffers of this OpenGL cannot hold what it takes.
+  void add(const GpuGrid& grid, const std::vector<unsigned>& textures);
+
+  /// Reads back the estimates of all beams that were added since the last call, in their order. Waits for the
+  /// GPU.
+  std::vector<BeamEstimate> take_estimates();
+
+  /// Reads back the image. Waits for the GPU.
   /// @param memory as of bin_echoes()
   /// @throws RendererError when OpenGL fails.
-  BinningResult bin(const std::vector<unsigned>& textures, const RangeLines& range,
-                    const BinningOptions& options, std::vector<float> memory = {});
+  BinningResult finish(std::vector<float> memory = {});
+
+  /// What has been read back, and how often that waited, since begin().
+  std::uint64_t bytes_read() const;
+  std::uint64_t synchronisations() const;
 
  private:
   struct Impl;

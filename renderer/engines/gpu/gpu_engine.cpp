@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/gpu/gpu_engine.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "renderer/engines/gpu/egl_context.hpp"
@@ -17,26 +19,11 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       largest_response_(largest_response(world)),
       workers_(workers),
       sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m)),
-      description_(sampler_.description()),
-      refinement_(sampler_, workers) {
-  make_binner(options.gpu_binning);
-}
+      binner_(sampler_),
+      refinement_(sampler_, binner_) {}
 
-/// Says in the description what it can.
-void GpuEngine::make_binner(GpuBinning wanted) {
-  const bool hardware = !is_software_gl(description_);
-  if (wanted == GpuBinning::off || (wanted == GpuBinning::automatic && !hardware)) {
-    return;
-  }
-  try {
-    binner_.emplace(sampler_);
-    description_ += "; fixed grids are binned by it too";
-  } catch (const RendererError& error) {
-    if (wanted == GpuBinning::on) {
-      throw;
-    }
-    description_ += std::string("; it cannot bin: ") + error.what();
-  }
+GpuEngine::~GpuEngine() {
+  sampler_.make_current_if_alive();
 }
 
 void GpuEngine::set_body_pose(std::size_t body, const Pose& T_world_body) {
@@ -53,67 +40,77 @@ void GpuEngine::set_refraction(double bend_per_m) {
 
 void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
   const BinningOptions options = binning_options(request, skip_, largest_response_);
-  if (needs_grid(request.settings)) {
-    image_by_grid(request, options, echo, statistics);
-  } else if (options.cone_aperture != nullptr) {
+  if (options.cone_aperture != nullptr) {
+    image_by_cones(request, options, echo, statistics);
+    return;
+  }
+  Stopwatch watch;
+  const double drawing_before_s = statistics.visibility_s;
+  const SonarSettings& settings = request.settings;
+  binner_.begin({settings.aperture.beam_count(), settings.range, options, request.line_weight,
+                 most_estimated_error(settings.sampling.preset)});
+  const bool may_keep = skip_.on(SkipRule::unchanged_settings);
+  const bool known_grid = needs_grid(settings) ? draw_grid(request, may_keep, statistics)
+                                               : refinement_.refine(request, surface_model(settings, skip_),
+                                                                    may_keep, statistics);
+  if (known_grid) {
+    statistics.skipped.add(SkipRule::unchanged_settings);
+  }
+  hand_over(binner_.finish(std::move(echo.image.intensity)), echo, statistics);
+  statistics.bytes_read_back += binner_.bytes_read();
+  statistics.synchronisations += binner_.synchronisations();
+  statistics.binning_s += watch.lap() - (statistics.visibility_s - drawing_before_s);
+}
+
+/// @return whether the grid is the one of the last ping.
+bool GpuEngine::draw_grid(const EchoRequest& request, bool may_keep, PingStatistics& statistics) {
+  const int beams = request.settings.aperture.beam_count();
+  const int beams_per_page = binner_.beams_per_page();
+  const bool known = grid_.prepare(request.settings, may_keep) && grid_page_ == beams_per_page;
+  if (!known) {
+    grid_on_gpu_.clear();
+    for (int begin = 0; begin < beams; begin += beams_per_page) {
+      const int end = std::min(begin + beams_per_page, beams);
+      std::vector<int> in_image(static_cast<std::size_t>(end - begin));
+      std::iota(in_image.begin(), in_image.end(), begin);
+      grid_on_gpu_.push_back(binner_.load(part_of(grid_.grid(), begin, end), in_image));
+    }
+    grid_page_ = beams_per_page;
+  }
+  Stopwatch watch;
+  const auto textures =
+      sampler_.draw(request.T_world_sonar, grid_.grid(), surface_model(request.settings, skip_),
+                    request.settings.range.sampled_range_m());
+  statistics.visibility_s += watch.lap();
+  for (const auto& page : grid_on_gpu_) {
+    binner_.add(*page, textures);
+  }
+  ++statistics.passes;
+  return known;
+}
+
+/// Beams that are told apart by cones: the one image whose samples are read back.
+void GpuEngine::image_by_cones(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                               PingStatistics& statistics) {
+  constexpr int views = 3;
+  constexpr int columns = 512;
+  constexpr int rows = 512;
+  SonarSettings settings = request.settings;
+  if (!needs_grid(settings)) {
     // Beams that are sampled again by themselves would miss what their neighbours saw for them.
-    constexpr int views = 3;
-    constexpr int columns = 512;
-    constexpr int rows = 512;
-    SonarSettings even = request.settings;
-    even.sampling = Sampling::of_grid(views, columns, rows);
-    image_by_grid({request.T_world_sonar, even, request.line_weight, request.open_water}, options, echo,
-                  statistics);
-  } else {
-    image_by_refinement(request, options, echo, statistics);
+    settings.sampling = Sampling::of_grid(views, columns, rows);
   }
-}
-
-void GpuEngine::image_by_grid(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
-                              PingStatistics& statistics) {
   Stopwatch watch;
-  const SonarSettings& settings = request.settings;
-  if (grid_.prepare(settings, skip_.on(SkipRule::unchanged_settings))) {
+  if (cone_grid_.prepare(settings, skip_.on(SkipRule::unchanged_settings))) {
     statistics.skipped.add(SkipRule::unchanged_settings);
-  } else if (binner_) {
-    binner_->set_grid(grid_.grid());
   }
-  bool on_gpu = binner_ && options.cone_aperture == nullptr;
-  if (on_gpu) {
-    statistics.gpu_binning_obstacle = binner_->make_room(settings.range.count, options);
-    on_gpu = statistics.gpu_binning_obstacle.empty();
-  }
-  const SurfaceModel surface = surface_model(settings, skip_);
-  const double range_m = settings.range.sampled_range_m();
-  std::vector<float> memory = std::move(echo.image.intensity);
-  if (on_gpu) {
-    const auto textures = sampler_.draw(request.T_world_sonar, grid_.grid(), surface, range_m);
-    statistics.visibility_s += watch.lap();
-    hand_over(binner_->bin(textures, settings.range, options, std::move(memory)), echo, statistics);
-  } else {
-    const auto views = sampler_.sample(request.T_world_sonar, grid_.grid(), surface, range_m);
-    statistics.visibility_s += watch.lap();
-    hand_over(bin_echoes(grid_.grid(), views, settings.range, options, workers_, std::move(memory)), echo,
-              statistics);
-  }
+  const auto samples = sampler_.sample(request.T_world_sonar, cone_grid_.grid(),
+                                       surface_model(settings, skip_), settings.range.sampled_range_m());
+  statistics.visibility_s += watch.lap();
+  hand_over(bin_echoes(cone_grid_.grid(), samples, settings.range, options, workers_,
+                       std::move(echo.image.intensity)),
+            echo, statistics);
   statistics.binning_s += watch.lap();
-}
-
-void GpuEngine::image_by_refinement(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
-                                    PingStatistics& statistics) {
-  Stopwatch watch;
-  const SonarSettings& settings = request.settings;
-  const SurfaceModel surface = surface_model(settings, skip_);
-  BeamRefinement::Result found =
-      refinement_.refine({request.T_world_sonar, settings, surface, settings.range.sampled_range_m(), options,
-                          request.line_weight},
-                         skip_.on(SkipRule::unchanged_settings));
-  if (found.known_grid) {
-    statistics.skipped.add(SkipRule::unchanged_settings);
-  }
-  hand_over(std::move(found.bins), echo, statistics);
-  statistics.visibility_s += found.visibility_s;
-  statistics.binning_s += watch.lap() - found.visibility_s;
 }
 
 }  // namespace sonard::render

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that draws with OpenGL: presets are refined beam by beam, fixed grids binned where they are
-// drawn.
+// The engine that draws with OpenGL and bins where it draws.
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "renderer/backend.hpp"
 #include "renderer/binning/binning.hpp"
@@ -23,30 +22,29 @@ namespace sonard::render {
 class GpuEngine final : public EchoEngine {
  public:
   /// @param workers outlives the engine.
-  /// @throws RendererError without OpenGL 4.5, when a shader does not build, or when binning on the GPU is
-  /// asked for and cannot be had.
+  /// @throws RendererError without OpenGL 4.5 or when a shader does not build.
   GpuEngine(const World& world, WorkerPool& workers, const RendererOptions& options);
+  ~GpuEngine() override;
 
   void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
   void set_refraction(double bend_per_m) override;
-  const std::string& description() const override { return description_; }
+  const std::string& description() const override { return sampler_.description(); }
 
  private:
-  void make_binner(GpuBinning wanted);
-  void image_by_grid(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
-                     PingStatistics& statistics);
-  void image_by_refinement(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
-                           PingStatistics& statistics);
+  bool draw_grid(const EchoRequest& request, bool may_keep, PingStatistics& statistics);
+  void image_by_cones(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                      PingStatistics& statistics);
 
   const SkipSwitches skip_;
   const float largest_response_;
   WorkerPool& workers_;
   RasterSampler sampler_;
-  std::string description_;
-  std::optional<GpuBinner> binner_;  ///< nullopt: all binning is the CPU's
-  GridCache grid_;
+  GpuBinner binner_;
+  GridCache grid_, cone_grid_;
+  std::vector<std::shared_ptr<const GpuGrid>> grid_on_gpu_;  ///< one for each page of the image
+  int grid_page_ = 0;                                        ///< beams on such a page
   BeamRefinement refinement_;
 };
 

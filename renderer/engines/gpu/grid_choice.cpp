@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "renderer/sample_grid/range_plane.hpp"
-
 namespace sonard::render {
 
 namespace {
@@ -22,19 +20,19 @@ constexpr int most_rows_factor = 16;
 // power of the number of samples, and is hardly ever more than this share of the distance to the image of a
 // quarter of the samples.
 constexpr double bin_order = 0.6;
-constexpr double error_of_distance = 0.4;
+constexpr double error_of_distance = 0.3;
+constexpr double error_of_distance_refined = 0.2;
 // The estimated error of a beam falls with the first power of the number of columns (or rows) where
 // there is one edge, faster where there are many; and the beam is hardly ever off by more than twice that.
 constexpr double beam_order = 4.0 / 3;
-constexpr double beam_safety = 2;
+constexpr double beam_safety = 1.7;
 constexpr double longest_stride = 8;  // in columns or rows; a coarser estimate may do better
 constexpr double zone_stride = 32;
 constexpr double widest_zone = 0.5;  // of what was sampled before; else all of it is sampled again
-constexpr double zone_rest = 0.5;    // of a target, what lies outside of a zone may miss
 constexpr int most_columns_beside = 64;
+constexpr double samples_of_a_view = 0x1p13;  // take as long as to begin another view
+constexpr double worst_beam = 1.1;    // how often the bins of one beam may be off by what all together may
 constexpr int thinnest_columns = 32;  // columns of a beam, to find what may be as thin
-
-constexpr double least_level = 1e-2;  // of the beam's maximum; errors are taken over bins above it
 
 /// At the coarsest: a row for every 0.16 degrees of elevation.
 int least_rows(const Aperture& aperture) {
@@ -75,14 +73,52 @@ BeamRun run_of(const Aperture& aperture, int begin, int end, const BeamDensity& 
   return run;
 }
 
-/// The power of two that is at least this and 1.
-int power_of_two(double factor) {
-  return 1 << static_cast<int>(std::ceil(std::log2(std::clamp(factor, 1.0, 0x1p20))));
+/// The smallest of 1, 1.25, 1.5, 2, 2.5, 3, 4 ... that is at least this: few sizes, so that neighbours share
+/// views.
+double round_up(double factor) {
+  const double power = std::exp2(std::floor(std::log2(std::clamp(factor, 1.0, 0x1p20))));
+  for (const double step : {1.0, 1.25, 1.5}) {
+    if (factor <= step * power) {
+      return step * power;
+    }
+  }
+  return 2 * power;
 }
 
-/// How often the error is what it may be; 1: as large as it may be.
-double miss(const BeamError& error, const BeamError& target) {
-  return beam_safety * std::max(error.total / target.total, error.centroid_lines / target.centroid_lines);
+/// Columns and rows are even in number, so that every second one can be left out.
+int round_up_to_even(double count) {
+  return 2 * static_cast<int>(std::ceil(count / 2 - 1e-9));
+}
+
+/// How often the estimated error is what it may be; 1: as large as it may be.
+double miss(float total, float centroid_lines, const BeamError& target) {
+  return beam_safety * std::max(static_cast<double>(total) / target.total,
+                                static_cast<double>(centroid_lines) / target.centroid_lines);
+}
+
+/// The estimated error of a beam's bins.
+double bin_rms(const BeamState& beam) {
+  const BeamEstimate& estimate = beam.estimate;
+  const double share = beam.refined ? error_of_distance_refined : error_of_distance;
+  return estimate.bins > 0 ? share * std::sqrt(static_cast<double>(estimate.bin_squares) / estimate.bins)
+                           : 0.0;
+}
+
+/// What the bins of every beam may be off by so that all bins together are off by no more than the target:
+/// beams that are better than it let others be worse.
+double most_bin_rms(const std::vector<BeamState>& beams, double target) {
+  double low = target, high = worst_beam * target;
+  for (int i = 0; i < 30; ++i) {
+    const double most = std::sqrt(low * high);
+    double squares = 0, bins = 0;
+    for (const BeamState& beam : beams) {
+      const double rms = std::min(bin_rms(beam), most);
+      squares += rms * rms * beam.estimate.bins;
+      bins += beam.estimate.bins;
+    }
+    (squares > target * target * bins ? high : low) = most;
+  }
+  return low;
 }
 
 double finer_factor(double miss) {
@@ -90,60 +126,69 @@ double finer_factor(double miss) {
 }
 
 /// An even number of columns for a part of a beam that had so many.
-int columns_beside(std::size_t had) {
-  return std::min(most_columns_beside, static_cast<int>(had + had % 2));
+int columns_beside(int had) {
+  return std::min(most_columns_beside, had + had % 2);
 }
 
 /// Where edges are few and near to each other: more columns only there. Without a zone where they are not.
-BeamDensity with_zone(const Aperture& aperture, int beam, const BeamState& state, const BeamError& target) {
-  const std::vector<ColumnError>& columns = state.estimate.columns;
-  // Trims both ends while what is left out stays small.
-  std::size_t first = 0, last = columns.size();
-  double rest = 0, within = 0;
-  const auto square = [&](std::size_t i) { return std::pow(miss(columns[i].error, target), 2); };
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    within += square(i);
-  }
-  while (last - first > 1) {
-    const double port = square(first), starboard = square(last - 1);
-    if (rest + std::min(port, starboard) > zone_rest * zone_rest) {
-      break;
-    }
-    rest += std::min(port, starboard);
-    port < starboard ? ++first : --last;
-  }
-  within -= rest;
-  BeamDensity zone{0, state.density.rows, columns[first].port_rad, columns[last - 1].starboard_rad, 0, 0};
+BeamDensity with_zone(const Aperture& aperture, int beam, const BeamState& state) {
+  const BeamEstimate& estimate = state.estimate;
+  BeamDensity zone{0, state.density.rows, state.zone_port_rad, state.zone_starboard_rad, 0, 0};
   const auto b = static_cast<std::size_t>(beam);
   const double beam_rad = aperture.beam_edges_rad[b] - aperture.beam_edges_rad[b + 1];
-  if (static_cast<double>(last - first) > widest_zone * static_cast<double>(columns.size()) ||
-      beam_rad > widest_view_rad) {
+  const int columns = estimate.zone_end - estimate.zone_begin;
+  if (columns > widest_zone * state.columns || beam_rad > widest_view_rad) {
     return {};
   }
   const double most_by_width = (zone.zone_port_rad - zone.zone_starboard_rad) / (narrowest_column * beam_rad);
-  const double wanted = static_cast<double>(last - first) * std::min(std::sqrt(within), zone_stride);
-  zone.columns = std::min({most_columns, power_of_two(wanted), power_of_two(most_by_width)});
-  zone.port_columns = columns_beside(first);
-  zone.starboard_columns = columns_beside(columns.size() - last);
-  return zone.columns > static_cast<int>(last - first) ? zone : BeamDensity{};
+  const double wanted = columns * std::min(static_cast<double>(estimate.zone_miss), zone_stride);
+  zone.columns =
+      std::min({most_columns, round_up_to_even(round_up(wanted)), round_up_to_even(round_up(most_by_width))});
+  zone.port_columns = columns_beside(estimate.zone_begin);
+  zone.starboard_columns = columns_beside(state.columns - estimate.zone_end);
+  return zone.columns > columns ? zone : BeamDensity{};
 }
 
 /// Takes back what was gained over `now` until no more than `most` samples are left.
 BeamDensity capped(BeamDensity wanted, const BeamDensity& now, double most) {
   while (wanted.samples() > most && (wanted.columns > now.columns || wanted.rows > now.rows)) {
-    const bool more_columns = wanted.columns / now.columns >= wanted.rows / now.rows;
-    (more_columns ? wanted.columns : wanted.rows) /= 2;
+    const bool more_columns = 1.0 * wanted.columns / now.columns >= 1.0 * wanted.rows / now.rows;
+    int& count = more_columns ? wanted.columns : wanted.rows;
+    count = std::max(more_columns ? now.columns : now.rows, round_up_to_even(0.5 * count));
   }
   return wanted;
+}
+
+/// Lets neighbours share views: what they take more samples for than they need costs less than another view.
+void share_views(std::vector<BeamChoice>& choices) {
+  for (std::size_t first = 0; first < choices.size();) {
+    BeamDensity shared = choices[first].density;
+    std::size_t end = first + 1;
+    for (; end < choices.size() && !shared.has_zone(); ++end) {
+      const BeamChoice& next = choices[end];
+      BeamDensity both = shared;
+      both.columns = std::max(shared.columns, next.density.columns);
+      both.rows = std::max(shared.rows, next.density.rows);
+      const auto count = static_cast<double>(end - first);
+      const double more = (count + 1) * both.samples() - count * shared.samples() - next.density.samples();
+      if (next.density.has_zone() || next.beam != choices[end - 1].beam + 1 || more > samples_of_a_view) {
+        break;
+      }
+      shared = both;
+    }
+    for (; first < end; ++first) {
+      choices[first].density = shared;
+    }
+  }
 }
 
 /// The density with which a beam is sampled next; unchanged where another pass is not needed or not possible.
 class NextPass {
  public:
   NextPass(const Aperture& aperture, const std::vector<BeamState>& beams, const GridTargets& targets)
-      : aperture_(aperture), targets_(targets) {
+      : aperture_(aperture), targets_(targets), most_bin_rms_(most_bin_rms(beams, targets.bins)) {
     for (const BeamState& beam : beams) {
-      if (beam.estimate.thin && !beam.density.has_zone()) {
+      if (beam.estimate.thin > 0 && !beam.density.has_zone()) {
         least_columns_ = std::max(least_columns_, std::min(4 * beam.density.columns, thinnest_columns));
       }
     }
@@ -152,11 +197,15 @@ class NextPass {
   /// @param most samples that the beam may take.
   BeamDensity of(int beam, const BeamState& state, double most) const {
     const BeamDensity& now = state.density;
-    const double by_columns = miss(state.estimate.by_columns, targets_.beam);
-    const double by_rows = miss(state.estimate.by_rows, targets_.beam);
-    const bool bins = state.bin_rms > targets_.bins;
-    if (by_columns > 1 && by_rows <= 1 && !bins) {
-      const BeamDensity zone = with_zone(aperture_, beam, state, targets_.beam);
+    const BeamEstimate& estimate = state.estimate;
+    const double by_columns = miss(estimate.columns_total, estimate.columns_centroid_lines, targets_.beam);
+    const double by_rows = miss(estimate.rows_total, estimate.rows_centroid_lines, targets_.beam);
+    const double bins = bin_rms(state) / most_bin_rms_;
+    const double both = bins > 1 ? std::min(std::pow(bins, 0.5 / bin_order), longest_stride) : 1.0;
+    const int rows = std::min(round_up_to_even(now.rows * round_up(std::max(finer_factor(by_rows), both))),
+                              most_rows(aperture_));
+    if (by_columns > 1 && by_rows <= 1 && bins <= 1) {
+      const BeamDensity zone = with_zone(aperture_, beam, state);
       if (zone.has_zone() && zone.samples() <= most) {
         return zone;
       }
@@ -164,21 +213,18 @@ class NextPass {
     if (now.has_zone()) {
       return now;  // as well as it gets
     }
-    const double both =
-        bins ? std::min(std::pow(state.bin_rms / targets_.bins, 0.5 / bin_order), longest_stride) : 1.0;
     BeamDensity wanted = now;
-    wanted.columns =
-        std::max(now.columns * power_of_two(std::max(finer_factor(by_columns), both)), least_columns_);
+    wanted.columns = std::max(
+        round_up_to_even(now.columns * round_up(std::max(finer_factor(by_columns), both))), least_columns_);
     wanted.columns = std::max(now.columns, std::min(wanted.columns, most_columns));
-    wanted.rows =
-        std::min(now.rows * power_of_two(std::max(finer_factor(by_rows), both)), most_rows(aperture_));
-    wanted.rows = std::max(now.rows, wanted.rows);
+    wanted.rows = std::max(now.rows, rows);
     return capped(wanted, now, most);
   }
 
  private:
   const Aperture& aperture_;
   const GridTargets& targets_;
+  const double most_bin_rms_;
   int least_columns_ = 0;
 };
 
@@ -187,6 +233,11 @@ class NextPass {
 GridTargets grid_targets(Sampling::Preset preset) {
   return preset == Sampling::Preset::fast ? GridTargets{0.05, {0.005, 0.25}}
                                           : GridTargets{0.01, {0.001, 0.05}};
+}
+
+BeamError most_estimated_error(Sampling::Preset preset) {
+  const BeamError target = grid_targets(preset).beam;
+  return {target.total / beam_safety, target.centroid_lines / beam_safety};
 }
 
 BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset) {
@@ -206,6 +257,10 @@ BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset) {
     }
   }
   return density;
+}
+
+BeamRun even_run(const Aperture& aperture, int begin, int end, const BeamDensity& density) {
+  return run_of(aperture, begin, end, density);
 }
 
 BeamRun whole_fan(const Aperture& aperture, const BeamDensity& density) {
@@ -241,62 +296,6 @@ std::vector<BeamRun> thinned(std::vector<BeamRun> runs) {
   return runs;
 }
 
-ThinnedSamples::ThinnedSamples(const SampleGrid& fine, const std::vector<const SurfaceSample*>& samples,
-                               const SampleGrid& coarse) {
-  for (std::size_t v = 0; v < coarse.views.size(); ++v) {
-    const SubView& from = fine.views[v];
-    const SubView& to = coarse.views[v];
-    std::vector<SurfaceSample> thinned;
-    thinned.reserve(static_cast<std::size_t>(to.columns) * static_cast<std::size_t>(to.rows));
-    const auto half_width = static_cast<float>(from.pixel_width() / 2);
-    const auto half_height = static_cast<float>(from.pixel_height() / 2);
-    for (int j = 0; j < to.rows; ++j) {
-      const SurfaceSample* row = samples[v] + 2 * static_cast<std::ptrdiff_t>(j) * from.columns;
-      const auto y = static_cast<float>(-from.tan_half_height + (2 * j + 0.5) * from.pixel_height());
-      for (int i = 0; i < to.columns; ++i) {
-        SurfaceSample sample = row[2 * static_cast<std::ptrdiff_t>(i)];
-        if (sample.range_m > 0) {
-          const auto x = static_cast<float>(-from.tan_half_width + (2 * i + 0.5) * from.pixel_width());
-          RangePlane plane{sample.range_m, sample.range_dx, sample.range_dy};
-          plane.move(x, y, half_width, half_height);
-          sample = {plane.range, sample.response, plane.dx, plane.dy};
-        }
-        thinned.push_back(sample);
-      }
-    }
-    views_.push_back(std::move(thinned));
-  }
-}
-
-std::vector<const SurfaceSample*> ThinnedSamples::views() const {
-  std::vector<const SurfaceSample*> views;
-  for (const std::vector<SurfaceSample>& view : views_) {
-    views.push_back(view.data());
-  }
-  return views;
-}
-
-double bin_error(const float* echo, const float* thinned, std::size_t lines,
-                 const std::vector<float>& line_weight) {
-  const auto weighted = [&](std::size_t k) {
-    return echo[k] * (line_weight.empty() ? 1.0F : line_weight[k]);
-  };
-  float strongest = 0.0F;
-  for (std::size_t k = 0; k < lines; ++k) {
-    strongest = std::max(strongest, weighted(k));
-  }
-  double squares = 0;
-  double bins = 0;
-  for (std::size_t k = 0; k < lines; ++k) {
-    if (weighted(k) > static_cast<float>(least_level) * strongest) {
-      const auto off = static_cast<double>(thinned[k] / echo[k] - 1);
-      squares += off * off;
-      bins += 1;
-    }
-  }
-  return bins > 0 ? error_of_distance * std::sqrt(squares / bins) : 0.0;
-}
-
 std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
                                         const GridTargets& targets) {
   const NextPass next(aperture, beams, targets);
@@ -309,8 +308,11 @@ std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vec
       const BeamDensity density = next.of(static_cast<int>(b), beams[b], most);
       if (density != now) {
         choices.push_back({static_cast<int>(b), density});
-        samples += density.samples();
       }
+    }
+    share_views(choices);
+    for (const BeamChoice& choice : choices) {
+      samples += choice.density.samples();
     }
     if (samples <= most_samples) {
       return choices;

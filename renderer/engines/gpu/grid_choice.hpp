@@ -4,8 +4,7 @@
 
 #include <vector>
 
-#include "renderer/binning/binning.hpp"
-#include "renderer/engines/gpu/beam_error.hpp"
+#include "renderer/engines/gpu/beam_estimate.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/sonar_settings.hpp"
 
@@ -33,11 +32,16 @@ struct GridTargets {
 /// The targets of `fast` and `normal`; `reference` has those of `normal`.
 GridTargets grid_targets(Sampling::Preset preset);
 
+/// The estimated error from which on a beam is sampled again.
+BeamError most_estimated_error(Sampling::Preset preset);
+
 /// The even grid that a preset begins with: fewer samples where it were more than 2^25.
 /// @throws RequestError when the aperture cannot be gridded.
 BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset);
 
-/// All beams of the aperture in one run, without a zone.
+/// The beams [begin, end) of the aperture in one run, without a zone.
+BeamRun even_run(const Aperture& aperture, int begin, int end, const BeamDensity& density);
+/// All of them.
 BeamRun whole_fan(const Aperture& aperture, const BeamDensity& density);
 
 /// A beam and how finely it will be sampled.
@@ -54,31 +58,14 @@ std::vector<BeamRun> beam_runs(const Aperture& aperture, const std::vector<BeamC
 /// The runs with every second column and row only.
 std::vector<BeamRun> thinned(std::vector<BeamRun> runs);
 
-/// Every second column and row of the samples of a grid, as if the grid of the thinned runs had been sampled:
-/// each is moved to the centre of its larger pixel, along the surface that it saw.
-class ThinnedSamples {
- public:
-  ThinnedSamples(const SampleGrid& fine, const std::vector<const SurfaceSample*>& samples,
-                 const SampleGrid& coarse);
-  /// The samples in the form of RasterSampler::sample(); they live as long as this object.
-  std::vector<const SurfaceSample*> views() const;
-
- private:
-  std::vector<std::vector<SurfaceSample>> views_;
-};
-
-/// Estimates the relative RMS error of a beam's bins above 1e-2 of its maximum from the difference between
-/// its image and that of thinned samples.
-/// @param echo, thinned `lines` values each.
-/// @param line_weight of every line, what the image is yet to be multiplied with; empty: 1.
-double bin_error(const float* echo, const float* thinned, std::size_t lines,
-                 const std::vector<float>& line_weight);
-
 /// What is known of a beam.
 struct BeamState {
   BeamDensity density;
-  BeamErrorEstimate estimate;
-  double bin_rms = 0.0;
+  BeamEstimate estimate;
+  bool refined = false;  ///< sampled more finely than the preset begins with
+  int columns = 0;       ///< of all of the beam, as the estimate counts them
+  /// The sides of the zone of the estimate.
+  double zone_port_rad = 0.0, zone_starboard_rad = 0.0;
 };
 
 /// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they

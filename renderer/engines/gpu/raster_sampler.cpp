@@ -352,6 +352,10 @@ EglContext& RasterSampler::current_context() {
   return *impl_->context;
 }
 
+void RasterSampler::make_current_if_alive() {
+  impl_->context->makeCurrent();
+}
+
 void RasterSampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
   impl_->bodies[body].T_world_body = T_world_body;
 }

@@ -50,6 +50,8 @@ class RasterSampler {
   /// Where these textures are, made current.
   /// @throws RendererError when the context is lost.
   EglContext& current_context();
+  /// For what ends: does nothing when the context is lost.
+  void make_current_if_alive();
 
  private:
   struct Impl;

@@ -86,7 +86,7 @@ class DoubleBinner {
 
  private:
   double weight_of(const render::ColumnPart& part, int row) const {
-    return static_cast<double>(grid_.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)]);
+    return static_cast<double>(grid_.weight(part, row));
   }
 
   void add(std::size_t beam, const render::ColumnPart& part, int row) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <string>
 
@@ -73,10 +74,13 @@ class GpuBinningTest : public ::testing::Test {
     SurfaceModel surface{};
   };
 
-  static RendererOptions with(GpuBinning where) {
-    RendererOptions options{Backend::raster, 0};
-    options.gpu_binning = where;
-    return options;
+  static RendererOptions raster() { return {Backend::raster, 0}; }
+
+  /// The numbers of the beams of a grid that has them all.
+  static std::vector<int> all_beams(const SampleGrid& grid) {
+    std::vector<int> beams(static_cast<std::size_t>(grid.beam_count()));
+    std::iota(beams.begin(), beams.end(), 0);
+    return beams;
   }
 
   static void expect_agreement(Case c) {
@@ -88,10 +92,11 @@ class GpuBinningTest : public ::testing::Test {
     WorkerPool workers;
     const SampleGrid grid = make_sample_grid(c.aperture, c.sampling, c.grid_options);
     const double max_range_m = c.range.max_range_m() * 1.05;
-    binner.set_grid(grid);
-    ASSERT_EQ(binner.make_room(c.range.count, c.options), "");
-    const BinningResult gpu =
-        binner.bin(sampler.draw(c.T_world_sonar, grid, c.surface, max_range_m), c.range, c.options);
+    const auto on_gpu = binner.load(grid, all_beams(grid));
+    const std::vector<float> no_weights;
+    binner.begin({grid.beam_count(), c.range, c.options, no_weights});
+    binner.add(*on_gpu, sampler.draw(c.T_world_sonar, grid, c.surface, max_range_m));
+    const BinningResult gpu = binner.finish();
     const auto samples = sampler.sample(c.T_world_sonar, grid, c.surface, max_range_m);
     const BinningResult cpu = bin_echoes(grid, samples, c.range, c.options, workers);
     const std::vector<double> exact = test::bin_in_double(grid, samples, c.range, c.options);
@@ -228,10 +233,12 @@ TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
   const auto bin = [&](bool mean) {
     BinningOptions options;
     options.mean = mean;
-    EXPECT_EQ(binner.make_room(range.count, options), "");
-    return binner.bin(sampler.draw(T_world_sonar, grid, {}, 21.0), range, options).echo;
+    const auto on_gpu = binner.load(grid, all_beams(grid));
+    const std::vector<float> no_weights;
+    binner.begin({grid.beam_count(), range, options, no_weights});
+    binner.add(*on_gpu, sampler.draw(T_world_sonar, grid, {}, 21.0));
+    return binner.finish().echo;
   };
-  binner.set_grid(grid);
   const std::vector<float> echo = bin(false), mean = bin(true);
   std::mt19937 random(1);
   for (int i = 0; i < 10; ++i) {
@@ -239,7 +246,6 @@ TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
       std::shuffle(grid.parts.begin() + grid.beam_parts[beam], grid.parts.begin() + grid.beam_parts[beam + 1],
                    random);
     }
-    binner.set_grid(grid);
     ASSERT_EQ(bin(false), echo);
     ASSERT_EQ(bin(true), mean);
   }
@@ -253,7 +259,7 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
   request.settings.physical.absorption_db_per_m = 0;
   request.settings.sampling = Sampling::of_grid(1, 64, 64);
   const auto render = [&](double mu) {
-    SonarRenderer renderer(make_world({make_body("wall", wall(5), mu)}), with(GpuBinning::on));
+    SonarRenderer renderer(make_world({make_body("wall", wall(5), mu)}), raster());
     const EchoImage image = renderer.render_echo(request);
     const PingStatistics statistics = renderer.last_statistics();
     EXPECT_GT(statistics.samples, 0U);
@@ -265,11 +271,11 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
     return image;
   };
   const EchoImage unit = render(1);
-  const EchoImage bright = render(1e6);  // a sample fits into the words of a sum, all of a beam do not
+  const EchoImage bright = render(1e10);  // a sample fits into the words of a sum, all of a beam do not
   for (int beam = 0; beam < bright.beams; ++beam) {
-    // Held to 2^14 to 2^15 times its share of the fullest beam; the response of `unit` is cos phi > 0.8.
-    EXPECT_GT(bright.at(beam, 0), 0x1p13F * unit.at(beam, 0));
-    EXPECT_LT(bright.at(beam, 0), 0x1p15F / 0.8F * unit.at(beam, 0));
+    // Held to 2^22 to 2^23 times its share of the fullest beam; the response of `unit` is cos phi > 0.8.
+    EXPECT_GT(bright.at(beam, 0), 0x1p21F * unit.at(beam, 0));
+    EXPECT_LT(bright.at(beam, 0), 0x1p23F / 0.8F * unit.at(beam, 0));
   }
   const EchoImage brighter = render(1e30);
   for (int beam = 0; beam < bright.beams; ++beam) {
@@ -277,39 +283,22 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
   }
 }
 
-/// What the daemon does with an image that OpenGL's buffers cannot hold.
-TEST_F(GpuBinningTest, BinsOnTheCpuWhatIsTooLargeForOpenGl) {
+/// What one buffer of OpenGL cannot hold lies on several pages: S8_LargestImage renders such an image.
+TEST_F(GpuBinningTest, LargeImagesHavePages) {
   RasterSampler sampler(World{});
   GpuBinner binner(sampler);
-  Aperture aperture;
-  aperture.beam_edges_rad = equal_angle_edges(4096, 120 * degree);
-  binner.set_grid(make_sample_grid(aperture, Sampling::of_grid(3, 1500, 2)));
-  BinningOptions paper;
-  paper.mean = true;
-  EXPECT_THAT(binner.make_room(65535, paper), ::testing::HasSubstr("an image of 4096 MiB, but a buffer"));
-  EXPECT_EQ(binner.make_room(100, paper), "");
-
-  PingRequest request;
-  request.settings.aperture = aperture;
-  request.settings.range = {4200, 0.005, 0, false};
-  request.settings.sampling = Sampling::of_grid(3, 1500, 2);
-  const World world = make_world({make_body("wall", wall(10))});
-  SonarRenderer renderer(world, with(GpuBinning::on));
-  const EchoImage image = renderer.render_echo(request);
-  if (renderer.last_statistics().gpu_binning_obstacle.empty()) {
-    GTEST_SKIP() << "this OpenGL has buffers for 131 MiB";
-  }
-  EXPECT_EQ(image.intensity, SonarRenderer(world, with(GpuBinning::off)).render_echo(request).intensity);
-  request.settings.range.count = 100;  // and the next one on the GPU again
-  request.settings.range.step_m = 0.2;
-  renderer.render_echo(request);
-  EXPECT_EQ(renderer.last_statistics().gpu_binning_obstacle, "");
+  const RangeLines range{65535, 0.001, 0, false};
+  const std::vector<float> no_weights;
+  const BinningOptions options;
+  binner.begin({1000, range, options, no_weights});
+  EXPECT_GT(binner.beams_per_page(), 0);
+  EXPECT_EQ(binner.finish().echo.size(), 65'535'000U);
 }
 
 /// Images of changing size and kind, one after the other: nothing of one is left in the next.
 TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
   const World world = make_world({make_body("bed", bed(4)), make_body("wall", wall(15))});
-  SonarRenderer one(world, with(GpuBinning::on));
+  SonarRenderer one(world, raster());
   const auto expect_as_fresh = [&](int beams, int lines, Model model, bool turbid) {
     PingRequest request;
     request.T_world_sonar = looking({0, 0, 0}, 0, 15);
@@ -320,7 +309,7 @@ TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
     if (turbid) {
       request.settings.physical.volume_scattering_db = -60;
     }
-    SonarRenderer fresh(world, with(GpuBinning::on));
+    SonarRenderer fresh(world, raster());
     EXPECT_EQ(one.render_echo(request).intensity, fresh.render_echo(request).intensity);
   };
   for (const int lines : {1000, 300, 1200, 300}) {
@@ -332,24 +321,78 @@ TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
   }
 }
 
-/// Presets are as they were: they estimate errors of beams on the CPU (docs/engines.md).
-TEST_F(GpuBinningTest, SaysWhereItBins) {
-  const std::string told = "fixed grids are binned by it too";
-  const auto description = [](GpuBinning where) {
-    return SonarRenderer(World{}, with(where)).backend_description();
-  };
-  EXPECT_THAT(description(GpuBinning::on), ::testing::HasSubstr(told));
-  EXPECT_THAT(description(GpuBinning::off), ::testing::Not(::testing::HasSubstr(told)));
-  const bool hardware = !is_software_gl(description(GpuBinning::off));
-  EXPECT_EQ(description(GpuBinning::automatic).find(told) != std::string::npos, hardware);
-  RendererOptions on_ray{Backend::ray, 0};
-  on_ray.gpu_binning = GpuBinning::on;
-  EXPECT_THAT(SonarRenderer(World{}, on_ray).backend_description(),
-              ::testing::Not(::testing::HasSubstr(told)));
+// ---- estimates
+
+/// A small fan of 8 columns a beam, in one view.
+class BeamEstimates : public GpuBinningTest {
+ protected:
+  Aperture aperture_ = [] {
+    Aperture aperture;
+    aperture.beam_edges_rad = equal_angle_edges(4, 8 * degree);
+    return aperture;
+  }();
+  const BeamRun run_{0, 4, {{4 * degree, -4 * degree, 32}}, 512};
+  const BeamRun thinned_run_{0, 4, {{4 * degree, -4 * degree, 16}}, 256};
+  const RangeLines range_{1000, 0.02, 0, false};
+  const std::vector<float> no_weights_;
+
+  /// @param surface as RasterSampler::draw()
+  std::vector<BeamEstimate> estimates(const World& world, const SurfaceModel& surface = {}) const {
+    RasterSampler sampler(world);
+    GpuBinner binner(sampler);
+    const SampleGrid grid = make_sample_grid(aperture_, {run_});
+    const SampleGrid thinned = make_sample_grid(aperture_, {thinned_run_});
+    const auto on_gpu = binner.load(grid, all_beams(grid), &thinned);
+    binner.begin({4, range_, options_, no_weights_, {0.001, 0.05}});
+    binner.add(*on_gpu, sampler.draw({}, grid, surface, 21.0));
+    return binner.take_estimates();
+  }
+
+  std::vector<float> image(const World& world, const BeamRun& run, const SurfaceModel& surface) const {
+    RasterSampler sampler(world);
+    GpuBinner binner(sampler);
+    const SampleGrid grid = make_sample_grid(aperture_, {run});
+    const auto on_gpu = binner.load(grid, all_beams(grid));
+    binner.begin({4, range_, options_, no_weights_});
+    binner.add(*on_gpu, sampler.draw({}, grid, surface, 21.0));
+    return binner.finish().echo;
+  }
+
+ private:
+  const BinningOptions options_;
+};
+
+/// Where a surface goes on there is no edge, and every second sample, moved to the middle of its larger pixel
+/// along the surface, makes the image that the coarser grid makes.
+TEST_F(BeamEstimates, OfAPlaneAreSmallAndThoseOfTheCoarserGrid) {
+  World world = make_world({make_body("slope", wall(0))});
+  world.bodies[0].T_world_body = looking({9, 0, 0}, 25, 35);
+  SurfaceModel even;  // a response of one half, wherever it is taken
+  even.model = Model::paper;
+  even.sigmoid_slope = 0;
+  const std::vector<BeamEstimate> found = estimates(world, even);
+  const std::vector<float> fine = image(world, run_, even), coarse = image(world, thinned_run_, even);
+  for (std::size_t beam = 0; beam < 4; ++beam) {
+    EXPECT_LT(found[beam].columns_total, 1e-4F) << beam;
+    EXPECT_LT(found[beam].rows_total, 1e-4F) << beam;
+    EXPECT_EQ(found[beam].thin, 0U) << beam;
+    const float* echo = &fine[beam * 1000];
+    const float strongest = *std::max_element(echo, echo + 1000);
+    double squares = 0;
+    unsigned bins = 0;
+    for (std::size_t k = 0; k < 1000; ++k) {
+      if (echo[k] > 0.01F * strongest) {
+        squares += std::pow(static_cast<double>(coarse[beam * 1000 + k] / echo[k] - 1), 2);
+        ++bins;
+      }
+    }
+    EXPECT_EQ(found[beam].bins, bins) << beam;
+    EXPECT_NEAR(static_cast<double>(found[beam].bin_squares), squares, 0.01 * squares + 1e-6) << beam;
+  }
 }
 
 TEST_F(GpuBinningTest, PassesTheSelfTest) {
-  EXPECT_LT(run_self_test(with(GpuBinning::on)), 0.05);
+  EXPECT_LT(run_self_test(raster()), 0.05);
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST(RaySampler, SamplesOfAPlaneFollowTheClosedForm) {
                       ASSERT_NEAR(sample.range_dx, dx, 1e-5 * range_m * range_m / distance_m);
                       ASSERT_NEAR(sample.range_dy, dy, 1e-5 * range_m * range_m / distance_m);
                     });
-    EXPECT_GT(seen, grid.weights.size() / 3) << columns << " x " << rows;
+    EXPECT_GT(seen, grid.cell_count() / 3) << columns << " x " << rows;
   }
 }
 
@@ -155,7 +155,7 @@ TEST(RaySampler, PacketsOfEveryWidthSeeTheSame) {
   WorkerPool workers(2);
   Traced widest(world, workers);
   const auto expected = widest.sample(over_the_bed(), grid, {}, far_m);
-  ASSERT_GT(count_seen(grid, expected), grid.weights.size() / 2);
+  ASSERT_GT(count_seen(grid, expected), grid.cell_count() / 2);
   for (const auto& [settings, width] : {std::pair{"isa=sse4.2", "4"}, std::pair{"isa=avx2", "8"}}) {
     if (!__builtin_cpu_supports("avx2") && std::string(width) == "8") {
       continue;
@@ -203,7 +203,7 @@ TEST(RaySampler, ClosedSurfacesHaveNoHoles) {
   const SampleGrid grid = make_grid(256, 512);
   for (int i = 0; i < 4; ++i) {
     const Pose inside{{0.1 * i, 0.3, -0.2 * i}, glm::angleAxis(0.6 * i, glm::normalize(glm::dvec3(1, i, 2)))};
-    EXPECT_EQ(count_seen(grid, sampler.sample(inside, grid, {}, far_m)), grid.weights.size());
+    EXPECT_EQ(count_seen(grid, sampler.sample(inside, grid, {}, far_m)), grid.cell_count());
   }
 }
 
@@ -219,7 +219,7 @@ TEST(RaySampler, TilesOutsideTheFanAreNotTraced) {
     untouched += below.range_m == 0 && below.response == 0 ? 1 : 0;
   }
   EXPECT_EQ(untouched, grid.views.size());
-  EXPECT_EQ(count_seen(grid, samples), grid.weights.size());
+  EXPECT_EQ(count_seen(grid, samples), grid.cell_count());
 }
 
 TEST(RaySampler, SurfacesNearerThanTheNearestDepthAreNotSeen) {

@@ -25,7 +25,7 @@ double beam_solid_angle(const SampleGrid& grid, int beam) {
        p < grid.beam_parts[static_cast<std::size_t>(beam) + 1]; ++p) {
     const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
     for (int row = part.row_begin; row < part.row_end; ++row) {
-      sum += static_cast<double>(grid.weights[part.weights + static_cast<std::size_t>(row - part.row_begin)]);
+      sum += static_cast<double>(grid.weight(part, row));
     }
   }
   return sum;

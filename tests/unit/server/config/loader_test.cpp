@@ -77,13 +77,6 @@ TEST_F(Loader, reads_the_backend) {
   EXPECT_EQ(load(minimal_config + "backend: ray\n").config.backend, render::Backend::ray);
 }
 
-TEST_F(Loader, reads_where_grids_are_binned) {
-  EXPECT_EQ(load(minimal_config).config.gpu_binning, render::GpuBinning::automatic);
-  EXPECT_EQ(load(minimal_config + "gpu_binning: auto\n").config.gpu_binning, render::GpuBinning::automatic);
-  EXPECT_EQ(load(minimal_config + "gpu_binning: on\n").config.gpu_binning, render::GpuBinning::on);
-  EXPECT_EQ(load(minimal_config + "gpu_binning: off\n").config.gpu_binning, render::GpuBinning::off);
-}
-
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
   const LoadedConfig loaded =
       load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");
@@ -192,6 +185,14 @@ TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
                         HasSubstr("expected one of type, name,"))));
   EXPECT_THAT(complaints(minimal_config + "wibble: 1\n"),
               ElementsAre(StartsWith("config.yaml:11:1: wibble: unknown key (expected one of log, world")));
+}
+
+TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
+  EXPECT_THAT(
+      complaints(minimal_config + "gpu_binning: on\n"),
+      ElementsAre(
+          "config.yaml:11:1: gpu_binning: is no longer a key: remove it; backend `raster` bins on the "
+          "GPU in any case"));
 }
 
 TEST_F(Loader, suggests_the_key_with_its_unit) {

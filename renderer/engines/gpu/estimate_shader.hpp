@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The GLSL with which GpuBinner estimates the error of every beam from the samples that it was made of
+// (docs/accuracy.md). Where a surface goes on, so does the change of its echo from column to column and from
+// row to row; where the change jumps there is an edge, which lies anywhere between the centres of the two.
+// All sums have a fixed order.
+#pragma once
+
+namespace sonard::render {
+
+/// The echo of a sample and its first moment over the range.
+inline constexpr char strip_shader_head[] = R"glsl(
+layout(std430, binding = 6) readonly buffer LineWeights { float line_weight[]; };
+
+// Echo, first moment in lines, share of the pixel that counts.
+vec3 echo_of(vec4 seen, vec2 t, float width, float height) {
+  float per_m = lines_per_m.x + lines_per_m.y + lines_per_m.z;
+  float line = seen.x * per_m;
+  float half_spread = 0.5 * per_m * (abs(seen.z) * width + abs(seen.w) * height);
+  float end = float(lines);
+  // Where the last line cuts through a surface there is no edge: neither what lies beyond of a pixel nor the next
+  // few pixels count.
+  if (!(line > 0.0) || !(line - 9.0 * half_spread < end)) return vec3(0.0, 0.0, 1.0);
+  if (line - half_spread >= end) return vec3(0.0);
+  bool cut = line + half_spread > end;
+  float share = cut ? (end - line + half_spread) / (2.0 * half_spread) : 1.0;
+  float middle = cut ? (end + line - half_spread) / 2.0 : line;
+  float echo = seen.y * weight_of(t, width, height) * share * line_weight[clamp(int(middle), 0, lines - 1)];
+  if (isnan(echo) || isinf(echo)) return vec3(0.0, 0.0, 1.0);
+  return vec3(echo, echo * middle, share);
+}
+)glsl";
+
+/// One invocation per row of a beam in one view: what the row holds. Cells are worked out here, for what is
+/// in a register need not be fetched for each of them.
+inline constexpr char row_shader[] = R"glsl(
+layout(local_size_x = 64) in;
+struct BeamOfView {
+  int beam;
+  int column_begin, column_end;
+  int had_others;         // views before this one
+  float x_begin, x_end;   // tangents of its sides
+};
+layout(std430, binding = 3) readonly buffer BeamsOfView { BeamOfView beams_of_view[]; };
+layout(std430, binding = 0) buffer Rows { vec4 rows[]; };  // [beam][row]: echo, moment, width
+layout(location = 5) uniform int first_beam;  // in beams_of_view
+layout(location = 8) uniform int most_rows;   // of any beam
+layout(location = 9) uniform float left;     // tangent of the first column's centre
+layout(location = 10) uniform float tan_limit;
+
+void main() {
+  BeamOfView beam = beams_of_view[first_beam + int(gl_WorkGroupID.x)];
+  int row = int(gl_WorkGroupID.y) * 64 + int(gl_LocalInvocationIndex);
+  if (row >= most_rows) return;
+  uint at = uint(beam.beam) * uint(most_rows) + uint(row);
+  vec4 sum = beam.had_others == 0 ? vec4(0.0) : rows[at];
+  float below = bottom + (float(row) - 0.5) * pixel.y;
+  for (int column = beam.column_begin; column < beam.column_end; ++column) {
+    float x = left + float(column) * pixel.x;
+    float from = max(beam.x_begin, x - 0.5 * pixel.x);
+    float to = min(beam.x_end, x + 0.5 * pixel.x);
+    float middle = 0.5 * (from + to);
+    float limit = tan_limit * sqrt(1.0 + middle * middle);
+    float low = max(below, -limit);
+    float high = min(below + pixel.y, limit);
+    if (high > low) {
+      vec4 seen = texelFetch(view, ivec2(column, row), 0);
+      vec3 echo = echo_of(seen, vec2(middle, 0.5 * (low + high)), to - from, high - low);
+      sum += vec4(echo.xy, (to - from) * (high - low) * echo.z, 0.0);
+    }
+  }
+  rows[at] = sum;
+}
+)glsl";
+
+/// One invocation per part: the sum of what the invocations of splat_shader have found in it.
+inline constexpr char column_shader[] = R"glsl(
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer PartialColumns { vec2 partial_columns[]; };
+layout(std430, binding = 1) writeonly buffer Columns { vec2 columns[]; };
+layout(location = 11) uniform int part_count;
+
+void main() {
+  int p = int(gl_GlobalInvocationID.x);
+  if (p >= part_count) return;
+  vec2 sum = vec2(0.0);
+  for (int i = 64 * p; i < 64 * p + 64; ++i) sum += partial_columns[i];
+  columns[p] = sum;
+}
+)glsl";
+
+/// One work group per beam.
+inline constexpr char estimate_shader[] = R"glsl(
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Columns { vec2 columns[]; };  // echo, moment: of each part
+layout(std430, binding = 1) readonly buffer Rows { vec4 rows[]; };
+layout(std430, binding = 2) readonly buffer Parts { Part parts[]; };
+layout(std430, binding = 3) buffer ColumnMisses { float column_misses[]; };
+layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
+layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
+
+layout(location = 8) uniform int most_rows;
+layout(location = 20) uniform int first_estimate;
+layout(location = 21) uniform vec2 most_error;  // of a beam's total and centroid: the error that counts as 1
+layout(location = 22) uniform float most_rest;  // of a zone: the square of what may lie outside of it
+
+shared vec4 gathered[64];
+
+vec4 sum_of_all(vec4 own) {
+  uint me = gl_LocalInvocationIndex;
+  gathered[me] = own;
+  barrier();
+  for (uint half_of = 32u; half_of > 0u; half_of /= 2u) {
+    if (me < half_of) gathered[me] += gathered[me + half_of];
+    barrier();
+  }
+  vec4 sum = gathered[0];
+  barrier();
+  return sum;
+}
+
+// What a strip of this width may be off by in total and centroid, from the echo (and its moment) per unit of width of
+// three neighbours. A lone jump is met twice, and the edge lies within half a strip of where it is taken to be.
+vec2 strip_error(vec2 a, vec2 b, vec2 c, float to_before, float to_after, float width, float all, float all_at) {
+  vec2 bend = width * min(to_before, to_after) * ((c - b) / to_after - (b - a) / to_before);
+  return abs(vec2(bend.x, bend.y - all_at * bend.x)) / (2.8284271 * all);
+}
+
+float miss(vec2 error) {
+  return max(error.x / most_error.x, error.y / most_error.y);
+}
+
+void main() {
+  Beam beam = beams[gl_WorkGroupID.x];
+  uint me = gl_LocalInvocationIndex;
+  vec4 all = vec4(0.0);
+  for (int p = beam.part_begin + int(me); p < beam.part_end; p += 64) all.xy += columns[p];
+  all = sum_of_all(all);
+  float all_at = all.y / all.x;  // the centroid
+
+  vec4 by_columns = vec4(0.0);  // squares of total and centroid, thin columns
+  if (all.x > 0.0) {
+    for (int p = beam.part_begin + int(me); p < beam.part_end; p += 64) {
+      Part part = parts[p];
+      // At the end of what was sampled, as from the column before it.
+      bool first = part.before == p, last = part.after == p;
+      int middle = first ? part.after : last ? part.before : p;
+      Part here = parts[middle];
+      vec2 a = columns[here.before] / parts[here.before].width_rad;
+      vec2 b = columns[middle] / here.width_rad;
+      vec2 c = columns[here.after] / parts[here.after].width_rad;
+      vec2 error = here.before == middle || here.after == middle
+                       ? vec2(0.0)
+                       : strip_error(a, b, c, here.to_before, here.to_after, part.width_rad, all.x, all_at);
+      bool thin = !first && !last && b.x > 2.0 * max(a.x, c.x);
+      by_columns += vec4(error * error, thin ? 1.0 : 0.0, 0.0);
+      column_misses[p] = miss(error);
+    }
+  }
+  by_columns = sum_of_all(by_columns);
+
+  vec4 by_rows = vec4(0.0);
+  uint first_row = gl_WorkGroupID.x * uint(most_rows);
+  if (all.x > 0.0) {
+    for (int j = 1 + int(me); j + 1 < beam.rows; j += 64) {
+      vec4 a = rows[first_row + uint(j - 1)], b = rows[first_row + uint(j)], c = rows[first_row + uint(j + 1)];
+      // Rows that the elevation limit or the last line leaves little of tell nothing.
+      float least = 0.1 * b.z;
+      if (b.z > 0.0 && a.z > least && c.z > least) {
+        vec2 error = strip_error(a.xy / a.z, b.xy / b.z, c.xy / c.z, b.z, b.z, b.z, all.x, all_at);
+        by_rows.xy += error * error;
+      }
+    }
+  }
+  by_rows = sum_of_all(by_rows);
+  memoryBarrierBuffer();
+  barrier();
+  if (me != 0u) return;
+
+  // Where edges lie: both ends are trimmed while what is left out stays small.
+  int begin = beam.part_begin, end = beam.part_end;
+  float rest = 0.0, within = 0.0;
+  if (all.x > 0.0) {
+    for (int p = begin; p < end; ++p) within += column_misses[p] * column_misses[p];
+    while (end - begin > 1) {
+      float port = column_misses[begin] * column_misses[begin];
+      float starboard = column_misses[end - 1] * column_misses[end - 1];
+      if (rest + min(port, starboard) > most_rest) break;
+      rest += min(port, starboard);
+      if (port < starboard) ++begin; else --end;
+    }
+  }
+  uint at = uint(first_estimate) + gl_WorkGroupID.x;
+  estimates[at].columns_total = sqrt(by_columns.x);
+  estimates[at].columns_centroid_lines = sqrt(by_columns.y);
+  estimates[at].rows_total = sqrt(by_rows.x);
+  estimates[at].rows_centroid_lines = sqrt(by_rows.y);
+  estimates[at].thin = uint(by_columns.z);
+  estimates[at].zone_begin = begin - beam.part_begin;
+  estimates[at].zone_end = end - beam.part_begin;
+  estimates[at].zone_miss = sqrt(max(0.0, within - rest));
+}
+)glsl";
+
+}  // namespace sonard::render

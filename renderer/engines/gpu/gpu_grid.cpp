@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/engines/gpu/gpu_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace sonard::render {
+
+namespace {
+
+// The layouts in the shaders.
+struct GpuPart {
+  std::int32_t column, row_begin, row_end, beam;
+  float x, x_offset, width, limit_slope;
+  float first_y_offset, first_height, last_y_offset, last_height;
+  std::int32_t before, after;
+  float to_before, to_after, width_rad;
+};
+static_assert(sizeof(GpuPart) == 17 * 4, "must match std430");
+
+struct GpuBeam {
+  std::int32_t in_image;
+  float solid_angle;
+  std::int32_t part_begin, part_end;
+  std::int32_t rows;
+};
+static_assert(sizeof(GpuBeam) == 5 * 4, "must match std430");
+struct BeamOfView {
+  std::int32_t beam, column_begin, column_end, had_others;
+  float x_begin, x_end;
+};
+static_assert(sizeof(BeamOfView) == 6 * 4, "must match std430");
+
+/// The part of the next column to port (-1) or starboard (1), also where another beam begins; the part itself
+/// where there is none.
+std::size_t neighbour(const SampleGrid& grid, std::size_t part, int to) {
+  const ColumnPart& here = grid.parts[part];
+  const double pixel_width = grid.views[static_cast<std::size_t>(here.view)].pixel_width();
+  for (std::size_t p = part + static_cast<std::size_t>(to); p < grid.parts.size();
+       p += static_cast<std::size_t>(to)) {
+    const ColumnPart& there = grid.parts[p];
+    if (there.view == here.view && there.column == here.column) {
+      continue;  // the same column, cut by the edge of a beam
+    }
+    const double gap = to < 0 ? grid.starboard_rad(there) - grid.port_rad(here)
+                              : grid.starboard_rad(here) - grid.port_rad(there);
+    // What was skipped is no wider than a column.
+    return std::abs(gap) < 1.5 * pixel_width ? p : part;
+  }
+  return part;
+}
+
+std::vector<GpuPart> gpu_parts(const SampleGrid& grid) {
+  std::vector<GpuPart> parts;
+  parts.reserve(grid.parts.size());
+  for (int beam = 0; beam < grid.beam_count(); ++beam) {
+    const auto b = static_cast<std::size_t>(beam);
+    for (int p = grid.beam_parts[b]; p < grid.beam_parts[b + 1]; ++p) {
+      const auto index = static_cast<std::size_t>(p);
+      const ColumnPart& part = grid.parts[index];
+      const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
+      const std::size_t before = neighbour(grid, index, -1), after = neighbour(grid, index, 1);
+      const auto distance = [&](std::size_t to) {
+        return static_cast<float>(std::abs(grid.column_rad(part) - grid.column_rad(grid.parts[to])));
+      };
+      parts.push_back({part.column, part.row_begin, part.row_end, beam,
+                       static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width()),
+                       part.x_offset, part.width, part.limit_slope, part.first_y_offset, part.first_height,
+                       part.last_y_offset, part.last_height, static_cast<std::int32_t>(before),
+                       static_cast<std::int32_t>(after), distance(before), distance(after),
+                       static_cast<float>(grid.port_rad(part) - grid.starboard_rad(part))});
+    }
+  }
+  return parts;
+}
+
+/// Parts sorted by view, and where each view begins.
+struct ViewParts {
+  std::vector<std::int32_t> parts;
+  std::vector<int> begin{0};
+
+  explicit ViewParts(const SampleGrid& grid) {
+    std::vector<std::vector<std::int32_t>> of_view(grid.views.size());
+    for (std::size_t p = 0; p < grid.parts.size(); ++p) {
+      of_view[static_cast<std::size_t>(grid.parts[p].view)].push_back(static_cast<std::int32_t>(p));
+    }
+    for (const std::vector<std::int32_t>& some : of_view) {
+      parts.insert(parts.end(), some.begin(), some.end());
+      begin.push_back(static_cast<int>(parts.size()));
+    }
+  }
+};
+
+/// Beams with parts in a view, view by view, and where each view begins.
+struct ViewBeams {
+  std::vector<BeamOfView> beams;
+  std::vector<int> begin{0};
+
+  explicit ViewBeams(const SampleGrid& grid) {
+    std::vector<std::vector<BeamOfView>> of_view(grid.views.size());
+    for (int beam = 0; beam < grid.beam_count(); ++beam) {
+      const int first = grid.beam_parts[static_cast<std::size_t>(beam)];
+      const int end = grid.beam_parts[static_cast<std::size_t>(beam) + 1];
+      for (int p = first; p < end;) {
+        const int view = grid.parts[static_cast<std::size_t>(p)].view;
+        int last = p;
+        while (last < end && grid.parts[static_cast<std::size_t>(last)].view == view) {
+          ++last;
+        }
+        const ColumnPart& port = grid.parts[static_cast<std::size_t>(p)];
+        const ColumnPart& starboard = grid.parts[static_cast<std::size_t>(last - 1)];
+        of_view[static_cast<std::size_t>(view)].push_back(
+            {beam, port.column, starboard.column + 1, p > first ? 1 : 0,
+             static_cast<float>(grid.middle(port) - static_cast<double>(port.width) / 2),
+             static_cast<float>(grid.middle(starboard) + static_cast<double>(starboard.width) / 2)});
+        p = last;
+      }
+    }
+    for (const std::vector<BeamOfView>& some : of_view) {
+      beams.insert(beams.end(), some.begin(), some.end());
+      begin.push_back(static_cast<int>(beams.size()));
+    }
+  }
+};
+
+}  // namespace
+
+GpuColumns::GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid)
+    : views(grid.views), parts(gl), order(gl) {
+  const ViewParts sorted(grid);
+  view_begin = sorted.begin;
+  parts.fill(gpu_parts(grid));
+  order.fill(sorted.parts);
+}
+
+GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
+                 const SampleGrid* thinned_grid)
+    : columns(gl, grid),
+      beams(gl),
+      view_beams(gl),
+      first_beam(in_image.front()),
+      beam_count(static_cast<std::size_t>(grid.beam_count())),
+      part_count(grid.parts.size()),
+      elevation(grid.aperture.elevation),
+      pattern_scale(
+          static_cast<float>(std::numbers::pi * 0.443 / std::sin(grid.aperture.vertical_beamwidth_rad / 2))),
+      tan_limit(static_cast<float>(std::tan(grid.aperture.elevation_limit_rad()))) {
+  if (thinned_grid != nullptr) {
+    thinned = std::make_unique<GpuColumns>(gl, *thinned_grid);
+    const ViewBeams of_views(grid);
+    view_beams.fill(of_views.beams);
+    view_beams_begin = of_views.begin;
+  }
+  load_beams(grid, in_image);
+}
+
+void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_image) {
+  const Aperture& aperture = grid.aperture;
+  const double height = aperture.pattern_height();
+  std::vector<GpuBeam> all;
+  for (std::size_t b = 0; b < beam_count; ++b) {
+    const auto beam = static_cast<std::size_t>(in_image[b]);
+    const double solid_angle = height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]);
+    int rows = 0, samples = 0;
+    for (int p = grid.beam_parts[b]; p < grid.beam_parts[b + 1]; ++p) {
+      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+      rows = std::max(rows, grid.views[static_cast<std::size_t>(part.view)].rows);
+      samples += part.row_end - part.row_begin;
+    }
+    all.push_back(
+        {in_image[b], static_cast<float>(solid_angle), grid.beam_parts[b], grid.beam_parts[b + 1], rows});
+    most_rows = std::max(most_rows, rows);
+    most_samples = std::max(most_samples, samples);
+    fullest_beam_sr = std::max(fullest_beam_sr, solid_angle);
+  }
+  beams.fill(all);
+}
+
+}  // namespace sonard::render
