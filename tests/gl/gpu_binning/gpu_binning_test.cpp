@@ -334,7 +334,7 @@ class BeamEstimates : public GpuBinningTest {
   const BeamRun run_{0, 4, {{4 * degree, -4 * degree, 32}}, 512};
   const BeamRun thinned_run_{0, 4, {{4 * degree, -4 * degree, 16}}, 256};
   const RangeLines range_{1000, 0.02, 0, false};
-  const std::vector<float> no_weights_;
+  const std::vector<float> no_weights_{};
 
   /// @param surface as RasterSampler::draw()
   std::vector<BeamEstimate> estimates(const World& world, const SurfaceModel& surface = {}) const {
@@ -359,7 +359,7 @@ class BeamEstimates : public GpuBinningTest {
   }
 
  private:
-  const BinningOptions options_;
+  const BinningOptions options_{};
 };
 
 /// Where a surface goes on there is no edge, and every second sample, moved to the middle of its larger pixel
