@@ -62,6 +62,13 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
   const Timing unchanged_ms = time_unchanged(still, {3, repetition.most, repetition.budget_s / 4});
   add_times(subject(point), stages, unchanged_ms);
   results_.add(subject(point), "samples", static_cast<double>(statistics.samples), "count");
+  if (statistics.passes > 0) {  // what only the GPU has
+    results_.add(subject(point), "passes", static_cast<double>(statistics.passes), "count");
+    results_.add(subject(point), "synchronisations", static_cast<double>(statistics.synchronisations),
+                 "count");
+    results_.add(subject(point), "read_back", static_cast<double>(statistics.bytes_read_back) / 1024.0,
+                 "KiB");
+  }
   results_.add(subject(point), "repeatable", repeatable ? 1 : 0, "1");
   results_.add(subject(point), "peak_memory", peak_memory_mib(), "MiB");
   if (reference != nullptr) {
