@@ -333,7 +333,7 @@ void main() {
 /// One work group per beam: from differences to lines of the image, and how far those of the thinned samples
 /// are off. Leaves zeros behind for the next grid.
 inline constexpr char sum_shader[] = R"glsl(
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
 layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
@@ -356,8 +356,8 @@ layout(location = 18) uniform bool estimating;
 layout(location = 19) uniform float least_level;
 layout(location = 20) uniform int first_estimate;
 
-shared uvec2 up_to[2][256];
-shared vec2 gathered[256];
+shared uvec2 up_to[2][64];
+shared vec2 gathered[64];
 
 // What the invocations before this one hold together.
 uvec2 sum_before(uvec2 own) {
@@ -365,7 +365,7 @@ uvec2 sum_before(uvec2 own) {
   int from = 0;
   up_to[from][me] = own;
   barrier();
-  for (uint distance = 1u; distance < 256u; distance *= 2u) {
+  for (uint distance = 1u; distance < 64u; distance *= 2u) {
     uvec2 sum = up_to[from][me];
     if (me >= distance) sum = plus(sum, up_to[from][me - distance]);
     from = 1 - from;
@@ -381,7 +381,7 @@ float strongest_of_all(float own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me].x = own;
   barrier();
-  for (uint half_of = 128u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = 32u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me].x = max(gathered[me].x, gathered[me + half_of].x);
     barrier();
   }
@@ -394,7 +394,7 @@ vec2 sum_of_all(vec2 own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me] = own;
   barrier();
-  for (uint half_of = 128u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = 32u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me] += gathered[me + half_of];
     barrier();
   }
@@ -432,7 +432,7 @@ SUMS(take_thinned_weight, sum_of_thinned_weights, thinned_weights)
 
 void main() {
   Beam beam = beams[gl_WorkGroupID.x];
-  int each = (lines + 255) / 256;
+  int each = (lines + 63) / 64;
   int begin = min(int(gl_LocalInvocationIndex) * each, lines);
   uint count = uint(min(each, lines - begin));
   uint first = gl_WorkGroupID.x * uint(lines) + uint(begin);
