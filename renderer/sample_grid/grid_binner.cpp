@@ -48,7 +48,7 @@ EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& ce
 /// range but the span its cell covers on the plane it hit (docs/physics.md 2.3).
 /// @return the number of samples that were marked invalid.
 std::uint64_t make_patches(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                           const ColumnPart& part, std::vector<EchoPatch>& patches) {
+                           const ColumnPart& part, const float* weights, std::vector<EchoPatch>& patches) {
   const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
   const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
   const auto x = static_cast<float>(-view.tan_half_width + (part.column + 0.5) * view.pixel_width());
@@ -69,18 +69,18 @@ std::uint64_t make_patches(const SampleGrid& grid, const std::vector<const Surfa
       cell = {part.x_offset, part.last_y_offset, part.width, part.last_height, part.limit_slope};
     }
     const float y = bottom + static_cast<float>(row) * pixel_height;
-    patches.push_back(patch_of(sample, x, y, cell, grid.weight(part, row)));
+    patches.push_back(patch_of(sample, x, y, cell, weights[row - part.row_begin]));
   }
   return invalid;
 }
 
 void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                const ColumnPart& part, double lines_per_m, BeamSums& sums) {
+                const ColumnPart& part, const float* weights, double lines_per_m, BeamSums& sums) {
   const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
   const SurfaceSample* column = views[static_cast<std::size_t>(part.view)] + part.column;
   for (int row = part.row_begin; row < part.row_end; ++row) {
     const SurfaceSample& sample = column[static_cast<std::ptrdiff_t>(row) * view.columns];
-    const float weight = grid.weight(part, row);
+    const float weight = weights[row - part.row_begin];
     if (sample.range_m > 0) {
       sums.add_point(std::floor(static_cast<double>(sample.range_m) * lines_per_m), weight * sample.response,
                      weight);
@@ -89,30 +89,20 @@ void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>&
   }
 }
 
-double solid_angle_of(const SampleGrid& grid, std::size_t beam) {
-  double sum = 0.0;
-  for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
-    const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
-    for (int row = part.row_begin; row < part.row_end; ++row) {
-      sum += static_cast<double>(grid.weight(part, row));
-    }
-  }
-  return sum;
-}
-
 /// The part of a column, with its patches.
 PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std::vector<EchoPatch>& patches) {
   return {grid.port_rad(part), grid.starboard_rad(part), patches.data(), patches.data() + patches.size()};
 }
 
-BinningResult bin_grid_by_cones(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                                const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+BinningResult bin_grid_by_cones(const SampleGrid& grid, const CellWeights& weights,
+                                const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+                                const BinningOptions& options, WorkerPool& workers,
                                 std::vector<float> memory) {
   std::vector<std::vector<EchoPatch>> patches(grid.parts.size());
   std::atomic<std::uint64_t> invalid{0};
   workers.run(static_cast<int>(grid.parts.size()), [&](int p) {
     const auto part = static_cast<std::size_t>(p);
-    invalid += make_patches(grid, views, grid.parts[part], patches[part]);
+    invalid += make_patches(grid, views, grid.parts[part], weights.of(part), patches[part]);
   });
   std::vector<PatchColumn> columns;
   for (std::size_t part = 0; part < grid.parts.size(); ++part) {
@@ -125,29 +115,31 @@ BinningResult bin_grid_by_cones(const SampleGrid& grid, const std::vector<const 
 
 }  // namespace
 
-BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
-                         std::vector<float> memory) {
+BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
+                         const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+                         const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
   if (options.cone_aperture != nullptr) {
-    return bin_grid_by_cones(grid, views, range, options, workers, std::move(memory));
+    return bin_grid_by_cones(grid, weights, views, range, options, workers, std::move(memory));
   }
   const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
   const auto fill = [&](std::size_t beam, BeamSums& sums) {
     for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
-      const ColumnPart& part = grid.parts[static_cast<std::size_t>(p)];
+      const auto index = static_cast<std::size_t>(p);
+      const ColumnPart& part = grid.parts[index];
       if (options.footprint) {
         thread_local std::vector<EchoPatch> patches;
-        sums.invalid += make_patches(grid, views, part, patches);
+        sums.invalid += make_patches(grid, views, part, weights.of(index), patches);
         for (const EchoPatch& patch : patches) {
           sums.add(patch);
         }
       } else {
-        add_points(grid, views, part, legacy_scale / range.step_m, sums);
+        add_points(grid, views, part, weights.of(index), legacy_scale / range.step_m, sums);
       }
     }
   };
   const auto content = [&](std::size_t beam) {
-    const double solid_angle = solid_angle_of(grid, beam);
+    const double solid_angle = weights.sum(static_cast<std::size_t>(grid.beam_parts[beam]),
+                                           static_cast<std::size_t>(grid.beam_parts[beam + 1]));
     return BeamContent{solid_angle, solid_angle * static_cast<double>(options.largest_response)};
   };
   return bin_beams(grid.beam_count(), range, options, workers, std::move(memory),

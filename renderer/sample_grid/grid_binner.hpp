@@ -11,10 +11,11 @@
 namespace sonard::render {
 
 /// Sums of a grid. Sums are exact (RangeProfile), so the result is the same for any number of threads.
+/// @param weights of the grid.
 /// @param views the samples of every view, row after row as SubView orders them.
 /// @param memory as of bin_beams()
-BinningResult bin_echoes(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
-                         std::vector<float> memory = {});
+BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
+                         const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+                         const BinningOptions& options, WorkerPool& workers, std::vector<float> memory = {});
 
 }  // namespace sonard::render

@@ -20,6 +20,7 @@ bool GridCache::prepare(const SonarSettings& settings, bool may_keep) {
     return true;
   }
   made_of_.reset();
+  weights_.reset();
   grid_ = make_sample_grid(settings.aperture, settings.sampling, grid_options(settings));
   made_of_ = settings;
   return false;

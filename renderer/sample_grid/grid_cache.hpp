@@ -18,9 +18,17 @@ class GridCache {
   /// @throws RequestError as make_sample_grid()
   bool prepare(const SonarSettings& settings, bool may_keep);
   const SampleGrid& grid() const { return grid_; }
+  /// Worked out when first asked for.
+  const CellWeights& weights() {
+    if (!weights_) {
+      weights_.emplace(grid_);
+    }
+    return *weights_;
+  }
 
  private:
   SampleGrid grid_;
+  std::optional<CellWeights> weights_;
   std::optional<SonarSettings> made_of_;
 };
 

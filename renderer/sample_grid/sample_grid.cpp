@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "renderer/errors.hpp"
@@ -217,6 +218,22 @@ std::size_t SampleGrid::cell_count() const {
     cells += static_cast<std::size_t>(part.row_end - part.row_begin);
   }
   return cells;
+}
+
+CellWeights::CellWeights(const SampleGrid& grid) {
+  weights_.reserve(grid.cell_count());
+  first_.push_back(0);
+  for (const ColumnPart& part : grid.parts) {
+    for (int row = part.row_begin; row < part.row_end; ++row) {
+      weights_.push_back(grid.weight(part, row));
+    }
+    first_.push_back(weights_.size());
+  }
+}
+
+double CellWeights::sum(std::size_t begin, std::size_t end) const {
+  return std::accumulate(weights_.begin() + static_cast<std::ptrdiff_t>(first_[begin]),
+                         weights_.begin() + static_cast<std::ptrdiff_t>(first_[end]), 0.0);
 }
 
 double BeamRun::samples() const {

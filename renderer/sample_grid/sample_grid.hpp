@@ -76,6 +76,21 @@ struct SampleGrid {
   std::size_t cell_count() const;
 };
 
+/// SampleGrid::weight() of all cells, for who bins on the CPU: with an elevation pattern they cost more than
+/// a ping.
+class CellWeights {
+ public:
+  explicit CellWeights(const SampleGrid& grid);
+  /// Those of a part, from its first row on.
+  const float* of(std::size_t part) const { return &weights_[first_[part]]; }
+  /// The sum of those of the parts [begin, end).
+  double sum(std::size_t begin, std::size_t end) const;
+
+ private:
+  std::vector<float> weights_;
+  std::vector<std::size_t> first_;  ///< of each part, and where the last one ends
+};
+
 /// How the fan is cut into pixels. The defaults are what accuracy wants; the others reproduce the paper.
 struct GridOptions {
   bool whole_columns = false;  ///< a column belongs to the beam that holds its centre

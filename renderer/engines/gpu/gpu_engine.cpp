@@ -107,7 +107,7 @@ void GpuEngine::image_by_cones(const EchoRequest& request, const BinningOptions&
   const auto samples = sampler_.sample(request.T_world_sonar, cone_grid_.grid(),
                                        surface_model(settings, skip_), settings.range.sampled_range_m());
   statistics.visibility_s += watch.lap();
-  hand_over(bin_echoes(cone_grid_.grid(), samples, settings.range, options, workers_,
+  hand_over(bin_echoes(cone_grid_.grid(), cone_grid_.weights(), samples, settings.range, options, workers_,
                        std::move(echo.image.intensity)),
             echo, statistics);
   statistics.binning_s += watch.lap();

@@ -98,7 +98,7 @@ class GpuBinningTest : public ::testing::Test {
     binner.add(*on_gpu, sampler.draw(c.T_world_sonar, grid, c.surface, max_range_m));
     const BinningResult gpu = binner.finish();
     const auto samples = sampler.sample(c.T_world_sonar, grid, c.surface, max_range_m);
-    const BinningResult cpu = bin_echoes(grid, samples, c.range, c.options, workers);
+    const BinningResult cpu = bin_echoes(grid, CellWeights(grid), samples, c.range, c.options, workers);
     const std::vector<double> exact = test::bin_in_double(grid, samples, c.range, c.options);
 
     const auto lines = static_cast<std::size_t>(c.range.count);
