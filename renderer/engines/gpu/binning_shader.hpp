@@ -331,7 +331,7 @@ void main() {
 )glsl";
 
 /// One work group per beam: from differences to lines of the image, and how far those of the thinned samples
-/// are off. Leaves zeros behind for the next grid.
+/// are off. Leaves sums that begin anew for the next grid.
 inline constexpr char sum_shader[] = R"glsl(
 layout(local_size_x = 64) in;
 

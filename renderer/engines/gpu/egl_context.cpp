@@ -96,6 +96,22 @@ EglContext::~EglContext() {
   close();  // calls closeImplementation() while this is still an EglContext
 }
 
+osg::ref_ptr<osg::Program> EglContext::build_program(const std::vector<osg::ref_ptr<osg::Shader>>& shaders,
+                                                     const std::string& what) {
+  osg::ref_ptr<osg::Program> program = new osg::Program;
+  for (const osg::ref_ptr<osg::Shader>& shader : shaders) {
+    program->addShader(shader);
+  }
+  program->compileGLObjects(*getState());
+  const osg::Program::PerContextProgram& linked = *program->getPCP(*getState());
+  if (!linked.isLinked()) {
+    std::string reason;
+    linked.getInfoLog(reason);
+    throw RendererError(what + " does not build on " + describe() + ": " + reason);
+  }
+  return program;
+}
+
 std::string EglContext::describe() const {
   const auto text = [](GLenum name) {
     const GLubyte* value = glGetString(name);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <osg/GraphicsContext>
+#include <osg/Program>
 
 namespace sonard::render {
 
@@ -18,6 +19,12 @@ class EglContext : public osg::GraphicsContext {
 
   /// "vendor / renderer / version"; valid once realized and current.
   std::string describe() const;
+
+  /// Builds a program where it will be used; the context is current.
+  /// @param what in the message: "the surface shader".
+  /// @throws RendererError when it does not build.
+  osg::ref_ptr<osg::Program> build_program(const std::vector<osg::ref_ptr<osg::Shader>>& shaders,
+                                           const std::string& what);
 
   bool valid() const override { return context_ != nullptr; }
   bool realizeImplementation() override;

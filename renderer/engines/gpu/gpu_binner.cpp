@@ -39,8 +39,8 @@ constexpr double least_level = 1e-2;  // of the beam's maximum; errors are taken
 constexpr double zone_rest = 0.5;     // of the error that counts as 1, what lies outside of a zone may miss
 // What the shaders know too:
 constexpr std::uint64_t start_of_sum = 0x80000000;
-constexpr std::size_t group_size = 64;  // of all but sum_shader
-constexpr unsigned samples_unit = 7;    // of textures; OpenSceneGraph uses the first
+constexpr std::size_t group_size = 64;
+constexpr unsigned samples_unit = 7;  // of textures; OpenSceneGraph uses the first
 constexpr std::size_t image_header_bytes = 16;
 constexpr std::size_t most_view_rows = 16384;
 
@@ -84,7 +84,8 @@ bool is_out_of_memory() {
 struct GpuBinner::Impl {
   EglContext& context;
   osg::GLExtensions& gl;
-  std::map<std::string, osg::ref_ptr<osg::Program>> programs;  // by their source
+  /// By the head of a variant, and the last part of the shader.
+  std::map<std::pair<std::string, const char*>, osg::ref_ptr<osg::Program>> programs;
   // Differences from line to line of the grid at hand; between grids, sums that begin.
   GpuBuffer echo, weight, thinned, thinned_weight;
   std::vector<std::unique_ptr<GpuBuffer>> pages;  // of the image
@@ -136,34 +137,21 @@ struct GpuBinner::Impl {
 
   /// Makes the program current. It is built when first asked for.
   void use(const Variant& variant, const std::vector<const char*>& shader) {
-    std::string source = fmt::format(
+    const std::string head = fmt::format(
         "#version 430\n#define WEIGHED {:d}\n#define THINNED {:d}\n#define ESTIMATE {:d}\n#define FOOTPRINT "
         "{:d}\n#define PATTERN {}\n",
         variant.weighed, variant.thinned, variant.estimate, variant.footprint,
         static_cast<int>(variant.elevation));
-    source += binning_shader_head;
-    for (const char* part : shader) {
-      source += part;
-    }
-    osg::ref_ptr<osg::Program>& program = programs[source];
+    osg::ref_ptr<osg::Program>& program = programs[{head, shader.back()}];
     if (!program) {
-      program = build(source);
+      std::string source = head + binning_shader_head;
+      for (const char* part : shader) {
+        source += part;
+      }
+      program = context.build_program({new osg::Shader(osg::Shader::COMPUTE, source)}, "a binning shader");
     }
     program->getPCP(*context.getState())->useProgram();
     gl.glUniform1i(at_lines, request ? lines() : 1);
-  }
-
-  osg::ref_ptr<osg::Program> build(const std::string& source) const {
-    osg::ref_ptr<osg::Program> made = new osg::Program;
-    made->addShader(new osg::Shader(osg::Shader::COMPUTE, source));
-    made->compileGLObjects(*context.getState());
-    const osg::Program::PerContextProgram& linked = *made->getPCP(*context.getState());
-    if (!linked.isLinked()) {
-      std::string reason;
-      linked.getInfoLog(reason);
-      throw RendererError("a binning shader does not build on " + context.describe() + ": " + reason);
-    }
-    return made;
   }
 
   void make_current() const {
@@ -453,7 +441,7 @@ GpuBinner::GpuBinner(RasterSampler& sampler) : impl_(std::make_unique<Impl>(samp
 
 GpuBinner::~GpuBinner() {
   if (impl_->context.makeCurrent()) {
-    for (const auto& [source, program] : impl_->programs) {
+    for (const auto& [key, program] : impl_->programs) {
       program->releaseGLObjects(impl_->context.getState());
     }
   }

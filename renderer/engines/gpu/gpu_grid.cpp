@@ -76,63 +76,59 @@ std::vector<GpuPart> gpu_parts(const SampleGrid& grid) {
   return parts;
 }
 
-/// Parts sorted by view, and where each view begins.
-struct ViewParts {
-  std::vector<std::int32_t> parts;
+/// What views have, one view after the other, and where each begins.
+template <class Item>
+struct ByView {
+  std::vector<Item> items;
   std::vector<int> begin{0};
 
-  explicit ViewParts(const SampleGrid& grid) {
-    std::vector<std::vector<std::int32_t>> of_view(grid.views.size());
-    for (std::size_t p = 0; p < grid.parts.size(); ++p) {
-      of_view[static_cast<std::size_t>(grid.parts[p].view)].push_back(static_cast<std::int32_t>(p));
-    }
-    for (const std::vector<std::int32_t>& some : of_view) {
-      parts.insert(parts.end(), some.begin(), some.end());
-      begin.push_back(static_cast<int>(parts.size()));
+  explicit ByView(const std::vector<std::vector<Item>>& of_view) {
+    for (const std::vector<Item>& some : of_view) {
+      items.insert(items.end(), some.begin(), some.end());
+      begin.push_back(static_cast<int>(items.size()));
     }
   }
 };
 
-/// Beams with parts in a view, view by view, and where each view begins.
-struct ViewBeams {
-  std::vector<BeamOfView> beams;
-  std::vector<int> begin{0};
+ByView<std::int32_t> parts_by_view(const SampleGrid& grid) {
+  std::vector<std::vector<std::int32_t>> of_view(grid.views.size());
+  for (std::size_t p = 0; p < grid.parts.size(); ++p) {
+    of_view[static_cast<std::size_t>(grid.parts[p].view)].push_back(static_cast<std::int32_t>(p));
+  }
+  return ByView(of_view);
+}
 
-  explicit ViewBeams(const SampleGrid& grid) {
-    std::vector<std::vector<BeamOfView>> of_view(grid.views.size());
-    for (int beam = 0; beam < grid.beam_count(); ++beam) {
-      const int first = grid.beam_parts[static_cast<std::size_t>(beam)];
-      const int end = grid.beam_parts[static_cast<std::size_t>(beam) + 1];
-      for (int p = first; p < end;) {
-        const int view = grid.parts[static_cast<std::size_t>(p)].view;
-        int last = p;
-        while (last < end && grid.parts[static_cast<std::size_t>(last)].view == view) {
-          ++last;
-        }
-        const ColumnPart& port = grid.parts[static_cast<std::size_t>(p)];
-        const ColumnPart& starboard = grid.parts[static_cast<std::size_t>(last - 1)];
-        of_view[static_cast<std::size_t>(view)].push_back(
-            {beam, port.column, starboard.column + 1, p > first ? 1 : 0,
-             static_cast<float>(grid.middle(port) - static_cast<double>(port.width) / 2),
-             static_cast<float>(grid.middle(starboard) + static_cast<double>(starboard.width) / 2)});
-        p = last;
+ByView<BeamOfView> beams_by_view(const SampleGrid& grid) {
+  std::vector<std::vector<BeamOfView>> of_view(grid.views.size());
+  for (int beam = 0; beam < grid.beam_count(); ++beam) {
+    const int first = grid.beam_parts[static_cast<std::size_t>(beam)];
+    const int end = grid.beam_parts[static_cast<std::size_t>(beam) + 1];
+    for (int p = first; p < end;) {
+      const int view = grid.parts[static_cast<std::size_t>(p)].view;
+      int last = p;
+      while (last < end && grid.parts[static_cast<std::size_t>(last)].view == view) {
+        ++last;
       }
-    }
-    for (const std::vector<BeamOfView>& some : of_view) {
-      beams.insert(beams.end(), some.begin(), some.end());
-      begin.push_back(static_cast<int>(beams.size()));
+      const ColumnPart& port = grid.parts[static_cast<std::size_t>(p)];
+      const ColumnPart& starboard = grid.parts[static_cast<std::size_t>(last - 1)];
+      of_view[static_cast<std::size_t>(view)].push_back(
+          {beam, port.column, starboard.column + 1, p > first ? 1 : 0,
+           static_cast<float>(grid.middle(port) - static_cast<double>(port.width) / 2),
+           static_cast<float>(grid.middle(starboard) + static_cast<double>(starboard.width) / 2)});
+      p = last;
     }
   }
-};
+  return ByView(of_view);
+}
 
 }  // namespace
 
 GpuColumns::GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid)
     : views(grid.views), parts(gl), order(gl) {
-  const ViewParts sorted(grid);
+  const ByView sorted = parts_by_view(grid);
   view_begin = sorted.begin;
   parts.fill(gpu_parts(grid));
-  order.fill(sorted.parts);
+  order.fill(sorted.items);
 }
 
 GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
@@ -149,9 +145,9 @@ GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vecto
       tan_limit(static_cast<float>(std::tan(grid.aperture.elevation_limit_rad()))) {
   if (thinned_grid != nullptr) {
     thinned = std::make_unique<GpuColumns>(gl, *thinned_grid);
-    const ViewBeams of_views(grid);
-    view_beams.fill(of_views.beams);
-    view_beams_begin = of_views.begin;
+    const ByView sorted = beams_by_view(grid);
+    view_beams.fill(sorted.items);
+    view_beams_begin = sorted.begin;
   }
   load_beams(grid, in_image);
 }

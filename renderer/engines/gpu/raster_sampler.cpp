@@ -213,17 +213,9 @@ struct RasterSampler::Impl {
     const std::string head = surface_shader_head(shading, surface);
     osg::ref_ptr<osg::Program>& known = programs[head];
     if (!known) {
-      osg::ref_ptr<osg::Program> made = new osg::Program;
-      made->addShader(new osg::Shader(osg::Shader::VERTEX, head + surface_vertex_shader));
-      made->addShader(new osg::Shader(osg::Shader::FRAGMENT, head + surface_fragment_shader));
-      made->compileGLObjects(*context->getState());
-      osg::Program::PerContextProgram* linked = made->getPCP(*context->getState());
-      if (!linked->isLinked()) {
-        std::string reason;
-        linked->getInfoLog(reason);
-        throw RendererError("the surface shader does not build on " + description + ": " + reason);
-      }
-      known = made;
+      known = context->build_program({new osg::Shader(osg::Shader::VERTEX, head + surface_vertex_shader),
+                                      new osg::Shader(osg::Shader::FRAGMENT, head + surface_fragment_shader)},
+                                     "the surface shader");
     }
     return known;
   }
