@@ -62,7 +62,7 @@ class EchoEngine {
   /// default: they are straight. Only where RendererOptions::ray_curvature_per_m is not 0.
   virtual void set_refraction(double bend_per_m) = 0;
 
-  /// The engine and what it runs on, for logs: "raster, vendor / renderer / version".
+  /// The engine and what it runs on, for logs: "gpu, vendor / renderer / version".
   virtual const std::string& description() const = 0;
 };
 

@@ -157,7 +157,7 @@ void Check::check_poses() {
       problem("poses.trajectory.file", error.what());
     }
   }
-  report_.summary.push_back(fmt::format("backend  {}", render::name_of(config_.backend)));
+  report_.summary.push_back(fmt::format("engine  {}", render::name_of(config_.engine)));
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));
 }
 

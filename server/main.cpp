@@ -39,7 +39,7 @@ constexpr const char* exit_code_help =
     "  0   success: ended by SIGINT, SIGTERM or the end of the recording, or no problem found\n"
     "  2   configuration, world, trajectory or log cannot be used, or check --listen received no pose\n"
     "  3   an address or port cannot be used\n"
-    "  4   the backend is not available or failed its self-test, or the renderer failed while serving\n"
+    "  4   the engine is not available or failed its self-test, or the renderer failed while serving\n"
     "  5   a file or folder to write to cannot be used\n"
     "  64  wrong command line\n"
     "  70  a defect of this program";
@@ -48,9 +48,9 @@ struct CommandLine {
   std::filesystem::path config;
   std::string log_level;  ///< empty: as the configuration says
   bool no_network = false;
-  double listen_s = 0.0;                                 ///< 0: check does not listen
-  render::Backend backend = render::Backend::automatic;  ///< of selftest
-  std::filesystem::path log;                             ///< of replay and info
+  double listen_s = 0.0;                                      ///< 0: check does not listen
+  render::EngineKind engine = render::EngineKind::automatic;  ///< of selftest
+  std::filesystem::path log;                                  ///< of replay and info
   ReplayTiming timing;
   InfoOptions info;
 };
@@ -149,9 +149,9 @@ int check(const CommandLine& arguments) {
 }
 
 int selftest(const CommandLine& arguments) {
-  const render::RendererOptions options{arguments.backend, 0};
+  const render::RendererOptions options{arguments.engine, 0};
   try {
-    fmt::print("backend  {}\n", render::SonarRenderer(render::World{}, options).backend_description());
+    fmt::print("engine  {}\n", render::SonarRenderer(render::World{}, options).engine_description());
     fmt::print("wall     {:.3f} % RMS from its closed form\n", 100.0 * render::run_self_test(options));
   } catch (const render::RendererError&) {
     fmt::print("FAIL\n");
@@ -241,12 +241,12 @@ int main_program(int argc, char** argv) {
   OfflineArguments offline(*render_command);
 
   CLI::App* selftest_command =
-      app.add_subcommand("selftest", "Show the backend in use and compare one scene with its closed form");
-  selftest_command->add_option("--backend", arguments.backend, "auto, raster or ray")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, render::Backend>{{"auto", render::Backend::automatic},
-                                                                         {"raster", render::Backend::raster},
-                                                                         {"ray", render::Backend::ray}}));
+      app.add_subcommand("selftest", "Show the engine in use and compare one scene with its closed form");
+  selftest_command->add_option("--engine", arguments.engine, "auto, gpu or cpu")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, render::EngineKind>{{"auto", render::EngineKind::automatic},
+                                                    {"gpu", render::EngineKind::gpu},
+                                                    {"cpu", render::EngineKind::cpu}}));
 
   CLI::App* replay_command =
       app.add_subcommand("replay", "Serve a recorded .glf, .dat or .mcap as the device that made it");

@@ -9,16 +9,16 @@ namespace sonard::render {
 
 ChosenEngine make_engine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options) {
   ChosenEngine chosen;
-  chosen.backend = options.backend;
+  chosen.kind = options.engine;
   std::string reason;
-  if (options.backend == Backend::automatic) {
+  if (options.engine == EngineKind::automatic) {
     const GlProbe gl = probe_gl();
     const bool hardware = !gl.description.empty() && !is_software_gl(gl.description);
-    chosen.backend = hardware ? Backend::raster : Backend::ray;
+    chosen.kind = hardware ? EngineKind::gpu : EngineKind::cpu;
     reason =
         gl.description.empty() ? "; auto found " + gl.problem : "; auto found OpenGL on " + gl.description;
   }
-  if (chosen.backend == Backend::ray) {
+  if (chosen.kind == EngineKind::cpu) {
     chosen.engine = std::make_unique<CpuEngine>(index, workers, options);
   } else {
     chosen.engine = std::make_unique<GpuEngine>(index.world(), workers, options);

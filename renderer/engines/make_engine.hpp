@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the backend that was asked for to the engine that runs here.
+// From the engine that was asked for to the engine that runs here.
 #pragma once
 
 #include <memory>
 #include <string>
 
-#include "renderer/backend.hpp"
 #include "renderer/engine.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/spatial_index/spatial_index.hpp"
 #include "renderer/worker_pool.hpp"
 
@@ -14,13 +14,13 @@ namespace sonard::render {
 
 struct ChosenEngine {
   std::unique_ptr<EchoEngine> engine;
-  Backend backend = Backend::ray;  ///< never `automatic`
+  EngineKind kind = EngineKind::cpu;  ///< never `automatic`
   /// What the engine runs on and, where `automatic` chose it, what OpenGL there is.
   std::string description;
 };
 
 /// @param index where the world is moved; it and the workers outlive the engine.
-/// @throws RendererError when `raster` is asked for and there is no OpenGL 4.5, or binning on the GPU and its
+/// @throws RendererError when `gpu` is asked for and there is no OpenGL 4.5, or binning on the GPU and its
 /// shaders do not build.
 ChosenEngine make_engine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options);
 

@@ -18,7 +18,7 @@
 
 namespace sonard::render {
 
-/// Does not depend on the backend. It traces rays only where something mirrors: a world without mirrors needs
+/// Does not depend on the engine. It traces rays only where something mirrors: a world without mirrors needs
 /// no search trees.
 class Multipath {
  public:

@@ -90,7 +90,7 @@ double run_self_test(const RendererOptions& options) {
   settings.range = {1200, 0.02, 0, false};
   settings.physical.absorption_db_per_m = 0.0;
   double worst = 0;
-  // Fixed grids go another way than presets, with `raster` through shaders of their own.
+  // Fixed grids go another way than presets, with `gpu` through shaders of their own.
   for (const Sampling& sampling : {Sampling{}, Sampling::of_grid(3, 64, 256)}) {
     settings.sampling = sampling;
     const double error = error_of(renderer.render_echo(request), settings);
@@ -98,7 +98,7 @@ double run_self_test(const RendererOptions& options) {
       throw RendererError(
           fmt::format("self test: the echo of a wall, by {}, is off by {:.1f} % RMS on {}",
                       sampling.preset == Sampling::Preset::grid ? "a fixed grid" : "the default preset",
-                      error * 100, renderer.backend_description()));
+                      error * 100, renderer.engine_description()));
     }
     worst = std::max(worst, error);
   }

@@ -257,11 +257,11 @@ SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
     : impl_(std::make_unique<Impl>(world, options)) {}
 SonarRenderer::~SonarRenderer() = default;
 
-Backend SonarRenderer::backend() const {
-  return impl_->chosen.backend;
+EngineKind SonarRenderer::engine() const {
+  return impl_->chosen.kind;
 }
 
-const std::string& SonarRenderer::backend_description() const {
+const std::string& SonarRenderer::engine_description() const {
   return impl_->chosen.description;
 }
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "renderer/backend.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/ping.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -18,17 +18,17 @@ namespace sonard::render {
 /// `stream` number, which keeps their speckle apart.
 class SonarRenderer {
  public:
-  /// @throws RendererError when the request cannot be met: `raster` without OpenGL 4.5, or binning on
+  /// @throws RendererError when the request cannot be met: `gpu` without OpenGL 4.5, or binning on
   /// the GPU where its shaders do not build.
   explicit SonarRenderer(const World& world, const RendererOptions& options = {});
   ~SonarRenderer();
   SonarRenderer(const SonarRenderer&) = delete;
   SonarRenderer& operator=(const SonarRenderer&) = delete;
 
-  /// The backend in use: `raster` or `ray`.
-  Backend backend() const;
-  /// The backend and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
-  const std::string& backend_description() const;
+  /// The engine in use: `gpu` or `cpu`.
+  EngineKind engine() const;
+  /// The engine and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
+  const std::string& engine_description() const;
 
   /// Moves a body of the world. @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
@@ -60,7 +60,7 @@ class SonarRenderer {
 /// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2), by the default preset and by a
 /// fixed grid.
 /// @return the larger RMS error over bins above 1e-2 of the beam's maximum.
-/// @throws RendererError when the backend fails, the image is empty or the error exceeds 5 %.
+/// @throws RendererError when the engine fails, the image is empty or the error exceeds 5 %.
 double run_self_test(const RendererOptions& options = {});
 
 }  // namespace sonard::render

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "protocol/pose/pose_codec.hpp"
-#include "renderer/backend.hpp"
 #include "renderer/pose.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/net/addresses.hpp"
@@ -179,7 +179,7 @@ struct DaemonConfig {
   /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries
   /// the sonars that heads are mounted from (resolve_mounts() fills it in).
   std::string vehicle_model;
-  render::Backend backend = render::Backend::automatic;
+  render::EngineKind engine = render::EngineKind::automatic;
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;

@@ -334,14 +334,15 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.require("world", "a mapping with the world's file");
   root.section("world", "what the sonars see",
                [&](YamlSection& section) { read_world(section, context.folder, config); });
-  root.choice("backend", config.backend,
-              {{"auto", render::Backend::automatic},
-               {"raster", render::Backend::raster},
-               {"ray", render::Backend::ray}},
+  root.choice("engine", config.engine,
+              {{"auto", render::EngineKind::automatic},
+               {"gpu", render::EngineKind::gpu},
+               {"cpu", render::EngineKind::cpu}},
               "what finds the visible surfaces: OpenGL 4.5, or ray tracing on all cores of the CPU, which "
               "needs no OpenGL. `auto` takes OpenGL where it runs on graphics hardware. Both give the same "
               "image ([accuracy.md](accuracy.md)); the log says which one runs on what");
-  root.retired("gpu_binning", "remove it; backend `raster` bins on the GPU in any case");
+  root.retired("backend", "write `engine: gpu` for raster, `engine: cpu` for ray, `engine: auto` for auto");
+  root.retired("gpu_binning", "remove it; engine `gpu` bins on the GPU in any case");
   root.section("skip", "what need not be worked out",
                [&](YamlSection& section) { read_skip(section, config.skip); });
   root.section("water", "what they swim in", [&](YamlSection& section) { read_water(section, context); });

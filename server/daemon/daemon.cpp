@@ -45,7 +45,7 @@ class WorldRenderer final : public PingRenderer {
   WorldRenderer(const render::World& world, const render::RendererOptions& options)
       : renderer_(world, options) {}
 
-  std::string description() const override { return renderer_.backend_description(); }
+  std::string description() const override { return renderer_.engine_description(); }
   bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
     return renderer_.set_body_pose(body, T_world_body);
   }
@@ -62,13 +62,13 @@ class WorldRenderer final : public PingRenderer {
   render::SonarRenderer renderer_;
 };
 
-// Runs on the render thread. The self-test comes first: a backend that draws nothing must not get as far as a
+// Runs on the render thread. The self-test comes first: an engine that draws nothing must not get as far as a
 // socket.
 std::unique_ptr<PingRenderer> make_world_renderer(const render::World& world,
                                                   const render::RendererOptions& options) {
   const double error = render::run_self_test(options);
   auto renderer = std::make_unique<WorldRenderer>(world, options);
-  spdlog::info("renderer self-test passed: error={:.2f}% backend=\"{}\"", 100.0 * error,
+  spdlog::info("renderer self-test passed: error={:.2f}% engine=\"{}\"", 100.0 * error,
                renderer->description());
   return renderer;
 }
@@ -203,7 +203,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     warm_up(config.heads[i], static_cast<int>(i), renderer_of(config.heads[i]));
   }
-  ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} backend=\"{}\"", heads_.size(),
+  ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} engine=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(),
                             (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
 }
@@ -378,7 +378,7 @@ render::World load_world_of(DaemonConfig& config) {
 }
 
 render::RendererOptions renderer_options(const DaemonConfig& config) {
-  return {config.backend, 0, config.skip,
+  return {config.engine, 0, config.skip,
           config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "renderer/backend.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/scene/world.hpp"
 #include "server/config/config.hpp"
 #include "server/rendering/render_service.hpp"

@@ -60,7 +60,7 @@ void keep_loudest(const render::EchoImage& echo, int compression_log2, std::uint
 
 BodyTruth::BodyTruth(render::World world, const render::RendererOptions& options)
     : world_(std::move(world)), options_(options) {
-  options_.backend = render::Backend::ray;
+  options_.engine = render::EngineKind::cpu;
   for (const render::Body& body : world_.bodies) {
     balls_.push_back(ball_around(body));
   }

@@ -111,7 +111,7 @@ class RenderRun {
   OutputFolder folder_;
 };
 
-// The self-test comes first: a backend that draws nothing must not fill a folder.
+// The self-test comes first: an engine that draws nothing must not fill a folder.
 render::RendererOptions tested(const render::RendererOptions& options) {
   render::run_self_test(options);
   return options;
@@ -167,7 +167,7 @@ std::string RenderRun::manifest() const {
                   {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
                   {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
                   {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
-                  {"backend", render::name_of(renderer_.backend())},
+                  {"engine", render::name_of(renderer_.engine())},
                   {"head", config_.heads[head_].name},
                   {"settings", frames_->settings_json()},
                   {"frames", frames_->count()},

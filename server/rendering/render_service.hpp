@@ -22,7 +22,7 @@ namespace sonard::server {
 class PingRenderer {
  public:
   virtual ~PingRenderer() = default;
-  /// The backend, one line for the log.
+  /// The engine, one line for the log.
   virtual std::string description() const = 0;
   /// @return false when the world has no such body.
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;

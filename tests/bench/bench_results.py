@@ -6,28 +6,28 @@ import json
 
 
 class Results:
-    """Values by (scene, backend, preset) and metric."""
+    """Values by (scene, engine, preset) and metric."""
 
     def __init__(self, path):
         with open(path, encoding="utf-8") as file:
             rows = json.load(file)
         self.points = collections.defaultdict(dict)
         for row in rows:
-            self.points[row["scene"], row["backend"], row["preset"]][row["metric"]] = row["value"]
+            self.points[row["scene"], row["engine"], row["preset"]][row["metric"]] = row["value"]
 
     def scenes(self):
         return list(dict.fromkeys(scene for scene, _, _ in self.points))
 
-    def backends(self):
-        return sorted({backend for _, backend, _ in self.points})
+    def engines(self):
+        return sorted({engine for _, engine, _ in self.points})
 
-    def of(self, scene, backend):
+    def of(self, scene, engine):
         """{preset: {metric: value}} in the order they were measured."""
-        return {p: values for (s, b, p), values in self.points.items() if (s, b) == (scene, backend)}
+        return {p: values for (s, b, p), values in self.points.items() if (s, b) == (scene, engine)}
 
-    def curve(self, scene, backend, start, x="ping_ms", y="bin_rms"):
+    def curve(self, scene, engine, start, x="ping_ms", y="bin_rms"):
         """[(x, y, preset)] of the presets whose name starts with `start`, by growing x."""
-        return sorted((values[x], values[y], preset) for preset, values in self.of(scene, backend).items()
+        return sorted((values[x], values[y], preset) for preset, values in self.of(scene, engine).items()
                       if preset.startswith(start) and values.get(x, 0) > 0 and values.get(y, 0) > 0)
 
 

@@ -19,7 +19,7 @@ void report(const Measurements& results, const Subject& subject) {
     const auto value = results.find(subject, metric);
     return value ? fmt::format("{:.3g} {}", scale * *value, unit) : std::string("-");
   };
-  fmt::print(stderr, "{:<28} {:<7} {:<16} {:>12} {:>12}\n", subject.scene, subject.backend, subject.preset,
+  fmt::print(stderr, "{:<28} {:<7} {:<16} {:>12} {:>12}\n", subject.scene, subject.engine, subject.preset,
              text("ping_ms", 1, "ms"), text("bin_rms", 100, "%"));
 }
 
@@ -29,30 +29,30 @@ void note(const std::string& what, const std::exception& reason) {
 
 }  // namespace
 
-Campaign::Campaign(std::vector<render::Backend> backends, std::filesystem::path references)
-    : backends_(std::move(backends)), references_(std::move(references)) {}
+Campaign::Campaign(std::vector<render::EngineKind> engines, std::filesystem::path references)
+    : engines_(std::move(engines)), references_(std::move(references)) {}
 
 void Campaign::run(const test::Scene& scene, const Plan& plan) {
   const std::optional<Reference> reference = find_reference(scene, references_);
-  for (const render::Backend backend : std::vector(backends_)) {
-    run_in_renderer(backend, scene, plan, reference ? &*reference : nullptr);
+  for (const render::EngineKind engine : std::vector(engines_)) {
+    run_in_renderer(engine, scene, plan, reference ? &*reference : nullptr);
   }
 }
 
-void Campaign::run_in_renderer(render::Backend backend, const test::Scene& scene, const Plan& plan,
+void Campaign::run_in_renderer(render::EngineKind engine, const test::Scene& scene, const Plan& plan,
                                const Reference* reference) {
-  const std::string name(render::name_of(backend));
+  const std::string name(render::name_of(engine));
   std::optional<SceneRun> run;
   try {
-    run.emplace(scene, render::RendererOptions{backend, plan.threads, {}}, results_, plan.bodies_drift);
+    run.emplace(scene, render::RendererOptions{engine, plan.threads, {}}, results_, plan.bodies_drift);
   } catch (const render::RendererError& error) {
     note(name, error);
-    backends_.erase(std::remove(backends_.begin(), backends_.end(), backend), backends_.end());
+    engines_.erase(std::remove(engines_.begin(), engines_.end(), engine), engines_.end());
     return;
   }
-  descriptions_[name] = run->backend_description();
+  descriptions_[name] = run->engine_description();
   for (const auto& [point, repetition, only] : plan.points) {
-    if (only.value_or(backend) != backend) {
+    if (only.value_or(engine) != engine) {
       continue;
     }
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A series of scenes measured on every backend there is.
+// A series of scenes measured on every engine there is.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/backend.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/points.hpp"
@@ -23,7 +23,7 @@ struct Reference;
 struct PlannedPoint {
   Point point;
   Repetition repetition;
-  std::optional<render::Backend> only = std::nullopt;  ///< where any backend gives the same answer
+  std::optional<render::EngineKind> only = std::nullopt;  ///< where any engine gives the same answer
 };
 
 /// The whole receiver, timed at the default preset.
@@ -45,21 +45,21 @@ struct Plan {
 
 class Campaign {
  public:
-  Campaign(std::vector<render::Backend> backends, std::filesystem::path references);
+  Campaign(std::vector<render::EngineKind> engines, std::filesystem::path references);
 
-  /// Measures `scene` on each backend, each in a renderer of its own. A line of progress for each point goes
-  /// to stderr, as does why a point or a backend was left out.
+  /// Measures `scene` on each engine, each in a renderer of its own. A line of progress for each point goes
+  /// to stderr, as does why a point or an engine was left out.
   void run(const test::Scene& scene, const Plan& plan);
 
   const Measurements& results() const { return results_; }
-  /// What each backend ran on, by its name; only backends that measured something.
+  /// What each engine ran on, by its name; only engines that measured something.
   const std::map<std::string, std::string>& descriptions() const { return descriptions_; }
 
  private:
-  void run_in_renderer(render::Backend backend, const test::Scene& scene, const Plan& plan,
+  void run_in_renderer(render::EngineKind engine, const test::Scene& scene, const Plan& plan,
                        const Reference* reference);
 
-  std::vector<render::Backend> backends_;
+  std::vector<render::EngineKind> engines_;
   std::filesystem::path references_;
   std::map<std::string, std::string> descriptions_;
   Measurements results_;

@@ -20,30 +20,31 @@ namespace {
 struct Options {
   bool quick = false;
   std::string json;
-  std::string backend = "both";
+  std::string engine = "both";
   std::string references = SONARD_SOURCE_DIR "/tests/data/oracle";
   std::vector<std::string> scenes;
 };
 
 /// The one that users get comes first: its table is the one to read.
-std::vector<render::Backend> backends_of(const std::string& name) {
-  if (name == "ray") {
-    return {render::Backend::ray};
+std::vector<render::EngineKind> engines_of(const std::string& name) {
+  if (name == "cpu") {
+    return {render::EngineKind::cpu};
   }
-  if (name == "raster") {
-    return {render::Backend::raster};
+  if (name == "gpu") {
+    return {render::EngineKind::gpu};
   }
-  const render::Backend automatic = render::SonarRenderer(render::World{}).backend();
+  const render::EngineKind automatic = render::SonarRenderer(render::World{}).engine();
   if (name == "auto") {
     return {automatic};
   }
-  return {automatic, automatic == render::Backend::ray ? render::Backend::raster : render::Backend::ray};
+  return {automatic,
+          automatic == render::EngineKind::cpu ? render::EngineKind::gpu : render::EngineKind::cpu};
 }
 
 void run(const Options& options) {
   fmt::print("{}", describe_machine());
-  const std::vector<render::Backend> backends = backends_of(options.backend);
-  Campaign campaign(backends, options.references);
+  const std::vector<render::EngineKind> engines = engines_of(options.engine);
+  Campaign campaign(engines, options.references);
   if (options.quick) {
     run_quick(campaign);
   } else {
@@ -53,8 +54,8 @@ void run(const Options& options) {
   if (options.scenes.empty()) {
     measure_recording(results);
   }
-  for (const render::Backend backend : backends) {
-    const std::string name(render::name_of(backend));
+  for (const render::EngineKind engine : engines) {
+    const std::string name(render::name_of(engine));
     const auto description = campaign.descriptions().find(name);
     if (description == campaign.descriptions().end()) {
       continue;
@@ -80,9 +81,9 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the time of a ping and the error of its image.");
   app.add_flag("--quick", options.quick, "Only what the project's targets need, in less than a minute");
   app.add_option("--json", options.json,
-                 "File for a flat list of {scene, backend, preset, metric, value, unit}");
-  app.add_option("--backend", options.backend, "Which backends to measure")
-      ->check(CLI::IsMember({"both", "auto", "raster", "ray"}))
+                 "File for a flat list of {scene, engine, preset, metric, value, unit}");
+  app.add_option("--engine", options.engine, "Which engines to measure")
+      ->check(CLI::IsMember({"both", "auto", "gpu", "cpu"}))
       ->capture_default_str();
   app.add_option("--references", options.references, "Folder of the oracle's images")->capture_default_str();
   app.add_option("--scene", options.scenes, "Only scenes whose name starts so; not with --quick")

@@ -28,7 +28,7 @@ std::string Measurements::to_json() const {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Measurement& m : all_) {
     list.push_back({{"scene", m.subject.scene},
-                    {"backend", m.subject.backend},
+                    {"engine", m.subject.engine},
                     {"preset", m.subject.preset},
                     {"metric", m.metric},
                     {"value", m.value},

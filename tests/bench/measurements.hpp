@@ -9,11 +9,11 @@
 
 namespace sonard::bench {
 
-/// Which sonar in which world, seen by which backend, sampled how.
+/// Which sonar in which world, seen by which engine, sampled how.
 struct Subject {
   std::string scene;
-  std::string backend;  ///< `raster` or `ray`
-  std::string preset;   ///< name of a point (points.hpp)
+  std::string engine;  ///< `gpu` or `cpu`
+  std::string preset;  ///< name of a point (points.hpp)
 
   bool operator==(const Subject&) const = default;
 };
@@ -33,7 +33,7 @@ class Measurements {
   std::optional<double> find(const Subject& subject, const std::string& metric) const;
   const std::vector<Measurement>& all() const { return all_; }
 
-  /// A JSON array of {scene, backend, preset, metric, value, unit}.
+  /// A JSON array of {scene, engine, preset, metric, value, unit}.
   std::string to_json() const;
 
  private:

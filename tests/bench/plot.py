@@ -12,36 +12,36 @@ import re
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
+import matplotlib.pyplot as plt  # noqa: E402  (after the choice of engine)
 
 from bench_results import Results, pareto  # noqa: E402
 
-COLOURS = {"ray": "#0b6fb8", "raster": "#c2570c"}  # told apart by colour-blind readers too
+COLOURS = {"cpu": "#0b6fb8", "gpu": "#c2570c"}  # told apart by colour-blind readers too
 PRESETS = {"fast": "v", "default": "s", "reference": "D"}
 SEABED = ["plane", "flat100k", "swell100k", "ripple100k", "swell1m", "docking"]
 SCANNING = ["msis_swell", "msis_ripple"]
 SIZES = {"triangles": "triangles", "beams": "beams", "bins": "range lines", "cores": "cores"}
 
 
-def draw_backend(axes, results, scene, backend):
-    colour = COLOURS[backend]
-    grid = results.curve(scene, backend, "grid_")
+def draw_engine(axes, results, scene, engine):
+    colour = COLOURS[engine]
+    grid = results.curve(scene, engine, "grid_")
     axes.plot([p[0] for p in grid], [p[1] for p in grid], "o", color=colour, ms=3.5, alpha=0.55,
-              label=f"{backend}: fixed grids")
-    points = results.curve(scene, backend, "point_")
+              label=f"{engine}: fixed grids")
+    points = results.curve(scene, engine, "point_")
     axes.plot([p[0] for p in points], [p[1] for p in points], "x--", color=colour, ms=5, lw=0.8, alpha=0.55,
-              label=f"{backend}: points, no footprint")
-    presets = [p for name in PRESETS for p in results.curve(scene, backend, name) if p[2] == name]
+              label=f"{engine}: points, no footprint")
+    presets = [p for name in PRESETS for p in results.curve(scene, engine, name) if p[2] == name]
     for x, y, name in presets:
         axes.plot(x, y, PRESETS[name], color=colour, ms=8, mec="black", mew=0.6)
         axes.annotate(name, (x, y), textcoords="offset points", xytext=(6, 5), fontsize=7, color=colour)
     front = pareto(grid + presets)
-    axes.plot([p[0] for p in front], [p[1] for p in front], "-", color=colour, lw=1.4, label=f"{backend}: best")
+    axes.plot([p[0] for p in front], [p[1] for p in front], "-", color=colour, lw=1.4, label=f"{engine}: best")
 
 
 def draw_scene(axes, results, scene):
-    for backend in results.backends():
-        draw_backend(axes, results, scene, backend)
+    for engine in results.engines():
+        draw_engine(axes, results, scene, engine)
     for bound in (0.05, 0.01):
         axes.axhline(bound, color="grey", lw=0.6, ls=":")
     axes.set(xscale="log", yscale="log", title=scene)
@@ -50,7 +50,7 @@ def draw_scene(axes, results, scene):
 
 def draw_fronts(results, scenes, path):
     """One panel a scene that has a reference; nothing where none has."""
-    scenes = [s for s in scenes if any("bin_rms" in v for b in results.backends() for v in results.of(s, b).values())]
+    scenes = [s for s in scenes if any("bin_rms" in v for b in results.engines() for v in results.of(s, b).values())]
     if not scenes:
         return
     columns = min(3, len(scenes))
@@ -81,12 +81,12 @@ def draw_growth(results, path):
         return
     figure, panels = plt.subplots(1, len(families), figsize=(3.6 * len(families), 3.4), squeeze=False)
     for axes, (what, members) in zip(panels.flat, families.items()):
-        for backend in results.backends():
+        for engine in results.engines():
             for preset, marker in PRESETS.items():
-                line = [(x, results.points[s, backend, preset]["ping_ms"]) for x, s in sorted(members)
-                        if "ping_ms" in results.points.get((s, backend, preset), {})]
-                axes.plot([p[0] for p in line], [p[1] for p in line], marker + "-", color=COLOURS[backend], ms=4,
-                          lw=1, label=f"{backend} {preset}" if line else None)
+                line = [(x, results.points[s, engine, preset]["ping_ms"]) for x, s in sorted(members)
+                        if "ping_ms" in results.points.get((s, engine, preset), {})]
+                axes.plot([p[0] for p in line], [p[1] for p in line], marker + "-", color=COLOURS[engine], ms=4,
+                          lw=1, label=f"{engine} {preset}" if line else None)
         axes.set(xscale="log", yscale="log", xlabel=SIZES.get(what, what))
         if what == "cores":  # too few for a logarithmic axis to label
             axes.set(xscale="linear", xticks=[x for x, _ in sorted(members)])

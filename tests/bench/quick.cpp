@@ -9,8 +9,8 @@ constexpr Repetition some{7, 201, 0.2};
 constexpr Repetition many{50, 1000, 0.3};  // pings of some ten microseconds
 constexpr Repetition few{2, 3, 0.3};
 
-/// `reference` takes long and has no target: one scene shows what it costs. The targets are those of `ray`;
-/// `raster` is there for comparison, where a ping of it takes less than a second.
+/// `reference` takes long and has no target: one scene shows what it costs. The targets are those of `cpu`;
+/// `gpu` is there for comparison, where a ping of it takes less than a second.
 Plan presets(const std::string& scene, const Repetition& repetition) {
   Plan plan;
   for (const Point& point : preset_points()) {
@@ -18,10 +18,10 @@ Plan presets(const std::string& scene, const Repetition& repetition) {
     if (reference && scene != "flat100k") {
       continue;
     }
-    plan.points.push_back({point, reference ? few : repetition, render::Backend::ray});
+    plan.points.push_back({point, reference ? few : repetition, render::EngineKind::cpu});
     const bool slow = point.name != "fast" && (scene == "ripple100k" || scene == "swell1m");
     if (!slow) {
-      plan.points.push_back({point, few, render::Backend::raster});
+      plan.points.push_back({point, few, render::EngineKind::gpu});
     }
   }
   return plan;
@@ -30,7 +30,7 @@ Plan presets(const std::string& scene, const Repetition& repetition) {
 /// Point binning at growing numbers of samples.
 void add_point_ladder(Plan& plan) {
   for (const auto& [columns, rows] : {std::pair{4, 512}, {8, 1024}, {16, 2048}}) {
-    plan.points.push_back({point_binning(columns, rows), few, render::Backend::ray});
+    plan.points.push_back({point_binning(columns, rows), few, render::EngineKind::cpu});
   }
 }
 

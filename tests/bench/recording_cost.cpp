@@ -63,7 +63,7 @@ struct Ping {
 };
 Ping make_ping() {
   const test::Scene scene = test::make_scene("plane");
-  render::SonarRenderer renderer(scene.world, {render::Backend::ray});
+  render::SonarRenderer renderer(scene.world, {render::EngineKind::cpu});
   render::PingSamples samples = renderer.render_ping(scene.request());
   gemini::PingHead head;
   head.header.sonar_id = 513;
@@ -165,7 +165,7 @@ Timing time_writing(const Ping& ping, const std::string& formats) {
 void measure_recording(Measurements& results) {
   const Ping ping = make_ping();
   const auto add = [&](const std::string& formats, const std::string& metric, const Timing& timing) {
-    const Subject subject{scene_name, "ray", formats};
+    const Subject subject{scene_name, "cpu", formats};
     results.add(subject, metric, timing.median(), "ms");
     results.add(subject, metric + "_p95", timing.p95(), "ms");
   };
@@ -177,7 +177,7 @@ void measure_recording(Measurements& results) {
 
 std::string describe_recording(const Measurements& results) {
   const auto ms = [&](const std::string& formats, const std::string& metric) {
-    return results.find({scene_name, "ray", formats}, metric).value_or(0.0);
+    return results.find({scene_name, "cpu", formats}, metric).value_or(0.0);
   };
   const std::string serving = "recording_serving_ms";
   const std::string writing = "recording_writing_ms";

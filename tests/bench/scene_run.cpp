@@ -42,7 +42,7 @@ SceneRun::SceneRun(const test::Scene& scene, const render::RendererOptions& opti
     : scene_(scene), results_(results), renderer_(scene.world, options), bodies_drift_(bodies_drift) {}
 
 Subject SceneRun::subject(const Point& point) const {
-  return {scene_.name, std::string(render::name_of(renderer_.backend())), point.name};
+  return {scene_.name, std::string(render::name_of(renderer_.engine())), point.name};
 }
 
 render::PingRequest SceneRun::request(const Point& point) const {

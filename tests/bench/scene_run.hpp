@@ -16,13 +16,13 @@
 namespace sonard::bench {
 
 /// Holds the renderer of a scene. Everything it finds is added to `results`, named after the scene, the
-/// backend and the point. Timed pings stand a millimetre apart, so that none can reuse another; the error is
+/// engine and the point. Timed pings stand a millimetre apart, so that none can reuse another; the error is
 /// that of the scene's own pose.
 class SceneRun {
  public:
   /// @param bodies_drift all bodies of the world but the first move before every timed ping, which is part of
   /// its time.
-  /// @throws render::RendererError when the backend cannot be had.
+  /// @throws render::RendererError when the engine cannot be had.
   SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results,
            bool bodies_drift = false);
 
@@ -40,8 +40,8 @@ class SceneRun {
   /// in 1, 2 and 3 fine beams to a beam, as `sampling_fine_beams_N_ms`.
   void measure_reception(const Point& point, const Repetition& repetition);
 
-  render::Backend backend() const { return renderer_.backend(); }
-  const std::string& backend_description() const { return renderer_.backend_description(); }
+  render::EngineKind engine() const { return renderer_.engine(); }
+  const std::string& engine_description() const { return renderer_.engine_description(); }
 
  private:
   struct Stages {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sonard_side_by_side SCENE FILE.png: one scene by both backends and the oracle, and what they differ by.
+// sonard_side_by_side SCENE FILE.png: one scene by both engines and the oracle, and what they differ by.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -80,9 +80,9 @@ cv::Mat differences(const render::EchoImage& image, const render::EchoImage& tru
   return polar;
 }
 
-render::EchoImage render_with(const test::Scene& scene, render::Backend backend) {
+render::EchoImage render_with(const test::Scene& scene, render::EngineKind engine) {
   render::RendererOptions options;
-  options.backend = backend;
+  options.engine = engine;
   render::SonarRenderer renderer(scene.world, options);
   return renderer.render_echo(scene.request());
 }
@@ -94,23 +94,23 @@ void draw(const std::string& name, const std::string& references, const std::str
     throw std::runtime_error(name + ": there is no reference image");
   }
   const render::EchoImage& truth = reference->image;
-  const render::EchoImage ray = render_with(scene, render::Backend::ray);
-  const render::EchoImage raster = render_with(scene, render::Backend::raster);
+  const render::EchoImage cpu = render_with(scene, render::EngineKind::cpu);
+  const render::EchoImage gpu = render_with(scene, render::EngineKind::gpu);
   const picture::FanImage fan(shape_of(scene), {radius_px, true});
   const double strongest = strongest_level(truth);
-  const auto caption = [&](const char* backend, const render::EchoImage& image) {
+  const auto caption = [&](const char* engine, const render::EchoImage& image) {
     const ImageError error = compare_images(image, truth).value();
     return fmt::format(
-        "|{} - oracle| / oracle, white: {:.0f} %. RMS {:.2f} %, without the worst 1 %: {:.2f} %", backend,
+        "|{} - oracle| / oracle, white: {:.0f} %. RMS {:.2f} %, without the worst 1 %: {:.2f} %", engine,
         100 * shown_difference, 100 * error.bin_rms, 100 * error.bin_rms_trim);
   };
   std::vector<cv::Mat> rows(3);
-  cv::hconcat(fan.draw(levels(ray, strongest), "backend ray, preset default"),
-              fan.draw(levels(raster, strongest), "backend raster, preset default"), rows[0]);
-  cv::hconcat(fan.draw(differences(ray, truth), caption("ray", ray)),
-              fan.draw(differences(raster, truth), caption("raster", raster)), rows[1]);
+  cv::hconcat(fan.draw(levels(cpu, strongest), "engine cpu, preset default"),
+              fan.draw(levels(gpu, strongest), "engine gpu, preset default"), rows[0]);
+  cv::hconcat(fan.draw(differences(cpu, truth), caption("cpu", cpu)),
+              fan.draw(differences(gpu, truth), caption("gpu", gpu)), rows[1]);
   cv::hconcat(fan.draw(levels(truth, strongest), fmt::format("oracle, {:.0f} dB, r^3 taken out", shown_db)),
-              fan.draw(differences(raster, ray), "|raster - ray| / ray"), rows[2]);
+              fan.draw(differences(gpu, cpu), "|gpu - cpu| / cpu"), rows[2]);
   cv::Mat all;
   cv::vconcat(rows, all);
   if (!cv::imwrite(file, all)) {
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
   std::string scene;
   std::string file;
   std::string references = SONARD_SOURCE_DIR "/tests/data/oracle";
-  CLI::App app("Draws a scene by both backends and the oracle, and what they differ by.");
+  CLI::App app("Draws a scene by both engines and the oracle, and what they differ by.");
   app.add_option("scene", scene, "Name of a scene with a reference image")->required();
   app.add_option("file", file, "PNG to write")->required();
   app.add_option("--references", references, "Folder of the oracle's images")->capture_default_str();

@@ -114,7 +114,7 @@ class Sweep {
       const std::string name = drift ? "bodies200_moving" : "bodies200_still";
       Plan plan;
       plan.points.push_back({preset_points().front(), several});
-      plan.points.push_back({default_point(), several, render::Backend::ray});
+      plan.points.push_back({default_point(), several, render::EngineKind::cpu});
       plan.points.push_back({grid_point(2, 256), several});
       plan.bodies_drift = drift;
       run(name, plan, [&] { return test::make_bodies_scene(name); });

@@ -26,9 +26,9 @@ def row(preset, values):
             number(get("beam_total_worst"), 100), number(get("peak_memory")))
 
 
-def order(results, scene, backend, start):
+def order(results, scene, engine, start):
     """p of error ~ samples^-p by least squares over the finer half of a ladder."""
-    curve = results.curve(scene, backend, start, x="samples")
+    curve = results.curve(scene, engine, start, x="samples")
     curve = curve[len(curve) // 2:]
     if len(curve) < 2:
         return None
@@ -38,18 +38,18 @@ def order(results, scene, backend, start):
     return -sum((x - x0) * (y - y0) for x, y in zip(xs, ys)) / sum((x - x0) ** 2 for x in xs)
 
 
-def time_to(results, scene, backend, error):
+def time_to(results, scene, engine, error):
     """The fastest point that keeps the error."""
-    good = [(v["ping_ms"], p) for p, v in results.of(scene, backend).items() if v.get("bin_rms", math.inf) <= error]
+    good = [(v["ping_ms"], p) for p, v in results.of(scene, engine).items() if v.get("bin_rms", math.inf) <= error]
     return min(good, default=None)
 
 
 def print_scene(results, scene):
-    for backend in results.backends():
-        points = results.of(scene, backend)
+    for engine in results.engines():
+        points = results.of(scene, engine)
         if not points:
             continue
-        print(f"\n### {scene}, {backend}\n")
+        print(f"\n### {scene}, {engine}\n")
         print("| " + " | ".join(HEADER) + " |")
         print("|" + "---|" * len(HEADER))
         for preset, values in points.items():
@@ -57,11 +57,11 @@ def print_scene(results, scene):
                 print("| " + " | ".join(row(preset, values)) + " |")
         notes = []
         for error in (0.05, 0.01):
-            best = time_to(results, scene, backend, error)
+            best = time_to(results, scene, engine, error)
             if best:
                 notes.append(f"{error:.0%} in {number(best[0])} ms ({best[1]})")
         for name, start in (("grids", "grid_"), ("points", "point_")):
-            p = order(results, scene, backend, start)
+            p = order(results, scene, engine, start)
             if p is not None:
                 notes.append(f"error of {name} ~ samples^-{p:.2f}")
         if notes:

@@ -17,8 +17,8 @@ constexpr double fast_rms = 0.05;
 
 class Rows {
  public:
-  Rows(const Measurements& measurements, std::string backend)
-      : measurements_(measurements), backend_(std::move(backend)) {}
+  Rows(const Measurements& measurements, std::string engine)
+      : measurements_(measurements), engine_(std::move(engine)) {}
 
   /// A ping of `scene` within `must` ms and `rms`.
   void ping(const std::string& preset, const std::string& scene, double must, double aim, double rms) {
@@ -47,7 +47,7 @@ class Rows {
 
   std::optional<double> find(const std::string& scene, const std::string& preset,
                              const std::string& metric) const {
-    return measurements_.find({scene, backend_, preset}, metric);
+    return measurements_.find({scene, engine_, preset}, metric);
   }
 
   /// The largest of a metric over the scenes with objects, at the default preset.
@@ -69,7 +69,7 @@ class Rows {
   std::optional<double> unrepeatable() const {
     std::optional<double> count;
     for (const Measurement& m : measurements_.all()) {
-      if (m.metric == "repeatable" && m.subject.backend == backend_) {
+      if (m.metric == "repeatable" && m.subject.engine == engine_) {
         count = count.value_or(0) + (m.value == 1 ? 0 : 1);
       }
     }
@@ -89,7 +89,7 @@ class Rows {
                    also("hole_fraction_60db")};
   }
 
-  /// Of whichever backend measured it: points are the same in both.
+  /// Of whichever engine measured it: points are the same in both.
   std::vector<SamplesAndError> point_curve(const std::string& scene) const {
     std::vector<SamplesAndError> curve;
     for (const Measurement& m : measurements_.all()) {
@@ -104,7 +104,7 @@ class Rows {
   }
 
   const Measurements& measurements_;
-  std::string backend_;
+  std::string engine_;
 };
 
 std::string_view words(Verdict verdict) {
@@ -163,8 +163,8 @@ bool keeps(const Quality& quality, double rms_bound) {
          quality.hole_fraction == 0 && quality.hole_fraction_60db <= faint_hole_bound;
 }
 
-std::vector<TargetRow> target_rows(const Measurements& measurements, const std::string& backend) {
-  Rows table(measurements, backend);
+std::vector<TargetRow> target_rows(const Measurements& measurements, const std::string& engine) {
+  Rows table(measurements, engine);
   table.ping("default", "flat100k", 4, 1.5, default_rms);
   table.ping("default", "swell100k", 15, 6, default_rms);
   table.ping("default", "ripple100k", 60, 20, default_rms);

@@ -42,8 +42,8 @@ struct TargetRow {
 /// maximum and at most .1 % above -60 dB?
 bool keeps(const Quality& quality, double rms_bound);
 
-/// All targets, as `backend` meets them.
-std::vector<TargetRow> target_rows(const Measurements& measurements, const std::string& backend);
+/// All targets, as `engine` meets them.
+std::vector<TargetRow> target_rows(const Measurements& measurements, const std::string& engine);
 
 /// The rows as a table of plain text.
 std::string format_targets(const std::vector<TargetRow>& rows);

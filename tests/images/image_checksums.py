@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints a checksum of every image that `sonard render` makes of the scenes of configs/, on both backends.
+"""Prints a checksum of every image that `sonard render` makes of the scenes of configs/, on both engines.
 
 A change that means to leave images alone prints the same before and after, on one machine:
 
@@ -56,12 +56,12 @@ def shortened(path, seconds):
     return "\n".join([title] + [row for row in rows if float(row.split(",")[0]) - start <= seconds]) + "\n"
 
 
-def render(sonard, scene, backend, folder):
+def render(sonard, scene, engine, folder):
     name, trajectory, head, seconds, options = scene
     with open(os.path.join(CONFIGS, name + ".yaml"), encoding="utf-8") as file:
         config = file.read()
     with open(os.path.join(folder, "config.yaml"), "w", encoding="utf-8") as file:
-        file.write(f"backend: {backend}\n" + without_sections(config, ("backend", "recording")))
+        file.write(f"engine: {engine}\n" + without_sections(config, ("engine", "recording")))
     with open(os.path.join(folder, "way.csv"), "w", encoding="utf-8") as file:
         file.write(shortened(os.path.join(CONFIGS, "trajectories", trajectory + ".csv"), seconds))
     for shared in ("worlds", "trajectories"):
@@ -83,13 +83,13 @@ def render(sonard, scene, backend, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("sonard")
-    parser.add_argument("--backend", action="append", help="ray or raster; both when left out")
+    parser.add_argument("--engine", action="append", help="cpu or gpu; both when left out")
     arguments = parser.parse_args()
     for scene in SCENES:
-        for backend in arguments.backend or ("ray", "raster"):
+        for engine in arguments.engine or ("cpu", "gpu"):
             with tempfile.TemporaryDirectory(prefix="sonard-images-") as folder:
-                for file_name, checksum in render(arguments.sonard, scene, backend, folder):
-                    print(scene[0], backend, *scene[4], file_name, checksum, flush=True)
+                for file_name, checksum in render(arguments.sonard, scene, engine, folder):
+                    print(scene[0], engine, *scene[4], file_name, checksum, flush=True)
 
 
 if __name__ == "__main__":

@@ -49,9 +49,9 @@ cv::Mat draw_sweep(render::SonarRenderer& renderer, const View& view, const pict
 
 }  // namespace
 
-cv::Mat draw_view(const View& view, render::Backend backend, int radius_px, const std::string& caption) {
+cv::Mat draw_view(const View& view, render::EngineKind engine, int radius_px, const std::string& caption) {
   render::RendererOptions options;
-  options.backend = backend;
+  options.engine = engine;
   options.ray_curvature_per_m = view.ray_curvature_per_m;
   render::SonarRenderer renderer(view.world, options);
   const picture::FanStyle style{radius_px, true};

@@ -10,13 +10,13 @@
 
 namespace sonard::pictures {
 
-void draw_halves(const std::vector<Halves>& all, const std::filesystem::path& folder, render::Backend backend,
-                 int radius_px) {
+void draw_halves(const std::vector<Halves>& all, const std::filesystem::path& folder,
+                 render::EngineKind engine, int radius_px) {
   std::filesystem::create_directories(folder);
   for (const Halves& halves : all) {
     cv::Mat both;
-    cv::hconcat(draw_view(halves.left, backend, radius_px, halves.left_caption),
-                draw_view(halves.right, backend, radius_px, halves.right_caption), both);
+    cv::hconcat(draw_view(halves.left, engine, radius_px, halves.left_caption),
+                draw_view(halves.right, engine, radius_px, halves.right_caption), both);
     const std::filesystem::path file = folder / (halves.name + ".png");
     write_png(file, both);
     fmt::print("{} {} kB\n", file.string(), (std::filesystem::file_size(file) + 999) / 1000);

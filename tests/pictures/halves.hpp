@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/backend.hpp"
+#include "renderer/renderer_options.hpp"
 #include "tests/pictures/view.hpp"
 
 namespace sonard::pictures {
@@ -23,7 +23,7 @@ struct Halves {
 /// made before, as reading worlds and drawing do not mix (configured_view()).
 /// @param radius_px from the sonar to the full range
 /// @throws std::runtime_error naming a file that cannot be written; what draw_view() throws
-void draw_halves(const std::vector<Halves>& all, const std::filesystem::path& folder, render::Backend backend,
-                 int radius_px);
+void draw_halves(const std::vector<Halves>& all, const std::filesystem::path& folder,
+                 render::EngineKind engine, int radius_px);
 
 }  // namespace sonard::pictures

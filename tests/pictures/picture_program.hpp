@@ -19,7 +19,7 @@ struct PictureProgram {
   std::function<std::vector<Halves>(const std::vector<std::string>& names)> halves;
 };
 
-/// NAMES, --out, --backend, --radius. @return the exit status.
+/// NAMES, --out, --engine, --radius. @return the exit status.
 int run_picture_program(const PictureProgram& program, int argc, const char* const* argv);
 
 }  // namespace sonard::pictures

@@ -17,7 +17,7 @@ WORLD = os.path.join(SOURCE, "tests", "data", "system", "two_walls.sdf")
 DAEMON = """
 world:
   file: {world}
-backend: ray
+engine: cpu
 poses:
 {poses}
   extrapolation_limit_ms: 300

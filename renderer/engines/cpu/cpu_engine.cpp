@@ -63,7 +63,7 @@ CpuEngine::CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOpt
       bendable_(bendable_index(index.world(), workers, options.ray_curvature_per_m)),
       slices_(bendable_ ? bendable_->world() : index.world(), workers, slice_switches(options)),
       rays_(bendable_ ? *bendable_ : index, workers),
-      description_("ray, " + index.description()) {}
+      description_("cpu, " + index.description()) {}
 
 void CpuEngine::set_body_pose(std::size_t body, const Pose& T_world_body) {
   slices_.set_body_pose(body, T_world_body);

@@ -6,11 +6,11 @@
 #include <span>
 #include <string>
 
-#include "renderer/backend.hpp"
 #include "renderer/binning/binning.hpp"
 #include "renderer/engine.hpp"
 #include "renderer/engines/cpu/ray_sampler.hpp"
 #include "renderer/engines/cpu/slice_sampler.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/sample_grid/grid_cache.hpp"
 #include "renderer/spatial_index/spatial_index.hpp"
 #include "renderer/worker_pool.hpp"

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "renderer/backend.hpp"
 #include "renderer/binning/binning.hpp"
 #include "renderer/engine.hpp"
 #include "renderer/engines/gpu/beam_refinement.hpp"
 #include "renderer/engines/gpu/gpu_binner.hpp"
 #include "renderer/engines/gpu/raster_sampler.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/sample_grid/grid_cache.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/worker_pool.hpp"

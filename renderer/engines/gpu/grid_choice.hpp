@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How finely backend `raster` samples each beam for an error preset (docs/accuracy.md).
+// How finely engine `gpu` samples each beam for an error preset (docs/accuracy.md).
 #pragma once
 
 #include <vector>

@@ -156,7 +156,7 @@ struct RasterSampler::Impl {
     osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
     context->realize();
     make_current();
-    description = "raster, " + context->describe();
+    description = "gpu, " + context->describe();
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());

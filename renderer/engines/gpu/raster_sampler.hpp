@@ -39,7 +39,7 @@ class RasterSampler {
   void set_part_meshes(std::span<const PartMesh> changes);
   void set_refraction(double bend_per_m);
 
-  /// "raster, vendor / renderer / version"
+  /// "gpu, vendor / renderer / version"
   const std::string& description() const;
 
   /// Like sample(), but the samples stay on the GPU.

@@ -70,7 +70,7 @@ ImageAccuracy measure(const render::EchoImage& image, const render::EchoImage& t
 }
 
 std::string name_of(const AccuracyCase& one) {
-  return std::string(render::name_of(one.backend)) +
+  return std::string(render::name_of(one.engine)) +
          (one.preset == render::Sampling::Preset::fast ? "_fast" : "_default");
 }
 
@@ -80,8 +80,8 @@ AccuracyLimits AccuracyTest::limits() const {
 }
 
 void AccuracyTest::SetUp() {
-  if (GetParam().backend == render::Backend::raster) {
-    require_raster();
+  if (GetParam().engine == render::EngineKind::gpu) {
+    require_gl();
   }
 }
 

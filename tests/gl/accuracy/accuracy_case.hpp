@@ -8,7 +8,7 @@
 
 #include "renderer/ping.hpp"
 #include "tests/scenes/scenes.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 
@@ -35,11 +35,11 @@ struct ImageAccuracy {
 ImageAccuracy measure(const render::EchoImage& image, const render::EchoImage& truth);
 
 struct AccuracyCase {
-  render::Backend backend;
+  render::EngineKind engine;
   render::Sampling::Preset preset;
 };
 
-/// Prints as `ray_default`: also the name in the list of tests.
+/// Prints as `cpu_default`: also the name in the list of tests.
 std::string name_of(const AccuracyCase& one);
 
 class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
@@ -50,7 +50,7 @@ class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
   /// What is asserted: the targets, but for known misses (known_misses.hpp).
   AccuracyLimits limits() const;
 
-  render::RendererOptions options() const { return {GetParam().backend, 0}; }
+  render::RendererOptions options() const { return {GetParam().engine, 0}; }
   /// The scene's image at the preset.
   render::EchoImage render(const Scene& scene) const;
 
@@ -61,10 +61,10 @@ class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
 
 inline auto all_cases() {
   using Preset = render::Sampling::Preset;
-  return ::testing::Values(AccuracyCase{render::Backend::ray, Preset::fast},
-                           AccuracyCase{render::Backend::ray, Preset::normal},
-                           AccuracyCase{render::Backend::raster, Preset::fast},
-                           AccuracyCase{render::Backend::raster, Preset::normal});
+  return ::testing::Values(AccuracyCase{render::EngineKind::cpu, Preset::fast},
+                           AccuracyCase{render::EngineKind::cpu, Preset::normal},
+                           AccuracyCase{render::EngineKind::gpu, Preset::fast},
+                           AccuracyCase{render::EngineKind::gpu, Preset::normal});
 }
 inline std::string case_name(const ::testing::TestParamInfo<AccuracyCase>& info) {
   return name_of(info.param);

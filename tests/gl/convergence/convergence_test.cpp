@@ -8,7 +8,7 @@
 #include "tests/bench/image_error.hpp"
 #include "tests/bench/plane_quadrature.hpp"
 #include "tests/scenes/scenes.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 namespace {
@@ -36,7 +36,7 @@ render::EchoImage truth_of(const Scene& scene) {
   return image;
 }
 
-class Convergence : public BackendTest {
+class Convergence : public EngineTest {
  protected:
   /// Pooled error of a scene at several bearings, for each number of rows.
   static std::vector<double> errors(const Scene& scene, const std::vector<double>& bearings,
@@ -84,7 +84,7 @@ class Convergence : public BackendTest {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Backends, Convergence, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Convergence, all_engines(), engine_name);
 
 // On a wall at 10 m a row of 1/64 of the fan is 9 mm deep at its edge: about a bin, and less above.
 TEST_P(Convergence, T2_Wall) {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/engines/gpu/gpu_binner.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -23,7 +23,7 @@ class BeamEstimateTest : public ::testing::Test {
  protected:
   static constexpr int columns_per_beam = 8;
 
-  void SetUp() override { test::require_raster(); }
+  void SetUp() override { test::require_gl(); }
 
   BeamEstimateTest() {
     for (int i = 0; i < 4; ++i) {

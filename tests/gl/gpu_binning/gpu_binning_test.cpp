@@ -14,7 +14,7 @@
 #include "renderer/engines/gpu/gpu_binner.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
 #include "tests/gl/gpu_binning/double_binning.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -60,7 +60,7 @@ double worst_difference(const std::vector<A>& truth, const std::vector<B>& image
 /// One rasteriser; what it draws is binned in all three ways.
 class GpuBinningTest : public ::testing::Test {
  protected:
-  void SetUp() override { test::require_raster(); }
+  void SetUp() override { test::require_gl(); }
 
   struct Case {
     std::string name;
@@ -74,7 +74,7 @@ class GpuBinningTest : public ::testing::Test {
     SurfaceModel surface{};
   };
 
-  static RendererOptions raster() { return {Backend::raster, 0}; }
+  static RendererOptions gpu() { return {EngineKind::gpu, 0}; }
 
   /// The numbers of the beams of a grid that has them all.
   static std::vector<int> all_beams(const SampleGrid& grid) {
@@ -259,7 +259,7 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
   request.settings.physical.absorption_db_per_m = 0;
   request.settings.sampling = Sampling::of_grid(1, 64, 64);
   const auto render = [&](double mu) {
-    SonarRenderer renderer(make_world({make_body("wall", wall(5), mu)}), raster());
+    SonarRenderer renderer(make_world({make_body("wall", wall(5), mu)}), gpu());
     const EchoImage image = renderer.render_echo(request);
     const PingStatistics statistics = renderer.last_statistics();
     EXPECT_GT(statistics.samples, 0U);
@@ -298,7 +298,7 @@ TEST_F(GpuBinningTest, LargeImagesHavePages) {
 /// Images of changing size and kind, one after the other: nothing of one is left in the next.
 TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
   const World world = make_world({make_body("bed", bed(4)), make_body("wall", wall(15))});
-  SonarRenderer one(world, raster());
+  SonarRenderer one(world, gpu());
   const auto expect_as_fresh = [&](int beams, int lines, Model model, bool turbid) {
     PingRequest request;
     request.T_world_sonar = looking({0, 0, 0}, 0, 15);
@@ -309,7 +309,7 @@ TEST_F(GpuBinningTest, LeavesNothingBehindInTheNextImage) {
     if (turbid) {
       request.settings.physical.volume_scattering_db = -60;
     }
-    SonarRenderer fresh(world, raster());
+    SonarRenderer fresh(world, gpu());
     EXPECT_EQ(one.render_echo(request).intensity, fresh.render_echo(request).intensity);
   };
   for (const int lines : {1000, 300, 1200, 300}) {
@@ -392,7 +392,7 @@ TEST_F(BeamEstimates, OfAPlaneAreSmallAndThoseOfTheCoarserGrid) {
 }
 
 TEST_F(GpuBinningTest, PassesTheSelfTest) {
-  EXPECT_LT(run_self_test(raster()), 0.05);
+  EXPECT_LT(run_self_test(gpu()), 0.05);
 }
 
 }  // namespace

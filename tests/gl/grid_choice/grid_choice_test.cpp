@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backend `raster` finds the grids that an error preset takes (docs/accuracy.md).
+// EngineKind `gpu` finds the grids that an error preset takes (docs/accuracy.md).
 #include "renderer/engines/gpu/grid_choice.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "tests/bench/image_error.hpp"
 #include "tests/bench/reference.hpp"
 #include "tests/scenes/scenes.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -253,11 +253,11 @@ TEST_F(BeamsToRefine, WhatIsAsFineAsItGetsIsLeftAsItIs) {
 
 class RasterPreset : public ::testing::Test {
  protected:
-  void SetUp() override { test::require_raster(); }
+  void SetUp() override { test::require_gl(); }
 
   static RendererOptions options() {
     RendererOptions options;
-    options.backend = Backend::raster;
+    options.engine = EngineKind::gpu;
     options.skip.turn_off(SkipRule::unchanged_scene);  // or a repeated ping would not be rendered
     return options;
   }

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 
@@ -24,20 +24,20 @@ inline render::PingRequest fan_request(int beams, double height_deg, double rang
   return request;
 }
 
-/// Ghosts are followed in cells that depend on the preset: each test runs with both, on both backends.
+/// Ghosts are followed in cells that depend on the preset: each test runs with both, on both engines.
 struct PathCase {
-  render::Backend backend;
+  render::EngineKind engine;
   render::Sampling::Preset preset;
 };
 
 class PathTest : public ::testing::TestWithParam<PathCase> {
  protected:
   void SetUp() override {
-    if (GetParam().backend == render::Backend::raster) {
-      require_raster();
+    if (GetParam().engine == render::EngineKind::gpu) {
+      require_gl();
     }
   }
-  static render::RendererOptions options(unsigned threads = 0) { return {GetParam().backend, threads}; }
+  static render::RendererOptions options(unsigned threads = 0) { return {GetParam().engine, threads}; }
   static render::PingRequest fan_request(int beams, double height_deg, double range_m, double step_m) {
     render::PingRequest request = test::fan_request(beams, height_deg, range_m, step_m);
     request.settings.sampling.preset = GetParam().preset;
@@ -46,14 +46,14 @@ class PathTest : public ::testing::TestWithParam<PathCase> {
 };
 
 inline auto path_cases() {
-  using render::Backend, render::Sampling;
+  using render::EngineKind, render::Sampling;
   return ::testing::Values(
-      PathCase{Backend::raster, Sampling::Preset::fast}, PathCase{Backend::raster, Sampling::Preset::normal},
-      PathCase{Backend::ray, Sampling::Preset::fast}, PathCase{Backend::ray, Sampling::Preset::normal});
+      PathCase{EngineKind::gpu, Sampling::Preset::fast}, PathCase{EngineKind::gpu, Sampling::Preset::normal},
+      PathCase{EngineKind::cpu, Sampling::Preset::fast}, PathCase{EngineKind::cpu, Sampling::Preset::normal});
 }
 
 inline std::string path_case_name(const ::testing::TestParamInfo<PathCase>& info) {
-  return std::string(render::name_of(info.param.backend)) +
+  return std::string(render::name_of(info.param.engine)) +
          (info.param.preset == render::Sampling::Preset::fast ? "_fast" : "_default");
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-class MultipathRule : public BackendTest {
+class MultipathRule : public EngineTest {
  protected:
   static RendererOptions without_the_rule() {
     RendererOptions off = options();
@@ -21,7 +21,7 @@ class MultipathRule : public BackendTest {
     return renderer.last_statistics().skipped.of(SkipRule::multipath);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Skipping, MultipathRule, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Skipping, MultipathRule, all_engines(), engine_name);
 
 /// A bed 5 m below the sonar and a post on it.
 World bed_and_post(double reflection, double rms_height_m) {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/pipeline/ping_motion.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -77,8 +77,8 @@ double azimuth_rad(const EchoImage& image, const PingRequest& request, double fr
   return weighted / sum;
 }
 
-using PingMotion = BackendTest;
-INSTANTIATE_TEST_SUITE_P(Propagation, PingMotion, all_backends(), backend_name);
+using PingMotion = EngineTest;
+INSTANTIATE_TEST_SUITE_P(Propagation, PingMotion, all_engines(), engine_name);
 
 // Turning to port, the beams find each post farther to starboard, the longer its echo was under way: by the
 // turn at the middle of its span, which for these four is that at their own range.
@@ -187,8 +187,8 @@ TEST_P(PingMotion, SameBytesForAnyNumberOfThreads) {
 }
 
 // SkipRule::motion_within_ping: on against off.
-using MotionRule = BackendTest;
-INSTANTIATE_TEST_SUITE_P(Skipping, MotionRule, all_backends(), backend_name);
+using MotionRule = EngineTest;
+INSTANTIATE_TEST_SUITE_P(Skipping, MotionRule, all_engines(), engine_name);
 
 TEST_P(MotionRule, SkipsTurnsOfLessThanHalfABeamWithinItsBound) {
   RendererOptions off_options = options();

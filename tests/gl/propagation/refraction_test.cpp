@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -63,7 +63,7 @@ int first_line(const EchoImage& image, int beam) {
   return line;
 }
 
-class Refraction : public BackendTest {
+class Refraction : public EngineTest {
  protected:
   static RendererOptions bent(double curvature = curvature_per_m) {
     RendererOptions with = options();
@@ -71,7 +71,7 @@ class Refraction : public BackendTest {
     return with;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Propagation, Refraction, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Propagation, Refraction, all_engines(), engine_name);
 
 TEST_P(Refraction, LowestRayMeetsTheBedWhereItsParabolaDoes) {
   SonarRenderer renderer(bed(), bent());
@@ -172,7 +172,7 @@ TEST_P(Refraction, ShadowOfAWallEndsWhereTheRayOverItsTopLands) {
               0.05);
   // The edge is where half of that is heard, to one line (docs/accuracy.md). Slices let up to 3 % be heard in
   // the four lines before it.
-  const float early = GetParam() == Backend::ray ? 0.03F : 1e-3F;
+  const float early = GetParam() == EngineKind::cpu ? 0.03F : 1e-3F;
   const int edge = static_cast<int>(end_m / 0.05);
   EXPECT_GT(image.at(10, edge + 1), 0.5F * behind);
   for (int line = static_cast<int>(base_m / 0.05) + 2; line < edge; ++line) {
@@ -182,7 +182,7 @@ TEST_P(Refraction, ShadowOfAWallEndsWhereTheRayOverItsTopLands) {
 
 // SkipRule::straight_rays: on against off.
 using StraightRays = Refraction;
-INSTANTIATE_TEST_SUITE_P(Skipping, StraightRays, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Skipping, StraightRays, all_engines(), engine_name);
 
 TEST_P(StraightRays, SkipsBendsOfLessThanAQuarterOfTheBeamWithinItsBound) {
   // k R = 0.25 theta3 at 100 m, less a little.

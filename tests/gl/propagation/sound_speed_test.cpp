@@ -12,7 +12,7 @@
 #include "server/devices/gemini/settings.hpp"
 #include "server/devices/micron/kind.hpp"
 #include "server/devices/micron/settings.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::server {
 namespace {
@@ -45,7 +45,7 @@ int first_line(const render::EchoImage& image, int beam) {
   return line;
 }
 
-class SoundSpeed : public BackendTest {
+class SoundSpeed : public EngineTest {
  protected:
   static render::EchoImage image_of(const render::World& world, render::SonarSettings settings) {
     settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
@@ -54,7 +54,7 @@ class SoundSpeed : public BackendTest {
     return renderer.render_echo({{}, settings});
   }
 };
-INSTANTIATE_TEST_SUITE_P(Propagation, SoundSpeed, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Propagation, SoundSpeed, all_engines(), engine_name);
 
 TEST_P(SoundSpeed, GeminiShowsAWallAtTheRatioOfTheSpeeds) {
   const render::World wall =

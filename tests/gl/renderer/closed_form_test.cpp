@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Echo energy against closed forms (docs/physics.md 3.2) at the lines the demo runs with: what accuracy_test
-// does not hold `raster` to, and fixed grids.
+// does not hold `gpu` to, and fixed grids.
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/backend_test.hpp"
 #include "tests/support/closed_forms.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::BackendTest;
+using test::EngineTest;
 using test::make_body;
 using test::make_quad;
 using test::make_world;
@@ -67,9 +67,9 @@ void expect_truth(const Comparison& comparison) {
   EXPECT_EQ(comparison.holes, 0);
 }
 
-class ClosedForm : public BackendTest {};
+class ClosedForm : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, ClosedForm, test::all_backends(), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, ClosedForm, test::all_engines(), test::engine_name);
 
 TEST_P(ClosedForm, T1_ObliqueSlope) {
   // A plane through (9, 0, 0) whose normal points away, to port and up.

@@ -4,12 +4,12 @@
 #include <numbers>
 #include <numeric>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::BackendTest;
+using test::EngineTest;
 using test::make_body;
 using test::make_quad;
 using test::make_sphere;
@@ -41,9 +41,9 @@ double beam_sum(const EchoImage& image, int from, int to) {
                          image.intensity.begin() + static_cast<std::ptrdiff_t>(to) * image.lines, 0.0);
 }
 
-class Image : public BackendTest {};
+class Image : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, Image, test::all_backends(), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Image, test::all_engines(), test::engine_name);
 
 TEST_P(Image, SelfTestPasses) {
   EXPECT_LT(run_self_test(options()), 0.02);

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::BackendTest;
+using test::EngineTest;
 using test::make_body;
 using test::make_quad;
 using test::make_world;
@@ -33,9 +33,9 @@ double sigmoid(double x) {
   return 1 / (1 + std::exp(-18 * (x - 2.0 / 3)));
 }
 
-class Paper : public BackendTest {};
+class Paper : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, Paper, test::all_backends(), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Paper, test::all_engines(), test::engine_name);
 
 // I_bin is the mean of S over the bin: S(rho D / r) for a plane, whatever the distance: no spreading, no
 // absorption.

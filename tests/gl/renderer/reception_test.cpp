@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What array, pulse and TVG make of simple targets, against closed forms, on all backends.
+// What array, pulse and TVG make of simple targets, against closed forms, on all engines.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/backend_test.hpp"
 #include "tests/support/closed_forms.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -21,14 +21,14 @@ using test::make_world;
 constexpr double pi = std::numbers::pi;
 constexpr double degree = pi / 180;
 
-class Reception : public test::BackendTest {
+class Reception : public test::EngineTest {
  protected:
   /// Slices find what is small by themselves; a grid has to be fine enough.
   static Sampling sampling_of_small_things() {
-    return GetParam() == Backend::ray ? Sampling{} : Sampling::of_grid(1, 1024, 512);
+    return GetParam() == EngineKind::cpu ? Sampling{} : Sampling::of_grid(1, 1024, 512);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, Reception, test::all_backends(), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Reception, test::all_engines(), test::engine_name);
 
 World ball_at(double range_m, double azimuth_rad, double radius_m) {
   World world = make_world({make_body("ball", make_sphere(static_cast<float>(radius_m), 32), 0.1)});
@@ -179,7 +179,7 @@ TEST_P(Reception, AStraightArrayMeasuresConeAngles) {
   request.settings.aperture.azimuth = Aperture::Azimuth::array;
   request.settings.physical.absorption_db_per_m = 0;
   request.settings.range = {120, 0.1, 0, false};
-  request.settings.sampling = GetParam() == Backend::ray ? Sampling{} : Sampling::of_grid(3, 512, 512);
+  request.settings.sampling = GetParam() == EngineKind::cpu ? Sampling{} : Sampling::of_grid(3, 512, 512);
   for (const double elevation : {15.0, -8.0}) {
     const double psi = 50 * degree;
     const double theta = elevation * degree;
@@ -208,7 +208,7 @@ TEST_P(Reception, ConesReachBeyondTheFan) {
   request.settings.aperture.bearing = Aperture::Bearing::conical;
   request.settings.physical.absorption_db_per_m = 0;
   request.settings.range = {120, 0.1, 0, false};
-  request.settings.sampling = GetParam() == Backend::ray ? Sampling{} : Sampling::of_grid(3, 512, 512);
+  request.settings.sampling = GetParam() == EngineKind::cpu ? Sampling{} : Sampling::of_grid(3, 512, 512);
   const double psi = 60.6 * degree;
   const double theta = 9 * degree;
   World world = ball_at(10, 0, 0.04);
@@ -302,7 +302,7 @@ TEST_P(Reception, Tvg40KeepsTheLevelOfAPoint) {
   // TS of a small Lambert ball: 10 log10(2/3 pi a^2 mu).
   for (const double level : levels_db) {
     EXPECT_NEAR(level, levels_db[2], 0.1);
-    EXPECT_NEAR(level, 10 * std::log10(2.0 / 3 * pi * 0.1), GetParam() == Backend::ray ? 0.1 : 0.5)
+    EXPECT_NEAR(level, 10 * std::log10(2.0 / 3 * pi * 0.1), GetParam() == EngineKind::cpu ? 0.1 : 0.5)
         << "of the ball, the grid hits some pixels only";
   }
 }

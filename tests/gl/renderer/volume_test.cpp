@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
-using test::BackendTest;
+using test::EngineTest;
 using test::make_body;
 using test::make_quad;
 using test::make_world;
@@ -49,9 +49,9 @@ void expect_level(const EchoImage& image, int beam, int line, double expected) {
   EXPECT_NEAR(static_cast<double>(image.at(beam, line)) / expected, 1, 2e-3) << beam << ' ' << line;
 }
 
-class VolumeReverberation : public BackendTest {};
+class VolumeReverberation : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, VolumeReverberation, test::all_backends(), test::backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, VolumeReverberation, test::all_engines(), test::engine_name);
 
 TEST_P(VolumeReverberation, FillsEmptyWaterByItsClosedForm) {
   SonarRenderer renderer(World{}, options());

@@ -7,17 +7,17 @@
 #include <numbers>
 
 #include "tests/gl/scenes_of_the_paper/scene_echo.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-class FanScenes : public BackendTest {};
-INSTANTIATE_TEST_SUITE_P(Backends, FanScenes, all_backends(), backend_name);
+class FanScenes : public EngineTest {};
+INSTANTIATE_TEST_SUITE_P(Engines, FanScenes, all_engines(), engine_name);
 
-constexpr render::RendererOptions on_ray{render::Backend::ray};
+constexpr render::RendererOptions on_cpu{render::EngineKind::cpu};
 
 // The manifold: from (0, -11.9) and 5.5 m above its level bed, 1.8 m high, its back 13.3 m ahead.
 // docs/physics.md T7: shadow on (r_base, r_top h / (h - H)), both of the back.
@@ -42,7 +42,7 @@ TEST_P(FanScenes, ShadowBehindTheManifold) {
 }
 
 TEST(FanScenesOnRay, FrontalFaceOfTheManifold) {
-  const SceneEcho scene("manifold", on_ray);
+  const SceneEcho scene("manifold", on_cpu);
   const double bed = scene.median(scene.beam_at(30 * degree), 12.0, 12.6);
   for (double bearing = -12; bearing <= 12; bearing += 1) {
     const int beam = scene.beam_at(bearing * degree);
@@ -58,7 +58,7 @@ TEST(FanScenesOnRay, FrontalFaceOfTheManifold) {
 }
 
 TEST(FanScenesOnRay, FlowlinesOfTheManifoldGoOn) {
-  const SceneEcho scene("manifold", on_ray);
+  const SceneEcho scene("manifold", on_cpu);
   // Along y = 0 between the ends of the cover and x = +-8, their crowns at 4.6 to 5.6 m below the sonar.
   for (const double side : {-1.0, 1.0}) {
     double before_m = 0;
@@ -117,7 +117,7 @@ TEST_P(FanScenes, PipelineBeforeTheDockingStationGoesOn) {
 }
 
 TEST(FanScenesOnRay, DockingStationIsBrighterThanTheBedAndCastsAShadow) {
-  const SceneEcho scene("docking_station", on_ray);
+  const SceneEcho scene("docking_station", on_cpu);
   // Base beam of the south side: y = 0.6 - 1.35 - 0.10, z = -30.044 + 0.32 +- 0.11, x from -1.5 to 1.5.
   for (double x = -1.4; x <= 1.4; x += 0.4) {
     const double heading = std::atan2(-0.85 + 11.913, x + 2.136);
@@ -134,7 +134,7 @@ TEST(FanScenesOnRay, DockingStationIsBrighterThanTheBedAndCastsAShadow) {
 // The SSIV: from 13.5 (cos -70, sin -70) and z = -37.7, heading 110 degrees. Its bed is at -42.249; the long
 // member of its base ring, radius 0.17, runs along y = -2.5 at 0.22 above the bed.
 TEST(FanScenesOnRay, FrontalFaceOfTheValve) {
-  const SceneEcho scene("ssiv", on_ray);
+  const SceneEcho scene("ssiv", on_cpu);
   const double sonar_x = 13.5 * std::cos(-70 * degree);
   const double sonar_y = 13.5 * std::sin(-70 * degree);
   const double below = -37.7 + 42.249 - 0.22;
@@ -149,7 +149,7 @@ TEST(FanScenesOnRay, FrontalFaceOfTheValve) {
 }
 
 TEST(FanScenesOnRay, ShadowOfTheValve) {
-  const SceneEcho scene("ssiv", on_ray);
+  const SceneEcho scene("ssiv", on_cpu);
   // Its roof, 3.1 m high, hides the bed far beyond the range: what lies behind its far side, 3.6 m from the
   // middle at most, is heard through gaps only.
   const double beside = scene.energy(scene.beam_at(-29 * degree), 17.5, 19.5);

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "renderer/backend.hpp"
 #include "renderer/ping.hpp"
+#include "renderer/renderer_options.hpp"
 #include "tests/pictures/view.hpp"
 
 namespace sonard::test {
 
-/// A scene rendered by one backend, with preset `fast`: a fan, or a turn, whose lines stand for beams.
+/// A scene rendered by one engine, with preset `fast`: a fan, or a turn, whose lines stand for beams.
 class SceneEcho {
  public:
   /// @param every_line of a turn that is rendered; with 5, a fifth of them

@@ -11,9 +11,9 @@ namespace {
 
 using namespace test;
 
-class VolumeReverberationRule : public BackendTest {};
+class VolumeReverberationRule : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, VolumeReverberationRule, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, VolumeReverberationRule, all_engines(), engine_name);
 
 /// Samples of 16 bits without speckle and noise, 5 m over a bed of -20 dB.
 PingRequest request_over_bed(double scattering_db, double range_m) {

@@ -2,7 +2,7 @@
 // A small world and a small fan for the tests of the ledger.
 #pragma once
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 

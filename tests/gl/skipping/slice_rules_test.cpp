@@ -16,8 +16,8 @@ namespace {
 
 using namespace test;
 
-RendererOptions on_ray() {
-  return {Backend::ray, 0};
+RendererOptions on_cpu() {
+  return {EngineKind::cpu, 0};
 }
 
 struct Comparison {
@@ -30,7 +30,7 @@ struct Comparison {
 Comparison compare(SkipRule rule, const World& world, const PingRequest& request,
                    const std::vector<SkipRule>& off_in_both = {}) {
   EXPECT_EQ(entry_of(rule).bound_unit, "of the image's maximum");
-  RendererOptions on_options = on_ray();
+  RendererOptions on_options = on_cpu();
   for (const SkipRule other : off_in_both) {
     on_options.skip.turn_off(other);
   }
@@ -232,8 +232,8 @@ TEST(SliceRules, FacetsThatAreHeardFlatAreNotInterpolated) {
 
 // Facets that are shaded flat though their normals are not would be another image: the criterion is needed.
 TEST(SliceRules, SmoothNormalsAreHeard) {
-  SonarRenderer smooth(ball_alone(make_sphere(0.5F, 16)), on_ray());
-  SonarRenderer flat(ball_alone(faceted_ball(true)), on_ray());
+  SonarRenderer smooth(ball_alone(make_sphere(0.5F, 16)), on_cpu());
+  SonarRenderer flat(ball_alone(faceted_ball(true)), on_cpu());
   const std::vector<float> a = smooth.render_echo(small_request()).intensity;
   const std::vector<float> b = flat.render_echo(small_request()).intensity;
   const float largest = *std::max_element(a.begin(), a.end());
@@ -297,9 +297,9 @@ TEST(SliceRules, ElevationPatternThatIsFlatIsNotTabled) {
 }
 
 TEST(SliceRules, NothingSkippedAtAllTheImageIsTheSame) {
-  RendererOptions none = on_ray();
+  RendererOptions none = on_cpu();
   none.skip = SkipSwitches::none();
-  SonarRenderer renderer(bed_and_ball(), on_ray());
+  SonarRenderer renderer(bed_and_ball(), on_cpu());
   SonarRenderer full(bed_and_ball(), none);
   const std::vector<float> a = renderer.render_echo(small_request()).intensity;
   for (int ping = 0; ping < 2; ++ping) {

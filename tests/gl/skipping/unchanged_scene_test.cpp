@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-class UnchangedScene : public BackendTest {
+class UnchangedScene : public EngineTest {
  protected:
   static RendererOptions without_the_rule() {
     RendererOptions off = options();
@@ -25,7 +25,7 @@ class UnchangedScene : public BackendTest {
     return renderer.last_statistics().skipped.of(SkipRule::unchanged_scene);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Skipping, UnchangedScene, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Skipping, UnchangedScene, all_engines(), engine_name);
 
 TEST_P(UnchangedScene, EchoIsMadeOnceAndNotCopied) {
   SonarRenderer renderer(bed_and_ball(), options());
@@ -194,7 +194,7 @@ TEST_P(UnchangedScene, TablesAreKeptWhereTheSceneIsNot) {
     if (grid) {
       request.settings.sampling = Sampling::of_grid(3, 64, 128);
     }
-    const bool has_grid = grid || GetParam() == Backend::raster;
+    const bool has_grid = grid || GetParam() == EngineKind::gpu;
     for (int ping = 0; ping < 3; ++ping) {
       request.T_world_sonar.position_m.x += 0.1;
       EXPECT_EQ(renderer.render_echo(request).intensity, off.render_echo(request).intensity);

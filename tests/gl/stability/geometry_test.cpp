@@ -130,7 +130,7 @@ TEST_P(Geometry, S5_SurfacesAsFarAsCoordinatesGoAreOutOfRange) {
   const EchoImage image = SonarRenderer(world, options()).render_echo(quiet_request());
   EXPECT_TRUE(is_sane(image));
   // What is beyond the range can still tip the division of a beam into slices; the preset's accuracy stays.
-  const double allowed = GetParam() == Way::ray_slices ? 1e-3 : 1e-4;
+  const double allowed = GetParam() == Way::cpu_slices ? 1e-3 : 1e-4;
   EXPECT_LE(different_share(clean, image, allowed), silhouette_share);
 }
 
@@ -221,7 +221,7 @@ TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
 // always. Along the elevation slices miss nothing; across it they are a degree wide at most, and what is thin
 // and upright makes them divide.
 TEST_P(Geometry, S14_ThinStripsAreFoundAsOftenAsTheirWidthSays) {
-  const bool slices = GetParam() == Way::ray_slices;
+  const bool slices = GetParam() == Way::cpu_slices;
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(8, 40 * degree);
   request.settings.sampling = slices ? Sampling{} : Sampling::of_grid(1, 64, 64);
@@ -272,7 +272,7 @@ TEST_P(Geometry, S14_TieBetweenCoplanarSurfaces) {
   const EchoImage only_weak = heard({weak});
   const EchoImage strong_first = heard({strong, weak});
   const EchoImage weak_first = heard({weak, strong});
-  if (GetParam() != Way::ray_grid) {
+  if (GetParam() != Way::cpu_grid) {
     EXPECT_EQ(strong_first.intensity, only_strong.intensity);
     EXPECT_EQ(weak_first.intensity, only_weak.intensity);
     return;

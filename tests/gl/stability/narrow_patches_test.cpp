@@ -112,9 +112,9 @@ TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
     const EchoImage image = renderer.render_echo(request);
     // A slice takes one cos phi for what lies in one line, here all of a
     // triangle.
-    const double allowed = GetParam() == Way::ray_slices && footprint ? 1e-2 : 1e-3;
+    const double allowed = GetParam() == Way::cpu_slices && footprint ? 1e-2 : 1e-3;
     EXPECT_NEAR(static_cast<double>(image.at(0, 0)) / truth, 1.0, allowed) << footprint;
-    if (GetParam() != Way::ray_slices) {
+    if (GetParam() != Way::cpu_slices) {
       EXPECT_GE(renderer.last_statistics().samples,
                 200'000U);  // the corners of the view are out of the fan
     }
@@ -129,7 +129,7 @@ TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
 
 // What is thin and upright makes slices divide: none is missed, however it lies to their middles and borders.
 TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
-  if (GetParam() != Way::ray_slices) {
+  if (GetParam() != Way::cpu_slices) {
     return;  // grids find them as often as their width says (geometry_test.cpp)
   }
   PingRequest request = level_request();
@@ -147,7 +147,7 @@ TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
 // within a part of a line, whatever its ends do across the wedge. Held to a fine grid of rays, which knows no
 // slices.
 TEST_P(NarrowPatches, S3_FacesAlongASliceStayInTheirLines) {
-  if (GetParam() != Way::ray_slices) {
+  if (GetParam() != Way::cpu_slices) {
     return;
   }
   Body box = make_body("box", make_block({0, 0, 0}, {1, 1, 1}, 0));

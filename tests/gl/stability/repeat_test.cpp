@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// S12, S18 and S21 of docs/physics.md 4.3: the same image every time, after every change, on every backend.
+// S12, S18 and S21 of docs/physics.md 4.3: the same image every time, after every change, on every engine.
 #include <atomic>
 #include <thread>
 
@@ -114,9 +114,9 @@ TEST_P(Repeat, S18_EveryPingAfterAChangeIsThatOfAFreshRenderer) {
   }
 }
 
-// The long form, scene by scene, is tests/gl/renderer/backend_agreement_test.cpp.
-TEST(Agreement, S21_BackendsAgreeOnOneGrid) {
-  require_raster();
+// The long form, scene by scene, is tests/gl/renderer/engine_agreement_test.cpp.
+TEST(Agreement, S21_EnginesAgreeOnOneGrid) {
+  require_gl();
   if (testing::Test::IsSkipped() || testing::Test::HasFatalFailure()) {
     return;
   }
@@ -127,14 +127,14 @@ TEST(Agreement, S21_BackendsAgreeOnOneGrid) {
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   request.settings.physical.noise = false;
   request.T_world_sonar = {{0, 0, 3}, glm::angleAxis(20 * degree, glm::dvec3(0, 1, 0))};
-  SonarRenderer raster(small_harbour(), {Backend::raster, 0});
-  SonarRenderer ray(small_harbour(), {Backend::ray, 0});
-  const EchoImage a = raster.render_echo(request);
-  const EchoImage b = ray.render_echo(request);
+  SonarRenderer gpu(small_harbour(), {EngineKind::gpu, 0});
+  SonarRenderer cpu(small_harbour(), {EngineKind::cpu, 0});
+  const EchoImage a = gpu.render_echo(request);
+  const EchoImage b = cpu.render_echo(request);
   EXPECT_GT(sum(a), 0);
   EXPECT_LE(different_share(a, b, 1e-3), silhouette_share);
-  const PingSamples sent_a = raster.render_ping(request);
-  const PingSamples sent_b = ray.render_ping(request);
+  const PingSamples sent_a = gpu.render_ping(request);
+  const PingSamples sent_b = cpu.render_ping(request);
   std::size_t different = 0;
   for (std::size_t i = 0; i < sent_a.u8.size(); ++i) {
     different += std::abs(int{sent_a.u8[i]} - int{sent_b.u8[i]}) > 1 ? 1 : 0;

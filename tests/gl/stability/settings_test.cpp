@@ -226,7 +226,7 @@ TEST_P(Settings, S9_FullCircleHasNoSeam) {
               behind.intensity.end());
   EXPECT_GT(sum(ahead), 0);
   // Edges of the crate fall differently into slices, within the preset's 1 %.
-  const bool slices = GetParam() == Way::ray_slices;
+  const bool slices = GetParam() == Way::cpu_slices;
   EXPECT_NEAR(sum(behind) / sum(ahead), 1.0, slices ? 1e-2 : 1e-4);
   EXPECT_LE(different_share(ahead, behind, slices ? 5e-2 : 1e-3), silhouette_share);
 }
@@ -356,7 +356,7 @@ TEST_P(Settings, S16_MaterialsOutsideWhatIsPassive) {
   // S(0) = 6.1e-6 and S(1) = .9975 (docs/physics.md 1.2). Means are coarse where a line holds a sliver of a
   // slice.
   EXPECT_NEAR(strongest(heard(material(0.0, {}), Model::paper)), 6.1e-6,
-              GetParam() == Way::ray_slices ? 1e-6 : 1e-7);
+              GetParam() == Way::cpu_slices ? 1e-6 : 1e-7);
   EXPECT_NEAR(strongest(heard(glaring, Model::paper)), 0.9975, 1e-4);
 }
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 
@@ -21,41 +21,41 @@ inline constexpr double degree = std::numbers::pi / 180;
 inline constexpr double full_mu = std::numbers::inv_pi;
 
 enum class Way {
-  raster,      ///< rasterised grid
-  ray_slices,  ///< backend `ray` as presets use it: exact in slices, refined where neighbours disagree
-  ray_grid,    ///< backend `ray` on a fixed grid
+  gpu,         ///< rasterised grid
+  cpu_slices,  ///< engine `cpu` as presets use it: exact in slices, refined where neighbours disagree
+  cpu_grid,    ///< engine `cpu` on a fixed grid
 };
 
 inline std::string way_name(const ::testing::TestParamInfo<Way>& info) {
   switch (info.param) {
-    case Way::raster:
-      return "raster";
-    case Way::ray_slices:
-      return "ray_slices";
-    case Way::ray_grid:
+    case Way::gpu:
+      return "gpu";
+    case Way::cpu_slices:
+      return "cpu_slices";
+    case Way::cpu_grid:
       break;
   }
-  return "ray_grid";
+  return "cpu_grid";
 }
 
 class StabilityTest : public ::testing::TestWithParam<Way> {
  protected:
   void SetUp() override {
-    if (GetParam() == Way::raster) {
-      require_raster();
+    if (GetParam() == Way::gpu) {
+      require_gl();
     }
   }
 
   static render::RendererOptions options(unsigned threads = 0) {
     render::RendererOptions result;
-    result.backend = GetParam() == Way::raster ? render::Backend::raster : render::Backend::ray;
+    result.engine = GetParam() == Way::gpu ? render::EngineKind::gpu : render::EngineKind::cpu;
     result.threads = threads;
     return result;
   }
 
   /// The preset `default` for slices; a grid of this size for the others.
   static render::Sampling sampling(int columns_per_view = 128, int rows = 128) {
-    return GetParam() == Way::ray_slices ? render::Sampling{}
+    return GetParam() == Way::cpu_slices ? render::Sampling{}
                                          : render::Sampling::of_grid(3, columns_per_view, rows);
   }
 
@@ -144,9 +144,9 @@ inline render::World strip(double width_m, double angle_rad, bool upright) {
 
 }  // namespace sonard::test
 
-#define SONARD_STABILITY_SUITE(name)                                                                       \
-  class name : public ::sonard::test::StabilityTest {};                                                    \
-  INSTANTIATE_TEST_SUITE_P(Ways, name,                                                                     \
-                           ::testing::Values(::sonard::test::Way::raster, ::sonard::test::Way::ray_slices, \
-                                             ::sonard::test::Way::ray_grid),                               \
+#define SONARD_STABILITY_SUITE(name)                                                                    \
+  class name : public ::sonard::test::StabilityTest {};                                                 \
+  INSTANTIATE_TEST_SUITE_P(Ways, name,                                                                  \
+                           ::testing::Values(::sonard::test::Way::gpu, ::sonard::test::Way::cpu_slices, \
+                                             ::sonard::test::Way::cpu_grid),                            \
                            ::sonard::test::way_name)

@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "renderer/scene/terrain.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
 using namespace test;
 
-class FarOrigin : public BackendTest {};
+class FarOrigin : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, FarOrigin, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, FarOrigin, all_engines(), engine_name);
 
 /// Terrain and a ball. The terrain's part holds half of the offset, its body the other, as a file may.
 World world_at(const glm::dvec3& origin_m) {
@@ -52,9 +52,9 @@ double worst_of_maximum(const EchoImage& a, const EchoImage& b) {
   return worst;
 }
 
-/// Both backends with a grid; `ray` by its slices too.
-std::vector<bool> ways_for(Backend backend) {
-  return backend == Backend::ray ? std::vector<bool>{true, false} : std::vector<bool>{true};
+/// Both engines with a grid; `cpu` by its slices too.
+std::vector<bool> ways_for(EngineKind engine) {
+  return engine == EngineKind::cpu ? std::vector<bool>{true, false} : std::vector<bool>{true};
 }
 
 TEST_P(FarOrigin, HasTheSameImageToTheBit) {

@@ -8,7 +8,7 @@
 #include "tests/bench/machine.hpp"
 #include "tests/scenes/scenes.hpp"
 #include "tests/scenes/terrain.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 #include "tests/unit/renderer/scene/scene_files.hpp"
 
 namespace sonard::render {
@@ -16,9 +16,9 @@ namespace {
 
 using namespace sonard::test;
 
-class LargeTerrain : public BackendTest {};
+class LargeTerrain : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, LargeTerrain, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, LargeTerrain, all_engines(), engine_name);
 
 /// 16-bit PGM, whose rows go from the top down and whose numbers have their high byte first.
 void write_ground(const std::filesystem::path& file, int side_px) {
@@ -50,7 +50,7 @@ TEST_P(LargeTerrain, TakesLessThanTwoGigabytes) {
   EXPECT_EQ(world.part_count(), 1024U);
   SonarRenderer renderer(world, options());
   PingRequest request = make_terrain_scene("ground", 2).request();
-  if (GetParam() == Backend::raster) {
+  if (GetParam() == EngineKind::gpu) {
     request.settings.sampling = Sampling::of_grid(2, 256, 256);
   }
   const EchoImage& image = renderer.render_echo(request);

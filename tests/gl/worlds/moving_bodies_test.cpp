@@ -6,28 +6,28 @@
 
 #include "tests/scenes/scenes.hpp"
 #include "tests/scenes/shapes.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
 using namespace test;
 
-class MovingBodies : public BackendTest {};
+class MovingBodies : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, MovingBodies, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, MovingBodies, all_engines(), engine_name);
 
 constexpr double height_m = 5.0;  // of the sonar
 constexpr double line_m = 0.02;
 const glm::dvec3 box_m(0.6, 4.0, 1.0);
 
-PingRequest request_for(Backend backend) {
+PingRequest request_for(EngineKind engine) {
   PingRequest request;
   request.T_world_sonar = looking({0, 0, height_m}, 0, 25);
   request.settings.aperture.beam_edges_rad = equal_angle_edges(9, 0.1);
   request.settings.aperture.vertical_beamwidth_rad = 0.5;
   request.settings.range = {1000, line_m, 0, false};
-  if (backend == Backend::raster) {
+  if (engine == EngineKind::gpu) {
     request.settings.sampling = Sampling::of_grid(1, 128, 4096);
   }
   return request;
@@ -72,7 +72,7 @@ TEST_P(MovingBodies, AreHeardWhereTheyAre) {
   PingRequest by_slices = scene.request();
   by_slices.settings.sampling.preset = Sampling::Preset::fast;
   const std::vector<PingRequest> ways =
-      GetParam() == Backend::ray ? std::vector{by_grid, by_slices} : std::vector{by_grid};
+      GetParam() == EngineKind::cpu ? std::vector{by_grid, by_slices} : std::vector{by_grid};
   for (const int ping : {1, 2, 7}) {
     for (std::size_t i = 1; i < there.bodies.size(); ++i) {
       there.bodies[i].T_world_body = drifting_pose(scene.world.bodies[i].T_world_body, i, ping);

@@ -9,24 +9,24 @@
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/terrain.hpp"
 #include "tests/scenes/scenes.hpp"
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
 
 using namespace test;
 
-class TerrainDetail : public BackendTest {};
+class TerrainDetail : public EngineTest {};
 
-INSTANTIATE_TEST_SUITE_P(Backends, TerrainDetail, all_backends(), backend_name);
+INSTANTIATE_TEST_SUITE_P(Engines, TerrainDetail, all_engines(), engine_name);
 
 /// A map of 1024 x 1024 pixels, 0.1 m each, heard over 30 degrees. Exactly by slices; with OpenGL by a grid,
 /// the same with the rule and without.
-Scene scene_for(Backend backend) {
+Scene scene_for(EngineKind engine) {
   Scene scene = make_terrain_scene("terrain", 1024);
   scene.settings.aperture.beam_edges_rad = equal_angle_edges(64, 30 * std::acos(-1.0) / 180);
   scene.settings.sampling.preset = Sampling::Preset::reference;
-  if (backend == Backend::raster) {
+  if (engine == EngineKind::gpu) {
     scene.settings.sampling = Sampling::of_grid(1, 512, 1024);
   }
   return scene;

@@ -28,7 +28,7 @@ TOOL = None
 DAEMON = """
 world:
   file: {world}
-backend: ray
+engine: cpu
 poses:
   ignition:
     topic: {topic}

@@ -30,7 +30,7 @@ PATIENCE_S = 30
 
 CONFIG = """
 log: {{level: {level}}}
-backend: ray
+engine: cpu
 world: {{file: {world}}}
 poses: {{initial: {{position_m: [0, 0, 0]}}}}
 {more}

@@ -23,7 +23,7 @@ PATIENCE_S = 30  # for what has no time of its own
 QUIET_S = 0.3  # that long nothing more comes
 
 CONFIG = """
-backend: ray
+engine: cpu
 world: {{file: {world}}}
 poses: {{initial: {{position_m: [0, 0, 0]}}}}
 {more}

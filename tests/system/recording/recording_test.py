@@ -41,7 +41,7 @@ PATIENCE_S = 60
 
 CONFIG = """
 log: {{level: debug}}
-backend: ray
+engine: cpu
 world: {{file: {world}}}
 poses:
   initial: {{position_m: [0, 0, 0]}}

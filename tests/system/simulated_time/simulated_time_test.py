@@ -31,7 +31,7 @@ MODULES = None  # folder with pose_pb2.py
 DAEMON = """
 world:
   file: {world}
-backend: ray
+engine: cpu
 poses:
   {transport}:
     bind: 127.0.0.1:14601

@@ -72,7 +72,7 @@ TEST(OutputScale, AMeanOfNativeLinesIsOneOfAmplitudes) {
 }
 
 TEST(OutputScale, SixteenBitsHaveNoSuchScale) {
-  SonarRenderer renderer(World{}, {Backend::ray, 1});
+  SonarRenderer renderer(World{}, {EngineKind::cpu, 1});
   PingRequest request = scanning_request(10);
   request.settings.sixteen_bit = true;
   EXPECT_THROW(renderer.render_ping(request), RequestError);

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {

@@ -26,19 +26,19 @@ TEST(SoftwareGl, IsToldByItsName) {
 TEST(MakeEngine, KeepsWhatIsAskedForByName) {
   WorkerPool workers(1);
   SpatialIndex index(World{}, workers);
-  const ChosenEngine chosen = make_engine(index, workers, {Backend::ray});
-  EXPECT_EQ(chosen.backend, Backend::ray);
-  EXPECT_THAT(chosen.description, testing::MatchesRegex("ray, Embree 3\\.[0-9.]+, packets of [0-9]+"));
+  const ChosenEngine chosen = make_engine(index, workers, {EngineKind::cpu});
+  EXPECT_EQ(chosen.kind, EngineKind::cpu);
+  EXPECT_THAT(chosen.description, testing::MatchesRegex("cpu, Embree 3\\.[0-9.]+, packets of [0-9]+"));
 }
 
-TEST(MakeEngine, AutomaticEndsInARealBackendAndSaysWhy) {
+TEST(MakeEngine, AutomaticEndsInARealEngineAndSaysWhy) {
   WorkerPool workers(1);
   SpatialIndex index(World{}, workers);
   const ChosenEngine chosen = make_engine(index, workers, {});
-  EXPECT_NE(chosen.backend, Backend::automatic);
-  EXPECT_EQ(chosen.description.rfind(std::string(name_of(chosen.backend)) + ", ", 0), 0U);
+  EXPECT_NE(chosen.kind, EngineKind::automatic);
+  EXPECT_EQ(chosen.description.rfind(std::string(name_of(chosen.kind)) + ", ", 0), 0U);
   EXPECT_THAT(chosen.description, testing::HasSubstr("; auto found "));
-  EXPECT_EQ(chosen.backend == Backend::ray,
+  EXPECT_EQ(chosen.kind == EngineKind::cpu,
             is_software_gl(chosen.description) || chosen.description.find("no OpenGL") != std::string::npos);
 }
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {

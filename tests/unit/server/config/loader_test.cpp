@@ -41,7 +41,7 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_THAT(loaded.warnings, IsEmpty());
   EXPECT_EQ(config.log_level, LogLevel::info);
   EXPECT_EQ(config.world_file, folder_ / "world.sdf");
-  EXPECT_EQ(config.backend, render::Backend::automatic);
+  EXPECT_EQ(config.engine, render::EngineKind::automatic);
   ASSERT_TRUE(config.poses.T_world_vehicle_initial);
   EXPECT_EQ(config.poses.T_world_vehicle_initial->position_m, glm::dvec3(1, 2, 3));
   EXPECT_FALSE(config.poses.udp || config.poses.tcp || config.poses.trajectory);
@@ -71,10 +71,10 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_FALSE(gemini.trigger);
 }
 
-TEST_F(Loader, reads_the_backend) {
-  EXPECT_EQ(load(minimal_config + "backend: auto\n").config.backend, render::Backend::automatic);
-  EXPECT_EQ(load(minimal_config + "backend: raster\n").config.backend, render::Backend::raster);
-  EXPECT_EQ(load(minimal_config + "backend: ray\n").config.backend, render::Backend::ray);
+TEST_F(Loader, reads_the_engine) {
+  EXPECT_EQ(load(minimal_config + "engine: auto\n").config.engine, render::EngineKind::automatic);
+  EXPECT_EQ(load(minimal_config + "engine: gpu\n").config.engine, render::EngineKind::gpu);
+  EXPECT_EQ(load(minimal_config + "engine: cpu\n").config.engine, render::EngineKind::cpu);
 }
 
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
@@ -190,9 +190,8 @@ TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
 TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
   EXPECT_THAT(
       complaints(minimal_config + "gpu_binning: on\n"),
-      ElementsAre(
-          "config.yaml:11:1: gpu_binning: is no longer a key: remove it; backend `raster` bins on the "
-          "GPU in any case"));
+      ElementsAre("config.yaml:11:1: gpu_binning: is no longer a key: remove it; engine `gpu` bins on the "
+                  "GPU in any case"));
 }
 
 TEST_F(Loader, suggests_the_key_with_its_unit) {

@@ -196,7 +196,7 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   options.survey.range_m = 1.0;
   options.survey.compression_log2 = 2;
   FanFrames frames = fans_of(head, {3, 0}, trajectory, options);
-  render::SonarRenderer renderer(board(), {render::Backend::ray, 0});
+  render::SonarRenderer renderer(board(), {render::EngineKind::cpu, 0});
   const Frame frame = frames.render(renderer, 1);
   for (const char* line :
        {"\n  \"frame\": 1,\n", "\n  \"head\": \"bow\",\n", "\n  \"type\": \"gemini_720i\",\n",
@@ -248,7 +248,7 @@ TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   options.survey.step_deg = 9.0;
   options.survey.sector_deg = {-45.0, 45.0};
   SweepFrames frames = sweeps_of(head, trajectory, options);
-  render::SonarRenderer renderer(board(), {render::Backend::ray, 0});
+  render::SonarRenderer renderer(board(), {render::EngineKind::cpu, 0});
   frames.pass(renderer, 0);
   const Frame frame = frames.render(renderer, 1);
   for (const char* line :
@@ -306,7 +306,7 @@ TEST(FanFrames, HavePortOnTheLeftOfTheirPictures) {
   take_noise_off(head);
   const VehicleTrajectory trajectory = ahead(1, 0.0);
   FanFrames frames = fans_of(head, {}, trajectory, quiet_options());
-  render::SonarRenderer renderer(board(0.3F), {render::Backend::ray, 0});
+  render::SonarRenderer renderer(board(0.3F), {render::EngineKind::cpu, 0});
   EXPECT_GT(left_over_right(frames.render(renderer, 0).draw()), 0.3);
 }
 
@@ -320,7 +320,7 @@ TEST(SweepFrames, HavePortOnTheLeftOfTheirPicturesHoweverTheHeadIsMounted) {
     head.device = config;
     const VehicleTrajectory trajectory = ahead(5, 0.0);
     OfflineOptions options = quiet_options();
-    render::SonarRenderer renderer(board(0.3F), {render::Backend::ray, 0});
+    render::SonarRenderer renderer(board(0.3F), {render::EngineKind::cpu, 0});
     SweepFrames turns = sweeps_of(head, trajectory, options);
     EXPECT_GT(left_over_right(turns.render(renderer, 0).draw()), 0.3);
     // Lopsided, so that a sector on the wrong side misses the board: as the head says it, from 80 degrees to

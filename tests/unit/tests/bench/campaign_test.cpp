@@ -19,26 +19,26 @@ test::Scene small_plane() {
   return scene;
 }
 
-Subject on_ray(const std::string& preset) {
-  return {"small_plane", "ray", preset};
+Subject on_cpu(const std::string& preset) {
+  return {"small_plane", "cpu", preset};
 }
 
 class SmallCampaign : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    campaign_ = std::make_unique<Campaign>(std::vector{render::Backend::ray}, "/nowhere");
+    campaign_ = std::make_unique<Campaign>(std::vector{render::EngineKind::cpu}, "/nowhere");
     Plan plan;
     plan.points = {{grid_point(4, 256), once},
                    {point_binning(4, 256), once},
                    {paper_point(), once},
-                   {grid_point(1, 64), once, render::Backend::raster}};
+                   {grid_point(1, 64), once, render::EngineKind::gpu}};
     plan.receivers = {{50, "receiver_ms", once}};
     campaign_->run(small_plane(), plan);
   }
   static void TearDownTestSuite() { campaign_.reset(); }
 
   static std::optional<double> find(const std::string& preset, const std::string& metric) {
-    return campaign_->results().find(on_ray(preset), metric);
+    return campaign_->results().find(on_cpu(preset), metric);
   }
 
   static inline std::unique_ptr<Campaign> campaign_;
@@ -70,36 +70,36 @@ TEST_F(SmallCampaign, ThePaperIsMeasuredByItsHolesOnly) {
   EXPECT_FALSE(find("paper", "bin_rms"));
 }
 
-TEST_F(SmallCampaign, PointsOfOtherBackendsAreLeftOut) {
+TEST_F(SmallCampaign, PointsOfOtherEnginesAreLeftOut) {
   EXPECT_FALSE(find("grid_1x64", "ping_ms"));
   ASSERT_EQ(campaign_->descriptions().size(), 1U);
-  EXPECT_NE(campaign_->descriptions().at("ray").find("Embree"), std::string::npos);
+  EXPECT_NE(campaign_->descriptions().at("cpu").find("Embree"), std::string::npos);
 }
 
 TEST(Campaign, WithoutReferenceThereIsNoError) {
   test::Scene scene = small_plane();
   scene.plane.reset();
-  Campaign campaign({render::Backend::ray}, "/nowhere");
+  Campaign campaign({render::EngineKind::cpu}, "/nowhere");
   campaign.run(scene, {{{grid_point(1, 64), once}}, {}, {}, 1});
-  EXPECT_TRUE(campaign.results().find(on_ray("grid_1x64"), "ping_ms"));
-  EXPECT_FALSE(campaign.results().find(on_ray("grid_1x64"), "bin_rms"));
-  EXPECT_FALSE(campaign.results().find(on_ray("grid_1x64"), "hole_fraction"));
+  EXPECT_TRUE(campaign.results().find(on_cpu("grid_1x64"), "ping_ms"));
+  EXPECT_FALSE(campaign.results().find(on_cpu("grid_1x64"), "bin_rms"));
+  EXPECT_FALSE(campaign.results().find(on_cpu("grid_1x64"), "hole_fraction"));
 }
 
 TEST(Campaign, APointThatCannotBeGriddedIsLeftOut) {
-  Campaign campaign({render::Backend::ray}, "/nowhere");
+  Campaign campaign({render::EngineKind::cpu}, "/nowhere");
   campaign.run(small_plane(), {{{grid_point(4, 20'000), once}, {grid_point(1, 64), once}}, {}, {}, 1});
-  EXPECT_FALSE(campaign.results().find(on_ray("grid_4x20000"), "ping_ms"));
-  EXPECT_TRUE(campaign.results().find(on_ray("grid_1x64"), "ping_ms"));
+  EXPECT_FALSE(campaign.results().find(on_cpu("grid_4x20000"), "ping_ms"));
+  EXPECT_TRUE(campaign.results().find(on_cpu("grid_1x64"), "ping_ms"));
 }
 
 TEST(Campaign, AScanningSonarHasAMetricOfItsOwn) {
   test::Scene scene = small_plane();
   scene.settings.aperture.beam_edges_rad = {0.026, -0.026};
-  Campaign campaign({render::Backend::ray}, "/nowhere");
+  Campaign campaign({render::EngineKind::cpu}, "/nowhere");
   campaign.run(scene, {{{grid_point(4, 64), once}}, {}, {}, 1});
-  EXPECT_EQ(campaign.results().find(on_ray("grid_4x64"), "msis_ping_ms"),
-            campaign.results().find(on_ray("grid_4x64"), "ping_ms"));
+  EXPECT_EQ(campaign.results().find(on_cpu("grid_4x64"), "msis_ping_ms"),
+            campaign.results().find(on_cpu("grid_4x64"), "ping_ms"));
 }
 
 }  // namespace

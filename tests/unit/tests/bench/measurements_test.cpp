@@ -10,16 +10,16 @@
 namespace sonard::bench {
 namespace {
 
-const Subject swell{"swell100k", "ray", "default"};
+const Subject swell{"swell100k", "cpu", "default"};
 
 TEST(Measurements, AreFoundBySubjectAndMetric) {
   Measurements measurements;
   measurements.add(swell, "ping_ms", 2.5, "ms");
   EXPECT_EQ(measurements.find(swell, "ping_ms"), 2.5);
   EXPECT_FALSE(measurements.find(swell, "samples"));
-  EXPECT_FALSE(measurements.find({"swell100k", "raster", "default"}, "ping_ms"));
-  EXPECT_FALSE(measurements.find({"swell100k", "ray", "fast"}, "ping_ms"));
-  EXPECT_FALSE(measurements.find({"plane", "ray", "default"}, "ping_ms"));
+  EXPECT_FALSE(measurements.find({"swell100k", "gpu", "default"}, "ping_ms"));
+  EXPECT_FALSE(measurements.find({"swell100k", "cpu", "fast"}, "ping_ms"));
+  EXPECT_FALSE(measurements.find({"plane", "cpu", "default"}, "ping_ms"));
 }
 
 TEST(Measurements, WhatWasNotMeasuredIsLeftOut) {
@@ -33,12 +33,12 @@ TEST(Measurements, WhatWasNotMeasuredIsLeftOut) {
 TEST(Measurements, AreWrittenAsAFlatList) {
   Measurements measurements;
   measurements.add(swell, "ping_ms", 0.125, "ms");
-  measurements.add({R"(a "quoted" \ name)", "raster", "fast"}, "samples", 131072, "count");
+  measurements.add({R"(a "quoted" \ name)", "gpu", "fast"}, "samples", 131072, "count");
   const YAML::Node list = YAML::Load(measurements.to_json());  // JSON is YAML
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[0].size(), 6U);
   EXPECT_EQ(list[0]["scene"].as<std::string>(), "swell100k");
-  EXPECT_EQ(list[0]["backend"].as<std::string>(), "ray");
+  EXPECT_EQ(list[0]["engine"].as<std::string>(), "cpu");
   EXPECT_EQ(list[0]["preset"].as<std::string>(), "default");
   EXPECT_EQ(list[0]["metric"].as<std::string>(), "ping_ms");
   EXPECT_EQ(list[0]["value"].as<double>(), 0.125);

@@ -80,48 +80,48 @@ const TargetRow& row_named(const std::vector<TargetRow>& rows, const std::string
 }
 
 TEST(Targets, NothingMeasuredIsNothingMet) {
-  for (const TargetRow& row : target_rows(Measurements{}, "ray")) {
+  for (const TargetRow& row : target_rows(Measurements{}, "cpu")) {
     EXPECT_EQ(row.verdict(), Verdict::not_measured) << row.what;
   }
 }
 
-TEST(Targets, AreReadFromTheMeasurementsOfTheirBackend) {
+TEST(Targets, AreReadFromTheMeasurementsOfTheirEngine) {
   Measurements m;
-  m.add({"swell1m", "ray", "default"}, "ping_ms", 9, "ms");
-  m.add({"swell100k", "ray", "default"}, "ping_ms", 6, "ms");
-  m.add({"swell100k", "raster", "default"}, "ping_ms", 60, "ms");
-  m.add({"swell100k", "ray", "default"}, "bin_rms", 0.009, "1");
-  m.add({"swell100k", "ray", "default"}, "bin_rms_trim", 0.004, "1");
-  m.add({"swell100k", "ray", "default"}, "first_echo_bins", 0.2, "bins");
-  m.add({"swell100k", "ray", "default"}, "hole_fraction", 0, "1");
-  m.add({"swell100k", "ray", "default"}, "hole_fraction_60db", 0, "1");
-  m.add({"swell100k", "ray", "default"}, "samples", 1e5, "count");
-  m.add({"swell100k", "ray", "point_1x1"}, "bin_rms", 0.09, "1");
-  m.add({"swell100k", "ray", "point_1x1"}, "samples", 1e6, "count");
-  m.add({"swell100k", "ray", "point_2x1"}, "bin_rms", 0.045, "1");
-  m.add({"swell100k", "ray", "point_2x1"}, "samples", 2e6, "count");
-  const std::vector<TargetRow> rows = target_rows(m, "ray");
+  m.add({"swell1m", "cpu", "default"}, "ping_ms", 9, "ms");
+  m.add({"swell100k", "cpu", "default"}, "ping_ms", 6, "ms");
+  m.add({"swell100k", "gpu", "default"}, "ping_ms", 60, "ms");
+  m.add({"swell100k", "cpu", "default"}, "bin_rms", 0.009, "1");
+  m.add({"swell100k", "cpu", "default"}, "bin_rms_trim", 0.004, "1");
+  m.add({"swell100k", "cpu", "default"}, "first_echo_bins", 0.2, "bins");
+  m.add({"swell100k", "cpu", "default"}, "hole_fraction", 0, "1");
+  m.add({"swell100k", "cpu", "default"}, "hole_fraction_60db", 0, "1");
+  m.add({"swell100k", "cpu", "default"}, "samples", 1e5, "count");
+  m.add({"swell100k", "cpu", "point_1x1"}, "bin_rms", 0.09, "1");
+  m.add({"swell100k", "cpu", "point_1x1"}, "samples", 1e6, "count");
+  m.add({"swell100k", "cpu", "point_2x1"}, "bin_rms", 0.045, "1");
+  m.add({"swell100k", "cpu", "point_2x1"}, "samples", 2e6, "count");
+  const std::vector<TargetRow> rows = target_rows(m, "cpu");
   EXPECT_NEAR(*row_named(rows, "swell1m / swell100k, default").measured, 1.5, 1e-12);
   EXPECT_EQ(row_named(rows, "default swell100k, ms").verdict(), Verdict::aim_met);
   // First order: .009 takes 1e7 points, a hundred times as many.
   EXPECT_NEAR(*row_named(rows, "samples at equal error, points / default, swell100k").measured, 100, 1e-6);
-  EXPECT_EQ(row_named(target_rows(m, "raster"), "default swell100k, ms").verdict(), Verdict::missed);
+  EXPECT_EQ(row_named(target_rows(m, "gpu"), "default swell100k, ms").verdict(), Verdict::missed);
 }
 
 TEST(Targets, ARepetitionThatDiffersIsAMiss) {
   Measurements m;
-  m.add({"plane", "ray", "default"}, "repeatable", 1, "1");
-  EXPECT_EQ(row_named(target_rows(m, "ray"), "points that differ when repeated").verdict(),
+  m.add({"plane", "cpu", "default"}, "repeatable", 1, "1");
+  EXPECT_EQ(row_named(target_rows(m, "cpu"), "points that differ when repeated").verdict(),
             Verdict::must_met);
-  m.add({"plane", "ray", "fast"}, "repeatable", 0, "1");
-  EXPECT_EQ(row_named(target_rows(m, "ray"), "points that differ when repeated").verdict(), Verdict::missed);
+  m.add({"plane", "cpu", "fast"}, "repeatable", 0, "1");
+  EXPECT_EQ(row_named(target_rows(m, "cpu"), "points that differ when repeated").verdict(), Verdict::missed);
 }
 
 TEST(Targets, ThePrintedTableNamesVerdictAndError) {
   Measurements m;
-  m.add({"flat100k", "ray", "default"}, "ping_ms", 2, "ms");
-  m.add({"flat100k", "ray", "default"}, "bin_rms", 0.02, "1");
-  const std::string text = format_targets(target_rows(m, "ray"));
+  m.add({"flat100k", "cpu", "default"}, "ping_ms", 2, "ms");
+  m.add({"flat100k", "cpu", "default"}, "bin_rms", 0.02, "1");
+  const std::string text = format_targets(target_rows(m, "cpu"));
   EXPECT_NE(text.find("MISSED: error"), std::string::npos) << text;
   EXPECT_NE(text.find("2.00 %"), std::string::npos) << text;
 }

@@ -79,7 +79,7 @@ class Scan {
         device_(micron_config(config_).device, 0ns),
         host_({}, 0ns),
         renderer_(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
-                  {render::Backend::ray, 0}) {}
+                  {render::EngineKind::cpu, 0}) {}
 
   /// Of the vehicle; at rest at the start, bow to the east.
   std::function<double(TimePoint)> yaw_rad = [](TimePoint) { return 0.0; };

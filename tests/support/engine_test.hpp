@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixture for tests of the image: each runs on every backend. On `raster` they skip with a reason where there
+// Fixture for tests of the image: each runs on every engine. On `gpu` they skip with a reason where there
 // is no OpenGL; with SONARD_REQUIRE_GL set, as in CI, they fail instead, so that coverage is never lost
-// silently. On `ray` they always run.
+// silently. On `cpu` they always run.
 #pragma once
 
 #include <cmath>
@@ -15,12 +15,12 @@
 
 namespace sonard::test {
 
-/// Why there is no rasteriser here; empty when there is one.
-inline const std::string& raster_problem() {
+/// Why engine `gpu` cannot run here; empty when it can.
+inline const std::string& gl_problem() {
   static const std::string problem = [] {
     try {
-      const render::SonarRenderer renderer(render::World{}, {render::Backend::raster, 0});
-      std::printf("%s\n", renderer.backend_description().c_str());
+      const render::SonarRenderer renderer(render::World{}, {render::EngineKind::gpu, 0});
+      std::printf("%s\n", renderer.engine_description().c_str());
       return std::string();
     } catch (const render::RendererError& error) {
       return std::string(error.what());
@@ -29,22 +29,22 @@ inline const std::string& raster_problem() {
   return problem;
 }
 
-/// Begins a test, or the SetUp() of a fixture, that needs the rasteriser.
-inline void require_raster() {
-  if (raster_problem().empty()) {
+/// Begins a test, or the SetUp() of a fixture, that needs OpenGL.
+inline void require_gl() {
+  if (gl_problem().empty()) {
     return;
   }
   if (std::getenv("SONARD_REQUIRE_GL") != nullptr) {
-    FAIL() << raster_problem();
+    FAIL() << gl_problem();
   }
-  GTEST_SKIP() << raster_problem();
+  GTEST_SKIP() << gl_problem();
 }
 
-class BackendTest : public ::testing::TestWithParam<render::Backend> {
+class EngineTest : public ::testing::TestWithParam<render::EngineKind> {
  protected:
   void SetUp() override {
-    if (GetParam() == render::Backend::raster) {
-      require_raster();
+    if (GetParam() == render::EngineKind::gpu) {
+      require_gl();
     }
   }
 
@@ -52,11 +52,11 @@ class BackendTest : public ::testing::TestWithParam<render::Backend> {
   static render::RendererOptions options() { return {GetParam(), 0}; }
 };
 
-inline auto all_backends() {
-  return ::testing::Values(render::Backend::raster, render::Backend::ray);
+inline auto all_engines() {
+  return ::testing::Values(render::EngineKind::gpu, render::EngineKind::cpu);
 }
 
-inline std::string backend_name(const ::testing::TestParamInfo<render::Backend>& info) {
+inline std::string engine_name(const ::testing::TestParamInfo<render::EngineKind>& info) {
   return std::string(render::name_of(info.param));
 }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "tests/support/backend_test.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -103,9 +103,9 @@ struct Difference {
   std::size_t off_by_2 = 0;   ///< eight-bit samples that differ by more than one
 };
 
-Difference difference(SonarRenderer& raster, SonarRenderer& ray, const PingRequest& request) {
-  const EchoImage a = raster.render_echo(request);
-  const EchoImage b = ray.render_echo(request);
+Difference difference(SonarRenderer& gpu, SonarRenderer& cpu, const PingRequest& request) {
+  const EchoImage a = gpu.render_echo(request);
+  const EchoImage b = cpu.render_echo(request);
   Difference result;
   result.bins = a.intensity.size();
   for (int beam = 0; beam < a.beams; ++beam) {
@@ -118,8 +118,8 @@ Difference difference(SonarRenderer& raster, SonarRenderer& ray, const PingReque
       result.different += std::abs(a.at(beam, k) - b.at(beam, k)) > 1e-3F * strongest ? 1 : 0;
     }
   }
-  const PingSamples sent_a = raster.render_ping(request);
-  const PingSamples sent_b = ray.render_ping(request);
+  const PingSamples sent_a = gpu.render_ping(request);
+  const PingSamples sent_b = cpu.render_ping(request);
   for (std::size_t i = 0; i < sent_a.u8.size(); ++i) {
     result.off_by_2 += std::abs(int{sent_a.u8[i]} - int{sent_b.u8[i]}) > 1 ? 1 : 0;
   }
@@ -134,46 +134,46 @@ void expect_agreement(const Difference& d, const std::string& name) {
   EXPECT_LE(static_cast<double>(d.off_by_2), 1e-3 * static_cast<double>(d.bins)) << name;
 }
 
-class BackendAgreement : public ::testing::Test {
+class EngineAgreement : public ::testing::Test {
  protected:
-  void SetUp() override { test::require_raster(); }
+  void SetUp() override { test::require_gl(); }
 
   static void expect_agreement_of(const View& view, const std::string& name, const PingRequest& request) {
-    SonarRenderer raster(view.world, {Backend::raster, 0});
-    SonarRenderer ray(view.world, {Backend::ray, 0});
-    expect_agreement(difference(raster, ray, request), name);
+    SonarRenderer gpu(view.world, {EngineKind::gpu, 0});
+    SonarRenderer cpu(view.world, {EngineKind::cpu, 0});
+    expect_agreement(difference(gpu, cpu, request), name);
   }
   static void expect_agreement_of(const View& view, const std::string& name) {
     expect_agreement_of(view, name, quiet_request(view.T_world_sonar));
   }
 };
 
-TEST_F(BackendAgreement, S21_DockingStation) {
+TEST_F(EngineAgreement, S21_DockingStation) {
   expect_agreement_of(shipped_world("docking_station.sdf", looking({-2.136, -11.913, -25.6}, 80, 20)),
                       "docking station");
 }
 
-TEST_F(BackendAgreement, S21_IsolationValveWithNormalMap) {
+TEST_F(EngineAgreement, S21_IsolationValveWithNormalMap) {
   expect_agreement_of(shipped_world("ssiv.sdf", looking({4.617, -12.686, -37.7}, 110, 20)),
                       "isolation valve");
 }
 
-TEST_F(BackendAgreement, S21_Tank) {
+TEST_F(EngineAgreement, S21_Tank) {
   expect_agreement_of(tank(), "tank");
 }
 
-TEST_F(BackendAgreement, S21_NormalMapAveragedOverSamples) {
+TEST_F(EngineAgreement, S21_NormalMapAveragedOverSamples) {
   expect_agreement_of(normal_mapped_bed(), "normal map");
 }
 
-TEST_F(BackendAgreement, S21_OddNumbersOfColumnsAndRows) {
+TEST_F(EngineAgreement, S21_OddNumbersOfColumnsAndRows) {
   const View view = tank();
   PingRequest request = quiet_request(view.T_world_sonar);
   request.settings.sampling = Sampling::of_grid(3, 251, 301);
   expect_agreement_of(view, "odd grid", request);
 }
 
-TEST_F(BackendAgreement, S21_ModePaperWithBackFacesDropped) {
+TEST_F(EngineAgreement, S21_ModePaperWithBackFacesDropped) {
   View view = tank();
   PingRequest request = quiet_request(view.T_world_sonar);
   request.settings.model = Model::paper;
@@ -184,22 +184,22 @@ TEST_F(BackendAgreement, S21_ModePaperWithBackFacesDropped) {
   expect_agreement_of(view, "paper, front faces", request);
 }
 
-TEST_F(BackendAgreement, S21_MovedBodies) {
+TEST_F(EngineAgreement, S21_MovedBodies) {
   const View view = tank();
-  SonarRenderer raster(view.world, {Backend::raster, 0});
-  SonarRenderer ray(view.world, {Backend::ray, 0});
+  SonarRenderer gpu(view.world, {EngineKind::gpu, 0});
+  SonarRenderer cpu(view.world, {EngineKind::cpu, 0});
   const PingRequest request = quiet_request(view.T_world_sonar);
   for (const double step : {0.0, 0.7, 1.4}) {
     const Pose moved{{4 + step, 1 - step, 1}, glm::angleAxis(step, glm::normalize(glm::dvec3(1, 2, 3)))};
-    for (SonarRenderer* renderer : {&raster, &ray}) {
+    for (SonarRenderer* renderer : {&gpu, &cpu}) {
       ASSERT_TRUE(renderer->set_body_pose("ball", moved));
       ASSERT_TRUE(renderer->set_body_pose("box", looking({5 - step, -1.5, 0.1}, 40 * step, 10)));
     }
-    expect_agreement(difference(raster, ray, request), "moved by " + std::to_string(step));
+    expect_agreement(difference(gpu, cpu, request), "moved by " + std::to_string(step));
   }
 }
 
-TEST_F(BackendAgreement, S21_FarFromTheOriginAndRotated) {
+TEST_F(EngineAgreement, S21_FarFromTheOriginAndRotated) {
   const Pose T_far_world{{1e6, -1e6, 3e5}, glm::angleAxis(0.7, glm::normalize(glm::dvec3(0.2, 0.3, 1)))};
   View view = tank();
   for (Body& body : view.world.bodies) {
@@ -210,13 +210,13 @@ TEST_F(BackendAgreement, S21_FarFromTheOriginAndRotated) {
 }
 
 // What GL does not say: an explicit choice is kept, and each says what it is.
-TEST_F(BackendAgreement, BackendsNameThemselves) {
-  const SonarRenderer raster(World{}, {Backend::raster, 0});
-  EXPECT_EQ(raster.backend(), Backend::raster);
-  EXPECT_EQ(raster.backend_description().rfind("raster, ", 0), 0U) << raster.backend_description();
-  const SonarRenderer ray(World{}, {Backend::ray, 0});
-  EXPECT_EQ(ray.backend(), Backend::ray);
-  EXPECT_EQ(ray.backend_description().rfind("ray, Embree 3.", 0), 0U) << ray.backend_description();
+TEST_F(EngineAgreement, EnginesNameThemselves) {
+  const SonarRenderer gpu(World{}, {EngineKind::gpu, 0});
+  EXPECT_EQ(gpu.engine(), EngineKind::gpu);
+  EXPECT_EQ(gpu.engine_description().rfind("gpu, ", 0), 0U) << gpu.engine_description();
+  const SonarRenderer cpu(World{}, {EngineKind::cpu, 0});
+  EXPECT_EQ(cpu.engine(), EngineKind::cpu);
+  EXPECT_EQ(cpu.engine_description().rfind("cpu, Embree 3.", 0), 0U) << cpu.engine_description();
 }
 
 }  // namespace

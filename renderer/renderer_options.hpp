@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which method finds the visible surfaces, on how many threads a ping is made, and what may be skipped.
+// Which engine finds the visible surfaces, on how many threads a ping is made, and what may be skipped.
 #pragma once
 
 #include <string_view>
@@ -8,17 +8,17 @@
 
 namespace sonard::render {
 
-enum class Backend {
-  automatic,  ///< `raster` where OpenGL runs on hardware, `ray` where it is software or missing
-  raster,     ///< OpenSceneGraph and OpenGL 4.5 through EGL
-  ray,        ///< Embree on the CPU; never opens EGL
+enum class EngineKind {
+  automatic,  ///< `gpu` where OpenGL runs on hardware, `cpu` where it is software or missing
+  gpu,        ///< OpenSceneGraph and OpenGL 4.5 through EGL
+  cpu,        ///< azimuth slices on the CPU; never opens EGL
 };
 
-/// The name under the key `backend` of a configuration: "auto", "raster", "ray".
-std::string_view name_of(Backend backend);
+/// The name under the key `engine` of a configuration: "auto", "gpu", "cpu".
+std::string_view name_of(EngineKind engine);
 
 struct RendererOptions {
-  Backend backend = Backend::automatic;
+  EngineKind engine = EngineKind::automatic;
   unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
   SkipSwitches skip{};   ///< all rules are on by default
   /// g / c: how much faster sound gets per metre upwards, over its speed at the sonar. Positive where rays

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which backend the real program takes, with OpenGL and without, and how it says so.
+// Which engine the real program takes, with OpenGL and without, and how it says so.
 #include <unistd.h>
 
 #include <filesystem>
@@ -21,55 +21,54 @@ using testing::StartsWith;
 /// EGL finds its drivers in the folders this names: none.
 const std::string no_gl = "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent";
 
-ProcessResult selftest(const std::string& setting, const std::string& backend) {
-  return run_process({"env", setting, SONARD_PROGRAM, "selftest", "--backend", backend});
+ProcessResult selftest(const std::string& setting, const std::string& engine) {
+  return run_process({"env", setting, SONARD_PROGRAM, "selftest", "--engine", engine});
 }
 
-TEST(SelfTest, passes_on_every_backend_and_names_it) {
-  const ProcessResult raster = selftest("A=", "raster");
-  EXPECT_EQ(raster.exit_code, 0) << raster.err;
-  EXPECT_THAT(raster.out, StartsWith("backend  raster, "));
-  EXPECT_THAT(raster.out, HasSubstr("\nPASS\n"));
-  const ProcessResult ray = selftest("A=", "ray");
-  EXPECT_EQ(ray.exit_code, 0) << ray.err;
-  EXPECT_THAT(ray.out, StartsWith("backend  ray, Embree 3."));
-  EXPECT_THAT(ray.out, HasSubstr("\nPASS\n"));
+TEST(SelfTest, passes_on_every_engine_and_names_it) {
+  const ProcessResult gpu = selftest("A=", "gpu");
+  EXPECT_EQ(gpu.exit_code, 0) << gpu.err;
+  EXPECT_THAT(gpu.out, StartsWith("engine  gpu, "));
+  EXPECT_THAT(gpu.out, HasSubstr("\nPASS\n"));
+  const ProcessResult cpu = selftest("A=", "cpu");
+  EXPECT_EQ(cpu.exit_code, 0) << cpu.err;
+  EXPECT_THAT(cpu.out, StartsWith("engine  cpu, Embree 3."));
+  EXPECT_THAT(cpu.out, HasSubstr("\nPASS\n"));
 }
 
 TEST(SelfTest, chooses_by_the_gl_it_finds_and_tells) {
   const ProcessResult result = run_process({SONARD_PROGRAM, "selftest"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const bool software = result.out.find("llvmpipe") != std::string::npos;
-  EXPECT_THAT(result.out, StartsWith(software ? "backend  ray, " : "backend  raster, "));
+  EXPECT_THAT(result.out, StartsWith(software ? "engine  cpu, " : "engine  gpu, "));
   EXPECT_THAT(result.out, HasSubstr("auto found OpenGL on "));
 }
 
 TEST(SelfTest, fails_with_its_own_exit_code_when_the_rasteriser_is_asked_for_without_gl) {
-  const ProcessResult result = selftest(no_gl, "raster");
+  const ProcessResult result = selftest(no_gl, "gpu");
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_THAT(result.err, HasSubstr("renderer: no OpenGL 4.5 through EGL"));
 }
 
 TEST(SelfTest, traces_rays_where_there_is_no_gl) {
-  for (const char* backend : {"auto", "ray"}) {
-    const ProcessResult result = selftest(no_gl, backend);
+  for (const char* engine : {"auto", "cpu"}) {
+    const ProcessResult result = selftest(no_gl, engine);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.out, StartsWith("backend  ray, Embree 3."));
+    EXPECT_THAT(result.out, StartsWith("engine  cpu, Embree 3."));
   }
 }
 
-TEST(SelfTest, knows_no_other_backend) {
+TEST(SelfTest, knows_no_other_engine) {
   EXPECT_EQ(selftest("A=", "gl").exit_code, 64);
 }
 
 /// One head on loopback beside the shipped world.
 class ServedConfig {
  public:
-  explicit ServedConfig(const std::string& backend)
-      : path_(testing::TempDir() + std::to_string(getpid()) + "_backend_" + backend + ".yaml") {
+  explicit ServedConfig(const std::string& engine)
+      : path_(testing::TempDir() + std::to_string(getpid()) + "_engine_" + engine + ".yaml") {
     std::ofstream(path_)
-        << "world: {file: " << SONARD_SOURCE_DIR
-        << "/configs/worlds/docking_station.sdf}\nbackend: " << backend
+        << "world: {file: " << SONARD_SOURCE_DIR << "/configs/worlds/docking_station.sdf}\nengine: " << engine
         << "\nposes: {initial: {position_m: [0, -12, -25]}}\n"
            "heads:\n"
            "  - name: head\n"
@@ -110,21 +109,21 @@ TEST(Run, serves_with_rays_where_there_is_no_gl) {
   const ProcessResult result = config.run_without_gl();
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_THAT(result.out, HasSubstr("auto found no OpenGL 4.5 through EGL"));
-  EXPECT_THAT(result.out, testing::ContainsRegex("sonard ready heads=1 .*backend=\"ray, Embree 3"));
+  EXPECT_THAT(result.out, testing::ContainsRegex("sonard ready heads=1 .*engine=\"cpu, Embree 3"));
 }
 
 TEST(Run, ends_with_its_own_exit_code_when_the_rasteriser_is_asked_for_without_gl) {
-  const ServedConfig config("raster");
+  const ServedConfig config("gpu");
   const ProcessResult result = config.run_without_gl();
   EXPECT_EQ(result.exit_code, 4) << result.out;
   EXPECT_THAT(result.out, HasSubstr("renderer: no OpenGL 4.5 through EGL"));
 }
 
-TEST(Check, shows_the_backend_that_is_asked_for) {
-  const ServedConfig config("raster");
+TEST(Check, shows_the_engine_that_is_asked_for) {
+  const ServedConfig config("gpu");
   const ProcessResult result = run_process({SONARD_PROGRAM, "check", "--no-network", config.path()});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("\nbackend  raster\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nengine  gpu\n"));
 }
 
 }  // namespace
