@@ -35,7 +35,7 @@ struct MeanEcho {
 
 /// Finds what is visible and sums its echoes by beam and range line. One thread uses an engine.
 ///
-/// To add an engine, implement this and make it in make_engine(). Every test of the image then runs on it.
+/// To add an engine, implement this and make it in EngineSwitch. Every test of the image then runs on it.
 class EchoEngine {
  public:
   EchoEngine() = default;

@@ -14,7 +14,7 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
-#include "renderer/pipeline/sonar_renderer.hpp"
+#include "renderer/renderer_options.hpp"
 #include "server/check.hpp"
 #include "server/config/loader.hpp"
 #include "server/daemon/daemon.hpp"
@@ -30,6 +30,7 @@
 #include "server/offline/vehicle_trajectory.hpp"
 #include "server/program_log/stderr_sink.hpp"
 #include "server/replay/replay.hpp"
+#include "server/selftest.hpp"
 
 namespace sonard::server {
 namespace {
@@ -48,9 +49,9 @@ struct CommandLine {
   std::filesystem::path config;
   std::string log_level;  ///< empty: as the configuration says
   bool no_network = false;
-  double listen_s = 0.0;                                      ///< 0: check does not listen
-  render::EngineKind engine = render::EngineKind::automatic;  ///< of selftest
-  std::filesystem::path log;                                  ///< of replay and info
+  double listen_s = 0.0;  ///< 0: check does not listen
+  render::RendererOptions selftest;
+  std::filesystem::path log;  ///< of replay and info
   ReplayTiming timing;
   InfoOptions info;
 };
@@ -148,19 +149,6 @@ int check(const CommandLine& arguments) {
   return exit_config;
 }
 
-int selftest(const CommandLine& arguments) {
-  const render::RendererOptions options{arguments.engine, 0};
-  try {
-    fmt::print("engine  {}\n", render::SonarRenderer(render::World{}, options).engine_description());
-    fmt::print("wall     {:.3f} % RMS from its closed form\n", 100.0 * render::run_self_test(options));
-  } catch (const render::RendererError&) {
-    fmt::print("FAIL\n");
-    throw;
-  }
-  fmt::print("PASS\n");
-  return exit_clean;
-}
-
 int render_offline(const OfflineArguments& arguments) {
   const LoadedConfig loaded = load_config(arguments.config(), head_kinds());
   for (const std::string& warning : loaded.warnings) {
@@ -240,13 +228,16 @@ int main_program(int argc, char** argv) {
       "render", "Render a trajectory to pictures, arrays and a log, without serving (docs/offline.md)");
   OfflineArguments offline(*render_command);
 
-  CLI::App* selftest_command =
-      app.add_subcommand("selftest", "Show the engine in use and compare one scene with its closed form");
-  selftest_command->add_option("--engine", arguments.engine, "auto, gpu or cpu")
+  CLI::App* selftest_command = app.add_subcommand(
+      "selftest", "Show what can render here, compare a scene with its closed form, and time both engines");
+  selftest_command->add_option("--engine", arguments.selftest.engine, "auto, gpu or cpu")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, render::EngineKind>{{"auto", render::EngineKind::automatic},
                                                     {"gpu", render::EngineKind::gpu},
                                                     {"cpu", render::EngineKind::cpu}}));
+
+  selftest_command->add_option("--gpu-device", arguments.selftest.gpu.device,
+                               "As the key gpu.device: the number of an EGL device, or a part of its name");
 
   CLI::App* replay_command =
       app.add_subcommand("replay", "Serve a recorded .glf, .dat or .mcap as the device that made it");
@@ -317,7 +308,7 @@ int main_program(int argc, char** argv) {
     if (replay_command->parsed()) {
       return replay(arguments);
     }
-    return check_command->parsed() ? check(arguments) : selftest(arguments);
+    return check_command->parsed() ? check(arguments) : selftest(arguments.selftest);
   });
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene every start of the daemon renders before it serves: a wall with a closed-form echo.
-#include <fmt/format.h>
+#include "renderer/pipeline/self_test.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "renderer/pipeline/sonar_renderer.hpp"
 
@@ -80,29 +84,46 @@ double error_of(const EchoImage& image, const SonarSettings& settings) {
   return std::sqrt(squared / compared);
 }
 
+SonarSettings wall_settings(int beams, int lines) {
+  SonarSettings settings;
+  settings.aperture.beam_edges_rad = equal_sine_edges(beams, 1.0471975511965976);
+  settings.range = {lines, 0.02, 0, false};
+  settings.physical.absorption_db_per_m = 0.0;
+  return settings;
+}
+
 }  // namespace
 
-double run_self_test(const RendererOptions& options) {
+SelfTestResult run_self_test(RendererOptions options) {
+  options.gpu.lose_context_at_image = 0;
   SonarRenderer renderer(make_wall(), options);
   PingRequest request;
-  SonarSettings& settings = request.settings;
-  settings.aperture.beam_edges_rad = equal_sine_edges(16, 1.0471975511965976);
-  settings.range = {1200, 0.02, 0, false};
-  settings.physical.absorption_db_per_m = 0.0;
-  double worst = 0;
+  request.settings = wall_settings(16, 1200);
+  SelfTestResult result;
   // Fixed grids go another way than presets, with `gpu` through shaders of their own.
   for (const Sampling& sampling : {Sampling{}, Sampling::of_grid(3, 64, 256)}) {
-    settings.sampling = sampling;
-    const double error = error_of(renderer.render_echo(request), settings);
+    request.settings.sampling = sampling;
+    const double error = error_of(renderer.render_echo(request), request.settings);
     if (!(error < worst_error)) {
       throw RendererError(
           fmt::format("self test: the echo of a wall, by {}, is off by {:.1f} % RMS on {}",
                       sampling.preset == Sampling::Preset::grid ? "a fixed grid" : "the default preset",
                       error * 100, renderer.engine_description()));
     }
-    worst = std::max(worst, error);
+    result.error = std::max(result.error, error);
   }
-  return worst;
+  result.engine = renderer.engine_description();
+  if (options.engine == EngineKind::gpu && renderer.engine() != EngineKind::gpu) {
+    throw RendererError("self test: " + result.engine);
+  }
+  return result;
+}
+
+EngineTrial time_engines(const RendererOptions& options) {
+  SonarRenderer renderer(make_wall(), options);
+  FirstPing ping;
+  ping.request.settings = wall_settings(256, 1000);
+  return choose_engine(renderer, std::vector{ping});
 }
 
 }  // namespace sonard::render

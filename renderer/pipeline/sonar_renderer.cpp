@@ -12,7 +12,7 @@
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/acoustics/transmission_loss.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
-#include "renderer/engines/make_engine.hpp"
+#include "renderer/engines/engine_switch.hpp"
 #include "renderer/multipath/multipath.hpp"
 #include "renderer/pipeline/echo_cache.hpp"
 #include "renderer/pipeline/ping_motion.hpp"
@@ -71,7 +71,7 @@ struct SonarRenderer::Impl {
   const double ray_curvature_per_m;
   WorkerPool workers;  // outlives its users
   SpatialIndex index;  // the world, and where it is moved
-  ChosenEngine chosen;
+  EngineSwitch engine;
   Multipath multipath;
   TerrainLevels terrain;
   Receiver receiver;
@@ -88,7 +88,7 @@ struct SonarRenderer::Impl {
         ray_curvature_per_m(options.ray_curvature_per_m),
         workers(options.threads),
         index(world, workers),
-        chosen(make_engine(index, workers, options)),
+        engine(index, workers, options),
         multipath(index, workers, options.skip),
         terrain(world, options.skip,
                 ray_curvature_per_m == 0.0 ? 0.0F : refractable_edge_m(world, ray_curvature_per_m)),
@@ -103,7 +103,7 @@ struct SonarRenderer::Impl {
       return;  // publishers repeat the poses of bodies that rest
     }
     index.set_body_pose(body, T_world_body);
-    chosen.engine->set_body_pose(body, T_world_body);
+    engine.set_body_pose(body, T_world_body);
     ++world_revision;
   }
 
@@ -137,7 +137,7 @@ struct SonarRenderer::Impl {
       statistics.skipped.add(SkipRule::straight_rays);
       bend_per_m = 0.0;
     }
-    chosen.engine->set_refraction(bend_per_m);
+    engine.set_refraction(bend_per_m);
   }
 
   /// @param settings_and_seed of which the pose is not looked at
@@ -180,7 +180,7 @@ struct SonarRenderer::Impl {
     if (motion.at_end) {
       image_in_spans(request, *motion.at_end, echo);
     } else {
-      chosen.engine->image(request, echo, statistics);
+      engine.image(request, echo, statistics);
     }
     image = std::move(echo.image);
     Stopwatch watch;
@@ -206,7 +206,7 @@ struct SonarRenderer::Impl {
                        index.world(), workers, statistics.skipped);
     if (!changes.empty()) {
       index.set_part_meshes(changes);
-      chosen.engine->set_part_meshes(changes);
+      engine.set_part_meshes(changes);
     }
     statistics.visibility_s += watch.lap();
   }
@@ -224,8 +224,8 @@ struct SonarRenderer::Impl {
     for (const RangeSpan& span :
          range_spans(request.T_world_sonar, at_end, lines, up_to_end.aperture.receive_beamwidth_rad)) {
       up_to_end.range.count = span.end_line;
-      chosen.engine->image({span.T_world_sonar, up_to_end, request.line_weight, request.open_water}, echo,
-                           statistics);
+      engine.image({span.T_world_sonar, up_to_end, request.line_weight, request.open_water}, echo,
+                   statistics);
       copy_lines(echo.image.intensity, span, beams, joined.image.intensity);
       copy_lines(echo.open_sr, span, beams, joined.open_sr);
     }
@@ -258,11 +258,16 @@ SonarRenderer::SonarRenderer(const World& world, const RendererOptions& options)
 SonarRenderer::~SonarRenderer() = default;
 
 EngineKind SonarRenderer::engine() const {
-  return impl_->chosen.kind;
+  return impl_->engine.kind();
 }
 
 const std::string& SonarRenderer::engine_description() const {
-  return impl_->chosen.description;
+  return impl_->engine.description();
+}
+
+void SonarRenderer::use_engine(EngineKind engine) {
+  impl_->engine.use(engine);
+  ++impl_->world_revision;  // the other's images are not this one's
 }
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {

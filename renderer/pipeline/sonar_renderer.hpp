@@ -18,17 +18,21 @@ namespace sonard::render {
 /// `stream` number, which keeps their speckle apart.
 class SonarRenderer {
  public:
-  /// @throws RendererError when the request cannot be met: `gpu` without OpenGL 4.5, or binning on
-  /// the GPU where its shaders do not build.
+  /// @throws RendererError when `gpu` is asked for and cannot be had.
   explicit SonarRenderer(const World& world, const RendererOptions& options = {});
   ~SonarRenderer();
   SonarRenderer(const SonarRenderer&) = delete;
   SonarRenderer& operator=(const SonarRenderer&) = delete;
 
-  /// The engine in use: `gpu` or `cpu`.
+  /// The engine of the next ping: `gpu` or `cpu`. It changes when the GPU fails: the ping at which it does
+  /// already comes from the CPU.
   EngineKind engine() const;
-  /// The engine and what it runs on, in one line; where `automatic` chose, with the OpenGL it found.
+  /// That engine and what it runs on, in one line.
   const std::string& engine_description() const;
+  /// Takes this engine from the next ping on, and gives the GPU up when it is `cpu`.
+  /// @param engine not `automatic`; choose_engine() finds the faster one.
+  /// @throws RendererError when it cannot be had; the one in use stays.
+  void use_engine(EngineKind engine);
 
   /// Moves a body of the world. @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
@@ -56,11 +60,5 @@ class SonarRenderer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Renders a wall with a closed-form echo and compares (docs/accuracy.md, T2), by the default preset and by a
-/// fixed grid.
-/// @return the larger RMS error over bins above 1e-2 of the beam's maximum.
-/// @throws RendererError when the engine fails, the image is empty or the error exceeds 5 %.
-double run_self_test(const RendererOptions& options = {});
 
 }  // namespace sonard::render

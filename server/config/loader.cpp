@@ -326,6 +326,17 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
   recording.queue_bytes = mebibytes << 20;
 }
 
+void read_gpu(YamlSection& gpu, render::GpuOptions& options) {
+  gpu.text(
+      "device", options.device,
+      "which EGL device: its number in the list of `sonard selftest`, or a part of its name there. Without "
+      "it, hardware comes before software, then most memory");
+  gpu.number(
+      "retry_s", options.retry_s, Range::from(0.0, 86'400.0),
+      "after a loss of the GPU it is tried again each time so long has passed, in the middle of a ping, "
+      "which then waits for it; 0: the CPU goes on to the end");
+}
+
 void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config,
                    std::vector<ConfigWarning>& warnings) {
   HeadContext context;
@@ -334,13 +345,17 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.require("world", "a mapping with the world's file");
   root.section("world", "what the sonars see",
                [&](YamlSection& section) { read_world(section, context.folder, config); });
-  root.choice("engine", config.engine,
-              {{"auto", render::EngineKind::automatic},
-               {"gpu", render::EngineKind::gpu},
-               {"cpu", render::EngineKind::cpu}},
-              "what finds the visible surfaces: OpenGL 4.5, or ray tracing on all cores of the CPU, which "
-              "needs no OpenGL. `auto` takes OpenGL where it runs on graphics hardware. Both give the same "
-              "image ([accuracy.md](accuracy.md)); the log says which one runs on what");
+  root.choice(
+      "engine", config.engine,
+      {{"auto", render::EngineKind::automatic},
+       {"gpu", render::EngineKind::gpu},
+       {"cpu", render::EngineKind::cpu}},
+      "what renders: OpenGL 4.5 on the graphics card, or the cores of the CPU, which needs no OpenGL. "
+      "`auto` renders the first ping of each head with both and takes the faster; the log gives both "
+      "times. Where a GPU fails while it serves, the CPU goes on with the same ping. The images agree "
+      "within the error of the preset ([accuracy.md](accuracy.md))");
+  root.section("gpu", "what engine `gpu` runs on",
+               [&](YamlSection& section) { read_gpu(section, config.gpu); });
   root.retired("backend", "write `engine: gpu` for raster, `engine: cpu` for ray, `engine: auto` for auto");
   root.retired("gpu_binning", "remove it; engine `gpu` bins on the GPU in any case");
   root.section("skip", "what need not be worked out",

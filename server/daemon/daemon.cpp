@@ -20,7 +20,6 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
-#include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
@@ -34,44 +33,12 @@
 #include "server/pose/pose_inputs.hpp"
 #include "server/pose/pose_intake.hpp"
 #include "server/recording/recorder.hpp"
+#include "server/rendering/world_renderer.hpp"
 
 namespace sonard::server {
 namespace {
 
 namespace asio = boost::asio;
-
-class WorldRenderer final : public PingRenderer {
- public:
-  WorldRenderer(const render::World& world, const render::RendererOptions& options)
-      : renderer_(world, options) {}
-
-  std::string description() const override { return renderer_.engine_description(); }
-  bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
-    return renderer_.set_body_pose(body, T_world_body);
-  }
-  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
-    return renderer_.render_ping(request, stream);
-  }
-  void warm_up(const render::PingRequest& request, int stream) override {
-    renderer_.render_echo(request,
-                          stream);  // the receiver, which keeps speckle from ping to ping, needs no warming
-  }
-  render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
-
- private:
-  render::SonarRenderer renderer_;
-};
-
-// Runs on the render thread. The self-test comes first: an engine that draws nothing must not get as far as a
-// socket.
-std::unique_ptr<PingRenderer> make_world_renderer(const render::World& world,
-                                                  const render::RendererOptions& options) {
-  const double error = render::run_self_test(options);
-  auto renderer = std::make_unique<WorldRenderer>(world, options);
-  spdlog::info("renderer self-test passed: error={:.2f}% engine=\"{}\"", 100.0 * error,
-               renderer->description());
-  return renderer;
-}
 
 std::string head_key(std::size_t index, const std::string& rest) {
   return fmt::format("heads[{}].{}", index, rest);
@@ -140,7 +107,7 @@ class Daemon {
   RenderService& renderer_of(const HeadConfig& head) const {
     return *(kind_of(head).scanning() ? beam_renderer_ : fan_renderer_);
   }
-  void warm_up(const HeadConfig& head, int stream, RenderService& renderer) const;
+  void warm_up(const std::vector<HeadConfig>& heads) const;
   void start_inputs();
   void poses_changed();
   std::optional<std::chrono::nanoseconds> pose_lead() const;
@@ -200,9 +167,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     }
   }
   start_inputs();
-  for (std::size_t i = 0; i < config.heads.size(); ++i) {
-    warm_up(config.heads[i], static_cast<int>(i), renderer_of(config.heads[i]));
-  }
+  warm_up(config.heads);
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} engine=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(),
                             (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
@@ -218,10 +183,22 @@ std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const Dae
 }
 
 // From where the vehicle is, if that is known yet.
-void Daemon::warm_up(const HeadConfig& head, int stream, RenderService& renderer) const {
+void Daemon::warm_up(const std::vector<HeadConfig>& heads) const {
   const std::optional<PoseEstimate> vehicle = poses_.at(clock_.now());
   const render::Pose T_world_vehicle = vehicle ? vehicle->T_world_vehicle : render::Pose{};
-  renderer.warm_up({T_world_vehicle * head.T_vehicle_sonar, usual_settings(head), 0, head.seed}, stream);
+  for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
+    std::vector<render::FirstPing> first_pings;
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+      const HeadConfig& head = heads[i];
+      if (&renderer_of(head) == renderer) {
+        first_pings.push_back({static_cast<int>(i),
+                               {T_world_vehicle * head.T_vehicle_sonar, usual_settings(head), 0, head.seed}});
+      }
+    }
+    if (!first_pings.empty()) {
+      renderer->warm_up(std::move(first_pings));
+    }
+  }
 }
 
 RenderServiceHooks Daemon::hooks() {
@@ -378,8 +355,13 @@ render::World load_world_of(DaemonConfig& config) {
 }
 
 render::RendererOptions renderer_options(const DaemonConfig& config) {
-  return {config.engine, 0, config.skip,
-          config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
+  render::RendererOptions options;
+  options.engine = config.engine;
+  options.skip = config.skip;
+  options.ray_curvature_per_m = config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps;
+  options.gpu = config.gpu;
+  options.report = [](const std::string& line) { spdlog::warn("{}", line); };
+  return options;
 }
 
 int run_daemon(DaemonConfig config) {
@@ -397,7 +379,7 @@ int run_daemon(DaemonConfig config) {
       spdlog::info("skip rule {} is off", entry.name);
     }
   }
-  return serve(config, world, [&] { return make_world_renderer(world, options); });
+  return serve(config, world, world_renderer_factory(world, options));
 }
 
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,

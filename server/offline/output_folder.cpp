@@ -120,6 +120,10 @@ void OutputFolder::remove(const std::string& name) const {
   }
 }
 
+std::optional<std::string> OutputFolder::manifest() const {
+  return has(manifest_name) ? std::optional(read(manifest_name)) : std::nullopt;
+}
+
 void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
   const Lock lock(*this);
   if (has(manifest_name)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -55,6 +56,8 @@ class OutputFolder {
   std::string read(const std::string& name) const;
   void remove(const std::string& name) const;
 
+  /// Of the run whose folder it is; nullopt: of none yet. @throws OutputError
+  std::optional<std::string> manifest() const;
   /// Makes the folder that of a run, which `manifest` describes to the last byte; it becomes the file
   /// run.json. An existing one must be equal, or with `overwrite` all frames and logs are removed.
   /// @throws OutputError where it says something else

@@ -7,6 +7,7 @@
 #include <future>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,6 +21,8 @@
 #include "protocol/glf/log_time.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
+#include "renderer/pipeline/engine_trial.hpp"
+#include "renderer/pipeline/self_test.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/daemon.hpp"
@@ -92,6 +95,7 @@ class RenderRun {
   void finish();
 
  private:
+  void choose_engine();
   std::string manifest() const;
   bool whole(int frame) const;
   bool wanted(int frame) const { return options_.shard.has(frame) && (options_.overwrite || !whole(frame)); }
@@ -111,8 +115,12 @@ class RenderRun {
   OutputFolder folder_;
 };
 
-// The self-test comes first: an engine that draws nothing must not fill a folder.
-render::RendererOptions tested(const render::RendererOptions& options) {
+// The self-test comes first: an engine that draws nothing must not fill a folder. All frames come from one
+// engine, since bytes that a folder already holds are not made again: where the GPU is lost, the run ends.
+render::RendererOptions tested(render::RendererOptions options) {
+  options.report = [](const std::string& line) {
+    throw render::RendererError(line + "; run it again, and it goes on where it stopped");
+  };
   render::run_self_test(options);
   return options;
 }
@@ -157,7 +165,27 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
       folder_(options.out) {
+  choose_engine();
   folder_.claim(manifest(), options.overwrite);
+}
+
+// Frames of one folder come from one engine: under `auto` that of the process that made the folder.
+void RenderRun::choose_engine() {
+  if (config_.engine != render::EngineKind::automatic) {
+    return;
+  }
+  if (const std::optional<std::string> before = folder_.manifest(); before && !options_.overwrite) {
+    const Json json = Json::parse(*before, nullptr, false);
+    renderer_.use_engine(json.is_object() && json.value("engine", "") == "gpu" ? render::EngineKind::gpu
+                                                                               : render::EngineKind::cpu);
+    return;
+  }
+  const HeadConfig& head = config_.heads[head_];
+  const render::Pose T_world_sonar =
+      trajectory_.T_world_vehicle(trajectory_.start_ns()) * head.T_vehicle_sonar;
+  const std::vector<render::FirstPing> first{
+      {static_cast<int>(head_), {T_world_sonar, usual_settings(head), 0, head.seed}}};
+  spdlog::info("engine auto: {}", describe(render::choose_engine(renderer_, first)));
 }
 
 // All that the bytes of frames follow from, as far as it is not in the program; nothing of this process.

@@ -23,17 +23,20 @@ constexpr std::size_t most_unknown_bodies = 16;
 }  // namespace
 
 struct RenderService::Impl {
+  struct WarmUp {
+    std::vector<render::FirstPing> first_pings;
+    std::promise<void> done;
+  };
   struct Entry {
     RenderJob job;
     Done done;
-    std::optional<std::promise<void>>
-        warmed_up{};  ///< set: a caller waits; this is no ping, and has no `done`
+    std::optional<WarmUp> warm_up{};  ///< set: this is no ping, and has no `done`
   };
 
   // Constant once the constructor has returned.
   RenderServiceHooks hooks;
   std::size_t capacity = 0;
-  std::string description;
+  std::string description;  // and changed by the warm-up, while its caller waits
 
   // Shared, under the mutex.
   std::mutex mutex;
@@ -49,7 +52,7 @@ struct RenderService::Impl {
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
   void serve(PingRenderer& renderer);
-  static void warm_up(PingRenderer& renderer, Entry& entry);
+  void warm_up(PingRenderer& renderer, WarmUp& warm_up);
   void move_bodies(PingRenderer& renderer, const RenderJob& job);
   RenderResult render(PingRenderer& renderer, const RenderJob& job);
   void close_queue();
@@ -83,20 +86,17 @@ void RenderService::submit(RenderJob job, Done done) {
     if (impl_->queue.size() >= impl_->capacity) {
       throw std::logic_error("render queue is full: a stream has more than one job outstanding");
     }
-    impl_->queue.push_back({std::move(job), std::move(done), std::nullopt});
+    impl_->queue.push_back({std::move(job), std::move(done)});
   }
   impl_->wake.notify_one();
 }
 
-void RenderService::warm_up(const render::PingRequest& request, int stream) {
-  RenderJob job;
-  job.stream = stream;
-  job.request = request;
-  std::promise<void> warmed_up;
-  std::future<void> done = warmed_up.get_future();
+void RenderService::warm_up(std::vector<render::FirstPing> first_pings) {
+  Impl::WarmUp warm_up{std::move(first_pings), {}};
+  std::future<void> done = warm_up.done.get_future();
   {
     const std::lock_guard lock(impl_->mutex);
-    impl_->queue.push_back({std::move(job), {}, std::move(warmed_up)});
+    impl_->queue.push_back({{}, {}, std::move(warm_up)});
   }
   impl_->wake.notify_one();
   done.get();
@@ -105,9 +105,9 @@ void RenderService::warm_up(const render::PingRequest& request, int stream) {
 bool RenderService::withdraw(int stream) {
   std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: the callback owns things of others
   const std::lock_guard lock(impl_->mutex);
-  const auto entry =
-      std::find_if(impl_->queue.begin(), impl_->queue.end(),
-                   [stream](const Impl::Entry& waiting) { return waiting.job.stream == stream; });
+  const auto entry = std::find_if(
+      impl_->queue.begin(), impl_->queue.end(),
+      [stream](const Impl::Entry& waiting) { return waiting.done && waiting.job.stream == stream; });
   if (entry == impl_->queue.end()) {
     return false;
   }
@@ -170,8 +170,8 @@ std::optional<RenderService::Impl::Entry> RenderService::Impl::next() {
 
 void RenderService::Impl::serve(PingRenderer& renderer) {
   while (std::optional<Entry> entry = next()) {
-    if (entry->warmed_up) {
-      warm_up(renderer, *entry);
+    if (entry->warm_up) {
+      warm_up(renderer, *entry->warm_up);
       continue;
     }
     RenderResult result = render(renderer, entry->job);
@@ -184,12 +184,13 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
   }
 }
 
-void RenderService::Impl::warm_up(PingRenderer& renderer, Entry& entry) {
+void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
   try {
-    renderer.warm_up(entry.job.request, entry.job.stream);
-    entry.warmed_up->set_value();
+    renderer.warm_up(warm_up.first_pings);
+    description = renderer.description();
+    warm_up.done.set_value();
   } catch (...) {
-    entry.warmed_up->set_exception(std::current_exception());
+    warm_up.done.set_exception(std::current_exception());
   }
 }
 

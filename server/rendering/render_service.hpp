@@ -12,6 +12,7 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/ping.hpp"
+#include "renderer/pipeline/engine_trial.hpp"
 #include "renderer/pose.hpp"
 #include "server/pose/posed_body.hpp"
 
@@ -28,10 +29,10 @@ class PingRenderer {
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
   /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can)
   virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
-  /// Prepares what a ping like this one needs: trees, shaders, memory. Changes no later
+  /// Prepares what pings like these need: the engine, trees, shaders, memory. Called once, before the first
   /// ping.
   /// @throws as render_ping()
-  virtual void warm_up(const render::PingRequest& /*request*/, int /*stream*/) {}
+  virtual void warm_up(const std::vector<render::FirstPing>& /*first_pings*/) {}
   /// Statistics of the last render_ping().
   virtual render::PingStatistics last_statistics() const = 0;
 };
@@ -86,7 +87,7 @@ class RenderService {
 
   /// PingRenderer::warm_up(); returns when it is done.
   /// @throws whatever that threw; std::future_error when the service is stopped before
-  void warm_up(const render::PingRequest& request, int stream);
+  void warm_up(std::vector<render::FirstPing> first_pings);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
   /// @throws std::logic_error when the queue is full: more than one job per stream was submitted
   void submit(RenderJob job, Done done);
@@ -96,6 +97,7 @@ class RenderService {
   /// Ends the render thread after the ping it is working on. Harmless when called again.
   void stop();
 
+  /// As of when the renderer was made or, if that came since, warmed up.
   const std::string& renderer_description() const;
 
  private:

@@ -95,9 +95,11 @@ class FakeRenderer final : public server::PingRenderer {
     return samples;
   }
 
-  void warm_up(const render::PingRequest& request, int stream) override {
-    if (control_->warming_up) {
-      control_->warming_up(request, stream);
+  void warm_up(const std::vector<render::FirstPing>& first_pings) override {
+    for (const render::FirstPing& ping : first_pings) {
+      if (control_->warming_up) {
+        control_->warming_up(ping.request, ping.stream);
+      }
     }
   }
 

@@ -3,22 +3,35 @@
 #pragma once
 
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include <osg/GraphicsContext>
 #include <osg/Program>
 
+#include "renderer/engines/gpu/gl_devices.hpp"
+
 namespace sonard::render {
 
-/// OpenGL 4.5 compatibility context on an EGL device or, failing that, on a surfaceless display. It has no
-/// default framebuffer: draw to framebuffer objects only. The thread that makes it current owns it.
+/// OpenGL 4.5 compatibility context on an EGL device. It has no default framebuffer: draw to framebuffer
+/// objects only. The thread that makes it current owns it.
 class EglContext : public osg::GraphicsContext {
  public:
-  /// @throws RendererError naming what was tried when no context can be made.
-  EglContext();
+  /// @param device as GpuOptions::device.
+  /// @throws RendererError saying what devices there are when no context can be made.
+  explicit EglContext(const std::string& device);
 
   /// "vendor / renderer / version"; valid once realized and current.
   std::string describe() const;
+
+  /// Which of list_gl_devices() it is on, and why.
+  const GlDeviceChoice& device() const { return choice_; }
+
+  /// @throws RendererError when the context is no longer current, or the driver has reset it. What was read
+  /// from it since it was last checked is then worth nothing.
+  void check() const;
+
+  /// For tests: loses the context, as a driver does that is reset.
+  void lose();
 
   /// Builds a program where it will be used; the context is current.
   /// @param what in the message: "the surface shader".
@@ -42,22 +55,10 @@ class EglContext : public osg::GraphicsContext {
   ~EglContext() override;
 
  private:
+  GlDeviceChoice choice_;
   void* display_ = nullptr;  // EGLDisplay; kept opaque so that EGL headers stay in one file
   void* context_ = nullptr;  // EGLContext
   bool realized_ = false;
 };
-
-/// What OpenGL there is on this machine.
-struct GlProbe {
-  std::string description;  ///< "vendor / renderer / version"; empty: there is none
-  std::string problem;      ///< why there is none
-};
-
-/// Makes a context and gives it up again.
-GlProbe probe_gl();
-
-/// Whether the renderer string of an OpenGL context ("vendor / renderer / version") names a rasteriser that
-/// runs on the CPU.
-bool is_software_gl(std::string_view description);
 
 }  // namespace sonard::render

@@ -394,6 +394,7 @@ struct GpuBinner::Impl {
 
   void read(const GpuBuffer& buffer, void* to, std::size_t from_byte, std::size_t bytes) {
     buffer.read(to, from_byte, bytes);
+    context.check();
     bytes_read += bytes;
   }
 

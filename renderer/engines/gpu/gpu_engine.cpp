@@ -18,7 +18,9 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
     : skip_(options.skip),
       largest_response_(largest_response(world)),
       workers_(workers),
-      sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m)),
+      images_until_lost_(options.gpu.lose_context_at_image),
+      sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m),
+               options.gpu.device),
       binner_(sampler_),
       refinement_(sampler_, binner_) {}
 
@@ -49,6 +51,9 @@ void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics
   const SonarSettings& settings = request.settings;
   binner_.begin({settings.aperture.beam_count(), settings.range, options, request.line_weight,
                  most_estimated_error(settings.sampling.preset)});
+  if (images_until_lost_ > 0 && --images_until_lost_ == 0) {
+    sampler_.current_context().lose();
+  }
   const bool may_keep = skip_.on(SkipRule::unchanged_settings);
   const bool known_grid = needs_grid(settings) ? draw_grid(request, may_keep, statistics)
                                                : refinement_.refine(request, surface_model(settings, skip_),

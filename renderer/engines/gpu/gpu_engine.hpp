@@ -40,6 +40,7 @@ class GpuEngine final : public EchoEngine {
   const SkipSwitches skip_;
   const float largest_response_;
   WorkerPool& workers_;
+  std::uint64_t images_until_lost_;  ///< GpuOptions::lose_context_at_image
   RasterSampler sampler_;
   GpuBinner binner_;
   GridCache grid_, cone_grid_;

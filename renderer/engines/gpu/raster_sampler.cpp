@@ -151,7 +151,7 @@ struct RasterSampler::Impl {
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
 
-  explicit Impl(const World& world) : context(new EglContext) {
+  Impl(const World& world, const std::string& device) : context(new EglContext(device)) {
     // Near things first: what they hide is not shaded.
     osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
     context->realize();
@@ -306,6 +306,7 @@ struct RasterSampler::Impl {
     context->getState()->haveAppliedTextureAttribute(context->getState()->getActiveTextureUnit(),
                                                      osg::StateAttribute::TEXTURE);
     check_errors();
+    context->check();
   }
 
   static void check_errors() {
@@ -315,7 +316,8 @@ struct RasterSampler::Impl {
   }
 };
 
-RasterSampler::RasterSampler(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+RasterSampler::RasterSampler(const World& world, const std::string& device)
+    : impl_(std::make_unique<Impl>(world, device)) {}
 RasterSampler::~RasterSampler() = default;
 
 std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,

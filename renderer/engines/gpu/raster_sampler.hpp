@@ -21,8 +21,9 @@ class EglContext;
 /// the subtraction of world positions happens in double on the CPU, once per body and ping.
 class RasterSampler {
  public:
+  /// @param device as GpuOptions::device.
   /// @throws RendererError without OpenGL 4.5, or when a shader does not compile.
-  explicit RasterSampler(const World& world);
+  explicit RasterSampler(const World& world, const std::string& device = {});
   ~RasterSampler();
   RasterSampler(const RasterSampler&) = delete;
   RasterSampler& operator=(const RasterSampler&) = delete;

@@ -17,7 +17,7 @@ constexpr double degree = std::numbers::pi / 180;
 class FanScenes : public EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engines, FanScenes, all_engines(), engine_name);
 
-constexpr render::RendererOptions on_cpu{render::EngineKind::cpu};
+const render::RendererOptions on_cpu{render::EngineKind::cpu};
 
 // The manifold: from (0, -11.9) and 5.5 m above its level bed, 1.8 m high, its back 13.3 m ahead.
 // docs/physics.md T7: shadow on (r_base, r_top h / (h - H)), both of the back.

@@ -19,7 +19,7 @@ constexpr double half_beam = 1.5 * degree;
 class ScannedScenes : public EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engines, ScannedScenes, all_engines(), engine_name);
 
-constexpr render::RendererOptions on_cpu{render::EngineKind::cpu};
+const render::RendererOptions on_cpu{render::EngineKind::cpu};
 
 /// Distance from a point inside an upright rectangle to its sides.
 struct Room {

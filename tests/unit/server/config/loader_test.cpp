@@ -75,6 +75,9 @@ TEST_F(Loader, reads_the_engine) {
   EXPECT_EQ(load(minimal_config + "engine: auto\n").config.engine, render::EngineKind::automatic);
   EXPECT_EQ(load(minimal_config + "engine: gpu\n").config.engine, render::EngineKind::gpu);
   EXPECT_EQ(load(minimal_config + "engine: cpu\n").config.engine, render::EngineKind::cpu);
+  const DaemonConfig config = load(minimal_config + "gpu: {device: 1, retry_s: 30}\n").config;
+  EXPECT_EQ(config.gpu.device, "1");
+  EXPECT_EQ(config.gpu.retry_s, 30.0);
 }
 
 TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
@@ -192,6 +195,9 @@ TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
       complaints(minimal_config + "gpu_binning: on\n"),
       ElementsAre("config.yaml:11:1: gpu_binning: is no longer a key: remove it; engine `gpu` bins on the "
                   "GPU in any case"));
+  EXPECT_THAT(complaints(minimal_config + "backend: ray\n"),
+              ElementsAre("config.yaml:11:1: backend: is no longer a key: write `engine: gpu` for raster, "
+                          "`engine: cpu` for ray, `engine: auto` for auto"));
 }
 
 TEST_F(Loader, suggests_the_key_with_its_unit) {

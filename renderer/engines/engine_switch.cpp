@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/engines/engine_switch.hpp"
+
+#include <fmt/format.h>
+
+#include "renderer/engines/cpu/cpu_engine.hpp"
+#include "renderer/engines/gpu/gpu_engine.hpp"
+#include "renderer/errors.hpp"
+
+namespace sonard::render {
+
+EngineSwitch::EngineSwitch(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options)
+    : index_(index), workers_(workers), options_(options) {
+  use(options.engine == EngineKind::gpu ? EngineKind::gpu : EngineKind::cpu);
+}
+
+void EngineSwitch::use(EngineKind engine) {
+  if (engine == EngineKind::gpu) {
+    make_gpu();
+    on_gpu_ = true;
+  } else {
+    cpu();
+    on_gpu_ = false;
+  }
+  describe();
+}
+
+void EngineSwitch::drop_unused() {
+  (kind() == EngineKind::gpu ? cpu_ : gpu_).reset();
+}
+
+EchoEngine& EngineSwitch::cpu() {
+  if (!cpu_) {
+    cpu_ = std::make_unique<CpuEngine>(index_, workers_, options_);
+    cpu_->set_refraction(bend_per_m_);
+  }
+  return *cpu_;
+}
+
+void EngineSwitch::make_gpu() {
+  if (!gpu_) {
+    gpu_ = std::make_unique<GpuEngine>(index_.world(), workers_, options_);
+    gpu_->set_refraction(bend_per_m_);
+  }
+}
+
+void EngineSwitch::lose_gpu(const std::string& reason) {
+  gpu_.reset();
+  lost_because_ = reason;
+  watch_.lap();
+  since_loss_s_ = 0.0;
+  cpu();
+  describe();
+  report(fmt::format("the GPU is lost: {}. The engine is cpu from now on{}", reason,
+                     options_.gpu.retry_s > 0.0
+                         ? fmt::format("; the GPU is tried again every {:g} s", options_.gpu.retry_s)
+                         : ""));
+}
+
+void EngineSwitch::retry_gpu() {
+  since_loss_s_ += watch_.lap();
+  if (options_.gpu.retry_s <= 0.0 || since_loss_s_ < options_.gpu.retry_s) {
+    return;
+  }
+  since_loss_s_ = 0.0;
+  try {
+    make_gpu();
+  } catch (const RendererError&) {
+    return;  // what the log says of the loss still holds
+  }
+  describe();
+  report("the GPU is back: the engine is " + description_);
+}
+
+bool EngineSwitch::image_by_gpu(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
+  const PingStatistics before = statistics;
+  try {
+    gpu_->image(request, echo, statistics);
+    return true;
+  } catch (const RequestError& error) {
+    if (!told_too_large_) {
+      told_too_large_ = true;
+      report(fmt::format("the GPU cannot make a ping, the CPU does: {}. Said once", error.what()));
+    }
+  } catch (const RendererError& error) {
+    lose_gpu(error.what());
+  }
+  statistics = before;
+  return false;
+}
+
+void EngineSwitch::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
+  if (on_gpu_ && !gpu_) {
+    retry_gpu();
+  }
+  if (kind() == EngineKind::gpu && image_by_gpu(request, echo, statistics)) {
+    return;
+  }
+  cpu().image(request, echo, statistics);
+}
+
+void EngineSwitch::set_body_pose(std::size_t body, const Pose& T_world_body) {
+  for (EchoEngine* engine : {cpu_.get(), gpu_.get()}) {
+    if (engine != nullptr) {
+      engine->set_body_pose(body, T_world_body);
+    }
+  }
+}
+
+void EngineSwitch::set_part_meshes(std::span<const PartMesh> changes) {
+  if (cpu_) {
+    cpu_->set_part_meshes(changes);
+  }
+  if (gpu_) {
+    try {
+      gpu_->set_part_meshes(changes);
+    } catch (const RendererError& error) {
+      lose_gpu(error.what());
+    }
+  }
+}
+
+void EngineSwitch::set_refraction(double bend_per_m) {
+  bend_per_m_ = bend_per_m;
+  for (EchoEngine* engine : {cpu_.get(), gpu_.get()}) {
+    if (engine != nullptr) {
+      engine->set_refraction(bend_per_m);
+    }
+  }
+}
+
+void EngineSwitch::describe() {
+  description_ = (kind() == EngineKind::gpu ? gpu_ : cpu_)->description();
+  if (on_gpu_ && !gpu_) {
+    description_ += ", for the GPU is lost: " + lost_because_;
+  }
+}
+
+void EngineSwitch::report(const std::string& line) const {
+  if (options_.report) {
+    options_.report(line);
+  }
+}
+
+}  // namespace sonard::render

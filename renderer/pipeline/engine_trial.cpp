@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/pipeline/engine_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "renderer/errors.hpp"
+#include "renderer/stopwatch.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+constexpr int most_rounds = 6;
+constexpr double longest_trial_s = 0.5;  // of an engine; its first round is finished in any case
+constexpr double step_m = 1e-3;          // from round to round, so that no round can reuse another
+constexpr int fewest_beams_of_fan = 32;
+constexpr float least_level = 1e-2F;  // of the largest bin of a beam; bins below are not compared
+constexpr double kept_share = 0.99;   // of the bins; a few at edges differ more
+
+/// Twice what docs/accuracy.md promises of the bins: either image may be off by that.
+double most_difference(const SonarSettings& settings) {
+  const Sampling::Preset preset = settings.sampling.preset;
+  return preset == Sampling::Preset::normal || preset == Sampling::Preset::reference ? 0.02 : 0.10;
+}
+
+double difference(const EchoImage& gpu, const EchoImage& cpu) {
+  std::vector<double> squares;
+  for (int beam = 0; beam < cpu.beams; ++beam) {
+    float largest = 0.0F;
+    for (int line = 0; line < cpu.lines; ++line) {
+      largest = std::max(largest, cpu.at(beam, line));
+    }
+    for (int line = 0; line < cpu.lines; ++line) {
+      if (cpu.at(beam, line) > least_level * largest) {
+        const double error = static_cast<double>(gpu.at(beam, line) / cpu.at(beam, line)) - 1.0;
+        squares.push_back(error * error);
+      }
+    }
+  }
+  const auto kept = squares.begin() + static_cast<std::ptrdiff_t>(std::ceil(kept_share * squares.size()));
+  std::nth_element(squares.begin(), kept, squares.end());
+  return squares.empty() ? 0.0
+                         : std::sqrt(std::accumulate(squares.begin(), kept, 0.0) / (kept - squares.begin()));
+}
+
+struct Rounds {
+  double fastest_ms = std::numeric_limits<double>::infinity();
+  std::vector<EchoImage> images;  ///< of the first round
+};
+
+Rounds render_rounds(SonarRenderer& renderer, std::span<const FirstPing> pings, int most) {
+  Rounds rounds;
+  double taken_s = 0.0;
+  for (int round = 0; round < most && taken_s < longest_trial_s; ++round) {
+    Stopwatch watch;
+    for (FirstPing ping : pings) {
+      ping.request.T_world_sonar.position_m.x += round * step_m;
+      const EchoImage& image = renderer.render_echo(ping.request, ping.stream);
+      if (round == 0) {
+        rounds.images.push_back(image);
+      }
+    }
+    const double round_s = watch.lap();
+    taken_s += round_s;
+    rounds.fastest_ms = std::min(rounds.fastest_ms, 1e3 * round_s);
+  }
+  return rounds;
+}
+
+/// The beams in the middle of each fan, a sixteenth of them. What they take is less than what all take.
+std::vector<FirstPing> middle_beams(std::span<const FirstPing> pings) {
+  std::vector<FirstPing> few(pings.begin(), pings.end());
+  for (FirstPing& ping : few) {
+    std::vector<double>& edges_rad = ping.request.settings.aperture.beam_edges_rad;
+    const auto beams = static_cast<std::ptrdiff_t>(edges_rad.size()) - 1;
+    const std::ptrdiff_t kept = (beams + 15) / 16;
+    const auto first = edges_rad.begin() + (beams - kept) / 2;
+    edges_rad = {first, first + kept + 1};
+  }
+  return few;
+}
+
+/// Fills in what is known of the GPU once it has been tried.
+void try_gpu(SonarRenderer& renderer, std::span<const FirstPing> pings, const Rounds& by_cpu,
+             EngineTrial& trial) {
+  renderer.use_engine(EngineKind::gpu);
+  trial.gpu = renderer.engine_description();
+  if (pings.front().request.settings.aperture.beam_count() >= fewest_beams_of_fan) {
+    trial.gpu_ms = render_rounds(renderer, middle_beams(pings), 2).fastest_ms;
+    if (trial.gpu_ms > trial.cpu_ms) {
+      trial.gpu_problem = "for a sixteenth of the beams";
+      return;
+    }
+  }
+  const Rounds by_gpu = render_rounds(renderer, pings, most_rounds);
+  trial.gpu_ms = by_gpu.fastest_ms;
+  for (std::size_t i = 0; i < pings.size(); ++i) {
+    const double most = most_difference(pings[i].request.settings);
+    trial.difference = std::max(trial.difference, difference(by_gpu.images[i], by_cpu.images[i]));
+    if (!(trial.difference <= most)) {
+      trial.gpu_problem =
+          fmt::format("but its image differs by {:.2g} % RMS, where the preset allows {:.2g} %",
+                      100 * trial.difference, 100 * most);
+    }
+  }
+}
+
+}  // namespace
+
+EngineTrial choose_engine(SonarRenderer& renderer, std::span<const FirstPing> first_pings) {
+  EngineTrial trial;
+  renderer.use_engine(EngineKind::cpu);
+  trial.cpu = renderer.engine_description();
+  const Rounds by_cpu = render_rounds(renderer, first_pings, most_rounds);
+  trial.cpu_ms = by_cpu.fastest_ms;
+  try {
+    try_gpu(renderer, first_pings, by_cpu, trial);
+  } catch (const RendererError& error) {
+    trial.gpu_problem = error.what();
+  }
+  if (!trial.gpu.empty() && renderer.engine() != EngineKind::gpu) {
+    trial.gpu_problem = "before it failed";
+  }
+  if (trial.gpu_problem.empty() && trial.gpu_ms < trial.cpu_ms) {
+    trial.taken = EngineKind::gpu;
+  } else {
+    renderer.use_engine(EngineKind::cpu);
+  }
+  return trial;
+}
+
+std::string describe(const EngineTrial& trial) {
+  const std::string cpu = fmt::format("cpu takes {:.1f} ms a ping ({})", trial.cpu_ms, trial.cpu);
+  const std::string gpu =
+      trial.gpu.empty() ? "gpu cannot be had: " + trial.gpu_problem
+                        : fmt::format("gpu {:.1f} ms{}{} ({})", trial.gpu_ms,
+                                      trial.gpu_problem.empty() ? "" : " ", trial.gpu_problem, trial.gpu);
+  return fmt::format("{}, {}; {} is taken", cpu, gpu, name_of(trial.taken));
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which engine is faster here, by measurement.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+
+namespace sonard::render {
+
+struct FirstPing {
+  int stream = 0;
+  PingRequest request;
+};
+
+struct EngineTrial {
+  EngineKind taken = EngineKind::cpu;
+  /// To render the mean echoes of all pings once, the fastest round. Of a GPU that takes longer for a
+  /// sixteenth of the beams than the CPU for all, what it takes for these.
+  double cpu_ms = 0.0, gpu_ms = 0.0;
+  /// RMS of (the GPU's bin / the CPU's - 1) over bins above 1e-2 of the largest of their beam, without the
+  /// worst hundredth; of the ping where it is most.
+  double difference = 0.0;
+  std::string cpu, gpu;     ///< what they run on; `gpu` is empty when it cannot be had
+  std::string gpu_problem;  ///< why it is not taken, whatever its time; empty: that decides
+};
+
+/// Renders these pings with both engines, for a second at most after the shaders are built, and lets the
+/// renderer go on with the faster one: the GPU only where its bins are those of the CPU within twice the
+/// error that the preset of each ping promises.
+/// @throws RequestError, RendererError when the CPU cannot render them.
+EngineTrial choose_engine(SonarRenderer& renderer, std::span<const FirstPing> first_pings);
+
+/// "cpu takes 14.2 ms a ping, gpu 410.0 ms (vendor / renderer / version): cpu is taken".
+std::string describe(const EngineTrial& trial);
+
+}  // namespace sonard::render
