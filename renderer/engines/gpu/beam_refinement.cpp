@@ -11,6 +11,7 @@ namespace sonard::render {
 namespace {
 
 constexpr int most_passes = 3;
+constexpr std::size_t most_even_grids = 8;
 constexpr double most_samples_at_once = 0x1p23;  // what is drawn before it is binned
 
 /// The beams of some runs, one run after the other.
@@ -112,17 +113,32 @@ BeamRefinement::Grid BeamRefinement::make_grid(const Aperture& aperture, const s
   return grid;
 }
 
-const BeamRefinement::EvenGrids& BeamRefinement::even_grids(const Aperture& aperture,
-                                                            const BeamDensity& density) {
-  even_.reset();
+/// Null when there are none.
+const BeamRefinement::EvenGrids* BeamRefinement::known_even_grids(const Aperture& aperture,
+                                                                  const BeamDensity& density) {
+  const auto known = std::find_if(even_.begin(), even_.end(), [&](const EvenGrids& grids) {
+    return grids.density == density && grids.aperture == aperture &&
+           grids.beams_per_page == binner_.beams_per_page();
+  });
+  if (known == even_.end()) {
+    return nullptr;
+  }
+  even_.splice(even_.begin(), even_, known);
+  return &even_.front();
+}
+
+const BeamRefinement::EvenGrids& BeamRefinement::make_even_grids(const Aperture& aperture,
+                                                                 const BeamDensity& density) {
   const int beams_per_page = binner_.beams_per_page();
   std::vector<Grid> grids;
   for (int begin = 0; begin < aperture.beam_count(); begin += beams_per_page) {
     const int end = std::min(begin + beams_per_page, aperture.beam_count());
     grids.push_back(make_grid(aperture, {even_run(aperture, begin, end, density)}, true));
   }
-  even_ = {aperture, density, beams_per_page, std::move(grids)};
-  return *even_;
+  if (even_.size() == most_even_grids) {
+    even_.pop_back();
+  }
+  return even_.emplace_front(EvenGrids{aperture, density, beams_per_page, std::move(grids)});
 }
 
 bool BeamRefinement::refine(const EchoRequest& request, const SurfaceModel& surface, bool keep_grid,
@@ -130,9 +146,8 @@ bool BeamRefinement::refine(const EchoRequest& request, const SurfaceModel& surf
   const Aperture& aperture = request.settings.aperture;
   const Sampling::Preset preset = request.settings.sampling.preset;
   const BeamDensity density = first_density(aperture, preset);
-  const bool known = keep_grid && even_ && even_->density == density && even_->aperture == aperture &&
-                     even_->beams_per_page == binner_.beams_per_page();
-  const EvenGrids& even = known ? *even_ : even_grids(aperture, density);
+  const EvenGrids* known = keep_grid ? known_even_grids(aperture, density) : nullptr;
+  const EvenGrids& even = known != nullptr ? *known : make_even_grids(aperture, density);
   const auto beams = static_cast<std::size_t>(aperture.beam_count());
   Ping ping{*this, request, surface, statistics, std::vector<BeamState>(beams)};
   std::vector<BeamChoice> choices(beams);
@@ -152,7 +167,7 @@ bool BeamRefinement::refine(const EchoRequest& request, const SurfaceModel& surf
     ++statistics.passes;
     ping.refine(choices, pass < most_passes);
   }
-  return known;
+  return known != nullptr;
 }
 
 }  // namespace sonard::render

@@ -2,8 +2,8 @@
 // Grids of samples that are as fine as each beam needs (docs/accuracy.md).
 #pragma once
 
+#include <list>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "renderer/engine.hpp"
@@ -25,7 +25,7 @@ class BeamRefinement {
   BeamRefinement(RasterSampler& sampler, GpuBinner& binner) : sampler_(sampler), binner_(binner) {}
 
   /// Puts the beams of a request into the image that the binner has begun.
-  /// @param keep_grid the grid of the first pass may be that of the last ping, where it is equal.
+  /// @param keep_grid the grid of the first pass may be that of an earlier ping, where it is equal.
   /// @return whether it was.
   /// @throws RequestError when the aperture cannot be gridded.
   /// @throws RendererError as the sampler.
@@ -48,11 +48,12 @@ class BeamRefinement {
   struct Ping;
 
   Grid make_grid(const Aperture& aperture, const std::vector<BeamRun>& runs, bool with_estimate) const;
-  const EvenGrids& even_grids(const Aperture& aperture, const BeamDensity& density);
+  const EvenGrids* known_even_grids(const Aperture& aperture, const BeamDensity& density);
+  const EvenGrids& make_even_grids(const Aperture& aperture, const BeamDensity& density);
 
   RasterSampler& sampler_;
   GpuBinner& binner_;
-  std::optional<EvenGrids> even_;
+  std::list<EvenGrids> even_;  ///< the last used first: heads that share a renderer come in turn
 };
 
 }  // namespace sonard::render

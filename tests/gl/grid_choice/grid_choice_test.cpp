@@ -317,6 +317,25 @@ TEST_F(RasterPreset, MeetsItsTargetInOneBeamOfAScanningSonar) {
   EXPECT_LT(fast, normal);
 }
 
+// A renderer has the heads of a vehicle in turn, each with its own fan.
+TEST_F(RasterPreset, TheFirstGridsOfAllHeadsAreKept) {
+  const test::Scene scene = test::make_scene("plane");
+  SonarRenderer renderer(scene.world, options());
+  const auto kept = [&](int head) {
+    PingRequest asked = request(scene, Preset::fast);
+    asked.settings.aperture.beam_edges_rad = equal_angle_edges(8 + head, 0.5);
+    renderer.render_echo(asked, head);
+    const PingStatistics& statistics = renderer.last_statistics();
+    return statistics.skipped.of(SkipRule::unchanged_settings) > 1;  // one is that of the transmission loss
+  };
+  for (int head = 0; head < 8; ++head) {
+    EXPECT_FALSE(kept(head)) << head;
+  }
+  for (int head = 0; head < 8; ++head) {
+    EXPECT_TRUE(kept(head)) << head;
+  }
+}
+
 TEST_F(RasterPreset, TheImageDependsOnTheRequestAlone) {
   const test::Scene scene = test::make_scene("flat100k");
   PingRequest asked = request(scene, Preset::fast);
