@@ -33,6 +33,13 @@ struct MeanEcho {
   std::vector<float> open_sr;
 };
 
+/// An echo that is asked for.
+struct EchoJob {
+  const EchoRequest& request;
+  MeanEcho& echo;              ///< gets the result; what it holds is used as memory
+  PingStatistics& statistics;  ///< gets what it took, added to what it holds
+};
+
 /// Finds what is visible and sums its echoes by beam and range line. One thread uses an engine.
 ///
 /// To add an engine, implement this and make it in EngineSwitch. Every test of the image then runs on it.
@@ -43,12 +50,17 @@ class EchoEngine {
   EchoEngine(const EchoEngine&) = delete;
   EchoEngine& operator=(const EchoEngine&) = delete;
 
-  /// Renders the echo of a request. It depends on the world and the request alone, not on what came before.
-  /// @param echo gets the result; what it holds is used as memory.
-  /// @param statistics gets what it took, added to what it holds.
-  /// @throws RequestError when the settings cannot be sampled.
+  /// Renders the echoes of these requests; engines that wait for hardware have all of them in the making at
+  /// once. Each depends on the world and its request alone, not on the others or on what came before.
+  /// @throws RequestError when the settings of one cannot be sampled.
   /// @throws RendererError when the engine itself fails.
-  virtual void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) = 0;
+  virtual void images(std::span<const EchoJob> jobs) = 0;
+
+  /// Renders one.
+  void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
+    const EchoJob job{request, echo, statistics};
+    images({&job, 1});
+  }
 
   /// @param body in the order of the world, and in it.
   virtual void set_body_pose(std::size_t body, const Pose& T_world_body) = 0;

@@ -45,6 +45,12 @@ struct PingRequest {
   std::optional<Pose> T_world_sonar_at_end{};
 };
 
+/// A ping of one of the sonars that share a renderer.
+struct StreamPing {
+  int stream = 0;
+  PingRequest request;
+};
+
 /// Seconds spent, and how much work there was. For logs, metrics and the benchmark.
 struct PingStatistics {
   double visibility_s = 0.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/engine_switch.hpp"
 
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "renderer/engines/cpu/cpu_engine.hpp"
@@ -72,10 +74,13 @@ void EngineSwitch::retry_gpu() {
   report("the GPU is back: the engine is " + description_);
 }
 
-bool EngineSwitch::image_by_gpu(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
-  const PingStatistics before = statistics;
+bool EngineSwitch::images_by_gpu(std::span<const EchoJob> jobs) {
+  std::vector<PingStatistics> before;
+  for (const EchoJob& job : jobs) {
+    before.push_back(job.statistics);
+  }
   try {
-    gpu_->image(request, echo, statistics);
+    gpu_->images(jobs);
     return true;
   } catch (const RequestError& error) {
     if (!told_too_large_) {
@@ -85,18 +90,20 @@ bool EngineSwitch::image_by_gpu(const EchoRequest& request, MeanEcho& echo, Ping
   } catch (const RendererError& error) {
     lose_gpu(error.what());
   }
-  statistics = before;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    jobs[i].statistics = before[i];
+  }
   return false;
 }
 
-void EngineSwitch::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
+void EngineSwitch::images(std::span<const EchoJob> jobs) {
   if (on_gpu_ && !gpu_) {
     retry_gpu();
   }
-  if (kind() == EngineKind::gpu && image_by_gpu(request, echo, statistics)) {
+  if (kind() == EngineKind::gpu && images_by_gpu(jobs)) {
     return;
   }
-  cpu().image(request, echo, statistics);
+  cpu().images(jobs);
 }
 
 void EngineSwitch::set_body_pose(std::size_t body, const Pose& T_world_body) {

@@ -14,8 +14,8 @@
 
 namespace sonard::render {
 
-/// Images come from the GPU until it fails; the image at which it does, and all that follow, come from the
-/// CPU. Each engine is made when it is first used, of the world as it is by then.
+/// Images come from the GPU until it fails; those at which it does, and all that follow, come from the CPU.
+/// Each engine is made when it is first used, of the world as it is by then.
 class EngineSwitch final : public EchoEngine {
  public:
   /// @param index where the world is moved; it and the workers outlive this object.
@@ -31,8 +31,8 @@ class EngineSwitch final : public EchoEngine {
   /// Gives up what an engine holds that is not in use.
   void drop_unused();
 
-  /// Where the GPU fails, or cannot hold what this image takes, the image comes from the CPU.
-  void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) override;
+  /// Where the GPU fails, or cannot hold what an image takes, all of them come from the CPU.
+  void images(std::span<const EchoJob> jobs) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
   void set_refraction(double bend_per_m) override;
@@ -44,7 +44,7 @@ class EngineSwitch final : public EchoEngine {
   void make_gpu();
   void lose_gpu(const std::string& reason);
   void retry_gpu();
-  bool image_by_gpu(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics);
+  bool images_by_gpu(std::span<const EchoJob> jobs);
   void describe();
   void report(const std::string& line) const;
 

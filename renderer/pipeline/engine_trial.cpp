@@ -55,12 +55,12 @@ struct Rounds {
   std::vector<EchoImage> images;  ///< of the first round
 };
 
-Rounds render_rounds(SonarRenderer& renderer, std::span<const FirstPing> pings, int most) {
+Rounds render_rounds(SonarRenderer& renderer, std::span<const StreamPing> pings, int most) {
   Rounds rounds;
   double taken_s = 0.0;
   for (int round = 0; round < most && taken_s < longest_trial_s; ++round) {
     Stopwatch watch;
-    for (FirstPing ping : pings) {
+    for (StreamPing ping : pings) {
       ping.request.T_world_sonar.position_m.x += round * step_m;
       const EchoImage& image = renderer.render_echo(ping.request, ping.stream);
       if (round == 0) {
@@ -75,9 +75,9 @@ Rounds render_rounds(SonarRenderer& renderer, std::span<const FirstPing> pings, 
 }
 
 /// The beams in the middle of each fan, a sixteenth of them. What they take is less than what all take.
-std::vector<FirstPing> middle_beams(std::span<const FirstPing> pings) {
-  std::vector<FirstPing> few(pings.begin(), pings.end());
-  for (FirstPing& ping : few) {
+std::vector<StreamPing> middle_beams(std::span<const StreamPing> pings) {
+  std::vector<StreamPing> few(pings.begin(), pings.end());
+  for (StreamPing& ping : few) {
     std::vector<double>& edges_rad = ping.request.settings.aperture.beam_edges_rad;
     const auto beams = static_cast<std::ptrdiff_t>(edges_rad.size()) - 1;
     const std::ptrdiff_t kept = (beams + 15) / 16;
@@ -88,7 +88,7 @@ std::vector<FirstPing> middle_beams(std::span<const FirstPing> pings) {
 }
 
 /// Fills in what is known of the GPU once it has been tried.
-void try_gpu(SonarRenderer& renderer, std::span<const FirstPing> pings, const Rounds& by_cpu,
+void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const Rounds& by_cpu,
              EngineTrial& trial) {
   renderer.use_engine(EngineKind::gpu);
   trial.gpu = renderer.engine_description();
@@ -114,7 +114,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const FirstPing> pings, const Ro
 
 }  // namespace
 
-EngineTrial choose_engine(SonarRenderer& renderer, std::span<const FirstPing> first_pings) {
+EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings) {
   EngineTrial trial;
   renderer.use_engine(EngineKind::cpu);
   trial.cpu = renderer.engine_description();

@@ -9,11 +9,6 @@
 
 namespace sonard::render {
 
-struct FirstPing {
-  int stream = 0;
-  PingRequest request;
-};
-
 struct EngineTrial {
   EngineKind taken = EngineKind::cpu;
   /// To render the mean echoes of all pings once, the fastest round. Of a GPU that takes longer for a
@@ -30,7 +25,7 @@ struct EngineTrial {
 /// renderer go on with the faster one: the GPU only where its bins are those of the CPU within twice the
 /// error that the preset of each ping promises.
 /// @throws RequestError, RendererError when the CPU cannot render them.
-EngineTrial choose_engine(SonarRenderer& renderer, std::span<const FirstPing> first_pings);
+EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings);
 
 /// "cpu takes 14.2 ms a ping, gpu 410.0 ms (vendor / renderer / version): cpu is taken".
 std::string describe(const EngineTrial& trial);

@@ -121,7 +121,7 @@ SelfTestResult run_self_test(RendererOptions options) {
 
 EngineTrial time_engines(const RendererOptions& options) {
   SonarRenderer renderer(make_wall(), options);
-  FirstPing ping;
+  StreamPing ping;
   ping.request.settings = wall_settings(256, 1000);
   return choose_engine(renderer, std::vector{ping});
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -67,6 +68,14 @@ Pose checked(const Pose& pose) {
 }  // namespace
 
 struct SonarRenderer::Impl {
+  /// A ping of which the engine has made the mean echo before its turn.
+  struct Begun {
+    CachedEcho made_of;  // without an image
+    SonarSettings sampled;
+    MeanEcho echo{};
+    PingStatistics statistics{};
+  };
+
   const SkipSwitches skip;
   const double ray_curvature_per_m;
   WorkerPool workers;  // outlives its users
@@ -75,12 +84,13 @@ struct SonarRenderer::Impl {
   Multipath multipath;
   TerrainLevels terrain;
   Receiver receiver;
-  TransmissionLoss loss;
+  std::map<int, TransmissionLoss> losses;  // by stream
   PingStatistics statistics;
   std::unordered_map<std::string, std::size_t> body_number;
   std::uint64_t world_revision = 1;          // counts the moves of bodies
   std::map<int, CachedEcho> cached_echoes;   // by stream
   std::map<int, PointSpread> point_spreads;  // by stream
+  std::map<int, Begun> begun;                // by stream
   EchoImage fine_echo;                       // memory
 
   Impl(const World& world, const RendererOptions& options)
@@ -154,33 +164,45 @@ struct SonarRenderer::Impl {
     PointSpread& point_spread = point_spreads[stream];
     point_spread.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
     if (point_spread.has_pattern()) {
-      sample_echo(PointSpread::sampled(settings), motion, fine_echo);
+      sample_echo(PointSpread::sampled(settings), stream, motion, fine_echo);
       Stopwatch watch;
       point_spread.form_beams(fine_echo, image, workers, skip, statistics.skipped);
       statistics.azimuth_pattern_s = watch.lap();
     } else {
-      sample_echo(settings, motion, image);
+      sample_echo(settings, stream, motion, image);
     }
     Stopwatch watch;
     point_spread.spread(image, workers);
     statistics.pulse_s = watch.lap();
   }
 
-  /// The echo as it comes to the sonar.
-  void sample_echo(const SonarSettings& settings, const SonarMotion& motion, EchoImage& image) {
+  /// What is asked of the engine; it refers to the settings and to what is kept of the stream.
+  EchoRequest engine_request(const SonarSettings& settings, int stream, const SonarMotion& motion) {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
-        settings.model == Model::physical ? loss_for(settings).of_line : no_loss;
+        settings.model == Model::physical ? loss_for(settings, stream).of_line : no_loss;
     const bool clear_water = is_clear_water(settings) && skip.on(SkipRule::clear_water);
-    bend_rays(settings);
-    follow_terrain(settings, motion);
-    const EchoRequest request{motion.T_world_sonar, settings, line_weight,
-                              has_volume_reverberation(settings) && !clear_water};
+    return {motion.T_world_sonar, settings, line_weight, has_volume_reverberation(settings) && !clear_water};
+  }
+
+  /// The echo as it comes to the sonar.
+  void sample_echo(const SonarSettings& settings, int stream, const SonarMotion& motion, EchoImage& image) {
+    const EchoRequest request = engine_request(settings, stream, motion);
     MeanEcho echo{std::move(image), {}};
-    if (motion.at_end) {
-      image_in_spans(request, *motion.at_end, echo);
+    if (const auto made = begun.find(stream); made != begun.end()) {
+      echo = std::move(made->second.echo);
+      const SkipCounts skipped = statistics.skipped;
+      statistics = made->second.statistics;
+      statistics.skipped += skipped;
+      begun.erase(made);
     } else {
-      engine.image(request, echo, statistics);
+      bend_rays(settings);
+      follow_terrain(settings, motion);
+      if (motion.at_end) {
+        image_in_spans(request, *motion.at_end, echo);
+      } else {
+        engine.image(request, echo, statistics);
+      }
     }
     image = std::move(echo.image);
     Stopwatch watch;
@@ -191,7 +213,7 @@ struct SonarRenderer::Impl {
       if (has_volume_reverberation(settings) && echo.open_sr.empty()) {
         statistics.skipped.add(SkipRule::clear_water);
       }
-      apply_loss(line_weight, image);
+      apply_loss(request.line_weight, image);
     }
     statistics.binning_s += watch.lap();
   }
@@ -243,13 +265,59 @@ struct SonarRenderer::Impl {
     }
   }
 
-  const TransmissionLoss& loss_for(const SonarSettings& settings) {
+  const TransmissionLoss& loss_for(const SonarSettings& settings, int stream) {
+    TransmissionLoss& loss = losses[stream];
     if (loss.fits(settings) && skip.on(SkipRule::unchanged_settings)) {
       statistics.skipped.add(SkipRule::unchanged_settings);
     } else {
       loss = TransmissionLoss(settings);
     }
     return loss;
+  }
+
+  /// Of a ping that the engine can make with those of others; nullptr: it is to be made alone, or not at all.
+  /// @throws RequestError
+  Begun* may_begin(const StreamPing& ping) {
+    const auto& [stream, request] = ping;
+    check(request.settings);
+    const SonarMotion motion = motion_of(request);
+    const bool unchanged =
+        skip.on(SkipRule::unchanged_scene) && cached_echoes[stream].fits(request, motion, world_revision);
+    if (!request.settings.transmit || motion.at_end || unchanged || begun.count(stream) != 0) {
+      return nullptr;
+    }
+    PointSpread& spread = point_spreads[stream];
+    spread.prepare(request.settings, request.seed, stream, skip, statistics.skipped);
+    const CachedEcho made_of{{}, request.settings, request.seed, motion, world_revision};
+    return &begun
+                .emplace(stream, Begun{made_of, spread.has_pattern() ? PointSpread::sampled(request.settings)
+                                                                     : request.settings})
+                .first->second;
+  }
+
+  void begin(std::span<const StreamPing> pings) {
+    // Terrain is drawn as one ping needs it, and rays bend as one does: such pings are made one by one.
+    if (engine.kind() != EngineKind::gpu || pings.size() < 2 || terrain.any() || ray_curvature_per_m != 0.0) {
+      return;
+    }
+    std::deque<EchoRequest> requests;  // jobs refer to them
+    std::vector<EchoJob> jobs;
+    statistics = {};
+    for (const StreamPing& ping : pings) {
+      try {
+        if (Begun* made = may_begin(ping)) {
+          requests.push_back(engine_request(made->sampled, ping.stream, made->made_of.motion));
+          jobs.push_back({requests.back(), made->echo, made->statistics});
+        }
+      } catch (const RequestError&) {
+        continue;  // it is told when it is its turn
+      }
+    }
+    try {
+      engine.images(jobs);
+    } catch (const RequestError&) {
+      begun.clear();
+    }
   }
 };
 
@@ -280,10 +348,18 @@ bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_wo
   return true;
 }
 
+void SonarRenderer::begin_pings(std::span<const StreamPing> pings) {
+  impl_->begin(pings);
+}
+
 const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stream) {
   check(request.settings);
   impl_->statistics = {};
   const SonarMotion motion = impl_->motion_of(request);
+  if (const auto made = impl_->begun.find(stream);
+      made != impl_->begun.end() && !made->second.made_of.fits(request, motion, impl_->world_revision)) {
+    impl_->begun.erase(made);
+  }
   CachedEcho& cached = impl_->cached_echoes[stream];
   if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "renderer/errors.hpp"
@@ -36,6 +37,13 @@ class SonarRenderer {
 
   /// Moves a body of the world. @return false when the world has no body of that name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
+
+  /// Has the mean echoes of these pings made at the same time, for their turn to be rendered; the results are
+  /// the same without. Does nothing where that gains nothing: on the CPU, and where a ping changes what the
+  /// engine draws, as with motion within a ping, terrain in levels and bent rays.
+  /// @param pings of different streams
+  /// @throws RendererError
+  void begin_pings(std::span<const StreamPing> pings);
 
   /// Mean echo only: no speckle, noise or gain. The image stays valid until the next call for this stream; as
   /// long as nothing that it depends on changes (SkipRule::unchanged_scene), the same one is handed out.

@@ -31,6 +31,9 @@ class TerrainLevels {
   /// @param longest_edge_m of any triangle, where rays bend; 0: as they are.
   TerrainLevels(const World& world, const SkipSwitches& skip, float longest_edge_m);
 
+  /// Whether the world has ground in levels: what is drawn of it then goes with the ping.
+  bool any() const { return !grounds_.empty(); }
+
   /// @param world the one it was made of, with its bodies where they are now.
   /// @return what has changed since the last call. SkipRule::terrain_detail counts triangles.
   std::vector<PartMesh> refine(const TerrainView& view, const World& world, WorkerPool& workers,

@@ -187,7 +187,7 @@ void Daemon::warm_up(const std::vector<HeadConfig>& heads) const {
   const std::optional<PoseEstimate> vehicle = poses_.at(clock_.now());
   const render::Pose T_world_vehicle = vehicle ? vehicle->T_world_vehicle : render::Pose{};
   for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
-    std::vector<render::FirstPing> first_pings;
+    std::vector<render::StreamPing> first_pings;
     for (std::size_t i = 0; i < heads.size(); ++i) {
       const HeadConfig& head = heads[i];
       if (&renderer_of(head) == renderer) {

@@ -183,7 +183,7 @@ void RenderRun::choose_engine() {
   const HeadConfig& head = config_.heads[head_];
   const render::Pose T_world_sonar =
       trajectory_.T_world_vehicle(trajectory_.start_ns()) * head.T_vehicle_sonar;
-  const std::vector<render::FirstPing> first{
+  const std::vector<render::StreamPing> first{
       {static_cast<int>(head_), {T_world_sonar, usual_settings(head), 0, head.seed}}};
   spdlog::info("engine auto: {}", describe(render::choose_engine(renderer_, first)));
 }

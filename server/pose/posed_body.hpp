@@ -11,6 +11,8 @@ namespace sonard::server {
 struct PosedBody {
   std::string name;
   render::Pose T_world_body;
+
+  bool operator==(const PosedBody&) const = default;
 };
 
 }  // namespace sonard::server

@@ -24,7 +24,7 @@ constexpr std::size_t most_unknown_bodies = 16;
 
 struct RenderService::Impl {
   struct WarmUp {
-    std::vector<render::FirstPing> first_pings;
+    std::vector<render::StreamPing> first_pings;
     std::promise<void> done;
   };
   struct Entry {
@@ -51,10 +51,12 @@ struct RenderService::Impl {
 
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
+  std::vector<render::StreamPing> next_pings(const RenderJob& first);
   void serve(PingRenderer& renderer);
   void warm_up(PingRenderer& renderer, WarmUp& warm_up);
   void move_bodies(PingRenderer& renderer, const RenderJob& job);
-  RenderResult render(PingRenderer& renderer, const RenderJob& job);
+  RenderResult render(PingRenderer& renderer, const RenderJob& job,
+                      const std::vector<render::StreamPing>& next);
   void close_queue();
 };
 
@@ -91,7 +93,7 @@ void RenderService::submit(RenderJob job, Done done) {
   impl_->wake.notify_one();
 }
 
-void RenderService::warm_up(std::vector<render::FirstPing> first_pings) {
+void RenderService::warm_up(std::vector<render::StreamPing> first_pings) {
   Impl::WarmUp warm_up{std::move(first_pings), {}};
   std::future<void> done = warm_up.done.get_future();
   {
@@ -174,7 +176,7 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
       warm_up(renderer, *entry->warm_up);
       continue;
     }
-    RenderResult result = render(renderer, entry->job);
+    RenderResult result = render(renderer, entry->job, next_pings(entry->job));
     if (result.error.empty() && hooks.observe) {
       hooks.observe(entry->job, result.samples);
     }
@@ -194,10 +196,28 @@ void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
   }
 }
 
-RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job) {
+/// This one and those that wait behind it while all bodies stay where they are.
+std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob& first) {
+  std::vector<render::StreamPing> pings{{first.stream, first.request}};
+  const std::lock_guard lock(mutex);
+  for (const Entry& entry : queue) {
+    if (!entry.done || entry.job.bodies != first.bodies) {
+      break;
+    }
+    pings.push_back({entry.job.stream, entry.job.request});
+  }
+  return pings;
+}
+
+/// @param next begins with that of the job
+RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job,
+                                         const std::vector<render::StreamPing>& next) {
   RenderResult result;
   try {
     move_bodies(renderer, job);
+    if (next.size() > 1) {
+      renderer.begin_pings(next);
+    }
     result.samples = renderer.render_ping(job.request, job.stream);
     result.statistics = renderer.last_statistics();
   } catch (const render::RequestError& error) {

@@ -12,7 +12,6 @@
 
 #include "renderer/errors.hpp"
 #include "renderer/ping.hpp"
-#include "renderer/pipeline/engine_trial.hpp"
 #include "renderer/pose.hpp"
 #include "server/pose/posed_body.hpp"
 
@@ -32,7 +31,10 @@ class PingRenderer {
   /// Prepares what pings like these need: the engine, trees, shaders, memory. Called once, before the first
   /// ping.
   /// @throws as render_ping()
-  virtual void warm_up(const std::vector<render::FirstPing>& /*first_pings*/) {}
+  virtual void warm_up(const std::vector<render::StreamPing>& /*first_pings*/) {}
+  /// These are rendered next, one by one; they move no body. What they have in common may begin.
+  /// @throws render::RendererError
+  virtual void begin_pings(const std::vector<render::StreamPing>& /*pings*/) {}
   /// Statistics of the last render_ping().
   virtual render::PingStatistics last_statistics() const = 0;
 };
@@ -87,7 +89,7 @@ class RenderService {
 
   /// PingRenderer::warm_up(); returns when it is done.
   /// @throws whatever that threw; std::future_error when the service is stopped before
-  void warm_up(std::vector<render::FirstPing> first_pings);
+  void warm_up(std::vector<render::StreamPing> first_pings);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
   /// @throws std::logic_error when the queue is full: more than one job per stream was submitted
   void submit(RenderJob job, Done done);

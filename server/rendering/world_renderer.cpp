@@ -30,16 +30,18 @@ class WorldRenderer final : public PingRenderer {
     return renderer_.render_ping(request, stream);
   }
 
-  void warm_up(const std::vector<render::FirstPing>& first_pings) override {
+  void warm_up(const std::vector<render::StreamPing>& first_pings) override {
     if (automatic_) {
       spdlog::info("engine auto: {}", describe(render::choose_engine(renderer_, first_pings)));
       return;
     }
-    for (const render::FirstPing& ping : first_pings) {
+    for (const render::StreamPing& ping : first_pings) {
       // The receiver, which keeps speckle from ping to ping, needs no warming.
       renderer_.render_echo(ping.request, ping.stream);
     }
   }
+
+  void begin_pings(const std::vector<render::StreamPing>& pings) override { renderer_.begin_pings(pings); }
 
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 

@@ -21,6 +21,8 @@ struct FakeRendererControl {
   std::function<void(const render::PingRequest&, int stream)> before_ping;
   /// Called for each ping that nobody gets, on the render thread; may throw.
   std::function<void(const render::PingRequest&, int stream)> warming_up;
+  /// Streams of the pings that came next, each time; to be read when the service has ended.
+  std::vector<std::vector<int>> begun;
   std::atomic<int> attempts{0};  ///< pings asked for
   std::atomic<int> pings{0};     ///< pings rendered
   std::atomic<bool> destroyed{false};
@@ -95,11 +97,18 @@ class FakeRenderer final : public server::PingRenderer {
     return samples;
   }
 
-  void warm_up(const std::vector<render::FirstPing>& first_pings) override {
-    for (const render::FirstPing& ping : first_pings) {
+  void warm_up(const std::vector<render::StreamPing>& first_pings) override {
+    for (const render::StreamPing& ping : first_pings) {
       if (control_->warming_up) {
         control_->warming_up(ping.request, ping.stream);
       }
+    }
+  }
+
+  void begin_pings(const std::vector<render::StreamPing>& pings) override {
+    std::vector<int>& streams = control_->begun.emplace_back();
+    for (const render::StreamPing& ping : pings) {
+      streams.push_back(ping.stream);
     }
   }
 

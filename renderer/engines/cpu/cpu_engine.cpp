@@ -84,12 +84,14 @@ void CpuEngine::set_refraction(double bend_per_m) {
   rays_.set_refraction(bend_per_m);
 }
 
-void CpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
-  const BinningOptions options = binning_options(request, skip_, largest_response_);
-  if (needs_grid(request.settings)) {
-    image_by_grid(request, options, echo, statistics);
-  } else {
-    image_by_slices(request, options, echo, statistics);
+void CpuEngine::images(std::span<const EchoJob> jobs) {
+  for (const auto& [request, echo, statistics] : jobs) {
+    const BinningOptions options = binning_options(request, skip_, largest_response_);
+    if (needs_grid(request.settings)) {
+      image_by_grid(request, options, echo, statistics);
+    } else {
+      image_by_slices(request, options, echo, statistics);
+    }
   }
 }
 

@@ -23,7 +23,7 @@ class CpuEngine final : public EchoEngine {
   /// @param workers outlives the engine, as the index does.
   CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options);
 
-  void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) override;
+  void images(std::span<const EchoJob> jobs) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
   void set_refraction(double bend_per_m) override;

@@ -27,98 +27,25 @@ std::vector<int> beams_of(const std::vector<BeamRun>& runs) {
 
 }  // namespace
 
-/// One ping in the making.
-struct BeamRefinement::Ping {
-  BeamRefinement& refinement;
-  const EchoRequest& request;
-  const SurfaceModel& surface;
-  PingStatistics& statistics;
-  std::vector<BeamState> beams;
+BeamRefinement::~BeamRefinement() = default;
 
-  void sample(const Grid& grid) {
-    Stopwatch watch;
-    const auto textures = refinement.sampler_.draw(request.T_world_sonar, grid.samples, surface,
-                                                   request.settings.range.sampled_range_m());
-    statistics.visibility_s += watch.lap();
-    refinement.binner_.add(*grid.on_gpu, textures);
-  }
-
-  /// Takes what the GPU has estimated of the beams of these grids, which are those of the choices.
-  void learn(const std::vector<Grid>& grids, const std::vector<BeamChoice>& choices) {
-    const std::vector<BeamEstimate> estimates = refinement.binner_.take_estimates();
-    std::size_t i = 0;
-    for (const Grid& grid : grids) {
-      const SampleGrid& samples = grid.samples;
-      for (int b = 0; b < samples.beam_count(); ++b, ++i) {
-        const int first = samples.beam_parts[static_cast<std::size_t>(b)];
-        const int end = samples.beam_parts[static_cast<std::size_t>(b) + 1];
-        const auto part = [&](int column) -> const ColumnPart& {
-          return samples.parts[static_cast<std::size_t>(first + column)];
-        };
-        const BeamEstimate& estimate = estimates[i];
-        beams[static_cast<std::size_t>(choices[i].beam)] = {
-            choices[i].density,
-            estimate,
-            statistics.passes > 1,
-            end - first,
-            samples.port_rad(part(estimate.zone_begin)),
-            samples.starboard_rad(part(estimate.zone_end - 1))};
-      }
-    }
-  }
-
-  /// The runs of the beams on one page of the image. A part of them at a time, so that the memory taken does
-  /// not grow with their number.
-  void sample_page(const std::vector<BeamChoice>& choices, bool with_estimate, std::vector<Grid>& grids) {
-    const Aperture& aperture = request.settings.aperture;
-    const std::vector<BeamRun> runs = beam_runs(aperture, choices);
-    for (auto run = runs.begin(); run != runs.end();) {
-      std::vector<BeamRun> part;
-      double samples = 0;
-      do {
-        samples += run->samples();
-        part.push_back(*run++);
-      } while (run != runs.end() && samples + run->samples() <= most_samples_at_once);
-      grids.push_back(refinement.make_grid(aperture, part, with_estimate));
-      sample(grids.back());
-    }
-  }
-
-  void refine(const std::vector<BeamChoice>& choices, bool with_estimate) {
-    const int beams_per_page = refinement.binner_.beams_per_page();
-    std::vector<Grid> grids;
-    for (auto first = choices.begin(); first != choices.end();) {
-      const int page = first->beam / beams_per_page;
-      const auto end = std::find_if(first, choices.end(), [&](const BeamChoice& choice) {
-        return choice.beam / beams_per_page != page;
-      });
-      sample_page({first, end}, with_estimate, grids);
-      first = end;
-    }
-    if (with_estimate) {
-      learn(grids, choices);
-    }
-  }
-};
-
-BeamRefinement::Grid BeamRefinement::make_grid(const Aperture& aperture, const std::vector<BeamRun>& runs,
-                                               bool with_estimate) const {
-  Grid grid{make_sample_grid(aperture, runs), nullptr};
+BeamRefinement::Grid BeamRefinement::make_grid(GpuBinner& binner, const Aperture& aperture,
+                                               const std::vector<BeamRun>& runs, bool with_estimate) {
+  Grid grid{std::make_shared<const SampleGrid>(make_sample_grid(aperture, runs)), nullptr};
   if (with_estimate) {
     const SampleGrid coarse = make_sample_grid(aperture, thinned(runs));
-    grid.on_gpu = binner_.load(grid.samples, beams_of(runs), &coarse);
+    grid.on_gpu = binner.load(*grid.samples, beams_of(runs), &coarse);
   } else {
-    grid.on_gpu = binner_.load(grid.samples, beams_of(runs));
+    grid.on_gpu = binner.load(*grid.samples, beams_of(runs));
   }
   return grid;
 }
 
 /// Null when there are none.
-const BeamRefinement::EvenGrids* BeamRefinement::known_even_grids(const Aperture& aperture,
-                                                                  const BeamDensity& density) {
+const BeamRefinement::EvenGrids* BeamRefinement::known_even_grids(const EvenGrids& wanted) {
   const auto known = std::find_if(even_.begin(), even_.end(), [&](const EvenGrids& grids) {
-    return grids.density == density && grids.aperture == aperture &&
-           grids.beams_per_page == binner_.beams_per_page();
+    return grids.density == wanted.density && grids.aperture == wanted.aperture &&
+           grids.beams_per_page == wanted.beams_per_page;
   });
   if (known == even_.end()) {
     return nullptr;
@@ -127,47 +54,136 @@ const BeamRefinement::EvenGrids* BeamRefinement::known_even_grids(const Aperture
   return &even_.front();
 }
 
-const BeamRefinement::EvenGrids& BeamRefinement::make_even_grids(const Aperture& aperture,
-                                                                 const BeamDensity& density) {
-  const int beams_per_page = binner_.beams_per_page();
-  std::vector<Grid> grids;
-  for (int begin = 0; begin < aperture.beam_count(); begin += beams_per_page) {
-    const int end = std::min(begin + beams_per_page, aperture.beam_count());
-    grids.push_back(make_grid(aperture, {even_run(aperture, begin, end, density)}, true));
+const BeamRefinement::EvenGrids& BeamRefinement::make_even_grids(GpuBinner& binner, EvenGrids wanted) {
+  const int beams = wanted.aperture.beam_count();
+  for (int begin = 0; begin < beams; begin += wanted.beams_per_page) {
+    const int end = std::min(begin + wanted.beams_per_page, beams);
+    wanted.grids.push_back(
+        make_grid(binner, wanted.aperture, {even_run(wanted.aperture, begin, end, wanted.density)}, true));
   }
   if (even_.size() == most_even_grids) {
     even_.pop_back();
   }
-  return even_.emplace_front(EvenGrids{aperture, density, beams_per_page, std::move(grids)});
+  return even_.emplace_front(std::move(wanted));
 }
 
-bool BeamRefinement::refine(const EchoRequest& request, const SurfaceModel& surface, bool keep_grid,
-                            PingStatistics& statistics) {
+std::unique_ptr<BeamRefinement::Ping> BeamRefinement::begin(GpuBinner& binner, const EchoRequest& request,
+                                                            const SurfaceModel& surface, bool keep_grid,
+                                                            PingStatistics& statistics) {
   const Aperture& aperture = request.settings.aperture;
-  const Sampling::Preset preset = request.settings.sampling.preset;
-  const BeamDensity density = first_density(aperture, preset);
-  const EvenGrids* known = keep_grid ? known_even_grids(aperture, density) : nullptr;
-  const EvenGrids& even = known != nullptr ? *known : make_even_grids(aperture, density);
-  const auto beams = static_cast<std::size_t>(aperture.beam_count());
-  Ping ping{*this, request, surface, statistics, std::vector<BeamState>(beams)};
-  std::vector<BeamChoice> choices(beams);
-  for (std::size_t beam = 0; beam < beams; ++beam) {
-    choices[beam] = {static_cast<int>(beam), density};
+  const EvenGrids wanted{
+      aperture, first_density(aperture, request.settings.sampling.preset), binner.beams_per_page(), {}};
+  const EvenGrids* even = keep_grid ? known_even_grids(wanted) : nullptr;
+  if (even != nullptr) {
+    statistics.skipped.add(SkipRule::unchanged_settings);
+  } else {
+    even = &make_even_grids(binner, wanted);
   }
-  ++statistics.passes;
-  for (const Grid& grid : even.grids) {
-    ping.sample(grid);
+  auto ping = std::make_unique<Ping>(sampler_, binner, request, surface, statistics);
+  ping->sample_evenly(*even);
+  return ping;
+}
+
+BeamRefinement::Ping::Ping(RasterSampler& sampler, GpuBinner& binner, const EchoRequest& request,
+                           const SurfaceModel& surface, PingStatistics& statistics)
+    : sampler_(sampler),
+      binner_(binner),
+      request_(request),
+      surface_(surface),
+      statistics_(statistics),
+      beams_(static_cast<std::size_t>(request.settings.aperture.beam_count())),
+      choices_(beams_.size()) {}
+
+void BeamRefinement::Ping::sample(const Grid& grid) {
+  Stopwatch watch;
+  const auto textures = sampler_.draw(request_.T_world_sonar, *grid.samples, surface_,
+                                      request_.settings.range.sampled_range_m());
+  statistics_.visibility_s += watch.lap();
+  binner_.add(*grid.on_gpu, textures);
+}
+
+void BeamRefinement::Ping::sample_evenly(const EvenGrids& even) {
+  for (std::size_t beam = 0; beam < choices_.size(); ++beam) {
+    choices_[beam] = {static_cast<int>(beam), even.density};
   }
-  ping.learn(even.grids, choices);
-  for (int pass = 2; pass <= most_passes; ++pass) {
-    choices = beams_to_refine(aperture, ping.beams, grid_targets(preset));
-    if (choices.empty()) {
-      break;
+  grids_ = even.grids;
+  for (const Grid& grid : grids_) {
+    sample(grid);
+  }
+  binner_.ask_estimates();
+  pass_ = 1;
+  ++statistics_.passes;
+}
+
+bool BeamRefinement::Ping::advance() {
+  learn();
+  choices_ =
+      beams_to_refine(request_.settings.aperture, beams_, grid_targets(request_.settings.sampling.preset));
+  if (choices_.empty()) {
+    return false;
+  }
+  ++pass_;
+  ++statistics_.passes;
+  const bool with_estimate = pass_ < most_passes;
+  sample_again(with_estimate);
+  if (with_estimate) {
+    binner_.ask_estimates();
+  }
+  return with_estimate;
+}
+
+/// Takes what the GPU has estimated of the beams of the last pass.
+void BeamRefinement::Ping::learn() {
+  const std::vector<BeamEstimate> estimates = binner_.take_estimates();
+  std::size_t i = 0;
+  for (const Grid& grid : grids_) {
+    const SampleGrid& samples = *grid.samples;
+    for (int b = 0; b < samples.beam_count(); ++b, ++i) {
+      const int first = samples.beam_parts[static_cast<std::size_t>(b)];
+      const int end = samples.beam_parts[static_cast<std::size_t>(b) + 1];
+      const auto part = [&](int column) -> const ColumnPart& {
+        return samples.parts[static_cast<std::size_t>(first + column)];
+      };
+      const BeamEstimate& estimate = estimates[i];
+      beams_[static_cast<std::size_t>(choices_[i].beam)] = {
+          choices_[i].density,
+          estimate,
+          pass_ > 1,
+          end - first,
+          samples.port_rad(part(estimate.zone_begin)),
+          samples.starboard_rad(part(estimate.zone_end - 1))};
     }
-    ++statistics.passes;
-    ping.refine(choices, pass < most_passes);
   }
-  return known != nullptr;
+}
+
+/// The runs of the beams on one page of the image. A part of them at a time, so that the memory taken does
+/// not grow with their number.
+void BeamRefinement::Ping::sample_page(const std::vector<BeamChoice>& choices, bool with_estimate) {
+  const Aperture& aperture = request_.settings.aperture;
+  const std::vector<BeamRun> runs = beam_runs(aperture, choices);
+  for (auto run = runs.begin(); run != runs.end();) {
+    std::vector<BeamRun> part;
+    double samples = 0;
+    do {
+      samples += run->samples();
+      part.push_back(*run++);
+    } while (run != runs.end() && samples + run->samples() <= most_samples_at_once);
+    grids_.push_back(make_grid(binner_, aperture, part, with_estimate));
+    sample(grids_.back());
+  }
+}
+
+void BeamRefinement::Ping::sample_again(bool with_estimate) {
+  const int beams_per_page = binner_.beams_per_page();
+  grids_.clear();
+  for (auto first = choices_.begin(); first != choices_.end();) {
+    const int page = first->beam / beams_per_page;
+    const auto end = std::find_if(first, choices_.end(), [&](const BeamChoice& choice) {
+      return choice.beam / beams_per_page != page;
+    });
+    sample_page({first, end}, with_estimate);
+    first = end;
+  }
 }
 
 }  // namespace sonard::render

@@ -21,21 +21,27 @@ namespace sonard::render {
 /// thread uses it.
 class BeamRefinement {
  public:
-  /// @param sampler, binner outlive this object; the context of the sampler is current when it ends.
-  BeamRefinement(RasterSampler& sampler, GpuBinner& binner) : sampler_(sampler), binner_(binner) {}
+  class Ping;
+  /// That may be in the making at the same time.
+  static constexpr std::size_t most_pings = 8;
 
-  /// Puts the beams of a request into the image that the binner has begun.
-  /// @param keep_grid the grid of the first pass may be that of an earlier ping, where it is equal.
-  /// @return whether it was.
+  /// @param sampler outlives this object; its context is current when this ends.
+  explicit BeamRefinement(RasterSampler& sampler) : sampler_(sampler) {}
+  ~BeamRefinement();
+
+  /// Gives the first pass of a request to the GPU.
+  /// @param binner has begun the image; it, the request and the statistics outlive the result.
+  /// @param keep_grid the grid of the first pass may be that of an earlier ping, where it is equal; it counts
+  /// as SkipRule::unchanged_settings.
   /// @throws RequestError when the aperture cannot be gridded.
   /// @throws RendererError as the sampler.
-  bool refine(const EchoRequest& request, const SurfaceModel& surface, bool keep_grid,
-              PingStatistics& statistics);
+  std::unique_ptr<Ping> begin(GpuBinner& binner, const EchoRequest& request, const SurfaceModel& surface,
+                              bool keep_grid, PingStatistics& statistics);
 
  private:
   /// A grid of some beams, and what of it the GPU holds.
   struct Grid {
-    SampleGrid samples;
+    std::shared_ptr<const SampleGrid> samples;
     std::shared_ptr<const GpuGrid> on_gpu;
   };
   /// The even grids of the first pass, one for each page of the image.
@@ -45,15 +51,46 @@ class BeamRefinement {
     int beams_per_page;
     std::vector<Grid> grids;
   };
-  struct Ping;
 
-  Grid make_grid(const Aperture& aperture, const std::vector<BeamRun>& runs, bool with_estimate) const;
-  const EvenGrids* known_even_grids(const Aperture& aperture, const BeamDensity& density);
-  const EvenGrids& make_even_grids(const Aperture& aperture, const BeamDensity& density);
+  static Grid make_grid(GpuBinner& binner, const Aperture& aperture, const std::vector<BeamRun>& runs,
+                        bool with_estimate);
+  const EvenGrids* known_even_grids(const EvenGrids& wanted);
+  const EvenGrids& make_even_grids(GpuBinner& binner, EvenGrids wanted);
+
+  RasterSampler& sampler_;
+  std::list<EvenGrids> even_;  ///< the last used first: heads that share a renderer come in turn
+};
+
+/// One in the making: its image is asked for when advance() says that it is done.
+class BeamRefinement::Ping {
+ public:
+  Ping(RasterSampler& sampler, GpuBinner& binner, const EchoRequest& request, const SurfaceModel& surface,
+       PingStatistics& statistics);
+
+  /// Waits for the estimates of the last pass, and gives the next one to the GPU.
+  /// @return whether estimates are still to come.
+  /// @throws RendererError as the sampler.
+  bool advance();
+
+ private:
+  friend class BeamRefinement;
+
+  void sample(const Grid& grid);
+  void sample_evenly(const EvenGrids& even);
+  void sample_page(const std::vector<BeamChoice>& choices, bool with_estimate);
+  void sample_again(bool with_estimate);
+  void learn();
 
   RasterSampler& sampler_;
   GpuBinner& binner_;
-  std::list<EvenGrids> even_;  ///< the last used first: heads that share a renderer come in turn
+  const EchoRequest& request_;
+  const SurfaceModel surface_;
+  PingStatistics& statistics_;
+  int pass_ = 0;
+  std::vector<BeamState> beams_;
+  // Of the last pass: which beams were sampled, in what grids.
+  std::vector<BeamChoice> choices_;
+  std::vector<Grid> grids_;
 };
 
 }  // namespace sonard::render

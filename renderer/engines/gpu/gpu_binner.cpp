@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -21,6 +24,7 @@
 #include "renderer/engines/gpu/estimate_shader.hpp"
 #include "renderer/engines/gpu/gpu_buffer.hpp"
 #include "renderer/engines/gpu/gpu_grid.hpp"
+#include "renderer/engines/gpu/gpu_readback.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
@@ -85,21 +89,25 @@ struct GpuBinner::Impl {
   EglContext& context;
   osg::GLExtensions& gl;
   /// By the head of a variant, and the last part of the shader.
-  std::map<std::pair<std::string, const char*>, osg::ref_ptr<osg::Program>> programs;
+  using Programs = std::map<std::pair<std::string, const char*>, osg::ref_ptr<osg::Program>>;
+  std::shared_ptr<Programs> programs;
   // Differences from line to line of the grid at hand; between grids, sums that begin.
   GpuBuffer echo, weight, thinned, thinned_weight;
   std::vector<std::unique_ptr<GpuBuffer>> pages;  // of the image
   GpuBuffer line_weight, partial_columns, columns, rows, column_misses, estimates;
+  GpuReadback estimates_back, image_back;
   std::size_t most_bytes = 0;  // of a buffer
   std::vector<float> line_weights;
 
   std::optional<ImageRequest> request;  // the image at hand
-  std::size_t estimated = 0;            // beams whose estimates have not been taken
+  std::size_t estimated = 0;            // beams whose estimates have not been asked for
+  std::size_t estimates_asked = 0;      // and that have not been taken
   std::uint64_t bytes_read = 0, synchronisations = 0;
 
-  explicit Impl(EglContext& made_current)
+  Impl(EglContext& made_current, std::shared_ptr<Programs> shared)
       : context(made_current),
         gl(*osg::GLExtensions::Get(context.getState()->getContextID(), true)),
+        programs(shared ? std::move(shared) : std::make_shared<Programs>()),
         echo(gl),
         weight(gl),
         thinned(gl),
@@ -109,7 +117,9 @@ struct GpuBinner::Impl {
         columns(gl),
         rows(gl),
         column_misses(gl),
-        estimates(gl) {
+        estimates(gl),
+        estimates_back(gl),
+        image_back(gl) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     // Shaders count words in 32 bits.
@@ -142,7 +152,7 @@ struct GpuBinner::Impl {
         "{:d}\n#define PATTERN {}\n",
         variant.weighed, variant.thinned, variant.estimate, variant.footprint,
         static_cast<int>(variant.elevation));
-    osg::ref_ptr<osg::Program>& program = programs[{head, shader.back()}];
+    osg::ref_ptr<osg::Program>& program = (*programs)[{head, shader.back()}];
     if (!program) {
       std::string source = head + binning_shader_head;
       for (const char* part : shader) {
@@ -392,57 +402,85 @@ struct GpuBinner::Impl {
     context.getState()->setLastAppliedProgramObject(nullptr);
   }
 
-  void read(const GpuBuffer& buffer, void* to, std::size_t from_byte, std::size_t bytes) {
-    buffer.read(to, from_byte, bytes);
+  /// @throws RendererError
+  void wait_for(GpuReadback& readback, const std::function<void(std::span<const std::byte>)>& take) {
+    const bool there = readback.wait([&](std::span<const std::byte> bytes) {
+      take(bytes);
+      bytes_read += bytes.size();
+    });
+    ++synchronisations;
     context.check();
-    bytes_read += bytes;
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR || !there) {
+      forget();
+      throw RendererError("OpenGL error " + std::to_string(error) + " while binning");
+    }
+  }
+
+  void ask_estimates() {
+    estimates_asked = estimated;
+    estimated = 0;
+    if (estimates_asked > 0) {
+      estimates_back.ask({{estimates, estimates_asked * sizeof(BeamEstimate)}});
+    }
   }
 
   std::vector<BeamEstimate> take_estimates() {
-    std::vector<BeamEstimate> found(estimated);
-    if (estimated > 0) {
-      read(estimates, found.data(), 0, found.size() * sizeof(BeamEstimate));
-      ++synchronisations;
+    std::vector<BeamEstimate> found(estimates_asked);
+    if (estimates_asked > 0) {
+      wait_for(estimates_back, [&](std::span<const std::byte> bytes) {
+        std::memcpy(found.data(), bytes.data(), bytes.size());
+      });
     }
-    estimated = 0;
     return found;
   }
 
-  BinningResult finish(std::vector<float> memory) {
+  void ask_image() {
+    std::vector<GpuReadback::Part> parts;
+    for (int page = 0; page < page_count(); ++page) {
+      parts.push_back({*pages[static_cast<std::size_t>(page)], bytes_of_page(page)});
+    }
+    image_back.ask(parts);
+  }
+
+  BinningResult take_image(std::vector<float> memory) {
     BinningResult result;
     result.beams = request->beams;
     result.lines = lines();
     result.echo = std::move(memory);
     result.echo.resize(bins_of(request->beams));
     result.open_sr.resize(request->options.open_water ? result.echo.size() : 0);
-    ++synchronisations;
+    wait_for(image_back, [&](std::span<const std::byte> bytes) { unpack_pages(bytes.data(), result); });
+    return result;
+  }
+
+  void unpack_pages(const std::byte* from, BinningResult& result) const {
+    const auto take = [&from](void* to, std::size_t count) {
+      std::memcpy(to, from, count);
+      from += count;
+    };
     for (int page = 0; page < page_count(); ++page) {
-      const GpuBuffer& buffer = *pages[static_cast<std::size_t>(page)];
       const std::size_t first = bins_of(page * beams_per_page());
-      const std::size_t bytes = bins_of(beams_of_page(page)) * sizeof(float);
+      const std::size_t image_bytes = bins_of(beams_of_page(page)) * sizeof(float);
       ImageHeader counted;
-      read(buffer, &counted, 0, sizeof counted);
-      read(buffer, &result.echo[first], image_header_bytes, bytes);
+      take(&counted, sizeof counted);
+      take(&result.echo[first], image_bytes);
       if (request->options.open_water) {
-        read(buffer, &result.open_sr[first], image_header_bytes + bytes, bytes);
+        take(&result.open_sr[first], image_bytes);
       }
       result.samples += counted.samples;
       result.invalid_samples += counted.invalid;
       result.saturated_samples += counted.saturated;
     }
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-      forget();
-      throw RendererError("OpenGL error " + std::to_string(error) + " while binning");
-    }
-    return result;
   }
 };
 
-GpuBinner::GpuBinner(RasterSampler& sampler) : impl_(std::make_unique<Impl>(sampler.current_context())) {}
+GpuBinner::GpuBinner(RasterSampler& sampler, const GpuBinner* other)
+    : impl_(std::make_unique<Impl>(sampler.current_context(),
+                                   other == nullptr ? nullptr : other->impl_->programs)) {}
 
 GpuBinner::~GpuBinner() {
-  if (impl_->context.makeCurrent()) {
-    for (const auto& [key, program] : impl_->programs) {
+  if (impl_->programs.use_count() == 1 && impl_->context.makeCurrent()) {
+    for (const auto& [key, program] : *impl_->programs) {
       program->releaseGLObjects(impl_->context.getState());
     }
   }
@@ -470,14 +508,24 @@ void GpuBinner::add(const GpuGrid& grid, const std::vector<unsigned>& textures) 
   impl_->add(grid, textures);
 }
 
+void GpuBinner::ask_estimates() {
+  impl_->make_current();
+  impl_->ask_estimates();
+}
+
 std::vector<BeamEstimate> GpuBinner::take_estimates() {
   impl_->make_current();
   return impl_->take_estimates();
 }
 
-BinningResult GpuBinner::finish(std::vector<float> memory) {
+void GpuBinner::ask_image() {
   impl_->make_current();
-  return impl_->finish(std::move(memory));
+  impl_->ask_image();
+}
+
+BinningResult GpuBinner::take_image(std::vector<float> memory) {
+  impl_->make_current();
+  return impl_->take_image(std::move(memory));
 }
 
 std::uint64_t GpuBinner::bytes_read() const {

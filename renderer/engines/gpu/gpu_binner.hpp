@@ -23,8 +23,9 @@ struct GpuGrid;
 class GpuBinner {
  public:
   /// @param sampler draws the samples; outlives this object.
+  /// @param other of the same sampler, whose shaders this one shares; null: it builds its own.
   /// @throws RendererError when a shader does not build.
-  explicit GpuBinner(RasterSampler& sampler);
+  explicit GpuBinner(RasterSampler& sampler, const GpuBinner* other = nullptr);
   ~GpuBinner();
   GpuBinner(const GpuBinner&) = delete;
   GpuBinner& operator=(const GpuBinner&) = delete;
@@ -58,16 +59,20 @@ class GpuBinner {
   /// @throws RequestError when the buffers of this OpenGL cannot hold what it takes.
   void add(const GpuGrid& grid, const std::vector<unsigned>& textures);
 
-  /// Reads back the estimates of all beams that were added since the last call, in their order. Waits for the
-  /// GPU.
+  /// Has the estimates of all beams that were added since the last call sent back.
+  void ask_estimates();
+  /// Those estimates, in the order of beams. Waits for them, but for nothing that the GPU was given since.
+  /// @throws RendererError when OpenGL fails.
   std::vector<BeamEstimate> take_estimates();
 
-  /// Reads back the image. Waits for the GPU.
+  /// Has the image sent back.
+  void ask_image();
+  /// That image; waits for it in the same way.
   /// @param memory as of bin_echoes()
   /// @throws RendererError when OpenGL fails.
-  BinningResult finish(std::vector<float> memory = {});
+  BinningResult take_image(std::vector<float> memory = {});
 
-  /// What has been read back, and how often that waited, since begin().
+  /// What has come back, and how often that was waited for, since begin().
   std::uint64_t bytes_read() const;
   std::uint64_t synchronisations() const;
 

@@ -40,12 +40,7 @@ class GpuBuffer {
   /// The next hold() starts over.
   void forget() { bytes_ = 0; }
   void bind(unsigned binding) const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
-  /// Waits for what is being drawn and computed.
-  void read(void* to, std::size_t from_byte, std::size_t bytes) const {
-    select();
-    gl_.glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(from_byte),
-                           static_cast<GLsizeiptr>(bytes), to);
-  }
+  void bind_to_copy() const { gl_.glBindBuffer(GL_COPY_READ_BUFFER, name_); }
 
  private:
   void select() const { gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_); }

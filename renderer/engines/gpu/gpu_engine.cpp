@@ -21,8 +21,9 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       images_until_lost_(options.gpu.lose_context_at_image),
       sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m),
                options.gpu.device),
-      binner_(sampler_),
-      refinement_(sampler_, binner_) {}
+      refinement_(sampler_) {
+  binner(0);  // so that an OpenGL that cannot build its shaders is found out here
+}
 
 GpuEngine::~GpuEngine() {
   sampler_.make_current_if_alive();
@@ -40,45 +41,107 @@ void GpuEngine::set_refraction(double bend_per_m) {
   sampler_.set_refraction(bend_per_m);
 }
 
-void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
-  const BinningOptions options = binning_options(request, skip_, largest_response_);
-  if (options.cone_aperture != nullptr) {
-    image_by_cones(request, options, echo, statistics);
+/// An image in the making.
+struct GpuEngine::Making {
+  const EchoJob& job;
+  const BinningOptions options;
+  GpuBinner& binner;
+  std::unique_ptr<BeamRefinement::Ping> ping{};  ///< null: there is nothing to come but the image
+};
+
+void GpuEngine::images(std::span<const EchoJob> jobs) {
+  for (std::size_t done = 0; done < jobs.size(); done += BeamRefinement::most_pings) {
+    images_together(jobs.subspan(done, std::min(BeamRefinement::most_pings, jobs.size() - done)));
+  }
+}
+
+GpuBinner& GpuEngine::binner(std::size_t number) {
+  while (binners_.size() <= number) {
+    binners_.push_back(std::make_unique<GpuBinner>(sampler_, binners_.empty() ? nullptr : binners_[0].get()));
+  }
+  return *binners_[number];
+}
+
+void GpuEngine::images_together(std::span<const EchoJob> jobs) {
+  std::vector<Making> all;
+  all.reserve(jobs.size());
+  for (const EchoJob& job : jobs) {
+    Stopwatch watch;
+    const double drawing_before_s = job.statistics.visibility_s;
+    all.push_back({job, binning_options(job.request, skip_, largest_response_), binner(all.size())});
+    begin(all.back());
+    job.statistics.binning_s += watch.lap() - (job.statistics.visibility_s - drawing_before_s);
+  }
+  // While the estimates of one are on their way, the GPU has the passes of the others to make.
+  const auto in_the_making = [](const Making& image) { return image.ping != nullptr; };
+  while (std::any_of(all.begin(), all.end(), in_the_making)) {
+    for (Making& image : all) {
+      advance(image);
+    }
+  }
+  for (Making& image : all) {
+    finish(image);
+  }
+}
+
+/// Gives the first pass to the GPU.
+void GpuEngine::begin(Making& image) {
+  const auto& [request, echo, statistics] = image.job;
+  if (image.options.cone_aperture != nullptr) {
+    image_by_cones(request, image.options, echo, statistics);
     return;
   }
-  Stopwatch watch;
-  const double drawing_before_s = statistics.visibility_s;
-  const SonarSettings& settings = request.settings;
-  binner_.begin({settings.aperture.beam_count(), settings.range, options, request.line_weight,
-                 most_estimated_error(settings.sampling.preset)});
   if (images_until_lost_ > 0 && --images_until_lost_ == 0) {
     sampler_.current_context().lose();
   }
+  const SonarSettings& settings = request.settings;
+  image.binner.begin({settings.aperture.beam_count(), settings.range, image.options, request.line_weight,
+                      most_estimated_error(settings.sampling.preset)});
   const bool may_keep = skip_.on(SkipRule::unchanged_settings);
-  const bool known_grid = needs_grid(settings) ? draw_grid(request, may_keep, statistics)
-                                               : refinement_.refine(request, surface_model(settings, skip_),
-                                                                    may_keep, statistics);
-  if (known_grid) {
-    statistics.skipped.add(SkipRule::unchanged_settings);
+  if (needs_grid(settings)) {
+    draw_grid(image.binner, request, may_keep, statistics);
+    image.binner.ask_image();
+  } else {
+    image.ping =
+        refinement_.begin(image.binner, request, surface_model(settings, skip_), may_keep, statistics);
   }
-  hand_over(binner_.finish(std::move(echo.image.intensity)), echo, statistics);
-  statistics.bytes_read_back += binner_.bytes_read();
-  statistics.synchronisations += binner_.synchronisations();
-  statistics.binning_s += watch.lap() - (statistics.visibility_s - drawing_before_s);
 }
 
-/// @return whether the grid is the one of the last ping.
-bool GpuEngine::draw_grid(const EchoRequest& request, bool may_keep, PingStatistics& statistics) {
+void GpuEngine::advance(Making& image) {
+  Stopwatch watch;
+  const double drawing_before_s = image.job.statistics.visibility_s;
+  if (image.ping && !image.ping->advance()) {
+    image.binner.ask_image();
+    image.ping.reset();
+  }
+  image.job.statistics.binning_s += watch.lap() - (image.job.statistics.visibility_s - drawing_before_s);
+}
+
+void GpuEngine::finish(Making& image) {
+  if (image.options.cone_aperture != nullptr) {
+    return;
+  }
+  Stopwatch watch;
+  const auto& [request, echo, statistics] = image.job;
+  hand_over(image.binner.take_image(std::move(echo.image.intensity)), echo, statistics);
+  statistics.bytes_read_back += image.binner.bytes_read();
+  statistics.synchronisations += image.binner.synchronisations();
+  statistics.binning_s += watch.lap();
+}
+
+void GpuEngine::draw_grid(GpuBinner& binner, const EchoRequest& request, bool may_keep,
+                          PingStatistics& statistics) {
   const int beams = request.settings.aperture.beam_count();
-  const int beams_per_page = binner_.beams_per_page();
-  const bool known = grid_.prepare(request.settings, may_keep) && grid_page_ == beams_per_page;
-  if (!known) {
+  const int beams_per_page = binner.beams_per_page();
+  if (grid_.prepare(request.settings, may_keep) && grid_page_ == beams_per_page) {
+    statistics.skipped.add(SkipRule::unchanged_settings);
+  } else {
     grid_on_gpu_.clear();
     for (int begin = 0; begin < beams; begin += beams_per_page) {
       const int end = std::min(begin + beams_per_page, beams);
       std::vector<int> in_image(static_cast<std::size_t>(end - begin));
       std::iota(in_image.begin(), in_image.end(), begin);
-      grid_on_gpu_.push_back(binner_.load(part_of(grid_.grid(), begin, end), in_image));
+      grid_on_gpu_.push_back(binner.load(part_of(grid_.grid(), begin, end), in_image));
     }
     grid_page_ = beams_per_page;
   }
@@ -88,10 +151,9 @@ bool GpuEngine::draw_grid(const EchoRequest& request, bool may_keep, PingStatist
                     request.settings.range.sampled_range_m());
   statistics.visibility_s += watch.lap();
   for (const auto& page : grid_on_gpu_) {
-    binner_.add(*page, textures);
+    binner.add(*page, textures);
   }
   ++statistics.passes;
-  return known;
 }
 
 /// Beams that are told apart by cones: the one image whose samples are read back.

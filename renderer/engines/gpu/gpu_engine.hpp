@@ -26,14 +26,21 @@ class GpuEngine final : public EchoEngine {
   GpuEngine(const World& world, WorkerPool& workers, const RendererOptions& options);
   ~GpuEngine() override;
 
-  void image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) override;
+  void images(std::span<const EchoJob> jobs) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
   void set_refraction(double bend_per_m) override;
   const std::string& description() const override { return sampler_.description(); }
 
  private:
-  bool draw_grid(const EchoRequest& request, bool may_keep, PingStatistics& statistics);
+  struct Making;
+
+  GpuBinner& binner(std::size_t number);
+  void images_together(std::span<const EchoJob> jobs);
+  void begin(Making& image);
+  static void advance(Making& image);
+  static void finish(Making& image);
+  void draw_grid(GpuBinner& binner, const EchoRequest& request, bool may_keep, PingStatistics& statistics);
   void image_by_cones(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
                       PingStatistics& statistics);
 
@@ -42,7 +49,7 @@ class GpuEngine final : public EchoEngine {
   WorkerPool& workers_;
   std::uint64_t images_until_lost_;  ///< GpuOptions::lose_context_at_image
   RasterSampler sampler_;
-  GpuBinner binner_;
+  std::vector<std::unique_ptr<GpuBinner>> binners_;  ///< one for each image in the making
   GridCache grid_, cone_grid_;
   std::vector<std::shared_ptr<const GpuGrid>> grid_on_gpu_;  ///< one for each page of the image
   int grid_page_ = 0;                                        ///< beams on such a page

@@ -88,7 +88,7 @@ class EngineTrials : public EngineLoss {};
 
 TEST_F(EngineTrials, TakeTheFasterAndTellBothTimes) {
   render::SonarRenderer renderer(world(), {EngineKind::automatic});
-  const std::vector<render::FirstPing> pings{{0, request(0)}, {1, request(1)}};
+  const std::vector<render::StreamPing> pings{{0, request(0)}, {1, request(1)}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_GT(trial.cpu_ms, 0.0);
   EXPECT_GT(trial.gpu_ms, 0.0);
@@ -104,7 +104,7 @@ TEST_F(EngineTrials, AGpuThatIsLostOnTheWayIsNotTaken) {
   render::RendererOptions options = losing_at(2);
   options.engine = EngineKind::automatic;
   render::SonarRenderer renderer(world(), options);
-  const std::vector<render::FirstPing> pings{{0, request(0)}};
+  const std::vector<render::StreamPing> pings{{0, request(0)}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_EQ(trial.taken, EngineKind::cpu);
   EXPECT_EQ(trial.gpu_problem, "before it failed");
@@ -118,7 +118,7 @@ TEST(EngineTrialsWithoutGl, SayWhatIsMissing) {
   render::PingRequest request;
   request.settings.aperture.beam_edges_rad = render::equal_angle_edges(4, 0.1);
   request.settings.range = {10, 0.1, 0, false};
-  const std::vector<render::FirstPing> pings{{0, request}};
+  const std::vector<render::StreamPing> pings{{0, request}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_EQ(trial.taken, EngineKind::cpu);
   EXPECT_EQ(trial.gpu, "");

@@ -66,6 +66,7 @@ class BeamEstimateTest : public ::testing::Test {
     const auto on_gpu = binner.load(grid_, {0, 1, 2}, &thinned_);
     binner.begin({3, range, options, no_weights, most_error});
     binner.add(*on_gpu, {texture});
+    binner.ask_estimates();
     const BeamEstimate found = binner.take_estimates().at(1);
     glDeleteTextures(1, &texture);
     return found;

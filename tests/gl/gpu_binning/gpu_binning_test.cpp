@@ -97,7 +97,8 @@ class GpuBinningTest : public ::testing::Test {
     const std::vector<float> no_weights;
     binner.begin({grid.beam_count(), c.range, c.options, no_weights});
     binner.add(*on_gpu, sampler.draw(c.T_world_sonar, grid, c.surface, max_range_m));
-    const BinningResult gpu = binner.finish();
+    binner.ask_image();
+    const BinningResult gpu = binner.take_image();
     const auto samples = sampler.sample(c.T_world_sonar, grid, c.surface, max_range_m);
     const BinningResult cpu = bin_echoes(grid, CellWeights(grid), samples, c.range, c.options, workers);
     const std::vector<double> exact = test::bin_in_double(grid, samples, c.range, c.options);
@@ -238,7 +239,8 @@ TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
     const std::vector<float> no_weights;
     binner.begin({grid.beam_count(), range, options, no_weights});
     binner.add(*on_gpu, sampler.draw(T_world_sonar, grid, {}, 21.0));
-    return binner.finish().echo;
+    binner.ask_image();
+    return binner.take_image().echo;
   };
   const std::vector<float> echo = bin(false), mean = bin(true);
   std::mt19937 random(1);
@@ -293,7 +295,8 @@ TEST_F(GpuBinningTest, LargeImagesHavePages) {
   const BinningOptions options;
   binner.begin({1000, range, options, no_weights});
   EXPECT_GT(binner.beams_per_page(), 0);
-  EXPECT_EQ(binner.finish().echo.size(), 65'535'000U);
+  binner.ask_image();
+  EXPECT_EQ(binner.take_image().echo.size(), 65'535'000U);
 }
 
 /// Images of changing size and kind, one after the other: nothing of one is left in the next.
@@ -346,6 +349,7 @@ class BeamEstimates : public GpuBinningTest {
     const auto on_gpu = binner.load(grid, all_beams(grid), &thinned);
     binner.begin({4, range_, options_, no_weights_, {0.001, 0.05}});
     binner.add(*on_gpu, sampler.draw({}, grid, surface, 21.0));
+    binner.ask_estimates();
     return binner.take_estimates();
   }
 
@@ -356,7 +360,8 @@ class BeamEstimates : public GpuBinningTest {
     const auto on_gpu = binner.load(grid, all_beams(grid));
     binner.begin({4, range_, options_, no_weights_});
     binner.add(*on_gpu, sampler.draw({}, grid, surface, 21.0));
-    return binner.finish().echo;
+    binner.ask_image();
+    return binner.take_image().echo;
   }
 
  private:

@@ -83,6 +83,34 @@ struct Fixture : testing::Test {
 
 using RenderServiceTest = Fixture;
 
+// Those that wait may be in the making beside it, up to the first that finds bodies elsewhere.
+TEST_F(RenderServiceTest, TellsTheRendererWhatComesNext) {
+  std::promise<void> all_submitted;
+  std::future<void> go = all_submitted.get_future();
+  control->before_ping = [&](const render::PingRequest& request, int) {
+    if (request.ping_number == 0) {
+      go.wait();
+    }
+  };
+  int answers = 0;
+  {
+    RenderService service(fake_renderer_factory(control), 5, hooks());
+    for (int stream = 0; stream < 5; ++stream) {
+      RenderJob job = small_job(static_cast<std::uint64_t>(stream), stream);
+      if (stream == 4) {
+        job.bodies = {{"boat", {}}};
+      }
+      service.submit(std::move(job), [&](const RenderResult&) { ++answers; });
+    }
+    all_submitted.set_value();
+    EXPECT_TRUE(inbox.run_until([&] { return answers == 5; }));
+  }
+  // Ping 0 may have begun before the others came.
+  ASSERT_GE(control->begun.size(), 2U);
+  EXPECT_EQ(control->begun[control->begun.size() - 2], (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(control->begun.back(), (std::vector<int>{2, 3}));
+}
+
 TEST_F(RenderServiceTest, RendersOnItsOwnThreadAndAnswersOnOurs) {
   std::thread::id renderer_thread;
   control->before_ping = [&](const render::PingRequest&, int) {

@@ -108,7 +108,7 @@ TEST(Retries, OnlyLinesThatExistAreSent) {
   EXPECT_EQ(bench.device.counters().retries_dropped, 2U);
 }
 
-TEST(Retries, BeforeTheFirstPingThereIsNothingToSend) {
+TEST(Retries, BeforeTheStreamPingThereIsNothingToSend) {
   Bench bench;
   bench.command(retry_of(RetryKind::head));
   bench.command(retry_of(RetryKind::lines));

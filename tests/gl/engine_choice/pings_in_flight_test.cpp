@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pings of several heads that are in the making on the GPU at once are those that each head gets alone.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+#include "tests/support/engine_test.hpp"
+
+namespace sonard::test {
+namespace {
+
+using render::EngineKind;
+using render::StreamPing;
+
+class PingsInFlight : public testing::Test {
+ protected:
+  void SetUp() override { require_gl(); }
+
+  static render::World world() {
+    return make_world({make_body("wall", make_quad({8, 10, -5}, {0, -20, 0}, {0, 0, 10})),
+                       make_body("ball", make_sphere(0.5F, 24))});
+  }
+  static render::RendererOptions options(std::uint64_t lose_at = 0) {
+    render::RendererOptions options;
+    options.engine = EngineKind::gpu;
+    options.gpu.lose_context_at_image = lose_at;
+    return options;
+  }
+
+  /// A head of each sort, and more of them than may be in the making at once.
+  static std::vector<StreamPing> pings() {
+    std::vector<StreamPing> pings;
+    for (int stream = 0; stream < 11; ++stream) {
+      StreamPing ping;
+      ping.stream = stream;
+      ping.request.seed = 7;
+      ping.request.T_world_sonar.position_m.y = 0.1 * stream;
+      render::SonarSettings& settings = ping.request.settings;
+      settings.aperture.beam_edges_rad = render::equal_angle_edges(16 + stream, 1.0);
+      settings.range = {400 + stream, 0.03, 0, false};
+      pings.push_back(ping);
+    }
+    pings[1].request.settings.model = render::Model::paper;
+    pings[2].request.settings.sampling = render::Sampling::of_grid(2, 64, 64);
+    pings[3].request.settings.physical.volume_scattering_db = -60.0;
+    pings[4].request.settings.transmit = false;
+    pings[5].request.settings.aperture.azimuth = render::Aperture::Azimuth::array;
+    pings[6].request.T_world_sonar_at_end = looking({0, 1, 0}, 20, 0);
+    pings[7].request.settings.sampling.preset = render::Sampling::Preset::fast;
+    return pings;
+  }
+
+  static std::vector<float> alone(const StreamPing& ping, EngineKind engine = EngineKind::gpu) {
+    render::SonarRenderer renderer(world(), {engine});
+    return renderer.render_echo(ping.request, ping.stream).intensity;
+  }
+};
+
+TEST_F(PingsInFlight, AreThoseOfEachHeadAlone) {
+  render::SonarRenderer renderer(world(), options());
+  const std::vector<StreamPing> all = pings();
+  renderer.begin_pings(all);
+  for (const StreamPing& ping : all) {
+    EXPECT_EQ(renderer.render_echo(ping.request, ping.stream).intensity, alone(ping)) << ping.stream;
+    const render::PingStatistics& statistics = renderer.last_statistics();
+    if (ping.stream != 4 && ping.stream != 6) {
+      EXPECT_GE(statistics.passes, 1U) << ping.stream;
+      EXPECT_LE(statistics.synchronisations, statistics.passes + 1) << ping.stream;
+      EXPECT_GT(statistics.samples, 0U) << ping.stream;
+    }
+  }
+}
+
+TEST_F(PingsInFlight, AreMadeAgainWhenTheWorldHasMovedOn) {
+  render::SonarRenderer renderer(world(), options());
+  render::SonarRenderer other(world(), options());
+  const std::vector<StreamPing> all = pings();
+  renderer.begin_pings(all);
+  for (render::SonarRenderer* one : {&renderer, &other}) {
+    ASSERT_TRUE(one->set_body_pose("ball", {{4, 0, 0}, {1, 0, 0, 0}}));
+  }
+  EXPECT_EQ(renderer.render_echo(all[0].request, 0).intensity, other.render_echo(all[0].request, 0).intensity);
+}
+
+TEST_F(PingsInFlight, AreThoseThatAreAskedForInTheEnd) {
+  render::SonarRenderer renderer(world(), options());
+  std::vector<StreamPing> all = pings();
+  renderer.begin_pings(all);
+  all[0].request.T_world_sonar.position_m.x = 1;
+  EXPECT_EQ(renderer.render_echo(all[0].request, 0).intensity, alone(all[0]));
+}
+
+TEST_F(PingsInFlight, ComeFromTheCpuWhenTheGpuIsLostOnTheWay) {
+  render::SonarRenderer renderer(world(), options(3));
+  const std::vector<StreamPing> all = pings();
+  renderer.begin_pings(all);
+  EXPECT_EQ(renderer.engine(), EngineKind::cpu);
+  for (const StreamPing& ping : all) {
+    EXPECT_EQ(renderer.render_echo(ping.request, ping.stream).intensity, alone(ping, EngineKind::cpu))
+        << ping.stream;
+  }
+}
+
+TEST_F(PingsInFlight, OneThatCannotBeMadeIsToldWhenItIsItsTurn) {
+  render::SonarRenderer renderer(world(), options());
+  std::vector<StreamPing> all = pings();
+  all[0].request.settings.range.count = 0;
+  renderer.begin_pings(all);
+  EXPECT_THROW(renderer.render_echo(all[0].request, 0), render::RequestError);
+  EXPECT_EQ(renderer.render_echo(all[1].request, 1).intensity, alone(all[1]));
+}
+
+}  // namespace
+}  // namespace sonard::test
