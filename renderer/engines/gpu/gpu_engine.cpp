@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/video_memory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
 #include "renderer/scene/refracted_world.hpp"
@@ -18,7 +19,8 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
     : skip_(options.skip),
       largest_response_(largest_response(world)),
       workers_(workers),
-      sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m)),
+      sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m),
+               options.gpu),
       binner_(sampler_),
       refinement_(sampler_, binner_) {}
 
@@ -40,10 +42,19 @@ void GpuEngine::set_refraction(double bend_per_m) {
 
 void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics& statistics) {
   const BinningOptions options = binning_options(request, skip_, largest_response_);
+  const std::uint64_t uploaded_before = sampler_.video_memory().bytes_uploaded();
   if (options.cone_aperture != nullptr) {
     image_by_cones(request, options, echo, statistics);
-    return;
+  } else {
+    image_by_samples(request, options, echo, statistics);
   }
+  statistics.bytes_uploaded += sampler_.video_memory().bytes_uploaded() - uploaded_before;
+  statistics.video_memory_bytes = sampler_.video_memory().bytes();
+}
+
+/// The image is made where its samples are.
+void GpuEngine::image_by_samples(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                                 PingStatistics& statistics) {
   Stopwatch watch;
   const double drawing_before_s = statistics.visibility_s;
   const SonarSettings& settings = request.settings;

@@ -33,6 +33,8 @@ class GpuEngine final : public EchoEngine {
   const std::string& description() const override { return sampler_.description(); }
 
  private:
+  void image_by_samples(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
+                        PingStatistics& statistics);
   bool draw_grid(const EchoRequest& request, bool may_keep, PingStatistics& statistics);
   void image_by_cones(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
                       PingStatistics& statistics);
