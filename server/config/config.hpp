@@ -180,6 +180,7 @@ struct DaemonConfig {
   /// the sonars that heads are mounted from (resolve_mounts() fills it in).
   std::string vehicle_model;
   render::EngineKind engine = render::EngineKind::automatic;
+  render::GpuOptions gpu;
   render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;

@@ -274,6 +274,15 @@ void read_sampling(YamlSection& section, render::Sampling& sampling) {
   }
 }
 
+void read_gpu(YamlSection& section, render::GpuOptions& gpu) {
+  section.introduce("Only where the engine is `gpu`.");
+  section.integer(
+      "memory_mib", gpu.memory_mib, 1, 1'048'576,
+      "MiB of video memory for meshes and normal maps, for each renderer: all fans share one, all "
+      "scanning heads another. What was not drawn for the longest time makes room; if what one "
+      "sonar sees does not fit, the engine fails ([engines.md](engines.md#video-memory))");
+}
+
 void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   section.introduce(
       "The daemon leaves out what does not change the image, by rules that [skipping.md](skipping.md) lists "
@@ -343,6 +352,8 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
               "image ([accuracy.md](accuracy.md)); the log says which one runs on what");
   root.retired("backend", "write `engine: gpu` for raster, `engine: cpu` for ray, `engine: auto` for auto");
   root.retired("gpu_binning", "remove it; engine `gpu` bins on the GPU in any case");
+  root.section("gpu", "what engine `gpu` may take",
+               [&](YamlSection& section) { read_gpu(section, config.gpu); });
   root.section("skip", "what need not be worked out",
                [&](YamlSection& section) { read_skip(section, config.skip); });
   root.section("water", "what they swim in", [&](YamlSection& section) { read_water(section, context); });

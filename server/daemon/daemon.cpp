@@ -379,7 +379,7 @@ render::World load_world_of(DaemonConfig& config) {
 
 render::RendererOptions renderer_options(const DaemonConfig& config) {
   return {config.engine, 0, config.skip,
-          config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps};
+          config.water.sound_speed_gradient_per_s / config.water.sound_speed_mps, config.gpu};
 }
 
 int run_daemon(DaemonConfig config) {
