@@ -67,7 +67,9 @@ struct PingStatistics {
   std::uint64_t passes = 0;
   std::uint64_t bytes_read_back = 0;
   std::uint64_t synchronisations = 0;
-  SkipCounts skipped;  ///< what was left out; stages that did not run have counted nothing
+  std::uint64_t bytes_uploaded = 0;      ///< of meshes and normal maps
+  std::uint64_t video_memory_bytes = 0;  ///< of these, what lies in video memory after the ping
+  SkipCounts skipped;                    ///< what was left out; stages that did not run have counted nothing
 };
 
 }  // namespace sonard::render

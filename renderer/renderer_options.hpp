@@ -20,10 +20,12 @@ enum class EngineKind {
 /// The name under the key `engine` of a configuration: "auto", "gpu", "cpu".
 std::string_view name_of(EngineKind engine);
 
-/// What engine `gpu` runs on.
+/// What engine `gpu` runs on, and what it may take.
 struct GpuOptions {
   /// A number in the list of `sonard selftest`, or a part of a name in it, in whatever case; empty: the best.
   std::string device;
+  /// Video memory that meshes and normal maps may take, MiB, > 0.
+  std::uint64_t memory_mib = 4096;
   /// Seconds after the loss of the GPU until it is tried again, > 0; 0: it is not.
   double retry_s = 0.0;
   /// For tests: the OpenGL context is destroyed in the middle of this image, counted from 1; 0: never.

@@ -274,6 +274,23 @@ void read_sampling(YamlSection& section, render::Sampling& sampling) {
   }
 }
 
+void read_gpu(YamlSection& section, render::GpuOptions& gpu) {
+  section.introduce("Only where the engine is `gpu`, or `auto` takes it ([gpu.md](gpu.md)).");
+  section.text(
+      "device", gpu.device,
+      "which EGL device: its number in the list of `sonard selftest`, or a part of its name there. Without "
+      "it, hardware comes before software, then most memory");
+  section.integer(
+      "memory_mib", gpu.memory_mib, 1, 1'048'576,
+      "MiB of video memory for meshes and normal maps, for each renderer: all fans share one, all "
+      "scanning heads another. What was not drawn for the longest time makes room; if what one "
+      "sonar sees does not fit, the CPU goes on ([engines.md](engines.md#video-memory))");
+  section.number(
+      "retry_s", gpu.retry_s, Range::from(0.0, 86'400.0),
+      "after a loss of the GPU it is tried again each time so long has passed, in the middle of a ping, "
+      "which then waits for it; 0: the CPU goes on to the end");
+}
+
 void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   section.introduce(
       "The daemon leaves out what does not change the image, by rules that [skipping.md](skipping.md) lists "
@@ -324,17 +341,6 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
       "queue_mib", mebibytes, 1, 16'384,
       "what waits to be written; beyond that is dropped and counted, for nothing ever waits for the disk");
   recording.queue_bytes = mebibytes << 20;
-}
-
-void read_gpu(YamlSection& gpu, render::GpuOptions& options) {
-  gpu.text(
-      "device", options.device,
-      "which EGL device: its number in the list of `sonard selftest`, or a part of its name there. Without "
-      "it, hardware comes before software, then most memory");
-  gpu.number(
-      "retry_s", options.retry_s, Range::from(0.0, 86'400.0),
-      "after a loss of the GPU it is tried again each time so long has passed, in the middle of a ping, "
-      "which then waits for it; 0: the CPU goes on to the end");
 }
 
 void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config,

@@ -68,6 +68,8 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
                  "count");
     results_.add(subject(point), "read_back", static_cast<double>(statistics.bytes_read_back) / 1024.0,
                  "KiB");
+    results_.add(subject(point), "video_memory", static_cast<double>(statistics.video_memory_bytes) / 0x1p20,
+                 "MiB");
   }
   results_.add(subject(point), "repeatable", repeatable ? 1 : 0, "1");
   results_.add(subject(point), "peak_memory", peak_memory_mib(), "MiB");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/video_memory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
 #include "renderer/scene/refracted_world.hpp"
@@ -20,7 +21,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       workers_(workers),
       images_until_lost_(options.gpu.lose_context_at_image),
       sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m),
-               options.gpu.device),
+               options.gpu),
       refinement_(sampler_) {
   binner(0);  // so that an OpenGL that cannot build its shaders is found out here
 }
@@ -66,22 +67,31 @@ void GpuEngine::images_together(std::span<const EchoJob> jobs) {
   std::vector<Making> all;
   all.reserve(jobs.size());
   for (const EchoJob& job : jobs) {
-    Stopwatch watch;
-    const double drawing_before_s = job.statistics.visibility_s;
     all.push_back({job, binning_options(job.request, skip_, largest_response_), binner(all.size())});
-    begin(all.back());
-    job.statistics.binning_s += watch.lap() - (job.statistics.visibility_s - drawing_before_s);
+    count(job.statistics, [&] { begin(all.back()); });
   }
   // While the estimates of one are on their way, the GPU has the passes of the others to make.
   const auto in_the_making = [](const Making& image) { return image.ping != nullptr; };
   while (std::any_of(all.begin(), all.end(), in_the_making)) {
     for (Making& image : all) {
-      advance(image);
+      count(image.job.statistics, [&] { advance(image); });
     }
   }
   for (Making& image : all) {
     finish(image);
   }
+}
+
+/// Takes a step of an image, and counts what that takes.
+template <class Step>
+void GpuEngine::count(PingStatistics& statistics, Step step) {
+  Stopwatch watch;
+  const double drawing_before_s = statistics.visibility_s;
+  const std::uint64_t uploaded_before = sampler_.video_memory().bytes_uploaded();
+  step();
+  statistics.binning_s += watch.lap() - (statistics.visibility_s - drawing_before_s);
+  statistics.bytes_uploaded += sampler_.video_memory().bytes_uploaded() - uploaded_before;
+  statistics.video_memory_bytes = sampler_.video_memory().bytes();
 }
 
 /// Gives the first pass to the GPU.
@@ -108,13 +118,10 @@ void GpuEngine::begin(Making& image) {
 }
 
 void GpuEngine::advance(Making& image) {
-  Stopwatch watch;
-  const double drawing_before_s = image.job.statistics.visibility_s;
   if (image.ping && !image.ping->advance()) {
     image.binner.ask_image();
     image.ping.reset();
   }
-  image.job.statistics.binning_s += watch.lap() - (image.job.statistics.visibility_s - drawing_before_s);
 }
 
 void GpuEngine::finish(Making& image) {
@@ -177,7 +184,6 @@ void GpuEngine::image_by_cones(const EchoRequest& request, const BinningOptions&
   hand_over(bin_echoes(cone_grid_.grid(), cone_grid_.weights(), samples, settings.range, options, workers_,
                        std::move(echo.image.intensity)),
             echo, statistics);
-  statistics.binning_s += watch.lap();
 }
 
 }  // namespace sonard::render

@@ -37,6 +37,8 @@ class GpuEngine final : public EchoEngine {
 
   GpuBinner& binner(std::size_t number);
   void images_together(std::span<const EchoJob> jobs);
+  template <class Step>
+  void count(PingStatistics& statistics, Step step);
   void begin(Making& image);
   static void advance(Making& image);
   static void finish(Making& image);

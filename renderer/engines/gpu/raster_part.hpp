@@ -3,29 +3,31 @@
 // surface_shader.hpp wants to know of its surface.
 #pragma once
 
+#include <memory>
+
 #include <osg/MatrixTransform>
 #include <osg/Matrixd>
 #include <osg/StateSet>
 
+#include "renderer/engines/gpu/normal_map_texture.hpp"
 #include "renderer/engines/gpu/surface_shader.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
 
-/// Texture unit of normal maps.
-inline constexpr int normal_map_unit = 0;
-
 osg::Matrixd to_osg(const Pose& T_a_b);
-
-/// Adds the triangles of a mesh to the node of their part.
-/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
-void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
 
 Shading shading_of(const BodyPart& part);
 
 /// What the shader wants to know of the surface of a part. Parts with the same surface share one.
-osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part);
+struct Surface {
+  osg::ref_ptr<osg::StateSet> state;
+  Shading shading;
+  std::unique_ptr<NormalMapTexture> normal_map;  ///< null: none
+};
+
+Surface make_surface(const BodyPart& part);
 bool same_surface(const BodyPart& a, const BodyPart& b);
 
 /// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <list>
 #include <map>
+#include <unordered_map>
 
 #include <osg/Camera>
 #include <osg/ClipControl>
@@ -17,6 +18,7 @@
 #include <osgUtil/SceneView>
 
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/mesh_chunk.hpp"
 #include "renderer/engines/gpu/raster_part.hpp"
 #include "renderer/engines/gpu/surface_shader.hpp"
 #include "renderer/errors.hpp"
@@ -74,7 +76,7 @@ ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* stat
   target.texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
 
   target.scene_view = new osgUtil::SceneView;
-  target.scene_view->setDefaults(osgUtil::SceneView::COMPILE_GLOBJECTS_AT_INIT);
+  target.scene_view->setDefaults(osgUtil::SceneView::NO_SCENEVIEW_LIGHT);
   target.scene_view->setState(state);
   target.scene_view->setSceneData(scene);
   target.scene_view->setFrameStamp(new osg::FrameStamp);
@@ -118,6 +120,27 @@ void aim(const ViewTarget& target, const SubView& view, const Refraction& bend) 
   target.scene_view->getCamera()->setCullingMode(culling);
 }
 
+/// Adds what a view draws, culled and sorted front to back, to `items`.
+/// @param normal_maps by the state that asks for them.
+void collect(const osgUtil::RenderBin& bin,
+             const std::unordered_map<const osg::StateSet*, NormalMapTexture*>& normal_maps,
+             std::vector<VideoMemory::Item*>& items) {
+  const osgUtil::StateGraph* last = nullptr;
+  for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList()) {
+    items.push_back(&static_cast<MeshChunk&>(*leaf->_drawable));  // nothing else is drawn
+    for (const osgUtil::StateGraph* state = leaf->_parent; state != nullptr && leaf->_parent != last;
+         state = state->_parent) {
+      if (const auto map = normal_maps.find(state->getStateSet()); map != normal_maps.end()) {
+        items.push_back(map->second);
+      }
+    }
+    last = leaf->_parent;
+  }
+  for (const auto& [number, inner] : bin.getRenderBinList()) {
+    collect(*inner, normal_maps, items);
+  }
+}
+
 // Making a target takes as long as drawing into it, so those of earlier calls are kept: so many pixels in all
 // (36 bytes each), and as many targets.
 constexpr double most_kept_pixels = 0x1p25;
@@ -131,65 +154,70 @@ struct RasterSampler::Impl {
     osg::ref_ptr<osg::MatrixTransform> transform;  // T_sonar_body of the current ping
   };
 
-  struct Surface {
-    osg::ref_ptr<osg::StateSet> state;
-    Shading shading;
-  };
-
   osg::ref_ptr<EglContext> context;
   std::string description;
+  std::unique_ptr<VideoMemory> video_memory;  // what it holds goes first
   osg::ref_ptr<osg::Group> scene;
   std::vector<BodyNode> bodies;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
   std::vector<Surface> surfaces;
-  std::map<std::string, osg::ref_ptr<osg::Program>> programs;  // by surface_shader_head()
-  MeshCache<osg::ref_ptr<osg::Group>> replacements;            // chunks of meshes
-  std::list<ViewTarget> targets;                               // the last used first
-  double target_pixels = 0;                                    // of all of them
-  std::uint64_t calls = 0;                                     // of sample()
+  std::unordered_map<const osg::StateSet*, NormalMapTexture*> normal_maps;  // of the surfaces
+  std::map<std::string, osg::ref_ptr<osg::Program>> programs;               // by surface_shader_head()
+  MeshCache<osg::ref_ptr<osg::Group>> replacements;                         // chunks of meshes
+  std::list<ViewTarget> targets;                                            // the last used first
+  double target_pixels = 0;                                                 // of all of them
+  std::uint64_t calls = 0;                                                  // of sample()
   float max_range_m = 0.0F;
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
 
-  Impl(const World& world, const std::string& device) : context(new EglContext(device)) {
+  Impl(const World& world, const GpuOptions& options) : context(new EglContext(options.device)) {
     // Near things first: what they hide is not shaded.
     osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
     context->realize();
     make_current();
     description = "gpu, " + context->describe();
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
+    video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());
     program(Shading::geometric_normal, {});  // so that an OpenGL that cannot build it is found out here
-    const BodyPart* last = nullptr;          // tiles of a terrain follow each other and share the surface
-    osg::ref_ptr<osg::StateSet> surface;
+    add_bodies(world);
+  }
+
+  ~Impl() {
+    if (context->makeCurrent()) {
+      video_memory->release_all();
+      for (const ViewTarget& target : targets) {
+        target.scene_view->releaseAllGLObjects();
+      }
+      scene->releaseGLObjects(context->getState());
+      osg::flushAllDeletedGLObjects(context->getState()->getContextID());
+    } else {
+      video_memory->forget_all();
+    }
+    targets.clear();
+    context->close();
+  }
+
+  void add_bodies(const World& world) {
+    const BodyPart* last = nullptr;  // tiles of a terrain follow each other and share the surface
     for (const Body& body : world.bodies) {
       BodyNode node{body.T_world_body, new osg::MatrixTransform};
       for (const BodyPart& part : body.parts) {
         if (last == nullptr || !same_surface(*last, part)) {
-          surface = make_surface(part);
-          surfaces.push_back({surface, shading_of(part)});
+          surfaces.push_back(make_surface(part));
+          if (surfaces.back().normal_map) {
+            normal_maps[surfaces.back().state] = surfaces.back().normal_map.get();
+          }
         }
         last = &part;
-        parts.push_back(make_part(part, surface, &max_range_m));
+        parts.push_back(make_part(part, surfaces.back().state, &max_range_m));
         node.transform->addChild(parts.back());
       }
       scene->addChild(node.transform);
       bodies.push_back(node);
     }
-  }
-
-  ~Impl() {
-    if (context->makeCurrent()) {
-      for (const ViewTarget& target : targets) {
-        target.scene_view->releaseAllGLObjects();
-      }
-      scene->releaseGLObjects(context->getState());
-      replacements = {};  // what they hold on the GPU goes with them
-      osg::flushAllDeletedGLObjects(context->getState()->getContextID());
-    }
-    targets.clear();
-    context->close();
   }
 
   void make_current() {
@@ -245,10 +273,7 @@ struct RasterSampler::Impl {
       found.push_back(&target_for(view));
       aim(*found.back(), view, bend);
     }
-    while (targets.back().used != calls &&
-           (target_pixels > most_kept_pixels || targets.size() > most_kept_targets)) {
-      release_last();
-    }
+    release_unused();
     return found;
   }
 
@@ -266,12 +291,21 @@ struct RasterSampler::Impl {
     return targets.front();
   }
 
-  void release_last() {
-    const ViewTarget& target = targets.back();
-    target_pixels -= target.pixels();
-    target.scene_view->getCamera()->releaseGLObjects(context->getState());
-    target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
-    targets.pop_back();
+  void release_unused() {
+    const std::size_t before = targets.size();
+    while (targets.back().used != calls &&
+           (target_pixels > most_kept_pixels || targets.size() > most_kept_targets)) {
+      const ViewTarget& target = targets.back();
+      target_pixels -= target.pixels();
+      osg::Camera& camera = *target.scene_view->getCamera();
+      camera.removeChildren(0, camera.getNumChildren());  // the scene, whose programs and maps stay
+      camera.releaseGLObjects(context->getState());
+      target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
+      targets.pop_back();
+    }
+    if (targets.size() < before) {
+      osg::flushAllDeletedGLObjects(context->getState()->getContextID());
+    }
   }
 
   /// All views of a ping. Does not wait for the drawing to end.
@@ -286,8 +320,13 @@ struct RasterSampler::Impl {
     for (const BodyNode& body : bodies) {
       body.transform->setMatrix(to_osg(relative(T_world_sonar, body.T_world_body)));
     }
+    std::vector<VideoMemory::Item*> needed;
     for (const ViewTarget* target : views) {
       target->scene_view->cull();
+      collect(*target->scene_view->getRenderStage(), normal_maps, needed);
+    }
+    video_memory->hold(needed);
+    for (const ViewTarget* target : views) {
       target->scene_view->draw();
     }
     check_errors();
@@ -316,8 +355,8 @@ struct RasterSampler::Impl {
   }
 };
 
-RasterSampler::RasterSampler(const World& world, const std::string& device)
-    : impl_(std::make_unique<Impl>(world, device)) {}
+RasterSampler::RasterSampler(const World& world, const GpuOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
 RasterSampler::~RasterSampler() = default;
 
 std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
@@ -369,11 +408,14 @@ void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
     part.removeChildren(0, part.getNumChildren());
     part.addChild(chunks);
   }
-  osg::flushAllDeletedGLObjects(impl_->context->getState()->getContextID());
 }
 
 void RasterSampler::set_refraction(double bend_per_m) {
   impl_->bend_per_m = static_cast<float>(bend_per_m);
+}
+
+const VideoMemory& RasterSampler::video_memory() const {
+  return *impl_->video_memory;
 }
 
 const std::string& RasterSampler::description() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/pose.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/surface/surface_model.hpp"
@@ -16,6 +17,7 @@
 namespace sonard::render {
 
 class EglContext;
+class VideoMemory;
 
 /// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar:
 /// the subtraction of world positions happens in double on the CPU, once per body and ping.
@@ -23,7 +25,7 @@ class RasterSampler {
  public:
   /// @param device as GpuOptions::device.
   /// @throws RendererError without OpenGL 4.5, or when a shader does not compile.
-  explicit RasterSampler(const World& world, const std::string& device = {});
+  explicit RasterSampler(const World& world, const GpuOptions& options = {});
   ~RasterSampler();
   RasterSampler(const RasterSampler&) = delete;
   RasterSampler& operator=(const RasterSampler&) = delete;
@@ -31,7 +33,8 @@ class RasterSampler {
   /// The samples of view i, row after row as SubView orders them. They stay valid until the next call of
   /// draw() or sample(). Surfaces beyond `max_range_m` may be reported or not.
   /// @throws RequestError when a view is larger than a texture can be.
-  /// @throws RendererError when OpenGL fails.
+  /// @throws RendererError when OpenGL fails, or what is to be drawn takes more video memory than the options
+  /// allow.
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m);
 
@@ -39,6 +42,9 @@ class RasterSampler {
   void set_body_pose(std::size_t body, const Pose& T_world_body);
   void set_part_meshes(std::span<const PartMesh> changes);
   void set_refraction(double bend_per_m);
+
+  /// Meshes and normal maps; what views take is not in it.
+  const VideoMemory& video_memory() const;
 
   /// "gpu, vendor / renderer / version"
   const std::string& description() const;

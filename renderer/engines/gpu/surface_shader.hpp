@@ -25,7 +25,12 @@ inline std::string surface_shader_head(Shading shading, const SurfaceModel& surf
 }
 
 inline constexpr char surface_vertex_shader[] = R"glsl(
-layout(location = 6) in vec4 tangent;  // xyz unit, w handedness
+layout(location = 0) in vec4 position;  // VertexAttribute
+layout(location = 1) in vec3 normal;
+#if SHADING == 2
+layout(location = 2) in vec2 mapped_at;
+layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
+#endif
 uniform vec4 refraction;                 // Refraction in eye coordinates: up, per_m
 out vec3 normal_eye;
 #if SHADING == 2
@@ -34,10 +39,10 @@ out vec2 texcoord;
 #endif
 
 void main() {
-  gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
-  normal_eye = gl_NormalMatrix * gl_Normal;
+  gl_Position = gl_ModelViewProjectionMatrix * position;
+  normal_eye = gl_NormalMatrix * normal;
   if (refraction.w != 0.0) {  // Refraction::point() and normal(), term by term
-    vec3 p = (gl_ModelViewMatrix * gl_Vertex).xyz;
+    vec3 p = (gl_ModelViewMatrix * position).xyz;
     float height = dot(p, refraction.xyz);
     float squared = dot(p, p);
     vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
@@ -46,7 +51,7 @@ void main() {
   }
 #if SHADING == 2
   tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
-  texcoord = gl_MultiTexCoord0.xy;
+  texcoord = mapped_at;
 #endif
 }
 )glsl";

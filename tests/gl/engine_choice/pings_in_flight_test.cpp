@@ -82,7 +82,8 @@ TEST_F(PingsInFlight, AreMadeAgainWhenTheWorldHasMovedOn) {
   for (render::SonarRenderer* one : {&renderer, &other}) {
     ASSERT_TRUE(one->set_body_pose("ball", {{4, 0, 0}, {1, 0, 0, 0}}));
   }
-  EXPECT_EQ(renderer.render_echo(all[0].request, 0).intensity, other.render_echo(all[0].request, 0).intensity);
+  EXPECT_EQ(renderer.render_echo(all[0].request, 0).intensity,
+            other.render_echo(all[0].request, 0).intensity);
 }
 
 TEST_F(PingsInFlight, AreThoseThatAreAskedForInTheEnd) {

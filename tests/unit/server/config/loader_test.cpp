@@ -71,6 +71,14 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_FALSE(gemini.trigger);
 }
 
+TEST_F(Loader, reads_what_the_gpu_may_take) {
+  EXPECT_EQ(load(minimal_config).config.gpu.memory_mib, 4096U);
+  EXPECT_EQ(load(minimal_config + "gpu: {memory_mib: 512}\n").config.gpu.memory_mib, 512U);
+  EXPECT_THAT(complaints(minimal_config + "gpu: {memory_mib: 0}\n"),
+              ElementsAre(AllOf(StartsWith("config.yaml:11:"), HasSubstr("gpu.memory_mib"),
+                                HasSubstr("expected a whole number from 1 to 1048576"))));
+}
+
 TEST_F(Loader, reads_the_engine) {
   EXPECT_EQ(load(minimal_config + "engine: auto\n").config.engine, render::EngineKind::automatic);
   EXPECT_EQ(load(minimal_config + "engine: gpu\n").config.engine, render::EngineKind::gpu);

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Neighbouring triangles of a mesh: what is culled, drawn and held in video memory as a whole.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <osg/BoundingBox>
+#include <osg/Drawable>
+#include <osg/Group>
+#include <osg/State>
+
+#include "renderer/engines/gpu/video_memory.hpp"
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+
+/// Locations of the attributes of a vertex in surface_shader.hpp: floats, as many as `attribute_floats` says.
+enum VertexAttribute : unsigned {
+  position_attribute,
+  normal_attribute,
+  texcoord_attribute,
+  tangent_attribute
+};
+inline constexpr std::array<int, 4> attribute_floats{3, 3, 2, 4};
+
+/// The bytes of a chunk as they are uploaded: array after array, then three 16-bit indices per triangle.
+struct ChunkBytes {
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  std::vector<std::uint8_t> bytes;
+  std::array<std::size_t, 4> attribute_begin{none, none, none,
+                                             none};  ///< none: the mesh has no such attribute
+  std::size_t index_begin = 0;
+  int index_count = 0;
+  osg::BoundingBox box;
+};
+
+/// Drawn only while it is in video memory: see VideoMemory::hold().
+class MeshChunk final : public osg::Drawable, public VideoMemory::Item {
+ public:
+  explicit MeshChunk(ChunkBytes content);
+
+  osg::BoundingBox computeBoundingBox() const override { return content_.box; }
+  void drawImplementation(osg::RenderInfo& info) const override;
+
+ private:
+  ~MeshChunk() override { remove(); }
+  void upload(osg::State& state) override;
+  void release(osg::State& state) override;
+
+  const ChunkBytes content_;
+  GLuint buffer_ = 0;
+  GLuint vertex_array_ = 0;  ///< where in the buffer the attributes and the indices are
+};
+
+/// Adds the triangles of a mesh to the node of their part.
+/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
+
+}  // namespace sonard::render

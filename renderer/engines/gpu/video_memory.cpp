@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/engines/gpu/video_memory.hpp"
+
+#include <cassert>
+
+#include <fmt/format.h>
+
+#include "renderer/errors.hpp"
+
+namespace sonard::render {
+
+void VideoMemory::Item::remove() {
+  if (memory_ != nullptr) {
+    memory_->release(*this);
+  }
+}
+
+void VideoMemory::hold(const std::vector<Item*>& items) {
+  ++holds_;
+  std::uint64_t needed_bytes = 0;
+  std::vector<Item*> missing;
+  std::uint64_t missing_bytes = 0;
+  for (Item* item : items) {
+    if (item->last_hold_ == holds_) {
+      continue;  // seen in another view
+    }
+    item->last_hold_ = holds_;
+    needed_bytes += item->bytes_;
+    if (item->memory_ == nullptr) {
+      missing.push_back(item);
+      missing_bytes += item->bytes_;
+    } else {
+      items_.splice(items_.begin(), items_, item->place_);
+    }
+  }
+  if (needed_bytes > bound_bytes_) {
+    throw RendererError(
+        fmt::format("what a sonar sees of this world takes {} bytes of video memory, and gpu.memory_mib "
+                    "allows {} ({} MiB): raise it, or choose engine: cpu",
+                    needed_bytes, bound_bytes_, bound_bytes_ >> 20));
+  }
+  // What is wanted now is at the front and fits, so that this ends before it.
+  while (bytes_ + missing_bytes > bound_bytes_) {
+    assert(items_.back()->last_hold_ != holds_);
+    release(*items_.back());
+  }
+  for (Item* item : missing) {
+    item->upload(state_);
+    items_.push_front(item);
+    item->place_ = items_.begin();
+    item->memory_ = this;
+    bytes_ += item->bytes_;
+  }
+  bytes_uploaded_ += missing_bytes;
+  if (!missing.empty()) {
+    check_upload();
+  }
+}
+
+void VideoMemory::check_upload() const {
+  const GLenum error = glGetError();
+  if (error == GL_OUT_OF_MEMORY) {
+    throw RendererError(
+        fmt::format("there is less video memory than gpu.memory_mib allows: {} bytes of the "
+                    "world do not fit; lower it, or choose engine: cpu",
+                    bytes_));
+  }
+  if (error != GL_NO_ERROR) {
+    throw RendererError(fmt::format("OpenGL error {} while uploading the world", error));
+  }
+}
+
+void VideoMemory::release(Item& item) {
+  item.release(state_);
+  items_.erase(item.place_);
+  item.memory_ = nullptr;
+  bytes_ -= item.bytes_;
+}
+
+void VideoMemory::release_all() {
+  while (!items_.empty()) {
+    release(*items_.back());
+  }
+}
+
+void VideoMemory::forget_all() {
+  for (Item* item : items_) {
+    item->memory_ = nullptr;
+  }
+  items_.clear();
+  bytes_ = 0;
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the meshes and normal maps of a world take of video memory, and the bound that they keep.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <osg/GLExtensions>
+
+#include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/raster_sampler.hpp"
+#include "renderer/engines/gpu/video_memory.hpp"
+#include "tests/scenes/scenes.hpp"
+#include "tests/scenes/shapes.hpp"
+#include "tests/support/engine_test.hpp"
+
+namespace sonard::render {
+namespace {
+
+using namespace test;
+
+constexpr std::uint64_t mib = 1 << 20;
+
+/// Says in `log` what happens to it.
+class LoggedItem final : public VideoMemory::Item {
+ public:
+  LoggedItem(char name, std::uint64_t bytes, std::string& log) : Item(bytes), name_(name), log_(log) {}
+  ~LoggedItem() override { remove(); }
+
+ private:
+  void upload(osg::State& /*state*/) override { log_ += {'+', name_}; }
+  void release(osg::State& /*state*/) override { log_ += {'-', name_}; }
+
+  const char name_;
+  std::string& log_;
+};
+
+class VideoMemoryOrder : public ::testing::Test {
+ protected:
+  std::string log;
+  osg::ref_ptr<osg::State> state = new osg::State;
+  VideoMemory memory{*state, 100};
+  LoggedItem a{'a', 40, log}, b{'b', 40, log}, c{'c', 20, log}, d{'d', 30, log};
+};
+
+TEST_F(VideoMemoryOrder, ReleasesWhatWasDrawnLongestAgo) {
+  memory.hold({&a, &b, &c});
+  EXPECT_EQ(memory.bytes(), 100U);
+  memory.hold({&a});
+  memory.hold({&c, &c});
+  EXPECT_EQ(log, "+a+b+c");
+  memory.hold({&d});  // b would do
+  EXPECT_EQ(log, "+a+b+c-b+d");
+  EXPECT_EQ(memory.bytes(), 90U);
+  memory.hold({&b, &d});  // a is the oldest, and its place is enough
+  EXPECT_EQ(log, "+a+b+c-b+d-a+b");
+  EXPECT_EQ(memory.bytes(), 90U);
+  EXPECT_EQ(memory.bytes_uploaded(), 170U);
+}
+
+TEST_F(VideoMemoryOrder, RefusesWhatDoesNotFitAndStaysAsItIs) {
+  memory.hold({&a, &b});
+  EXPECT_THROW(memory.hold({&b, &a, &d}), RendererError);
+  EXPECT_EQ(log, "+a+b");
+  EXPECT_EQ(memory.bytes(), 80U);
+  memory.hold({&b, &d, &c, &b});
+  EXPECT_EQ(log, "+a+b-a+d+c");
+}
+
+TEST_F(VideoMemoryOrder, LetsItemsGo) {
+  {
+    LoggedItem gone('g', 10, log);
+    memory.hold({&a, &gone});
+  }
+  EXPECT_EQ(log, "+a+g-g");
+  EXPECT_EQ(memory.bytes(), 40U);
+  memory.forget_all();
+  EXPECT_EQ(memory.bytes(), 0U);
+  memory.hold({&a, &b});
+  memory.release_all();
+  EXPECT_EQ(log, "+a+g-g+a+b-a-b");
+  EXPECT_EQ(memory.bytes(), 0U);
+}
+
+class VideoMemoryOfWorlds : public ::testing::Test {
+ protected:
+  void SetUp() override { require_gl(); }
+
+  static RendererOptions options(std::uint64_t memory_mib) {
+    RendererOptions options{EngineKind::gpu, 0};
+    options.gpu.memory_mib = memory_mib;
+    return options;
+  }
+};
+
+/// The sizes of all buffers of a context, asked of OpenGL.
+std::uint64_t buffer_bytes(EglContext& context) {
+  const auto& gl = *context.getState()->get<osg::GLExtensions>();
+  std::uint64_t bytes = 0;
+  for (GLuint name = 1; name < 10'000; ++name) {
+    if (gl.glIsBuffer(name) == GL_TRUE) {
+      GLint size = 0;
+      gl.glBindBuffer(GL_ARRAY_BUFFER, name);
+      gl.glGetBufferParameteriv(GL_ARRAY_BUFFER, GL_BUFFER_SIZE, &size);
+      bytes += static_cast<std::uint64_t>(size);
+    }
+  }
+  gl.glBindBuffer(GL_ARRAY_BUFFER, 0);
+  return bytes;
+}
+
+/// A square of 2 * cells^2 triangles before the sonar, with all attributes.
+TriangleMesh make_square(unsigned cells) {
+  TriangleMesh mesh;
+  for (unsigned row = 0; row <= cells; ++row) {
+    for (unsigned column = 0; column <= cells; ++column) {
+      const glm::vec2 at(static_cast<float>(column) / static_cast<float>(cells),
+                         static_cast<float>(row) / static_cast<float>(cells));
+      mesh.positions.emplace_back(5.0F, 1 - 2 * at.x, 2 * at.y - 1);
+      mesh.normals.emplace_back(-1, 0, 0);
+      mesh.texcoords.push_back(at);
+      mesh.tangents.emplace_back(0, -1, 0, 1);
+    }
+  }
+  const unsigned side = cells + 1;
+  for (unsigned row = 0; row < cells; ++row) {
+    for (unsigned column = 0; column < cells; ++column) {
+      const unsigned corner = row * side + column;
+      mesh.indices.insert(mesh.indices.end(), {corner, corner + 1, corner + side + 1});
+      mesh.indices.insert(mesh.indices.end(), {corner, corner + side + 1, corner + side});
+    }
+  }
+  return mesh;
+}
+
+SampleGrid forward_grid(double width_rad) {
+  Aperture aperture;
+  aperture.beam_edges_rad = equal_angle_edges(8, width_rad);
+  return make_sample_grid(aperture, Sampling::of_grid(1, 64, 64), {});
+}
+
+// 12 bytes a position and a normal, 8 a texture coordinate, 16 a tangent; 2 an index.
+TEST_F(VideoMemoryOfWorlds, IsWhatOpenGlWasGiven) {
+  constexpr unsigned cells = 30;  // one chunk
+  constexpr std::uint64_t vertices = 31 * 31, triangles = 2 * cells * cells;
+  TriangleMesh mesh = make_square(cells);
+  const auto expect_bytes = [&](std::uint64_t bytes_per_vertex) {
+    RasterSampler sampler(make_world({make_body("square", mesh)}));
+    const std::uint64_t before = buffer_bytes(sampler.current_context());
+    EXPECT_EQ(sampler.video_memory().bytes(), 0U) << "nothing is drawn yet";
+    sampler.draw({}, forward_grid(0.3), {}, 20);
+    const std::uint64_t bytes = bytes_per_vertex * vertices + 3 * 2 * triangles;
+    EXPECT_EQ(sampler.video_memory().bytes(), bytes);
+    EXPECT_EQ(buffer_bytes(sampler.current_context()) - before, bytes);
+    sampler.draw({}, forward_grid(0.3), {}, 4);  // out of range: not needed, but there is room
+    EXPECT_EQ(sampler.video_memory().bytes(), bytes);
+    const auto nothing = std::make_shared<const TriangleMesh>();
+    sampler.set_part_meshes(std::vector{PartMesh{0, nothing}});
+    EXPECT_EQ(sampler.video_memory().bytes(), 0U);
+    EXPECT_EQ(buffer_bytes(sampler.current_context()), before);
+  };
+  expect_bytes(12 + 12 + 8 + 16);
+  mesh.tangents.clear();
+  mesh.texcoords.clear();
+  expect_bytes(12 + 12);
+  mesh.normals.clear();
+  expect_bytes(12);
+}
+
+// 8 bytes a texel of all levels, in rows of 4096.
+TEST_F(VideoMemoryOfWorlds, HoldsNormalMapsToo) {
+  World world = make_world({make_body("square", make_square(1))});
+  world.bodies[0].parts[0].normal_map = std::make_shared<const NormalMap>(
+      NormalMap{128, 128, std::vector<std::uint8_t>(std::size_t{3} * 128 * 128, 128)});
+  RasterSampler sampler(world);
+  sampler.draw({}, forward_grid(0.3), {}, 20);
+  constexpr std::uint64_t texels = 128 * 128 + 64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1;
+  constexpr std::uint64_t rows = (texels + 4095) / 4096;
+  EXPECT_EQ(sampler.video_memory().bytes(), rows * 4096 * 8 + 4 * 48 + 6 * 2);
+}
+
+/// Renders with a bound and without from every pose.
+class BoundedAndUnbounded {
+ public:
+  BoundedAndUnbounded(const World& world, const RendererOptions& bounded, std::uint64_t bound_bytes)
+      : bounded_(world, bounded), bound_bytes_(bound_bytes) {
+    RendererOptions options = bounded;
+    options.gpu = {};
+    unbounded_ = std::make_unique<SonarRenderer>(world, options);
+  }
+
+  void expect_same_image(const PingRequest& request) {
+    const EchoImage image = bounded_.render_echo(request);
+    const PingStatistics& statistics = bounded_.last_statistics();
+    EXPECT_GT(statistics.video_memory_bytes, 0U);
+    EXPECT_LE(statistics.video_memory_bytes, bound_bytes_);
+    uploaded_bytes_ += statistics.bytes_uploaded;
+    EXPECT_EQ(image.intensity, unbounded_->render_echo(request).intensity);
+    EXPECT_GT(*std::max_element(image.intensity.begin(), image.intensity.end()), 0.0F);
+    unbounded_bytes_ = unbounded_->last_statistics().video_memory_bytes;
+  }
+
+  std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
+  std::uint64_t unbounded_bytes() const { return unbounded_bytes_; }
+
+ private:
+  SonarRenderer bounded_;
+  std::unique_ptr<SonarRenderer> unbounded_;
+  const std::uint64_t bound_bytes_;
+  std::uint64_t uploaded_bytes_ = 0;
+  std::uint64_t unbounded_bytes_ = 0;
+};
+
+/// A circle of balls around the origin, half of them with a normal map of their own.
+World balls() {
+  constexpr int count = 12;
+  World world;
+  for (int i = 0; i < count; ++i) {
+    const double azimuth_rad = 2 * std::acos(-1.0) * i / count;
+    Body ball = make_body("ball " + std::to_string(i), make_sphere(1, 64));  // 0.25 MiB
+    ball.T_world_body.position_m = {6 * std::cos(azimuth_rad), 6 * std::sin(azimuth_rad), 0};
+    if (i % 2 == 0) {
+      TriangleMesh mesh = make_sphere(1, 64);
+      mesh.texcoords.assign(mesh.positions.size(), {0, 0});
+      for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        mesh.texcoords[v] = {mesh.positions[v].x, mesh.positions[v].z};
+        mesh.tangents.emplace_back(1, 0, 0, 1);
+      }
+      ball.parts[0].mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+      NormalMap map{64, 64, {}};
+      for (int texel = 0; texel < 3 * 64 * 64; ++texel) {
+        map.rgb.push_back(static_cast<std::uint8_t>(texel % 3 == 2 ? 230 : 128 + (texel * (7 + i)) % 50));
+      }
+      ball.parts[0].normal_map = std::make_shared<const NormalMap>(std::move(map));
+    }
+    world.bodies.push_back(std::move(ball));
+  }
+  return world;
+}
+
+// A sonar that turns sees two or three balls at a time.
+TEST_F(VideoMemoryOfWorlds, OfBodiesStaysBoundedWithoutChangingAnImage) {
+  BoundedAndUnbounded renderers(balls(), options(1), 1 * mib);
+  PingRequest request;
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(32, 0.5);
+  request.settings.aperture.vertical_beamwidth_rad = 0.35;
+  request.settings.range = {400, 0.02, 0, false};
+  for (int turn = 0; turn < 30; ++turn) {
+    request.T_world_sonar = looking({0, 0, 0}, 25.0 * turn, 0);
+    request.settings.sampling =
+        turn % 2 == 0 ? Sampling::of_grid(2, 128, 128) : Sampling{Sampling::Preset::fast};
+    renderers.expect_same_image(request);
+  }
+  EXPECT_GT(renderers.unbounded_bytes(), 3 * mib);
+  EXPECT_GT(renderers.uploaded_bytes(), 5 * mib) << "what was released came back";
+}
+
+// The tiles of a terrain come and go by themselves, too.
+TEST_F(VideoMemoryOfWorlds, OfATerrainStaysBoundedWithoutChangingAnImage) {
+  Scene scene = make_terrain_scene("terrain", 1024);
+  scene.settings.aperture.beam_edges_rad = equal_angle_edges(32, 0.5);
+  scene.settings.sampling = Sampling::of_grid(1, 64, 64);
+  for (const bool coarse : {false, true}) {
+    const std::uint64_t bound_mib = coarse ? 1 : 6;
+    RendererOptions bounded = options(bound_mib);
+    if (!coarse) {
+      bounded.skip.turn_off(SkipRule::terrain_detail);
+    }
+    BoundedAndUnbounded renderers(scene.world, bounded, bound_mib * mib);
+    for (int step = 0; step < 10; ++step) {
+      PingRequest request = scene.request();
+      request.T_world_sonar =
+          looking(scene.T_world_sonar.position_m + glm::dvec3(2.0 * step, 1.0 * step, 2), 36.0 * step, 15);
+      renderers.expect_same_image(request);
+    }
+    std::printf("%g of %g MiB, %g uploaded\n", static_cast<double>(bound_mib),
+                static_cast<double>(renderers.unbounded_bytes()) / mib,
+                static_cast<double>(renderers.uploaded_bytes()) / mib);
+    EXPECT_GT(renderers.unbounded_bytes(), 2 * bound_mib * mib);
+  }
+}
+
+TEST_F(VideoMemoryOfWorlds, ThatDoNotFitAreRefusedWithTheWayOut) {
+  SonarRenderer renderer(make_world({make_body("ball", make_sphere(1, 200))}), options(1));
+  PingRequest request;
+  request.T_world_sonar = looking({-5, 0, 0}, 0, 0);
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(8, 1);
+  request.settings.range = {100, 0.1, 0, false};
+  request.settings.sampling = Sampling::of_grid(1, 64, 64);
+  try {
+    renderer.render_echo(request);
+    FAIL() << "it fits";
+  } catch (const RendererError& error) {
+    const std::string what = error.what();
+    EXPECT_THAT(what, ::testing::HasSubstr("gpu.memory_mib allows 1048576 (1 MiB)"));
+    EXPECT_THAT(what, ::testing::HasSubstr("engine: cpu"));
+    // 2 * 200 * 399 triangles of 200 * 401 vertices or a few more, for chunks share none.
+    const std::uint64_t needed_bytes = std::stoull(what.substr(what.find("takes ") + 6));
+    EXPECT_GT(needed_bytes, 6 * 2 * 200 * 399 + 24 * 199 * 400);
+    EXPECT_LT(needed_bytes, 1.1 * (6 * 2 * 200 * 399 + 24 * 201 * 401));
+  }
+  request.settings.range = {10, 0.1, 0, false};  // hears nothing of it
+  EXPECT_NO_THROW(renderer.render_echo(request));
+}
+
+// 10 million triangles, of which a sonar that turns sees a tenth at a time.
+TEST_F(VideoMemoryOfWorlds, OfTenMillionTrianglesStaysBounded) {
+  const Scene scene = make_seabed_scene("swell", swell_height_m, 10'000'000);
+  EXPECT_NEAR(static_cast<double>(scene.world.triangle_count()), 1e7, 1e4);
+  constexpr std::uint64_t bound_mib = 24;
+  SonarRenderer renderer(scene.world, options(bound_mib));
+  PingRequest request = scene.request();
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(32, 0.8);
+  request.settings.sampling = Sampling::of_grid(1, 128, 128);
+  std::uint64_t uploaded_bytes = 0;
+  std::vector<float> first;
+  for (const double yaw_deg : {0.0, 60.0, 120.0, 180.0, 240.0, 300.0, 0.0}) {
+    request.T_world_sonar = looking({14, 0, 4}, yaw_deg, 20);
+    const EchoImage& image = renderer.render_echo(request);
+    EXPECT_GT(*std::max_element(image.intensity.begin(), image.intensity.end()), 0.0F);
+    const PingStatistics& statistics = renderer.last_statistics();
+    EXPECT_LE(statistics.video_memory_bytes, bound_mib * mib);
+    EXPECT_GT(statistics.bytes_uploaded, 0U);
+    uploaded_bytes += statistics.bytes_uploaded;
+    if (first.empty()) {
+      first = image.intensity;
+    } else if (yaw_deg == 0) {
+      EXPECT_EQ(image.intensity, first) << "what was released came back as it was";
+    }
+  }
+  EXPECT_GT(uploaded_bytes, 3 * bound_mib * mib);
+}
+
+}  // namespace
+}  // namespace sonard::render
