@@ -78,7 +78,9 @@ struct BeamRefinement::Ping {
         samples += run->samples();
         part.push_back(*run++);
       } while (run != runs.end() && samples + run->samples() <= most_samples_at_once);
+      Stopwatch watch;
       grids.push_back(refinement.make_grid(aperture, part, with_estimate));
+      statistics.preparing_s += watch.lap();
       sample(grids.back());
     }
   }
@@ -145,7 +147,9 @@ bool BeamRefinement::refine(const EchoRequest& request, const SurfaceModel& surf
   }
   ping.learn(even.grids, choices);
   for (int pass = 2; pass <= most_passes; ++pass) {
+    Stopwatch watch;
     choices = beams_to_refine(aperture, ping.beams, grid_targets(preset));
+    statistics.preparing_s += watch.lap();
     if (choices.empty()) {
       break;
     }

@@ -67,9 +67,13 @@ class GpuBinner {
   /// @throws RendererError when OpenGL fails.
   BinningResult finish(std::vector<float> memory = {});
 
-  /// What has been read back, and how often that waited, since begin().
+  /// What has been read back, how often that waited, and what was written into buffers, since begin().
   std::uint64_t bytes_read() const;
   std::uint64_t synchronisations() const;
+  std::uint64_t bytes_uploaded() const;
+  /// How often an invocation has added to a word of the sums of the image: after finish(), modulo 2^32 for
+  /// each page.
+  std::uint64_t atomic_additions() const;
 
  private:
   struct Impl;

@@ -46,6 +46,7 @@ void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics
   }
   Stopwatch watch;
   const double drawing_before_s = statistics.visibility_s;
+  const RasterSampler::Drawn drawn_before = sampler_.drawn();
   const SonarSettings& settings = request.settings;
   binner_.begin({settings.aperture.beam_count(), settings.range, options, request.line_weight,
                  most_estimated_error(settings.sampling.preset)});
@@ -57,9 +58,21 @@ void GpuEngine::image(const EchoRequest& request, MeanEcho& echo, PingStatistics
     statistics.skipped.add(SkipRule::unchanged_settings);
   }
   hand_over(binner_.finish(std::move(echo.image.intensity)), echo, statistics);
+  count_work(drawn_before, statistics);
+  statistics.binning_s += watch.lap() - (statistics.visibility_s - drawing_before_s);
+}
+
+void GpuEngine::count_work(const RasterSampler::Drawn& before, PingStatistics& statistics) const {
   statistics.bytes_read_back += binner_.bytes_read();
   statistics.synchronisations += binner_.synchronisations();
-  statistics.binning_s += watch.lap() - (statistics.visibility_s - drawing_before_s);
+  statistics.bytes_uploaded += binner_.bytes_uploaded();
+  statistics.atomic_additions += binner_.atomic_additions();
+  const RasterSampler::Drawn now = sampler_.drawn();
+  statistics.views += now.views - before.views;
+  statistics.pixels += now.pixels - before.pixels;
+  statistics.draw_calls += now.draw_calls - before.draw_calls;
+  statistics.triangles += now.triangles - before.triangles;
+  statistics.preparing_s += now.culling_s - before.culling_s;
 }
 
 /// @return whether the grid is the one of the last ping.

@@ -34,6 +34,7 @@ class GpuEngine final : public EchoEngine {
 
  private:
   bool draw_grid(const EchoRequest& request, bool may_keep, PingStatistics& statistics);
+  void count_work(const RasterSampler::Drawn& before, PingStatistics& statistics) const;
   void image_by_cones(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
                       PingStatistics& statistics);
 

@@ -27,7 +27,7 @@ constexpr unsigned tangent_attribute = 6;
 /// Culls a chunk that lies wholly beyond the range of the sonar.
 class RangeCull : public osg::DrawableCullCallback {
  public:
-  explicit RangeCull(const float* max_range_m) : max_range_m_(max_range_m) {}
+  explicit RangeCull(const ChunkDrawing& drawing) : drawing_(drawing) {}
 
   bool cull(osg::NodeVisitor* visitor, osg::Drawable* drawable, osg::RenderInfo* /*info*/) const override {
     const osg::Vec3 eye = static_cast<osgUtil::CullVisitor*>(visitor)->getEyeLocal();
@@ -35,11 +35,27 @@ class RangeCull : public osg::DrawableCullCallback {
     const osg::Vec3 nearest(std::clamp(eye.x(), box.xMin(), box.xMax()),
                             std::clamp(eye.y(), box.yMin(), box.yMax()),
                             std::clamp(eye.z(), box.zMin(), box.zMax()));
-    return (nearest - eye).length() > *max_range_m_;
+    return (nearest - eye).length() > drawing_.max_range_m;
   }
 
  private:
-  const float* max_range_m_;
+  const ChunkDrawing& drawing_;
+};
+
+/// Draws a chunk and counts it.
+class CountedDraw : public osg::Drawable::DrawCallback {
+ public:
+  CountedDraw(ChunkDrawing& drawing, std::size_t triangles) : drawing_(drawing), triangles_(triangles) {}
+
+  void drawImplementation(osg::RenderInfo& info, const osg::Drawable* drawable) const override {
+    ++drawing_.chunks;
+    drawing_.triangles += triangles_;
+    drawable->drawImplementation(info);
+  }
+
+ private:
+  ChunkDrawing& drawing_;
+  std::size_t triangles_;
 };
 
 /// Splits the triangles of a mesh into compact chunks by halving along the longest side.
@@ -177,13 +193,14 @@ osg::Matrixd to_osg(const Pose& T_a_b) {
          osg::Matrixd::translate(T_a_b.position_m.x, T_a_b.position_m.y, T_a_b.position_m.z);
 }
 
-void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part) {
+void add_chunks(const TriangleMesh& mesh, ChunkDrawing& drawing, osg::Group& part) {
   if (mesh.indices.empty()) {
     return;
   }
   ChunkBuilder(mesh).split([&](std::span<const std::uint32_t> triangles) {
     osg::ref_ptr<osg::Geometry> chunk = make_geometry(mesh, triangles);
-    chunk->setCullCallback(new RangeCull(max_range_m));
+    chunk->setCullCallback(new RangeCull(drawing));
+    chunk->setDrawCallback(new CountedDraw(drawing, triangles.size()));
     part.addChild(chunk);
   });
 }
@@ -207,10 +224,10 @@ osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part) {
 }
 
 osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, osg::StateSet* surface,
-                                             const float* max_range_m) {
+                                             ChunkDrawing& drawing) {
   osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(to_osg(part.T_body_part));
   node->setStateSet(surface);
-  add_chunks(*part.mesh, max_range_m, *node);
+  add_chunks(*part.mesh, drawing, *node);
   return node;
 }
 

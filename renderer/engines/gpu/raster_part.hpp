@@ -3,6 +3,8 @@
 // surface_shader.hpp wants to know of its surface.
 #pragma once
 
+#include <cstdint>
+
 #include <osg/MatrixTransform>
 #include <osg/Matrixd>
 #include <osg/StateSet>
@@ -18,9 +20,17 @@ inline constexpr int normal_map_unit = 0;
 
 osg::Matrixd to_osg(const Pose& T_a_b);
 
+/// What all chunks of a world share.
+struct ChunkDrawing {
+  float max_range_m = 0.0F;  ///< chunks beyond it are not drawn
+  // So much has been drawn since the beginning.
+  std::uint64_t chunks = 0;
+  std::uint64_t triangles = 0;
+};
+
 /// Adds the triangles of a mesh to the node of their part.
-/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
-void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
+/// @param drawing outlives the node.
+void add_chunks(const TriangleMesh& mesh, ChunkDrawing& drawing, osg::Group& part);
 
 Shading shading_of(const BodyPart& part);
 
@@ -28,8 +38,8 @@ Shading shading_of(const BodyPart& part);
 osg::ref_ptr<osg::StateSet> make_surface(const BodyPart& part);
 bool same_surface(const BodyPart& a, const BodyPart& b);
 
-/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
+/// @param drawing outlives the node.
 osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, osg::StateSet* surface,
-                                             const float* max_range_m);
+                                             ChunkDrawing& drawing);
 
 }  // namespace sonard::render

@@ -22,6 +22,7 @@
 #include "renderer/errors.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/refraction.hpp"
+#include "renderer/stopwatch.hpp"
 
 namespace sonard::render {
 
@@ -147,7 +148,8 @@ struct RasterSampler::Impl {
   std::list<ViewTarget> targets;                               // the last used first
   double target_pixels = 0;                                    // of all of them
   std::uint64_t calls = 0;                                     // of sample()
-  float max_range_m = 0.0F;
+  ChunkDrawing drawing;
+  Drawn drawn;  // without what `drawing` counts
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
 
@@ -171,7 +173,7 @@ struct RasterSampler::Impl {
           surfaces.push_back({surface, shading_of(part)});
         }
         last = &part;
-        parts.push_back(make_part(part, surface, &max_range_m));
+        parts.push_back(make_part(part, surface, drawing));
         node.transform->addChild(parts.back());
       }
       scene->addChild(node.transform);
@@ -282,13 +284,19 @@ struct RasterSampler::Impl {
                           bend_per_m};
     std::vector<ViewTarget*> views = targets_for(grid.views, bend);
     set_surface(surface);
-    max_range_m = static_cast<float>(range_m);
+    drawing.max_range_m = static_cast<float>(range_m);
     for (const BodyNode& body : bodies) {
       body.transform->setMatrix(to_osg(relative(T_world_sonar, body.T_world_body)));
     }
+    Stopwatch watch;
     for (const ViewTarget* target : views) {
       target->scene_view->cull();
+    }
+    drawn.culling_s += watch.lap();
+    for (const ViewTarget* target : views) {
       target->scene_view->draw();
+      ++drawn.views;
+      drawn.pixels += static_cast<std::uint64_t>(target->pixels());
     }
     check_errors();
     return views;
@@ -360,7 +368,7 @@ void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
       chunks = *known;
     } else {
       chunks = new osg::Group;
-      add_chunks(*change.mesh, &impl_->max_range_m, *chunks);
+      add_chunks(*change.mesh, impl_->drawing, *chunks);
       impl_->replacements.keep(change.mesh, chunks);
     }
     osg::MatrixTransform& part = *impl_->parts[change.part];
@@ -376,6 +384,13 @@ void RasterSampler::set_refraction(double bend_per_m) {
 
 const std::string& RasterSampler::description() const {
   return impl_->description;
+}
+
+RasterSampler::Drawn RasterSampler::drawn() const {
+  Drawn all = impl_->drawn;
+  all.draw_calls = impl_->drawing.chunks;
+  all.triangles = impl_->drawing.triangles;
+  return all;
 }
 
 }  // namespace sonard::render
