@@ -67,9 +67,17 @@ struct PingStatistics {
   std::uint64_t passes = 0;
   std::uint64_t bytes_read_back = 0;
   std::uint64_t synchronisations = 0;
-  std::uint64_t bytes_uploaded = 0;      ///< of meshes and normal maps
-  std::uint64_t video_memory_bytes = 0;  ///< of these, what lies in video memory after the ping
-  SkipCounts skipped;                    ///< what was left out; stages that did not run have counted nothing
+  // Of all its passes:
+  std::uint64_t views = 0;
+  std::uint64_t pixels = 0;            ///< of all views, whatever they saw
+  std::uint64_t draw_calls = 0;        ///< chunks of meshes that were left after culling
+  std::uint64_t triangles = 0;         ///< of these
+  std::uint64_t atomic_additions = 0;  ///< of binning, modulo 2^32 for each page of the image
+  std::uint64_t bytes_uploaded = 0;    ///< into buffers; with meshes and normal maps that were not there yet
+  std::uint64_t video_memory_bytes = 0;  ///< meshes and normal maps in video memory after the ping
+  double preparing_s =
+      0.0;             ///< of visibility_s and binning_s, what the CPU takes to cull and to lay out grids
+  SkipCounts skipped;  ///< what was left out; stages that did not run have counted nothing
 };
 
 }  // namespace sonard::render

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "renderer/pipeline/sonar_renderer.hpp"
+#include "renderer/renderer_options.hpp"
 #include "tests/bench/campaign.hpp"
+#include "tests/bench/gpu_cost.hpp"
+#include "tests/bench/gpu_report.hpp"
 #include "tests/bench/machine.hpp"
 #include "tests/bench/plans.hpp"
 #include "tests/bench/recording_cost.hpp"
@@ -20,25 +22,28 @@ namespace {
 struct Options {
   bool quick = false;
   std::string json;
+  std::string gpu_report;
   std::string engine = "both";
   std::string references = SONARD_SOURCE_DIR "/tests/data/oracle";
   std::vector<std::string> scenes;
 };
 
-/// The one that users get comes first: its table is the one to read.
 std::vector<render::EngineKind> engines_of(const std::string& name) {
-  if (name == "cpu") {
-    return {render::EngineKind::cpu};
+  std::vector<render::EngineKind> engines;
+  for (const render::EngineKind engine : {render::EngineKind::cpu, render::EngineKind::gpu}) {
+    if (name == "both" || name == render::name_of(engine)) {
+      engines.push_back(engine);
+    }
   }
-  if (name == "gpu") {
-    return {render::EngineKind::gpu};
+  return engines;
+}
+
+void run_gpu_report(const Options& options) {
+  const GpuReport report = make_gpu_report(options.references, options.scenes);
+  write_text(format_gpu_report(report), options.gpu_report);
+  if (!options.json.empty()) {
+    write_json(report.results, options.json);
   }
-  const render::EngineKind automatic = render::SonarRenderer(render::World{}).engine();
-  if (name == "auto") {
-    return {automatic};
-  }
-  return {automatic,
-          automatic == render::EngineKind::cpu ? render::EngineKind::gpu : render::EngineKind::cpu};
 }
 
 void run(const Options& options) {
@@ -65,6 +70,7 @@ void run(const Options& options) {
       fmt::print("{}", format_targets(target_rows(results, name)));
     }
   }
+  fmt::print("\n{}", format_work(results));
   if (options.scenes.empty()) {
     fmt::print("\n{}", describe_recording(results));
   }
@@ -83,14 +89,21 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json,
                  "File for a flat list of {scene, engine, preset, metric, value, unit}");
   app.add_option("--engine", options.engine, "Which engines to measure")
-      ->check(CLI::IsMember({"both", "auto", "gpu", "cpu"}))
+      ->check(CLI::IsMember({"both", "gpu", "cpu"}))
       ->capture_default_str();
+  app.add_option("--gpu-report", options.gpu_report,
+                 "Measures both engines in turns, in minutes, and writes a page about them into this file")
+      ->excludes("--quick", "--engine");
   app.add_option("--references", options.references, "Folder of the oracle's images")->capture_default_str();
   app.add_option("--scene", options.scenes, "Only scenes whose name starts so; not with --quick")
       ->excludes("--quick");
   CLI11_PARSE(app, argc, argv);
   try {
-    sonard::bench::run(options);
+    if (options.gpu_report.empty()) {
+      sonard::bench::run(options);
+    } else {
+      sonard::bench::run_gpu_report(options);
+    }
   } catch (const std::exception& error) {
     fmt::print(stderr, "sonard_bench: {}\n", error.what());
     return 1;

@@ -37,15 +37,19 @@ std::string Measurements::to_json() const {
   return list.dump(1) + "\n";
 }
 
-void write_json(const Measurements& measurements, const std::filesystem::path& file) {
+void write_text(const std::string& text, const std::filesystem::path& file) {
   std::error_code ignored;  // a folder that cannot be made shows when the file is opened
   std::filesystem::create_directories(file.parent_path(), ignored);
   std::ofstream stream(file);
-  stream << measurements.to_json();
+  stream << text;
   stream.close();
   if (!stream) {
     throw std::runtime_error(file.string() + ": cannot be written");
   }
+}
+
+void write_json(const Measurements& measurements, const std::filesystem::path& file) {
+  write_text(measurements.to_json(), file);
 }
 
 }  // namespace sonard::bench

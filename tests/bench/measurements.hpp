@@ -40,7 +40,8 @@ class Measurements {
   std::vector<Measurement> all_;
 };
 
-/// Makes the folder too. @throws std::runtime_error naming the file.
+/// Both make the folder too. @throws std::runtime_error naming the file.
+void write_text(const std::string& text, const std::filesystem::path& file);
 void write_json(const Measurements& measurements, const std::filesystem::path& file);
 
 }  // namespace sonard::bench

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "tests/bench/gpu_cost.hpp"
 #include "tests/bench/image_error.hpp"
 #include "tests/bench/machine.hpp"
 
@@ -10,17 +11,9 @@ namespace sonard::bench {
 
 namespace {
 
-constexpr double ms_per_s = 1e3;
 constexpr double step_between_pings_m = 1e-3;
 constexpr int poses = 16;
 constexpr int warm_up_pings = 3;
-
-/// The pose of timed ping `i`, always another one than before.
-void move(render::PingRequest& request, const render::Pose& start, int i) {
-  request.T_world_sonar.position_m = start.position_m;
-  request.T_world_sonar.position_m.x += step_between_pings_m * (1 + i % poses);
-  request.ping_number = static_cast<std::uint64_t>(i);
-}
 
 bool same_bits(const render::EchoImage& a, const render::EchoImage& b) {
   return a.intensity.size() == b.intensity.size() &&
@@ -36,6 +29,12 @@ bool is_scanning(const test::Scene& scene) {
 }
 
 }  // namespace
+
+void move_to_timed_pose(render::PingRequest& request, const render::Pose& start, int i) {
+  request.T_world_sonar.position_m = start.position_m;
+  request.T_world_sonar.position_m.x += step_between_pings_m * (1 + i % poses);
+  request.ping_number = static_cast<std::uint64_t>(i);
+}
 
 SceneRun::SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results,
                    bool bodies_drift)
@@ -55,26 +54,21 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
   reset_peak_memory();
   const render::PingRequest still = request(point);
   const render::EchoImage image = renderer_.render_echo(still);
-  const render::PingStatistics statistics = renderer_.last_statistics();
   const Stages stages = time_pings(still, repetition);
   drift(0);
   const bool repeatable = same_bits(image, renderer_.render_echo(still));
+  const render::PingStatistics statistics = renderer_.last_statistics();
   const Timing unchanged_ms = time_unchanged(still, {3, repetition.most, repetition.budget_s / 4});
   add_times(subject(point), stages, unchanged_ms);
-  results_.add(subject(point), "samples", static_cast<double>(statistics.samples), "count");
-  if (statistics.passes > 0) {  // what only the GPU has
-    results_.add(subject(point), "passes", static_cast<double>(statistics.passes), "count");
-    results_.add(subject(point), "synchronisations", static_cast<double>(statistics.synchronisations),
-                 "count");
-    results_.add(subject(point), "read_back", static_cast<double>(statistics.bytes_read_back) / 1024.0,
-                 "KiB");
-    results_.add(subject(point), "video_memory", static_cast<double>(statistics.video_memory_bytes) / 0x1p20,
-                 "MiB");
+  if (statistics.passes > 0) {  // engine `gpu`
+    add_work(results_, subject(point), work_of(statistics, stages.cpu_part_ms.median()));
+  } else {
+    results_.add(subject(point), "samples", static_cast<double>(statistics.samples), "count");
   }
   results_.add(subject(point), "repeatable", repeatable ? 1 : 0, "1");
   results_.add(subject(point), "peak_memory", peak_memory_mib(), "MiB");
   if (reference != nullptr) {
-    add_errors(subject(point), point, image, *reference);
+    add_errors(results_, subject(point), point, image, *reference);
   }
 }
 
@@ -82,20 +76,23 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
   const render::Pose start = request.T_world_sonar;
   const int warm_up = repetition.fewest < warm_up_pings ? 1 : warm_up_pings;
   for (int i = 0; i < warm_up; ++i) {
-    move(request, start, i);
+    move_to_timed_pose(request, start, i);
     renderer_.render_echo(request);
   }
   Stages stages;
   const double start_s = now_s();
   for (int i = 0; repetition.wants_more(i, start_s); ++i) {
-    move(request, start, warm_up + i);
+    move_to_timed_pose(request, start, warm_up + i);
     const double from_s = now_s();
     drift(1 + i);
     renderer_.render_echo(request);
-    stages.ping_ms.add(ms_per_s * (now_s() - from_s));
-    stages.visibility_ms.add(ms_per_s * renderer_.last_statistics().visibility_s);
-    stages.binning_ms.add(ms_per_s * renderer_.last_statistics().binning_s);
-    stages.multipath_ms.add(ms_per_s * renderer_.last_statistics().multipath_s);
+    const double ping_s = now_s() - from_s;
+    const render::PingStatistics& spent = renderer_.last_statistics();
+    stages.ping_ms.add(ms_per_s * ping_s);
+    stages.visibility_ms.add(ms_per_s * spent.visibility_s);
+    stages.binning_ms.add(ms_per_s * spent.binning_s);
+    stages.multipath_ms.add(ms_per_s * spent.multipath_s);
+    stages.cpu_part_ms.add(ms_per_s * cpu_part_s(ping_s, spent));
   }
   return stages;
 }
@@ -130,7 +127,7 @@ void SceneRun::measure_receiver(const Point& point, int lines, const std::string
   Timing receiver_ms;
   const double start_s = now_s();
   for (int i = -warm_up_pings; i < 0 || repetition.wants_more(i, start_s); ++i) {
-    move(ping, start, i + warm_up_pings);
+    move_to_timed_pose(ping, start, i + warm_up_pings);
     renderer_.render_ping(ping);
     if (i >= 0) {
       receiver_ms.add(ms_per_s * renderer_.last_statistics().receiver_s);
@@ -154,7 +151,7 @@ void SceneRun::measure_reception(const Point& point, const Repetition& repetitio
     Timing sampling_ms, pattern_ms, pulse_ms;
     const double start_s = now_s();
     for (int i = -warm_up_pings; i < 0 || repetition.wants_more(i, start_s); ++i) {
-      move(ping, start, i + warm_up_pings);
+      move_to_timed_pose(ping, start, i + warm_up_pings);
       renderer_.render_echo(ping);
       if (i >= 0) {
         const render::PingStatistics& spent = renderer_.last_statistics();
@@ -192,24 +189,24 @@ void SceneRun::add_times(const Subject& subject, const Stages& stages, const Tim
   }
 }
 
-void SceneRun::add_errors(const Subject& subject, const Point& point, const render::EchoImage& image,
-                          const Reference& reference) {
+void add_errors(Measurements& results, const Subject& subject, const Point& point,
+                const render::EchoImage& image, const Reference& reference) {
   const std::optional<ImageError> error = compare_images(image, reference.image);
   if (!error) {
     return;  // nothing is heard
   }
-  results_.add(subject, "hole_fraction", error->hole_fraction, "1");
-  results_.add(subject, "hole_fraction_60db", error->hole_fraction_60db, "1");
+  results.add(subject, "hole_fraction", error->hole_fraction, "1");
+  results.add(subject, "hole_fraction_60db", error->hole_fraction_60db, "1");
   if (!point.energy) {
     return;
   }
-  results_.add(subject, "bin_rms", error->bin_rms, "1");
-  results_.add(subject, "bin_rms_trim", error->bin_rms_trim, "1");
-  results_.add(subject, "first_echo_bins", error->first_echo_bins, "bins");
-  results_.add(subject, "beam_total_mean", error->beam_total_mean, "1");
-  results_.add(subject, "beam_total_worst", error->beam_total_worst, "1");
+  results.add(subject, "bin_rms", error->bin_rms, "1");
+  results.add(subject, "bin_rms_trim", error->bin_rms_trim, "1");
+  results.add(subject, "first_echo_bins", error->first_echo_bins, "bins");
+  results.add(subject, "beam_total_mean", error->beam_total_mean, "1");
+  results.add(subject, "beam_total_worst", error->beam_total_worst, "1");
   if (reference.error_rms) {
-    results_.add(subject, "reference_rms", *reference.error_rms, "1");
+    results.add(subject, "reference_rms", *reference.error_rms, "1");
   }
 }
 

@@ -15,6 +15,13 @@
 
 namespace sonard::bench {
 
+/// Gives a request the pose of timed ping `i`, always another one than before.
+void move_to_timed_pose(render::PingRequest& request, const render::Pose& start, int i);
+
+/// Adds how far an image is from the truth.
+void add_errors(Measurements& results, const Subject& subject, const Point& point,
+                const render::EchoImage& image, const Reference& reference);
+
 /// Holds the renderer of a scene. Everything it finds is added to `results`, named after the scene, the
 /// engine and the point. Timed pings stand a millimetre apart, so that none can reuse another; the error is
 /// that of the scene's own pose.
@@ -45,7 +52,7 @@ class SceneRun {
 
  private:
   struct Stages {
-    Timing ping_ms, visibility_ms, binning_ms, multipath_ms;
+    Timing ping_ms, visibility_ms, binning_ms, multipath_ms, cpu_part_ms;
   };
 
   Subject subject(const Point& point) const;
@@ -54,8 +61,6 @@ class SceneRun {
   Stages time_pings(render::PingRequest request, const Repetition& repetition);
   Timing time_unchanged(const render::PingRequest& request, const Repetition& repetition);
   void add_times(const Subject& subject, const Stages& stages, const Timing& unchanged_ms);
-  void add_errors(const Subject& subject, const Point& point, const render::EchoImage& image,
-                  const Reference& reference);
 
   const test::Scene& scene_;
   Measurements& results_;

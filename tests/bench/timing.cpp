@@ -26,12 +26,13 @@ double Timing::median() const {
   return (all[(all.size() - 1) / 2] + all[all.size() / 2]) / 2;
 }
 
-double Timing::p95() const {
+double Timing::quantile(double share) const {
   if (durations_.empty()) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   const std::vector<double> all = sorted();
-  return all[static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(all.size()))) - 1];
+  const auto within = static_cast<std::size_t>(std::ceil(share * static_cast<double>(all.size())));
+  return all[std::max<std::size_t>(within, 1) - 1];
 }
 
 double Timing::min() const {

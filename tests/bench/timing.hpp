@@ -8,6 +8,7 @@ namespace sonard::bench {
 
 /// Seconds since some start.
 double now_s();
+inline constexpr double ms_per_s = 1e3;
 
 /// Times of one thing done again and again, in any unit.
 class Timing {
@@ -16,8 +17,9 @@ class Timing {
   bool empty() const { return durations_.empty(); }
   /// The middle one, or the mean of the two in the middle. NaN when nothing was timed, as for all below.
   double median() const;
-  /// The smallest that at least 95 % do not exceed.
-  double p95() const;
+  /// The smallest that at least this share of them, 0 to 1, does not exceed.
+  double quantile(double share) const;
+  double p95() const { return quantile(0.95); }
   double min() const;
 
  private:

@@ -117,8 +117,10 @@ void BeamRefinement::Ping::sample_evenly(const EvenGrids& even) {
 
 bool BeamRefinement::Ping::advance() {
   learn();
+  Stopwatch watch;
   choices_ =
       beams_to_refine(request_.settings.aperture, beams_, grid_targets(request_.settings.sampling.preset));
+  statistics_.preparing_s += watch.lap();
   if (choices_.empty()) {
     return false;
   }
@@ -168,7 +170,9 @@ void BeamRefinement::Ping::sample_page(const std::vector<BeamChoice>& choices, b
       samples += run->samples();
       part.push_back(*run++);
     } while (run != runs.end() && samples + run->samples() <= most_samples_at_once);
+    Stopwatch watch;
     grids_.push_back(make_grid(binner_, aperture, part, with_estimate));
+    statistics_.preparing_s += watch.lap();
     sample(grids_.back());
   }
 }

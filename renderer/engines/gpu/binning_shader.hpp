@@ -136,7 +136,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
 layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
 layout(std430, binding = 3) readonly buffer PartsOfView { int parts_of_view[]; };
-layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, unused; };
+layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, additions; };
 #if ESTIMATE
 layout(std430, binding = 5) writeonly buffer PartialColumns { vec2 partial_columns[]; };  // [part][invocation]
 vec2 own_echo = vec2(0.0);
@@ -149,7 +149,7 @@ layout(location = 7) uniform float most_units;    // of one sample: so many of t
 const float least_spread = 1e-3;   // lines
 const float widest_smear = 512.0;  // lines
 
-uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u;
+uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u, own_additions = 0u;
 
 // A place on the range axis. A single float would say where in line 16384 no closer than to a thousandth.
 struct Place {
@@ -213,8 +213,12 @@ void step_to(int k, float share, inout uvec2 echo_before, inout uvec2 weight_bef
   if (units.x != 0u) {
     uint before = atomicAdd(echo_differences[low], units.x);
     units.y += before + units.x < before ? 1u : 0u;
+    ++own_additions;
   }
-  if (units.y != 0u) atomicAdd(echo_differences[low + 1u], units.y);
+  if (units.y != 0u) {
+    atomicAdd(echo_differences[low + 1u], units.y);
+    ++own_additions;
+  }
 #if WEIGHED
     here = whole_units(weight_units * share);
     units = minus(here, weight_before);
@@ -222,8 +226,12 @@ void step_to(int k, float share, inout uvec2 echo_before, inout uvec2 weight_bef
     if (units.x != 0u) {
       uint before = atomicAdd(weight_differences[low], units.x);
       units.y += before + units.x < before ? 1u : 0u;
+      ++own_additions;
     }
-    if (units.y != 0u) atomicAdd(weight_differences[low + 1u], units.y);
+    if (units.y != 0u) {
+      atomicAdd(weight_differences[low + 1u], units.y);
+      ++own_additions;
+    }
 #endif
 }
 
@@ -322,6 +330,7 @@ void main() {
 #if ESTIMATE
   partial_columns[64 * p + int(gl_LocalInvocationIndex)] = own_echo;
 #endif
+  atomicAdd(additions, own_additions);
 #if !THINNED
   atomicAdd(samples, own_samples);
   if (own_invalid != 0u) atomicAdd(invalid, own_invalid);

@@ -50,7 +50,7 @@ constexpr std::size_t most_view_rows = 16384;
 
 /// The layout in the shaders.
 struct ImageHeader {
-  std::uint32_t samples = 0, invalid = 0, saturated = 0, unused = 0;
+  std::uint32_t samples = 0, invalid = 0, saturated = 0, additions = 0;
 };
 static_assert(sizeof(ImageHeader) == image_header_bytes, "must match std430");
 static_assert(sizeof(BeamEstimate) == 10 * 4, "must match std430");
@@ -102,7 +102,7 @@ struct GpuBinner::Impl {
   std::optional<ImageRequest> request;  // the image at hand
   std::size_t estimated = 0;            // beams whose estimates have not been asked for
   std::size_t estimates_asked = 0;      // and that have not been taken
-  std::uint64_t bytes_read = 0, synchronisations = 0;
+  std::uint64_t bytes_read = 0, synchronisations = 0, bytes_uploaded = 0, additions = 0;
 
   Impl(EglContext& made_current, std::shared_ptr<Programs> shared)
       : context(made_current),
@@ -171,16 +171,19 @@ struct GpuBinner::Impl {
   }
 
   /// @throws RequestError
-  void hold(GpuBuffer& buffer, std::size_t bytes, const char* what) const {
+  void hold(GpuBuffer& buffer, std::size_t bytes, const char* what) {
     if (bytes > most_bytes) {
       throw RequestError(fmt::format("sampling: {} of {} MiB, but a buffer of this OpenGL holds {} MiB", what,
                                      bytes >> 20U, most_bytes >> 20U));
     }
-    buffer.hold(bytes);
+    if (buffer.bytes() < bytes) {
+      buffer.hold(bytes);
+      bytes_uploaded += bytes;
+    }
   }
 
   /// Sums that are as they begin, which is how sum_shader leaves them.
-  void hold_sums(GpuBuffer& buffer, std::size_t bytes) const {
+  void hold_sums(GpuBuffer& buffer, std::size_t bytes) {
     if (buffer.bytes() < bytes) {
       hold(buffer, bytes, "beams");
       buffer.fill(std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t), start_of_sum), GL_DYNAMIC_COPY);
@@ -218,8 +221,7 @@ struct GpuBinner::Impl {
   void begin(const ImageRequest& what) {
     request.emplace(what);
     estimated = 0;
-    bytes_read = 0;
-    synchronisations = 0;
+    bytes_read = synchronisations = bytes_uploaded = additions = 0;
     for (int page = 0; page < page_count(); ++page) {
       if (pages.size() == static_cast<std::size_t>(page)) {
         pages.push_back(std::make_unique<GpuBuffer>(gl));
@@ -227,11 +229,13 @@ struct GpuBinner::Impl {
       GpuBuffer& buffer = *pages[static_cast<std::size_t>(page)];
       hold(buffer, bytes_of_page(page), "an image");
       buffer.write(0, std::vector<ImageHeader>(1));
+      bytes_uploaded += image_header_bytes;
     }
     std::vector<float> weights = what.line_weight;
     weights.resize(static_cast<std::size_t>(lines()), 1.0F);
     if (weights != line_weights) {
       line_weight.fill(weights);
+      bytes_uploaded += line_weight.bytes();
       line_weights = std::move(weights);
     }
     check_memory("an image");
@@ -453,7 +457,7 @@ struct GpuBinner::Impl {
     return result;
   }
 
-  void unpack_pages(const std::byte* from, BinningResult& result) const {
+  void unpack_pages(const std::byte* from, BinningResult& result) {
     const auto take = [&from](void* to, std::size_t count) {
       std::memcpy(to, from, count);
       from += count;
@@ -470,6 +474,7 @@ struct GpuBinner::Impl {
       result.samples += counted.samples;
       result.invalid_samples += counted.invalid;
       result.saturated_samples += counted.saturated;
+      additions += counted.additions;
     }
   }
 };
@@ -491,6 +496,7 @@ std::shared_ptr<const GpuGrid> GpuBinner::load(const SampleGrid& grid, const std
   impl_->make_current();
   auto made = std::make_shared<const GpuGrid>(impl_->gl, grid, beams, thinned);
   impl_->check_memory("a grid");
+  impl_->bytes_uploaded += made->bytes();
   return made;
 }
 
@@ -534,6 +540,14 @@ std::uint64_t GpuBinner::bytes_read() const {
 
 std::uint64_t GpuBinner::synchronisations() const {
   return impl_->synchronisations;
+}
+
+std::uint64_t GpuBinner::bytes_uploaded() const {
+  return impl_->bytes_uploaded;
+}
+
+std::uint64_t GpuBinner::atomic_additions() const {
+  return impl_->additions;
 }
 
 }  // namespace sonard::render

@@ -72,9 +72,13 @@ class GpuBinner {
   /// @throws RendererError when OpenGL fails.
   BinningResult take_image(std::vector<float> memory = {});
 
-  /// What has come back, and how often that was waited for, since begin().
+  /// What has come back, how often that was waited for, and what was written into buffers, since begin().
   std::uint64_t bytes_read() const;
   std::uint64_t synchronisations() const;
+  std::uint64_t bytes_uploaded() const;
+  /// How often an invocation has added to a word of the sums of the image: after take_image(), modulo 2^32
+  /// for each page.
+  std::uint64_t atomic_additions() const;
 
  private:
   struct Impl;

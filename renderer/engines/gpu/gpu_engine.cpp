@@ -88,8 +88,15 @@ void GpuEngine::count(PingStatistics& statistics, Step step) {
   Stopwatch watch;
   const double drawing_before_s = statistics.visibility_s;
   const std::uint64_t uploaded_before = sampler_.video_memory().bytes_uploaded();
+  const RasterSampler::Drawn before = sampler_.drawn();
   step();
   statistics.binning_s += watch.lap() - (statistics.visibility_s - drawing_before_s);
+  const RasterSampler::Drawn& now = sampler_.drawn();
+  statistics.views += now.views - before.views;
+  statistics.pixels += now.pixels - before.pixels;
+  statistics.draw_calls += now.draw_calls - before.draw_calls;
+  statistics.triangles += now.triangles - before.triangles;
+  statistics.preparing_s += now.culling_s - before.culling_s;
   statistics.bytes_uploaded += sampler_.video_memory().bytes_uploaded() - uploaded_before;
   statistics.video_memory_bytes = sampler_.video_memory().bytes();
 }
@@ -133,6 +140,8 @@ void GpuEngine::finish(Making& image) {
   hand_over(image.binner.take_image(std::move(echo.image.intensity)), echo, statistics);
   statistics.bytes_read_back += image.binner.bytes_read();
   statistics.synchronisations += image.binner.synchronisations();
+  statistics.bytes_uploaded += image.binner.bytes_uploaded();
+  statistics.atomic_additions += image.binner.atomic_additions();
   statistics.binning_s += watch.lap();
 }
 

@@ -152,6 +152,10 @@ GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vecto
   load_beams(grid, in_image);
 }
 
+std::size_t GpuGrid::bytes() const {
+  return columns.bytes() + (thinned ? thinned->bytes() : 0) + beams.bytes() + view_beams.bytes();
+}
+
 void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_image) {
   const Aperture& aperture = grid.aperture;
   const double height = aperture.pattern_height();

@@ -20,6 +20,7 @@ struct GpuColumns {
   std::vector<int> view_begin;  ///< in `order`: parts of view v are [view_begin[v], view_begin[v + 1])
 
   GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid);
+  std::size_t bytes() const { return parts.bytes() + order.bytes(); }
 };
 
 /// Made, used and deleted while its context is current.
@@ -41,6 +42,8 @@ struct GpuGrid {
   /// @param in_image which beam of the image each beam of the grid is.
   GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
           const SampleGrid* thinned_grid);
+
+  std::size_t bytes() const;  ///< of all buffers
 
  private:
   void load_beams(const SampleGrid& grid, const std::vector<int>& in_image);

@@ -45,6 +45,7 @@ class MeshChunk final : public osg::Drawable, public VideoMemory::Item {
 
   osg::BoundingBox computeBoundingBox() const override { return content_.box; }
   void drawImplementation(osg::RenderInfo& info) const override;
+  std::uint64_t triangles() const { return static_cast<std::uint64_t>(content_.index_count) / 3; }
 
  private:
   ~MeshChunk() override { remove(); }

@@ -24,6 +24,7 @@
 #include "renderer/errors.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/refraction.hpp"
+#include "renderer/stopwatch.hpp"
 
 namespace sonard::render {
 
@@ -120,24 +121,32 @@ void aim(const ViewTarget& target, const SubView& view, const Refraction& bend) 
   target.scene_view->getCamera()->setCullingMode(culling);
 }
 
-/// Adds what a view draws, culled and sorted front to back, to `items`.
+/// What some views draw, culled and sorted front to back.
+struct DrawList {
+  std::vector<VideoMemory::Item*> items;
+  std::uint64_t draw_calls = 0, triangles = 0;
+};
+
+/// Adds what a view draws.
 /// @param normal_maps by the state that asks for them.
 void collect(const osgUtil::RenderBin& bin,
-             const std::unordered_map<const osg::StateSet*, NormalMapTexture*>& normal_maps,
-             std::vector<VideoMemory::Item*>& items) {
+             const std::unordered_map<const osg::StateSet*, NormalMapTexture*>& normal_maps, DrawList& list) {
   const osgUtil::StateGraph* last = nullptr;
   for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList()) {
-    items.push_back(&static_cast<MeshChunk&>(*leaf->_drawable));  // nothing else is drawn
+    auto& chunk = static_cast<MeshChunk&>(*leaf->_drawable);  // nothing else is drawn
+    list.items.push_back(&chunk);
+    ++list.draw_calls;
+    list.triangles += chunk.triangles();
     for (const osgUtil::StateGraph* state = leaf->_parent; state != nullptr && leaf->_parent != last;
          state = state->_parent) {
       if (const auto map = normal_maps.find(state->getStateSet()); map != normal_maps.end()) {
-        items.push_back(map->second);
+        list.items.push_back(map->second);
       }
     }
     last = leaf->_parent;
   }
   for (const auto& [number, inner] : bin.getRenderBinList()) {
-    collect(*inner, normal_maps, items);
+    collect(*inner, normal_maps, list);
   }
 }
 
@@ -168,6 +177,7 @@ struct RasterSampler::Impl {
   double target_pixels = 0;                                                 // of all of them
   std::uint64_t calls = 0;                                                  // of sample()
   float max_range_m = 0.0F;
+  Drawn drawn;
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
 
@@ -320,12 +330,18 @@ struct RasterSampler::Impl {
     for (const BodyNode& body : bodies) {
       body.transform->setMatrix(to_osg(relative(T_world_sonar, body.T_world_body)));
     }
-    std::vector<VideoMemory::Item*> needed;
+    Stopwatch watch;
+    DrawList list;
     for (const ViewTarget* target : views) {
       target->scene_view->cull();
-      collect(*target->scene_view->getRenderStage(), normal_maps, needed);
+      collect(*target->scene_view->getRenderStage(), normal_maps, list);
+      drawn.pixels += static_cast<std::uint64_t>(target->pixels());
     }
-    video_memory->hold(needed);
+    drawn.views += views.size();
+    drawn.draw_calls += list.draw_calls;
+    drawn.triangles += list.triangles;
+    drawn.culling_s += watch.lap();
+    video_memory->hold(list.items);
     for (const ViewTarget* target : views) {
       target->scene_view->draw();
     }
@@ -420,6 +436,10 @@ const VideoMemory& RasterSampler::video_memory() const {
 
 const std::string& RasterSampler::description() const {
   return impl_->description;
+}
+
+const RasterSampler::Drawn& RasterSampler::drawn() const {
+  return impl_->drawn;
 }
 
 }  // namespace sonard::render

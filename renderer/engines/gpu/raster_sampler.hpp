@@ -3,6 +3,7 @@
 // pixel.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -48,6 +49,13 @@ class RasterSampler {
 
   /// "gpu, vendor / renderer / version"
   const std::string& description() const;
+
+  /// How much has been drawn since the beginning, and what culling took.
+  struct Drawn {
+    std::uint64_t views = 0, pixels = 0, draw_calls = 0, triangles = 0;
+    double culling_s = 0.0;
+  };
+  const Drawn& drawn() const;
 
   /// Like sample(), but the samples stay on the GPU.
   /// @return names of textures, one for every view: RGBA32F, a SurfaceSample each texel, row by row upwards.

@@ -34,7 +34,7 @@ void VideoMemory::hold(const std::vector<Item*>& items) {
     }
   }
   if (needed_bytes > bound_bytes_) {
-    throw RendererError(
+    throw RequestError(
         fmt::format("what a sonar sees of this world takes {} bytes of video memory, and gpu.memory_mib "
                     "allows {} ({} MiB): raise it, or choose engine: cpu",
                     needed_bytes, bound_bytes_, bound_bytes_ >> 20));

@@ -51,8 +51,9 @@ class VideoMemory {
   VideoMemory& operator=(const VideoMemory&) = delete;
 
   /// Afterwards all of these are in video memory. An item may be listed more than once.
-  /// @throws RendererError when they do not fit, however much else is released; nothing is uploaded or
-  /// released then. And when OpenGL has no room for them.
+  /// @throws RequestError when they do not fit, however much else is released; nothing is uploaded or
+  /// released then.
+  /// @throws RendererError when OpenGL has no room for them.
   void hold(const std::vector<Item*>& items);
 
   void release_all();

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What engine `gpu` says it has done, before a wall that fills the fan.
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+#include "tests/support/engine_test.hpp"
+
+namespace sonard::render {
+namespace {
+
+constexpr int beams = 8, lines = 100;
+constexpr unsigned views = 2, columns = 32, rows = 64;
+
+class WorkCounts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    test::require_gl();
+    request_.settings.aperture.beam_edges_rad = equal_angle_edges(beams, 0.3);
+    request_.settings.range = {lines, 0.2, 0, false};
+    request_.settings.sampling = Sampling::of_grid(views, columns, rows);
+  }
+
+  /// Of the second of two pings: what the first one left on the GPU is there.
+  PingStatistics of_a_ping() const {
+    const World world = test::make_world(
+        {test::make_body("wall", test::make_quad({10, -80, -80}, {0, 160, 0}, {0, 0, 160})),
+         test::make_body("too far away", test::make_quad({30, -80, -80}, {0, 160, 0}, {0, 0, 160})),
+         test::make_body("behind", test::make_quad({-10, -0.1F, -0.1F}, {0, 0.2F, 0}, {0, 0, 0.2F}))});
+    SonarRenderer renderer(world, {EngineKind::gpu});
+    PingRequest request = request_;
+    renderer.render_echo(request);
+    request.T_world_sonar.position_m.x += 0.001;
+    renderer.render_echo(request);
+    return renderer.last_statistics();
+  }
+
+  PingRequest request_;
+};
+
+TEST_F(WorkCounts, OfAFixedGridAreExact) {
+  const PingStatistics work = of_a_ping();
+  EXPECT_EQ(work.passes, 1U);
+  EXPECT_EQ(work.views, views);
+  EXPECT_EQ(work.pixels, views * columns * rows);
+  EXPECT_EQ(work.draw_calls, views);  // one wall
+  EXPECT_EQ(work.triangles, 2 * views);
+  EXPECT_EQ(work.bytes_uploaded, 16U);  // the head of the image
+  EXPECT_EQ(work.bytes_read_back, 16U + sizeof(float) * beams * lines);
+  EXPECT_EQ(work.synchronisations, 1U);
+  EXPECT_GT(work.preparing_s, 0.0);
+  EXPECT_LT(work.preparing_s, work.visibility_s + work.binning_s);
+}
+
+TEST_F(WorkCounts, APointIsAddedToTwoSumsOfTwoWords) {
+  request_.settings.sampling.footprint = false;
+  const PingStatistics work = of_a_ping();
+  EXPECT_GT(work.samples, 0U);
+  EXPECT_GE(work.atomic_additions, 2 * work.samples);
+  EXPECT_LE(work.atomic_additions, 4 * work.samples);
+}
+
+TEST_F(WorkCounts, OfAPresetGrowWithItsPasses) {
+  request_.settings.sampling = {};
+  const PingStatistics work = of_a_ping();
+  EXPECT_GE(work.views, work.passes);
+  EXPECT_GT(work.pixels, 0U);
+  EXPECT_GT(work.atomic_additions, work.samples);
+}
+
+TEST_F(WorkCounts, AreThoseOfOnePing) {
+  const PingStatistics once = of_a_ping(), again = of_a_ping();
+  EXPECT_EQ(once.views, again.views);
+  EXPECT_EQ(once.triangles, again.triangles);
+  EXPECT_EQ(once.atomic_additions, again.atomic_additions);
+}
+
+}  // namespace
+}  // namespace sonard::render
