@@ -63,7 +63,7 @@ TEST_F(VideoMemoryOrder, ReleasesWhatWasDrawnLongestAgo) {
 
 TEST_F(VideoMemoryOrder, RefusesWhatDoesNotFitAndStaysAsItIs) {
   memory.hold({&a, &b});
-  EXPECT_THROW(memory.hold({&b, &a, &d}), RendererError);
+  EXPECT_THROW(memory.hold({&b, &a, &d}), RequestError);
   EXPECT_EQ(log, "+a+b");
   EXPECT_EQ(memory.bytes(), 80U);
   memory.hold({&b, &d, &c, &b});
