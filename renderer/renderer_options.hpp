@@ -12,7 +12,7 @@
 namespace sonard::render {
 
 enum class EngineKind {
-  automatic,  ///< the faster of the two, once SonarRenderer::choose_engine() has measured them; before, `cpu`
+  automatic,  ///< the faster of the two, once choose_engine() has measured them (engine_trial); before, `cpu`
   gpu,        ///< OpenSceneGraph and OpenGL 4.5 through EGL
   cpu,        ///< azimuth slices on the CPU; never opens EGL
 };

@@ -23,12 +23,9 @@ void EngineSwitch::use(EngineKind engine) {
   } else {
     cpu();
     on_gpu_ = false;
+    gpu_.reset();
   }
   describe();
-}
-
-void EngineSwitch::drop_unused() {
-  (kind() == EngineKind::gpu ? cpu_ : gpu_).reset();
 }
 
 EchoEngine& EngineSwitch::cpu() {
@@ -74,7 +71,8 @@ void EngineSwitch::retry_gpu() {
   report("the GPU is back: the engine is " + description_);
 }
 
-bool EngineSwitch::images_by_gpu(std::span<const EchoJob> jobs) {
+/// @param too_large gets what there is too much of, where the GPU cannot hold it.
+bool EngineSwitch::images_by_gpu(std::span<const EchoJob> jobs, std::string& too_large) {
   std::vector<PingStatistics> before;
   for (const EchoJob& job : jobs) {
     before.push_back(job.statistics);
@@ -83,10 +81,7 @@ bool EngineSwitch::images_by_gpu(std::span<const EchoJob> jobs) {
     gpu_->images(jobs);
     return true;
   } catch (const RequestError& error) {
-    if (!told_too_large_) {
-      told_too_large_ = true;
-      report(fmt::format("the GPU cannot make a ping, the CPU does: {}. Said once", error.what()));
-    }
+    too_large = error.what();
   } catch (const RendererError& error) {
     lose_gpu(error.what());
   }
@@ -100,10 +95,21 @@ void EngineSwitch::images(std::span<const EchoJob> jobs) {
   if (on_gpu_ && !gpu_) {
     retry_gpu();
   }
-  if (kind() == EngineKind::gpu && images_by_gpu(jobs)) {
+  std::string too_large;
+  if (kind() == EngineKind::gpu && images_by_gpu(jobs, too_large)) {
+    return;
+  }
+  if (!too_large.empty() && jobs.size() > 1) {
+    for (const EchoJob& job : jobs) {  // which of them it is makes no difference to the others
+      images({&job, 1});
+    }
     return;
   }
   cpu().images(jobs);
+  if (!too_large.empty() && !told_too_large_) {
+    told_too_large_ = true;
+    report(fmt::format("the GPU cannot make a ping, the CPU does: {}. Said once", too_large));
+  }
 }
 
 void EngineSwitch::set_body_pose(std::size_t body, const Pose& T_world_body) {

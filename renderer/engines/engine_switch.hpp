@@ -24,14 +24,12 @@ class EngineSwitch final : public EchoEngine {
 
   /// The engine of the next image.
   EngineKind kind() const { return gpu_ && on_gpu_ ? EngineKind::gpu : EngineKind::cpu; }
-  /// Takes this one from the next image on.
+  /// Takes this one from the next image on, and gives the GPU up when it is `cpu`.
   /// @param engine not `automatic`
   /// @throws RendererError when it cannot be had; the one in use stays.
   void use(EngineKind engine);
-  /// Gives up what an engine holds that is not in use.
-  void drop_unused();
-
-  /// Where the GPU fails, or cannot hold what an image takes, all of them come from the CPU.
+  /// Where the GPU fails, all of them come from the CPU; where it cannot hold what one of them takes, that
+  /// one.
   void images(std::span<const EchoJob> jobs) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
@@ -44,7 +42,7 @@ class EngineSwitch final : public EchoEngine {
   void make_gpu();
   void lose_gpu(const std::string& reason);
   void retry_gpu();
-  bool images_by_gpu(std::span<const EchoJob> jobs);
+  bool images_by_gpu(std::span<const EchoJob> jobs, std::string& too_large);
   void describe();
   void report(const std::string& line) const;
 

@@ -11,7 +11,7 @@ namespace sonard::render {
 
 struct EngineTrial {
   EngineKind taken = EngineKind::cpu;
-  /// To render the mean echoes of all pings once, the fastest round. Of a GPU that takes longer for a
+  /// For the mean echo of a ping, of the fastest round of all of them. Of a GPU that takes longer for a
   /// sixteenth of the beams than the CPU for all, what it takes for these.
   double cpu_ms = 0.0, gpu_ms = 0.0;
   /// RMS of (the GPU's bin / the CPU's - 1) over bins above 1e-2 of the largest of their beam, without the

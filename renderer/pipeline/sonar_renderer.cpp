@@ -275,6 +275,16 @@ struct SonarRenderer::Impl {
     return loss;
   }
 
+  /// Whether the engine has made this ping already. What it has made of another that was to come is given up.
+  bool is_begun(const StreamPing& ping, const SonarMotion& motion) {
+    const auto made = begun.find(ping.stream);
+    if (made != begun.end() && !made->second.made_of.fits(ping.request, motion, world_revision)) {
+      begun.erase(made);
+      return false;
+    }
+    return made != begun.end();
+  }
+
   /// Of a ping that the engine can make with those of others; nullptr: it is to be made alone, or not at all.
   /// @throws RequestError
   Begun* may_begin(const StreamPing& ping) {
@@ -283,7 +293,7 @@ struct SonarRenderer::Impl {
     const SonarMotion motion = motion_of(request);
     const bool unchanged =
         skip.on(SkipRule::unchanged_scene) && cached_echoes[stream].fits(request, motion, world_revision);
-    if (!request.settings.transmit || motion.at_end || unchanged || begun.count(stream) != 0) {
+    if (!request.settings.transmit || motion.at_end || unchanged || is_begun(ping, motion)) {
       return nullptr;
     }
     PointSpread& spread = point_spreads[stream];
@@ -302,10 +312,15 @@ struct SonarRenderer::Impl {
     }
     std::deque<EchoRequest> requests;  // jobs refer to them
     std::vector<EchoJob> jobs;
+    std::vector<int> streams;
     statistics = {};
     for (const StreamPing& ping : pings) {
       try {
+        if (&ping == &pings.front() && is_begun(ping, motion_of(ping.request))) {
+          return;  // it is to be handed out first; the next ones begin together when all of these are
+        }
         if (Begun* made = may_begin(ping)) {
+          streams.push_back(ping.stream);
           requests.push_back(engine_request(made->sampled, ping.stream, made->made_of.motion));
           jobs.push_back({requests.back(), made->echo, made->statistics});
         }
@@ -316,7 +331,9 @@ struct SonarRenderer::Impl {
     try {
       engine.images(jobs);
     } catch (const RequestError&) {
-      begun.clear();
+      for (const int stream : streams) {
+        begun.erase(stream);
+      }
     }
   }
 };
@@ -356,10 +373,7 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   check(request.settings);
   impl_->statistics = {};
   const SonarMotion motion = impl_->motion_of(request);
-  if (const auto made = impl_->begun.find(stream);
-      made != impl_->begun.end() && !made->second.made_of.fits(request, motion, impl_->world_revision)) {
-    impl_->begun.erase(made);
-  }
+  impl_->is_begun({stream, request}, motion);  // or it is not of this ping, and is given up
   CachedEcho& cached = impl_->cached_echoes[stream];
   if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);

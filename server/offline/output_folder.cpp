@@ -125,7 +125,6 @@ std::optional<std::string> OutputFolder::manifest() const {
 }
 
 void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
-  const Lock lock(*this);
   if (has(manifest_name)) {
     if (read(manifest_name) == manifest) {
       return;

@@ -59,7 +59,8 @@ class OutputFolder {
   /// Of the run whose folder it is; nullopt: of none yet. @throws OutputError
   std::optional<std::string> manifest() const;
   /// Makes the folder that of a run, which `manifest` describes to the last byte; it becomes the file
-  /// run.json. An existing one must be equal, or with `overwrite` all frames and logs are removed.
+  /// run.json. An existing one must be equal, or with `overwrite` all frames and logs are removed. The caller
+  /// holds the lock.
   /// @throws OutputError where it says something else
   void claim(const std::string& manifest, bool overwrite) const;
 

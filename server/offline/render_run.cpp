@@ -119,7 +119,8 @@ class RenderRun {
 // engine, since bytes that a folder already holds are not made again: where the GPU is lost, the run ends.
 render::RendererOptions tested(render::RendererOptions options) {
   options.report = [](const std::string& line) {
-    throw render::RendererError(line + "; run it again, and it goes on where it stopped");
+    throw render::RendererError(line + " (all frames of a run come from one engine: run it again to go on " +
+                                "where it stopped, or into another folder with engine: cpu)");
   };
   render::run_self_test(options);
   return options;
@@ -165,20 +166,24 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
       folder_(options.out) {
+  const OutputFolder::Lock lock(folder_);
   choose_engine();
   folder_.claim(manifest(), options.overwrite);
 }
 
-// Frames of one folder come from one engine: under `auto` that of the process that made the folder.
+// Frames of one folder come from one engine: under `auto` that of the process that made the folder, which
+// others wait for.
 void RenderRun::choose_engine() {
   if (config_.engine != render::EngineKind::automatic) {
     return;
   }
-  if (const std::optional<std::string> before = folder_.manifest(); before && !options_.overwrite) {
+  if (const std::optional<std::string> before = folder_.manifest()) {
     const Json json = Json::parse(*before, nullptr, false);
     renderer_.use_engine(json.is_object() && json.value("engine", "") == "gpu" ? render::EngineKind::gpu
                                                                                : render::EngineKind::cpu);
-    return;
+    if (manifest() == *before || !options_.overwrite) {
+      return;
+    }
   }
   const HeadConfig& head = config_.heads[head_];
   const render::Pose T_world_sonar =

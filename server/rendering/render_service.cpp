@@ -98,6 +98,9 @@ void RenderService::warm_up(std::vector<render::StreamPing> first_pings) {
   std::future<void> done = warm_up.done.get_future();
   {
     const std::lock_guard lock(impl_->mutex);
+    if (impl_->stopping) {
+      throw std::future_error(std::future_errc::broken_promise);
+    }
     impl_->queue.push_back({{}, {}, std::move(warm_up)});
   }
   impl_->wake.notify_one();

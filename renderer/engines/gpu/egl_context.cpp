@@ -21,6 +21,8 @@ EglContext::EglContext(const std::string& device) {
   setState(new osg::State);
   getState()->setGraphicsContext(this);
   getState()->setContextID(osg::GraphicsContext::createNewContextID());
+  // Whoever draws asks for errors; what OpenSceneGraph finds out it only prints.
+  getState()->setCheckForGLErrors(osg::State::NEVER_CHECK_GL_ERRORS);
 }
 
 EglContext::~EglContext() {

@@ -56,7 +56,7 @@ class EglContext : public osg::GraphicsContext {
 
  private:
   GlDeviceChoice choice_;
-  void* display_ = nullptr;  // EGLDisplay; kept opaque so that EGL headers stay in one file
+  void* display_ = nullptr;  // EGLDisplay; kept opaque for those who include this
   void* context_ = nullptr;  // EGLContext
   bool realized_ = false;
 };

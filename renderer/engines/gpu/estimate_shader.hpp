@@ -94,7 +94,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Columns { vec2 columns[]; };  // echo, moment: of each part
 layout(std430, binding = 1) readonly buffer Rows { vec4 rows[]; };
 layout(std430, binding = 2) readonly buffer Parts { Part parts[]; };
-layout(std430, binding = 3) buffer ColumnMisses { float column_misses[]; };
+layout(std430, binding = 3) coherent buffer ColumnMisses { float column_misses[]; };
 layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
 layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
 

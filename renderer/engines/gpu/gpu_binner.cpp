@@ -74,14 +74,26 @@ GLuint groups_of(std::size_t invocations) {
   return static_cast<GLuint>((invocations + group_size - 1) / group_size);
 }
 
-/// Whether OpenGL has run out of memory since errors were asked for last.
-bool is_out_of_memory() {
-  bool found = false;
-  for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError()) {
-    found = found || error == GL_OUT_OF_MEMORY;
+/// What OpenGL complains of since it was asked last.
+struct GlComplaints {
+  bool out_of_memory = false;
+  GLenum other = GL_NO_ERROR;
+
+  GlComplaints() {
+    constexpr int most = 16;  // a context that is lost may complain for ever
+    for (int i = 0; i < most; ++i) {
+      const GLenum error = glGetError();
+      if (error == GL_NO_ERROR) {
+        return;
+      }
+      if (error == GL_OUT_OF_MEMORY) {
+        out_of_memory = true;
+      } else {
+        other = error;
+      }
+    }
   }
-  return found;
-}
+};
 
 }  // namespace
 
@@ -241,8 +253,14 @@ struct GpuBinner::Impl {
     check_memory("an image");
   }
 
+  /// @throws RequestError, RendererError
   void check_memory(const char* what) {
-    if (is_out_of_memory()) {
+    const GlComplaints complaints;
+    if (complaints.other != GL_NO_ERROR) {
+      forget();
+      throw RendererError("OpenGL error " + std::to_string(complaints.other) + " while binning");
+    }
+    if (complaints.out_of_memory) {
       forget();
       throw RequestError(fmt::format("sampling: OpenGL has no memory for {} of this size", what));
     }
@@ -254,6 +272,7 @@ struct GpuBinner::Impl {
                               &column_misses, &estimates}) {
       buffer->forget();
     }
+    line_weights.clear();
     pages.clear();
   }
 

@@ -152,6 +152,7 @@ void GpuEngine::draw_grid(GpuBinner& binner, const EchoRequest& request, bool ma
   if (grid_.prepare(request.settings, may_keep) && grid_page_ == beams_per_page) {
     statistics.skipped.add(SkipRule::unchanged_settings);
   } else {
+    grid_page_ = 0;  // until all of it is there
     grid_on_gpu_.clear();
     for (int begin = 0; begin < beams; begin += beams_per_page) {
       const int end = std::min(begin + beams_per_page, beams);
@@ -190,6 +191,7 @@ void GpuEngine::image_by_cones(const EchoRequest& request, const BinningOptions&
   const auto samples = sampler_.sample(request.T_world_sonar, cone_grid_.grid(),
                                        surface_model(settings, skip_), settings.range.sampled_range_m());
   statistics.visibility_s += watch.lap();
+  ++statistics.passes;
   hand_over(bin_echoes(cone_grid_.grid(), cone_grid_.weights(), samples, settings.range, options, workers_,
                        std::move(echo.image.intensity)),
             echo, statistics);

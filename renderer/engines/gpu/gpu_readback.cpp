@@ -6,6 +6,7 @@ namespace sonard::render {
 namespace {
 
 constexpr GLuint64 a_second_ns = 1'000'000'000;
+constexpr int longest_wait_s = 60;  // a software OpenGL may need some; a card that is gone never answers
 
 // OpenSceneGraph does not load it.
 using CopyBufferSubData = void(GL_APIENTRY*)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr);
@@ -51,7 +52,7 @@ void GpuReadback::ask(const std::vector<Part>& parts) {
 
 bool GpuReadback::wait(const std::function<void(std::span<const std::byte>)>& take) {
   GLenum state = GL_TIMEOUT_EXPIRED;
-  while (done_ != nullptr && state == GL_TIMEOUT_EXPIRED) {
+  for (int s = 0; done_ != nullptr && state == GL_TIMEOUT_EXPIRED && s < longest_wait_s; ++s) {
     state = gl_.glClientWaitSync(done_, GL_SYNC_FLUSH_COMMANDS_BIT, a_second_ns);
   }
   if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED) {

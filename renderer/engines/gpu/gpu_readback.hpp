@@ -22,16 +22,17 @@ class GpuReadback {
   GpuReadback(const GpuReadback&) = delete;
   GpuReadback& operator=(const GpuReadback&) = delete;
 
-  /// Has the GPU copy all of this, one part behind the other, once it is done with what it was given so far.
   struct Part {
     const GpuBuffer& buffer;
-    std::size_t bytes;
+    std::size_t bytes;  ///< from its beginning
   };
+  /// Has the GPU copy all of this, one part behind the other, once it is done with what it was given so far.
   void ask(const std::vector<Part>& parts);
 
   /// Waits until the parts are there, and hands their bytes on. What the GPU was given after ask() goes on
   /// meanwhile.
-  /// @return false, and hands on nothing, when they were lost with the context.
+  /// @return false, and hands on nothing, when they were lost with the context or do not come within a
+  /// minute.
   bool wait(const std::function<void(std::span<const std::byte>)>& take);
 
  private:

@@ -33,9 +33,9 @@ class RasterSampler {
 
   /// The samples of view i, row after row as SubView orders them. They stay valid until the next call of
   /// draw() or sample(). Surfaces beyond `max_range_m` may be reported or not.
-  /// @throws RequestError when a view is larger than a texture can be.
-  /// @throws RendererError when OpenGL fails, or what is to be drawn takes more video memory than the options
-  /// allow.
+  /// @throws RequestError when a view is larger than a texture can be, or what is to be drawn takes more
+  /// video memory than the options allow.
+  /// @throws RendererError when OpenGL fails.
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m);
 
