@@ -105,6 +105,28 @@ TEST_F(PingsInFlight, ComeFromTheCpuWhenTheGpuIsLostOnTheWay) {
   }
 }
 
+// The second faces a ball that is larger than the video memory allowed, the first the wall.
+TEST_F(PingsInFlight, StayTheGpusBesideOneThatItCannotHold) {
+  const render::World large = make_world({make_body("wall", make_quad({8, 10, -5}, {0, -20, 0}, {0, 0, 10})),
+                                          make_body("ball", make_sphere(1, 200))});
+  render::RendererOptions bounded = options();
+  bounded.gpu.memory_mib = 1;
+  std::vector<StreamPing> two{pings()[0], pings()[8]};
+  for (StreamPing& ping : two) {
+    ping.request.T_world_sonar = looking({3, 0, 0}, ping.stream == 0 ? 0 : 180, 0);
+  }
+  render::SonarRenderer renderer(large, bounded);
+  renderer.begin_pings(two);
+  for (const StreamPing& ping : two) {
+    render::SonarRenderer alone(large, {ping.stream == 0 ? EngineKind::gpu : EngineKind::cpu});
+    EXPECT_EQ(renderer.render_echo(ping.request, ping.stream).intensity,
+              alone.render_echo(ping.request, ping.stream).intensity)
+        << ping.stream;
+    EXPECT_EQ(renderer.last_statistics().passes > 0, ping.stream == 0) << ping.stream;
+  }
+  EXPECT_EQ(renderer.engine(), EngineKind::gpu);
+}
+
 TEST_F(PingsInFlight, OneThatCannotBeMadeIsToldWhenItIsItsTurn) {
   render::SonarRenderer renderer(world(), options());
   std::vector<StreamPing> all = pings();
