@@ -62,6 +62,8 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
   add_times(subject(point), stages, unchanged_ms);
   if (statistics.passes > 0) {  // engine `gpu`
     add_work(results_, subject(point), work_of(statistics, stages.cpu_part_ms.median()));
+    results_.add(subject(point), "video_memory", static_cast<double>(statistics.video_memory_bytes) / 0x1p20,
+                 "MiB");
   } else {
     results_.add(subject(point), "samples", static_cast<double>(statistics.samples), "count");
   }
