@@ -8,6 +8,7 @@
 
 #include "renderer/pipeline/engine_trial.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "tests/gl/engine_choice/wall_and_ball.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
@@ -22,10 +23,6 @@ class EngineLoss : public testing::Test {
  protected:
   void SetUp() override { require_gl(); }
 
-  static render::World world() {
-    return make_world({make_body("wall", make_quad({8, 10, -5}, {0, -20, 0}, {0, 0, 10})),
-                       make_body("ball", make_sphere(0.5F, 24))});
-  }
   static render::PingRequest request(double x_m) {
     render::PingRequest request;
     request.settings.aperture.beam_edges_rad = render::equal_angle_edges(32, 1.0);
@@ -46,9 +43,9 @@ class EngineLoss : public testing::Test {
 };
 
 TEST_F(EngineLoss, LosesNoPingAndSaysItOnce) {
-  render::SonarRenderer losing(world(), losing_at(2));
-  render::SonarRenderer cpu(world(), {EngineKind::cpu});
-  render::SonarRenderer gpu(world(), {EngineKind::gpu});
+  render::SonarRenderer losing(wall_and_ball(), losing_at(2));
+  render::SonarRenderer cpu(wall_and_ball(), {EngineKind::cpu});
+  render::SonarRenderer gpu(wall_and_ball(), {EngineKind::gpu});
   for (int ping = 0; ping < 4; ++ping) {
     // The world moves on before the loss and after it.
     const render::Pose T_world_ball{{4.0 + 0.3 * ping, 0.2, 0.0}, {1, 0, 0, 0}};
@@ -67,7 +64,7 @@ TEST_F(EngineLoss, LosesNoPingAndSaysItOnce) {
 }
 
 TEST_F(EngineLoss, TheGpuComesBackWhereThatIsAskedFor) {
-  render::SonarRenderer losing(world(), losing_at(2, 1e-9));
+  render::SonarRenderer losing(wall_and_ball(), losing_at(2, 1e-9));
   std::vector<EngineKind> engines;
   for (int ping = 0; ping < 4; ++ping) {
     losing.render_echo(request(0.1 * ping));
@@ -81,13 +78,13 @@ TEST_F(EngineLoss, TheGpuComesBackWhereThatIsAskedFor) {
 TEST_F(EngineLoss, AGpuThatFailsAtOnceIsReportedWhereItIsAskedFor) {
   render::RendererOptions options = losing_at(1);
   options.gpu.device = "no such device";
-  EXPECT_THROW(render::SonarRenderer(world(), options), render::RendererError);
+  EXPECT_THROW(render::SonarRenderer(wall_and_ball(), options), render::RendererError);
 }
 
 class EngineTrials : public EngineLoss {};
 
 TEST_F(EngineTrials, TakeTheFasterAndTellBothTimes) {
-  render::SonarRenderer renderer(world(), {EngineKind::automatic});
+  render::SonarRenderer renderer(wall_and_ball(), {EngineKind::automatic});
   const std::vector<render::StreamPing> pings{{0, request(0)}, {1, request(1)}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_GT(trial.cpu_ms, 0.0);
@@ -103,7 +100,7 @@ TEST_F(EngineTrials, TakeTheFasterAndTellBothTimes) {
 TEST_F(EngineTrials, AGpuThatIsLostOnTheWayIsNotTaken) {
   render::RendererOptions options = losing_at(2);
   options.engine = EngineKind::automatic;
-  render::SonarRenderer renderer(world(), options);
+  render::SonarRenderer renderer(wall_and_ball(), options);
   const std::vector<render::StreamPing> pings{{0, request(0)}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_EQ(trial.taken, EngineKind::cpu);

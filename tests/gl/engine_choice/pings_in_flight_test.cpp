@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "tests/gl/engine_choice/wall_and_ball.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
@@ -19,10 +20,6 @@ class PingsInFlight : public testing::Test {
  protected:
   void SetUp() override { require_gl(); }
 
-  static render::World world() {
-    return make_world({make_body("wall", make_quad({8, 10, -5}, {0, -20, 0}, {0, 0, 10})),
-                       make_body("ball", make_sphere(0.5F, 24))});
-  }
   static render::RendererOptions options(std::uint64_t lose_at = 0) {
     render::RendererOptions options;
     options.engine = EngineKind::gpu;
@@ -54,13 +51,13 @@ class PingsInFlight : public testing::Test {
   }
 
   static std::vector<float> alone(const StreamPing& ping, EngineKind engine = EngineKind::gpu) {
-    render::SonarRenderer renderer(world(), {engine});
+    render::SonarRenderer renderer(wall_and_ball(), {engine});
     return renderer.render_echo(ping.request, ping.stream).intensity;
   }
 };
 
 TEST_F(PingsInFlight, AreThoseOfEachHeadAlone) {
-  render::SonarRenderer renderer(world(), options());
+  render::SonarRenderer renderer(wall_and_ball(), options());
   const std::vector<StreamPing> all = pings();
   renderer.begin_pings(all);
   for (const StreamPing& ping : all) {
@@ -75,8 +72,8 @@ TEST_F(PingsInFlight, AreThoseOfEachHeadAlone) {
 }
 
 TEST_F(PingsInFlight, AreMadeAgainWhenTheWorldHasMovedOn) {
-  render::SonarRenderer renderer(world(), options());
-  render::SonarRenderer other(world(), options());
+  render::SonarRenderer renderer(wall_and_ball(), options());
+  render::SonarRenderer other(wall_and_ball(), options());
   const std::vector<StreamPing> all = pings();
   renderer.begin_pings(all);
   for (render::SonarRenderer* one : {&renderer, &other}) {
@@ -87,7 +84,7 @@ TEST_F(PingsInFlight, AreMadeAgainWhenTheWorldHasMovedOn) {
 }
 
 TEST_F(PingsInFlight, AreThoseThatAreAskedForInTheEnd) {
-  render::SonarRenderer renderer(world(), options());
+  render::SonarRenderer renderer(wall_and_ball(), options());
   std::vector<StreamPing> all = pings();
   renderer.begin_pings(all);
   all[0].request.T_world_sonar.position_m.x = 1;
@@ -95,7 +92,7 @@ TEST_F(PingsInFlight, AreThoseThatAreAskedForInTheEnd) {
 }
 
 TEST_F(PingsInFlight, ComeFromTheCpuWhenTheGpuIsLostOnTheWay) {
-  render::SonarRenderer renderer(world(), options(3));
+  render::SonarRenderer renderer(wall_and_ball(), options(3));
   const std::vector<StreamPing> all = pings();
   renderer.begin_pings(all);
   EXPECT_EQ(renderer.engine(), EngineKind::cpu);
@@ -107,8 +104,7 @@ TEST_F(PingsInFlight, ComeFromTheCpuWhenTheGpuIsLostOnTheWay) {
 
 // The second faces a ball that is larger than the video memory allowed, the first the wall.
 TEST_F(PingsInFlight, StayTheGpusBesideOneThatItCannotHold) {
-  const render::World large = make_world({make_body("wall", make_quad({8, 10, -5}, {0, -20, 0}, {0, 0, 10})),
-                                          make_body("ball", make_sphere(1, 200))});
+  const render::World large = make_world({wall_ahead(), make_body("ball", make_sphere(1, 200))});
   render::RendererOptions bounded = options();
   bounded.gpu.memory_mib = 1;
   std::vector<StreamPing> two{pings()[0], pings()[8]};
@@ -128,7 +124,7 @@ TEST_F(PingsInFlight, StayTheGpusBesideOneThatItCannotHold) {
 }
 
 TEST_F(PingsInFlight, OneThatCannotBeMadeIsToldWhenItIsItsTurn) {
-  render::SonarRenderer renderer(world(), options());
+  render::SonarRenderer renderer(wall_and_ball(), options());
   std::vector<StreamPing> all = pings();
   all[0].request.settings.range.count = 0;
   renderer.begin_pings(all);

@@ -21,6 +21,7 @@
 #include "server/devices/gemini/kind.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/rendering/world_renderer.hpp"
+#include "tests/gl/engine_choice/wall_and_ball.hpp"
 #include "tests/support/engine_test.hpp"
 #include "tests/support/loopback.hpp"
 
@@ -87,8 +88,7 @@ class ServingWithoutGpu : public testing::Test {
 };
 
 TEST_F(ServingWithoutGpu, LosesOnePingAtMost) {
-  const render::World world =
-      test::make_world({test::make_body("wall", test::make_quad({8, 10, -5}, {0, -20, 0}, {0, 0, 10}))});
+  const render::World world = test::make_world({test::wall_ahead()});
   std::vector<std::string> lines;
   render::RendererOptions options = renderer_options(config_);
   options.engine = render::EngineKind::gpu;
