@@ -19,10 +19,10 @@ EngineSwitch::EngineSwitch(SpatialIndex& index, WorkerPool& workers, const Rende
 void EngineSwitch::use(EngineKind engine) {
   if (engine == EngineKind::gpu) {
     make_gpu();
-    on_gpu_ = true;
+    wants_gpu_ = true;
   } else {
     cpu();
-    on_gpu_ = false;
+    wants_gpu_ = false;
     gpu_.reset();
   }
   describe();
@@ -92,7 +92,7 @@ bool EngineSwitch::images_by_gpu(std::span<const EchoJob> jobs, std::string& too
 }
 
 void EngineSwitch::images(std::span<const EchoJob> jobs) {
-  if (on_gpu_ && !gpu_) {
+  if (wants_gpu_ && !gpu_) {
     retry_gpu();
   }
   std::string too_large;
@@ -144,7 +144,7 @@ void EngineSwitch::set_refraction(double bend_per_m) {
 
 void EngineSwitch::describe() {
   description_ = (kind() == EngineKind::gpu ? gpu_ : cpu_)->description();
-  if (on_gpu_ && !gpu_) {
+  if (wants_gpu_ && !gpu_) {
     description_ += ", for the GPU is lost: " + lost_because_;
   }
 }

@@ -23,7 +23,7 @@ class EngineSwitch final : public EchoEngine {
   EngineSwitch(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options);
 
   /// The engine of the next image.
-  EngineKind kind() const { return gpu_ && on_gpu_ ? EngineKind::gpu : EngineKind::cpu; }
+  EngineKind kind() const { return gpu_ ? EngineKind::gpu : EngineKind::cpu; }
   /// Takes this one from the next image on, and gives the GPU up when it is `cpu`.
   /// @param engine not `automatic`
   /// @throws RendererError when it cannot be had; the one in use stays.
@@ -51,7 +51,7 @@ class EngineSwitch final : public EchoEngine {
   const RendererOptions options_;
   double bend_per_m_ = 0.0;
   std::unique_ptr<EchoEngine> cpu_, gpu_;  ///< null: not made yet, or given up
-  bool on_gpu_ = false;                    ///< the GPU is wanted; without `gpu_`, it is lost
+  bool wants_gpu_ = false;                 ///< without `gpu_` it is lost
   bool told_too_large_ = false;
   std::string lost_because_;
   Stopwatch watch_;

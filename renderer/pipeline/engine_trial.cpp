@@ -2,15 +2,14 @@
 #include "renderer/pipeline/engine_trial.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "renderer/errors.hpp"
+#include "renderer/pipeline/image_difference.hpp"
 #include "renderer/stopwatch.hpp"
 
 namespace sonard::render {
@@ -21,36 +20,12 @@ constexpr int most_rounds = 6;
 constexpr double longest_trial_s = 0.5;  // of an engine; its first round is finished in any case
 constexpr double step_m = 1e-3;          // from round to round, so that no round can reuse another
 constexpr int fewest_beams_of_fan = 32;
-constexpr float least_level = 1e-2F;  // of the largest bin of a beam; bins below are not compared
-constexpr double kept_share = 0.99;   // of the bins; a few at edges differ more
+constexpr double kept_share = 0.99;  // of the bins; a few at edges differ more
 
 /// Twice what docs/accuracy.md promises of the bins: either image may be off by that.
 double most_difference(const SonarSettings& settings) {
   const Sampling::Preset preset = settings.sampling.preset;
   return preset == Sampling::Preset::normal || preset == Sampling::Preset::reference ? 0.02 : 0.10;
-}
-
-double difference(const EchoImage& gpu, const EchoImage& cpu) {
-  std::vector<double> squares;
-  for (int beam = 0; beam < cpu.beams; ++beam) {
-    float largest = 0.0F;
-    for (int line = 0; line < cpu.lines; ++line) {
-      largest = std::max(largest, cpu.at(beam, line));
-    }
-    for (int line = 0; line < cpu.lines; ++line) {
-      if (!std::isfinite(gpu.at(beam, line))) {
-        return std::numeric_limits<double>::infinity();
-      }
-      if (cpu.at(beam, line) > least_level * largest) {
-        const double error = static_cast<double>(gpu.at(beam, line) / cpu.at(beam, line)) - 1.0;
-        squares.push_back(error * error);
-      }
-    }
-  }
-  const auto kept = squares.begin() + static_cast<std::ptrdiff_t>(std::ceil(kept_share * squares.size()));
-  std::nth_element(squares.begin(), kept, squares.end());
-  return squares.empty() ? 0.0
-                         : std::sqrt(std::accumulate(squares.begin(), kept, 0.0) / (kept - squares.begin()));
 }
 
 struct Rounds {
@@ -115,7 +90,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
   const Rounds by_gpu = rounds(pings, most_rounds);
   for (std::size_t i = 0; i < pings.size(); ++i) {
     const double most = most_difference(pings[i].request.settings);
-    trial.difference = std::max(trial.difference, difference(by_gpu.images[i], by_cpu.images[i]));
+    trial.difference = std::max(trial.difference, bin_rms(by_gpu.images[i], by_cpu.images[i], kept_share));
     if (!(trial.difference <= most)) {
       trial.gpu_problem =
           fmt::format("but its image differs by {:.2g} % RMS, where the preset allows {:.2g} %",

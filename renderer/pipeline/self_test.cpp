@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/pipeline/image_difference.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 
 namespace sonard::render {
@@ -59,29 +60,18 @@ double beam_echo(double psi_from, double psi_to, double from_m, double to_m, dou
   return sum;
 }
 
-/// RMS over bins above 1e-2 of the beam's maximum.
-double error_of(const EchoImage& image, const SonarSettings& settings) {
-  double squared = 0;
-  int compared = 0;
+EchoImage closed_form(const SonarSettings& settings) {
+  EchoImage image{settings.aperture.beam_count(), settings.range.count, {}};
   for (int beam = 0; beam < image.beams; ++beam) {
     const double psi_from = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
     const double psi_to = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
-    std::vector<double> expected;
-    for (int k = 0; k < settings.range.count; ++k) {
-      expected.push_back(beam_echo(psi_from, psi_to, std::max(1e-9, k * settings.range.step_m),
-                                   (k + 1) * settings.range.step_m, settings.aperture.elevation_limit_rad()));
-    }
-    const double strongest = *std::max_element(expected.begin(), expected.end());
-    for (int k = 0; k < settings.range.count; ++k) {
-      const double truth = expected[static_cast<std::size_t>(k)];
-      if (truth > 1e-2 * strongest) {
-        const double error = static_cast<double>(image.at(beam, k)) / truth - 1;
-        squared += error * error;
-        ++compared;
-      }
+    for (int k = 0; k < image.lines; ++k) {
+      image.intensity.push_back(static_cast<float>(
+          beam_echo(psi_from, psi_to, std::max(1e-9, k * settings.range.step_m),
+                    (k + 1) * settings.range.step_m, settings.aperture.elevation_limit_rad())));
     }
   }
-  return std::sqrt(squared / compared);
+  return image;
 }
 
 SonarSettings wall_settings(int beams, int lines) {
@@ -99,11 +89,12 @@ SelfTestResult run_self_test(RendererOptions options) {
   SonarRenderer renderer(make_wall(), options);
   PingRequest request;
   request.settings = wall_settings(16, 1200);
+  const EchoImage truth = closed_form(request.settings);
   SelfTestResult result;
   // Fixed grids go another way than presets, with `gpu` through shaders of their own.
   for (const Sampling& sampling : {Sampling{}, Sampling::of_grid(3, 64, 256)}) {
     request.settings.sampling = sampling;
-    const double error = error_of(renderer.render_echo(request), request.settings);
+    const double error = bin_rms(renderer.render_echo(request), truth);
     if (!(error < worst_error)) {
       throw RendererError(
           fmt::format("self test: the echo of a wall, by {}, is off by {:.1f} % RMS on {}",

@@ -276,9 +276,9 @@ struct SonarRenderer::Impl {
   }
 
   /// Whether the engine has made this ping already. What it has made of another that was to come is given up.
-  bool is_begun(const StreamPing& ping, const SonarMotion& motion) {
-    const auto made = begun.find(ping.stream);
-    if (made != begun.end() && !made->second.made_of.fits(ping.request, motion, world_revision)) {
+  bool is_begun(int stream, const PingRequest& request, const SonarMotion& motion) {
+    const auto made = begun.find(stream);
+    if (made != begun.end() && !made->second.made_of.fits(request, motion, world_revision)) {
       begun.erase(made);
       return false;
     }
@@ -293,7 +293,7 @@ struct SonarRenderer::Impl {
     const SonarMotion motion = motion_of(request);
     const bool unchanged =
         skip.on(SkipRule::unchanged_scene) && cached_echoes[stream].fits(request, motion, world_revision);
-    if (!request.settings.transmit || motion.at_end || unchanged || is_begun(ping, motion)) {
+    if (!request.settings.transmit || motion.at_end || unchanged || is_begun(stream, request, motion)) {
       return nullptr;
     }
     PointSpread& spread = point_spreads[stream];
@@ -316,7 +316,7 @@ struct SonarRenderer::Impl {
     statistics = {};
     for (const StreamPing& ping : pings) {
       try {
-        if (&ping == &pings.front() && is_begun(ping, motion_of(ping.request))) {
+        if (&ping == &pings.front() && is_begun(ping.stream, ping.request, motion_of(ping.request))) {
           return;  // it is to be handed out first; the next ones begin together when all of these are
         }
         if (Begun* made = may_begin(ping)) {
@@ -373,7 +373,7 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   check(request.settings);
   impl_->statistics = {};
   const SonarMotion motion = impl_->motion_of(request);
-  impl_->is_begun({stream, request}, motion);  // or it is not of this ping, and is given up
+  impl_->is_begun(stream, request, motion);  // or it is not of this ping, and is given up
   CachedEcho& cached = impl_->cached_echoes[stream];
   if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);

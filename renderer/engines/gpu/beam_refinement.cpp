@@ -27,8 +27,6 @@ std::vector<int> beams_of(const std::vector<BeamRun>& runs) {
 
 }  // namespace
 
-BeamRefinement::~BeamRefinement() = default;
-
 BeamRefinement::Grid BeamRefinement::make_grid(GpuBinner& binner, const Aperture& aperture,
                                                const std::vector<BeamRun>& runs, bool with_estimate) {
   Grid grid{std::make_shared<const SampleGrid>(make_sample_grid(aperture, runs)), nullptr};

@@ -27,7 +27,6 @@ class BeamRefinement {
 
   /// @param sampler outlives this object; its context is current when this ends.
   explicit BeamRefinement(RasterSampler& sampler) : sampler_(sampler) {}
-  ~BeamRefinement();
 
   /// Gives the first pass of a request to the GPU.
   /// @param binner has begun the image; it, the request and the statistics outlive the result.

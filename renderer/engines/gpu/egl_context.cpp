@@ -6,17 +6,26 @@
 #include <osg/GL>
 
 #include "renderer/engines/gpu/egl_device.hpp"
+#include "renderer/engines/gpu/gl_devices.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
 
+namespace {
+
+[[noreturn]] void throw_lost() {
+  throw RendererError("the OpenGL context is lost");
+}
+
+}  // namespace
+
 EglContext::EglContext(const std::string& device) {
   const std::vector<GlDevice> devices = list_gl_devices();
-  choice_ = choose_gl_device(devices, device);
-  display_ = egl_devices()[choice_.number].display;
+  const std::size_t number = choose_gl_device(devices, device).number;
+  display_ = egl_devices()[number].display;
   context_ = make_egl_context(display_);
   if (context_ == EGL_NO_CONTEXT) {
-    throw RendererError("OpenGL gave one context and then no other: " + devices[choice_.number].description);
+    throw RendererError("OpenGL gave one context and then no other: " + devices[number].description);
   }
   setState(new osg::State);
   getState()->setGraphicsContext(this);
@@ -49,11 +58,17 @@ std::string EglContext::describe() const {
   return describe_current_gl();
 }
 
+void EglContext::make_current_or_throw() {
+  if (!makeCurrent()) {
+    throw_lost();
+  }
+}
+
 void EglContext::check() const {
   static const auto reset_status =
       reinterpret_cast<GLenum (*)()>(eglGetProcAddress("glGetGraphicsResetStatus"));
   if (eglGetCurrentContext() != context_ || (reset_status != nullptr && reset_status() != GL_NO_ERROR)) {
-    throw RendererError("the OpenGL context is lost");
+    throw_lost();
   }
 }
 

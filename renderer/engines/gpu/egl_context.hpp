@@ -8,8 +8,6 @@
 #include <osg/GraphicsContext>
 #include <osg/Program>
 
-#include "renderer/engines/gpu/gl_devices.hpp"
-
 namespace sonard::render {
 
 /// OpenGL 4.5 compatibility context on an EGL device. It has no default framebuffer: draw to framebuffer
@@ -23,8 +21,8 @@ class EglContext : public osg::GraphicsContext {
   /// "vendor / renderer / version"; valid once realized and current.
   std::string describe() const;
 
-  /// Which of list_gl_devices() it is on, and why.
-  const GlDeviceChoice& device() const { return choice_; }
+  /// @throws RendererError when the context is lost.
+  void make_current_or_throw();
 
   /// @throws RendererError when the context is no longer current, or the driver has reset it. What was read
   /// from it since it was last checked is then worth nothing.
@@ -55,7 +53,6 @@ class EglContext : public osg::GraphicsContext {
   ~EglContext() override;
 
  private:
-  GlDeviceChoice choice_;
   void* display_ = nullptr;  // EGLDisplay; kept opaque for those who include this
   void* context_ = nullptr;  // EGLContext
   bool realized_ = false;

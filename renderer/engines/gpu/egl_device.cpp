@@ -24,6 +24,17 @@ Function egl_function(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
+std::uint64_t memory_mib_of_current() {
+  const GLubyte* extensions = glGetString(GL_EXTENSIONS);
+  GLint kib = 0;
+  if (extensions != nullptr &&
+      std::string_view(reinterpret_cast<const char*>(extensions)).find("GL_NVX_gpu_memory_info") !=
+          std::string_view::npos) {
+    glGetIntegerv(dedicated_memory_kib, &kib);
+  }
+  return kib > 0 ? static_cast<std::uint64_t>(kib) >> 10U : 0;
+}
+
 }  // namespace
 
 std::vector<EglDevice> egl_devices() {
@@ -66,18 +77,16 @@ EGLContext make_egl_context(EGLDisplay display) {
   if (eglChooseConfig(display, wanted.data(), &config, 1, &configs) != EGL_TRUE || configs < 1) {
     config = nullptr;  // EGL_KHR_no_config_context: a context for framebuffer objects needs no config
   }
-  std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
-                                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
-                                 EGL_LOSE_CONTEXT_ON_RESET,
-                                 EGL_NONE};
-  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  std::vector<EGLint> attributes{
+      EGL_CONTEXT_MAJOR_VERSION,       4,
+      EGL_CONTEXT_MINOR_VERSION,       5,
+      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT};
+  std::vector<EGLint> with_resets = attributes;
+  with_resets.insert(with_resets.end(),
+                     {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE});
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, with_resets.data());
   if (context == EGL_NO_CONTEXT) {  // a driver that does not tell of resets
-    attributes[6] = EGL_NONE;
+    attributes.push_back(EGL_NONE);
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
   }
   return context;
@@ -90,21 +99,6 @@ std::string describe_current_gl() {
   };
   return fmt::format("{} / {} / {}", text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION));
 }
-
-namespace {
-
-std::uint64_t memory_mib_of_current() {
-  const GLubyte* extensions = glGetString(GL_EXTENSIONS);
-  GLint kib = 0;
-  if (extensions != nullptr &&
-      std::string_view(reinterpret_cast<const char*>(extensions)).find("GL_NVX_gpu_memory_info") !=
-          std::string_view::npos) {
-    glGetIntegerv(dedicated_memory_kib, &kib);
-  }
-  return kib > 0 ? static_cast<std::uint64_t>(kib) >> 10U : 0;
-}
-
-}  // namespace
 
 std::vector<GlDevice> list_gl_devices() {
   std::vector<GlDevice> list;

@@ -22,6 +22,7 @@
 #include "renderer/engines/gpu/binning_shader.hpp"
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/engines/gpu/estimate_shader.hpp"
+#include "renderer/engines/gpu/gl_errors.hpp"
 #include "renderer/engines/gpu/gpu_buffer.hpp"
 #include "renderer/engines/gpu/gpu_grid.hpp"
 #include "renderer/engines/gpu/gpu_readback.hpp"
@@ -47,6 +48,7 @@ constexpr std::size_t group_size = 64;
 constexpr unsigned samples_unit = 7;  // of textures; OpenSceneGraph uses the first
 constexpr std::size_t image_header_bytes = 16;
 constexpr std::size_t most_view_rows = 16384;
+constexpr const char* doing = "binning";
 
 /// The layout in the shaders.
 struct ImageHeader {
@@ -74,27 +76,6 @@ GLuint groups_of(std::size_t invocations) {
   return static_cast<GLuint>((invocations + group_size - 1) / group_size);
 }
 
-/// What OpenGL complains of since it was asked last.
-struct GlComplaints {
-  bool out_of_memory = false;
-  GLenum other = GL_NO_ERROR;
-
-  GlComplaints() {
-    constexpr int most = 16;  // a context that is lost may complain for ever
-    for (int i = 0; i < most; ++i) {
-      const GLenum error = glGetError();
-      if (error == GL_NO_ERROR) {
-        return;
-      }
-      if (error == GL_OUT_OF_MEMORY) {
-        out_of_memory = true;
-      } else {
-        other = error;
-      }
-    }
-  }
-};
-
 }  // namespace
 
 struct GpuBinner::Impl {
@@ -114,7 +95,7 @@ struct GpuBinner::Impl {
   std::optional<ImageRequest> request;  // the image at hand
   std::size_t estimated = 0;            // beams whose estimates have not been asked for
   std::size_t estimates_asked = 0;      // and that have not been taken
-  std::uint64_t bytes_read = 0, synchronisations = 0, bytes_uploaded = 0, additions = 0;
+  Traffic traffic;                      // of that image
 
   Impl(EglContext& made_current, std::shared_ptr<Programs> shared)
       : context(made_current),
@@ -176,29 +157,29 @@ struct GpuBinner::Impl {
     gl.glUniform1i(at_lines, request ? lines() : 1);
   }
 
-  void make_current() const {
-    if (!context.makeCurrent()) {
-      throw RendererError("the OpenGL context is lost");
+  /// @throws RequestError
+  void check_size(std::size_t bytes, const char* what) const {
+    if (bytes > most_bytes) {
+      throw RequestError(fmt::format("sampling: {} of {} MiB, but a buffer of this OpenGL holds {} MiB", what,
+                                     bytes >> 20U, most_bytes >> 20U));
     }
   }
 
   /// @throws RequestError
   void hold(GpuBuffer& buffer, std::size_t bytes, const char* what) {
-    if (bytes > most_bytes) {
-      throw RequestError(fmt::format("sampling: {} of {} MiB, but a buffer of this OpenGL holds {} MiB", what,
-                                     bytes >> 20U, most_bytes >> 20U));
-    }
+    check_size(bytes, what);
     if (buffer.bytes() < bytes) {
       buffer.hold(bytes);
-      bytes_uploaded += bytes;
+      traffic.bytes_uploaded += bytes;
     }
   }
 
   /// Sums that are as they begin, which is how sum_shader leaves them.
   void hold_sums(GpuBuffer& buffer, std::size_t bytes) {
     if (buffer.bytes() < bytes) {
-      hold(buffer, bytes, "beams");
+      check_size(bytes, "beams");
       buffer.fill(std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t), start_of_sum), GL_DYNAMIC_COPY);
+      traffic.bytes_uploaded += bytes;
     }
   }
 
@@ -233,7 +214,7 @@ struct GpuBinner::Impl {
   void begin(const ImageRequest& what) {
     request.emplace(what);
     estimated = 0;
-    bytes_read = synchronisations = bytes_uploaded = additions = 0;
+    traffic = {};
     for (int page = 0; page < page_count(); ++page) {
       if (pages.size() == static_cast<std::size_t>(page)) {
         pages.push_back(std::make_unique<GpuBuffer>(gl));
@@ -241,13 +222,13 @@ struct GpuBinner::Impl {
       GpuBuffer& buffer = *pages[static_cast<std::size_t>(page)];
       hold(buffer, bytes_of_page(page), "an image");
       buffer.write(0, std::vector<ImageHeader>(1));
-      bytes_uploaded += image_header_bytes;
+      traffic.bytes_uploaded += image_header_bytes;
     }
     std::vector<float> weights = what.line_weight;
     weights.resize(static_cast<std::size_t>(lines()), 1.0F);
     if (weights != line_weights) {
       line_weight.fill(weights);
-      bytes_uploaded += line_weight.bytes();
+      traffic.bytes_uploaded += line_weight.bytes();
       line_weights = std::move(weights);
     }
     check_memory("an image");
@@ -255,12 +236,12 @@ struct GpuBinner::Impl {
 
   /// @throws RequestError, RendererError
   void check_memory(const char* what) {
-    const GlComplaints complaints;
-    if (complaints.other != GL_NO_ERROR) {
+    const GlErrors errors = take_gl_errors();
+    if (errors.other != 0) {
       forget();
-      throw RendererError("OpenGL error " + std::to_string(complaints.other) + " while binning");
+      throw RendererError(errors.text(doing));
     }
-    if (complaints.out_of_memory) {
+    if (errors.out_of_memory) {
       forget();
       throw RequestError(fmt::format("sampling: OpenGL has no memory for {} of this size", what));
     }
@@ -429,13 +410,13 @@ struct GpuBinner::Impl {
   void wait_for(GpuReadback& readback, const std::function<void(std::span<const std::byte>)>& take) {
     const bool there = readback.wait([&](std::span<const std::byte> bytes) {
       take(bytes);
-      bytes_read += bytes.size();
+      traffic.bytes_read += bytes.size();
     });
-    ++synchronisations;
+    ++traffic.synchronisations;
     context.check();
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR || !there) {
+    if (const GlErrors errors = take_gl_errors(); errors.any() || !there) {
       forget();
-      throw RendererError("OpenGL error " + std::to_string(error) + " while binning");
+      throw RendererError(errors.text(doing));
     }
   }
 
@@ -493,7 +474,7 @@ struct GpuBinner::Impl {
       result.samples += counted.samples;
       result.invalid_samples += counted.invalid;
       result.saturated_samples += counted.saturated;
-      additions += counted.additions;
+      traffic.atomic_additions += counted.additions;
     }
   }
 };
@@ -512,15 +493,15 @@ GpuBinner::~GpuBinner() {
 
 std::shared_ptr<const GpuGrid> GpuBinner::load(const SampleGrid& grid, const std::vector<int>& beams,
                                                const SampleGrid* thinned) {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   auto made = std::make_shared<const GpuGrid>(impl_->gl, grid, beams, thinned);
   impl_->check_memory("a grid");
-  impl_->bytes_uploaded += made->bytes();
+  impl_->traffic.bytes_uploaded += made->bytes();
   return made;
 }
 
 void GpuBinner::begin(const ImageRequest& request) {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   impl_->begin(request);
 }
 
@@ -529,44 +510,32 @@ int GpuBinner::beams_per_page() const {
 }
 
 void GpuBinner::add(const GpuGrid& grid, const std::vector<unsigned>& textures) {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   impl_->add(grid, textures);
 }
 
 void GpuBinner::ask_estimates() {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   impl_->ask_estimates();
 }
 
 std::vector<BeamEstimate> GpuBinner::take_estimates() {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   return impl_->take_estimates();
 }
 
 void GpuBinner::ask_image() {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   impl_->ask_image();
 }
 
 BinningResult GpuBinner::take_image(std::vector<float> memory) {
-  impl_->make_current();
+  impl_->context.make_current_or_throw();
   return impl_->take_image(std::move(memory));
 }
 
-std::uint64_t GpuBinner::bytes_read() const {
-  return impl_->bytes_read;
-}
-
-std::uint64_t GpuBinner::synchronisations() const {
-  return impl_->synchronisations;
-}
-
-std::uint64_t GpuBinner::bytes_uploaded() const {
-  return impl_->bytes_uploaded;
-}
-
-std::uint64_t GpuBinner::atomic_additions() const {
-  return impl_->additions;
+const GpuBinner::Traffic& GpuBinner::traffic() const {
+  return impl_->traffic;
 }
 
 }  // namespace sonard::render

@@ -72,13 +72,16 @@ class GpuBinner {
   /// @throws RendererError when OpenGL fails.
   BinningResult take_image(std::vector<float> memory = {});
 
-  /// What has come back, how often that was waited for, and what was written into buffers, since begin().
-  std::uint64_t bytes_read() const;
-  std::uint64_t synchronisations() const;
-  std::uint64_t bytes_uploaded() const;
-  /// How often an invocation has added to a word of the sums of the image: after take_image(), modulo 2^32
-  /// for each page.
-  std::uint64_t atomic_additions() const;
+  /// Of the image at hand.
+  struct Traffic {
+    std::uint64_t bytes_read = 0;
+    std::uint64_t synchronisations = 0;  ///< how often something was waited for
+    std::uint64_t bytes_uploaded = 0;    ///< written into buffers
+    /// How often an invocation has added to a word of the sums: after take_image(), modulo 2^32 for each
+    /// page.
+    std::uint64_t atomic_additions = 0;
+  };
+  const Traffic& traffic() const;
 
  private:
   struct Impl;

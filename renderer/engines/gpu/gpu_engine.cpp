@@ -78,7 +78,7 @@ void GpuEngine::images_together(std::span<const EchoJob> jobs) {
     }
   }
   for (Making& image : all) {
-    finish(image);
+    count(image.job.statistics, [&] { finish(image); });
   }
 }
 
@@ -135,14 +135,13 @@ void GpuEngine::finish(Making& image) {
   if (image.options.cone_aperture != nullptr) {
     return;
   }
-  Stopwatch watch;
   const auto& [request, echo, statistics] = image.job;
   hand_over(image.binner.take_image(std::move(echo.image.intensity)), echo, statistics);
-  statistics.bytes_read_back += image.binner.bytes_read();
-  statistics.synchronisations += image.binner.synchronisations();
-  statistics.bytes_uploaded += image.binner.bytes_uploaded();
-  statistics.atomic_additions += image.binner.atomic_additions();
-  statistics.binning_s += watch.lap();
+  const GpuBinner::Traffic& traffic = image.binner.traffic();
+  statistics.bytes_read_back += traffic.bytes_read;
+  statistics.synchronisations += traffic.synchronisations;
+  statistics.bytes_uploaded += traffic.bytes_uploaded;
+  statistics.atomic_additions += traffic.atomic_additions;
 }
 
 void GpuEngine::draw_grid(GpuBinner& binner, const EchoRequest& request, bool may_keep,

@@ -18,6 +18,7 @@
 #include <osgUtil/SceneView>
 
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/gl_errors.hpp"
 #include "renderer/engines/gpu/mesh_chunk.hpp"
 #include "renderer/engines/gpu/raster_part.hpp"
 #include "renderer/engines/gpu/surface_shader.hpp"
@@ -185,7 +186,7 @@ struct RasterSampler::Impl {
     // Near things first: what they hide is not shaded.
     osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
     context->realize();
-    make_current();
+    context->make_current_or_throw();
     description = "gpu, " + context->describe();
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
     video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
@@ -227,12 +228,6 @@ struct RasterSampler::Impl {
       }
       scene->addChild(node.transform);
       bodies.push_back(node);
-    }
-  }
-
-  void make_current() {
-    if (!context->makeCurrent()) {
-      throw RendererError("the OpenGL context is lost");
     }
   }
 
@@ -321,7 +316,7 @@ struct RasterSampler::Impl {
   /// All views of a ping. Does not wait for the drawing to end.
   std::vector<ViewTarget*> draw(const Pose& T_world_sonar, const SampleGrid& grid,
                                 const SurfaceModel& surface, double range_m) {
-    make_current();
+    context->make_current_or_throw();
     const Refraction bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
                           bend_per_m};
     std::vector<ViewTarget*> views = targets_for(grid.views, bend);
@@ -345,7 +340,7 @@ struct RasterSampler::Impl {
     for (const ViewTarget* target : views) {
       target->scene_view->draw();
     }
-    check_errors();
+    check_gl_errors("drawing the scene");
     return views;
   }
 
@@ -360,14 +355,8 @@ struct RasterSampler::Impl {
     glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target.samples.data());
     context->getState()->haveAppliedTextureAttribute(context->getState()->getActiveTextureUnit(),
                                                      osg::StateAttribute::TEXTURE);
-    check_errors();
+    check_gl_errors("drawing the scene");
     context->check();
-  }
-
-  static void check_errors() {
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-      throw RendererError("OpenGL error " + std::to_string(error) + " while drawing the scene");
-    }
   }
 };
 
@@ -397,7 +386,7 @@ std::vector<unsigned> RasterSampler::draw(const Pose& T_world_sonar, const Sampl
 }
 
 EglContext& RasterSampler::current_context() {
-  impl_->make_current();
+  impl_->context->make_current_or_throw();
   return *impl_->context;
 }
 
@@ -410,7 +399,7 @@ void RasterSampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
 }
 
 void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
-  impl_->make_current();
+  impl_->context->make_current_or_throw();
   for (const PartMesh& change : changes) {
     osg::ref_ptr<osg::Group> chunks;
     if (const auto* known = impl_->replacements.find(change.mesh.get())) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/engines/gpu/gl_errors.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
@@ -58,15 +59,15 @@ void VideoMemory::hold(const std::vector<Item*>& items) {
 }
 
 void VideoMemory::check_upload() const {
-  const GLenum error = glGetError();
-  if (error == GL_OUT_OF_MEMORY) {
+  const GlErrors errors = take_gl_errors();
+  if (errors.out_of_memory) {
     throw RendererError(
         fmt::format("there is less video memory than gpu.memory_mib allows: {} bytes of the "
                     "world do not fit; lower it, or choose engine: cpu",
                     bytes_));
   }
-  if (error != GL_NO_ERROR) {
-    throw RendererError(fmt::format("OpenGL error {} while uploading the world", error));
+  if (errors.any()) {
+    throw RendererError(errors.text("uploading the world"));
   }
 }
 
