@@ -15,9 +15,9 @@ namespace sonard::server {
 namespace {
 
 constexpr const char* what_to_install =
-    "         To render on a GPU, install its OpenGL driver with EGL: libgl1-mesa-dri for Intel and AMD "
-    "(and\n"
-    "         for software), libnvidia-gl-* with nvidia-driver for NVIDIA; the user needs /dev/dri (groups\n"
+    "         To render on a GPU, install its OpenGL driver with EGL: libgl1-mesa-dri for Intel and AMD,\n"
+    "         and for software, libnvidia-gl-* with nvidia-driver for NVIDIA; the user needs /dev/dri "
+    "(groups\n"
     "         video and render). In a container: docs/gpu.md.\n";
 
 void print_devices(const std::string& wanted) {

@@ -191,8 +191,7 @@ void Daemon::warm_up(const std::vector<HeadConfig>& heads) const {
     for (std::size_t i = 0; i < heads.size(); ++i) {
       const HeadConfig& head = heads[i];
       if (&renderer_of(head) == renderer) {
-        first_pings.push_back({static_cast<int>(i),
-                               {T_world_vehicle * head.T_vehicle_sonar, usual_settings(head), 0, head.seed}});
+        first_pings.push_back({static_cast<int>(i), usual_ping(head, T_world_vehicle)});
       }
     }
     if (!first_pings.empty()) {

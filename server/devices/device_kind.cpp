@@ -20,6 +20,10 @@ render::SonarSettings usual_settings(const HeadConfig& head) {
   return kind.sonar_settings(kind.usual_job(head), head);
 }
 
+render::PingRequest usual_ping(const HeadConfig& head, const render::Pose& T_world_vehicle) {
+  return {T_world_vehicle * head.T_vehicle_sonar, usual_settings(head), 0, head.seed};
+}
+
 void check_sampling_of(const HeadConfig& head) {
   const render::SonarSettings settings = usual_settings(head);
   if (render::needs_grid(settings)) {

@@ -12,6 +12,7 @@
 
 #include "protocol/common/device.hpp"
 #include "protocol/glf/records.hpp"
+#include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/clock/clock.hpp"
@@ -103,6 +104,8 @@ render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearin
 
 /// The settings of the renderer for DeviceKind::usual_job().
 render::SonarSettings usual_settings(const HeadConfig& head);
+/// The ping of that, sent from where the vehicle is.
+render::PingRequest usual_ping(const HeadConfig& head, const render::Pose& T_world_vehicle);
 /// The heads under the names of their logs, in the order of the configuration.
 std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads);
 

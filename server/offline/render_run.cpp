@@ -185,11 +185,9 @@ void RenderRun::choose_engine() {
       return;
     }
   }
-  const HeadConfig& head = config_.heads[head_];
-  const render::Pose T_world_sonar =
-      trajectory_.T_world_vehicle(trajectory_.start_ns()) * head.T_vehicle_sonar;
   const std::vector<render::StreamPing> first{
-      {static_cast<int>(head_), {T_world_sonar, usual_settings(head), 0, head.seed}}};
+      {static_cast<int>(head_),
+       usual_ping(config_.heads[head_], trajectory_.T_world_vehicle(trajectory_.start_ns()))}};
   spdlog::info("engine auto: {}", describe(render::choose_engine(renderer_, first)));
 }
 

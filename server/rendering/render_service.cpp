@@ -199,10 +199,13 @@ void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
   }
 }
 
-/// This one and those that wait behind it while all bodies stay where they are.
+/// This one and those that wait behind it while all bodies stay where they are; none when nothing waits.
 std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob& first) {
-  std::vector<render::StreamPing> pings{{first.stream, first.request}};
+  std::vector<render::StreamPing> pings;
   const std::lock_guard lock(mutex);
+  if (!queue.empty()) {
+    pings.push_back({first.stream, first.request});
+  }
   for (const Entry& entry : queue) {
     if (!entry.done || entry.job.bodies != first.bodies) {
       break;
@@ -212,7 +215,7 @@ std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob&
   return pings;
 }
 
-/// @param next begins with that of the job
+/// @param next what next_pings() said
 RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job,
                                          const std::vector<render::StreamPing>& next) {
   RenderResult result;
