@@ -17,8 +17,8 @@ namespace sonard::render {
 namespace {
 
 constexpr int most_rounds = 6;
-constexpr double longest_trial_s = 0.5;  // of an engine; its first round is finished in any case
-constexpr double step_m = 1e-3;          // from round to round, so that no round can reuse another
+constexpr double longest_trial_s = 0.25;  // of an engine; a round that has begun is finished
+constexpr double step_m = 1e-3;           // from round to round, so that no round can reuse another
 constexpr int fewest_beams_of_fan = 32;
 constexpr double kept_share = 0.99;  // of the bins; a few at edges differ more
 

@@ -21,9 +21,9 @@ struct EngineTrial {
   std::string gpu_problem;  ///< why it is not taken, whatever its time; empty: that decides
 };
 
-/// Renders these pings with both engines, for a second at most after the shaders are built, and lets the
-/// renderer go on with the faster one: the GPU only where its bins are those of the CPU within twice the
-/// error that the preset of each ping promises.
+/// Renders these pings with both engines, for a quarter of a second and a ping each, and lets the renderer go
+/// on with the faster one: the GPU only where its bins are those of the CPU within twice the error that the
+/// preset of each ping promises.
 /// @throws RequestError, RendererError when the CPU cannot render them.
 EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings);
 

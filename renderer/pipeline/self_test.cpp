@@ -37,39 +37,41 @@ double cos4_integral(double u) {
   return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32;
 }
 
-/// docs/physics.md 3.2, T2: echo of a perpendicular wall between two ranges, per unit azimuth. Along one
-/// azimuth the wall is at wall / (cos psi cos theta), so each range bounds an elevation.
-double wall_echo(double psi, double from_m, double to_m, double elevation_limit) {
-  const auto elevation_at = [&](double range_m) {
-    const double cosine = wall_m / (range_m * std::cos(psi));
-    return cosine >= 1 ? 0.0 : std::min(elevation_limit, std::acos(cosine));
-  };
+/// Adds the echo of one azimuth to the lines of its beam (docs/physics.md 3.2, T2). Along it a perpendicular
+/// wall is at wall / (cos psi cos theta), so each range bounds an elevation; the lines before and behind what
+/// lies within `elevation_limit` hold nothing.
+void add_wall_echo(double psi, double width_rad, double elevation_limit, const RangeLines& range,
+                   std::vector<double>& lines) {
   const double c = std::cos(psi);
-  return 2 * c * c * c / (wall_m * wall_m) *
-         (cos4_integral(elevation_at(to_m)) - cos4_integral(elevation_at(from_m)));
-}
-
-/// The echo over the width of a beam, by the midpoint rule.
-double beam_echo(double psi_from, double psi_to, double from_m, double to_m, double elevation_limit) {
-  constexpr int steps = 400;
-  const double step = (psi_to - psi_from) / steps;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    sum += wall_echo(psi_from + (i + 0.5) * step, from_m, to_m, elevation_limit) * step;
+  const double scale = 2 * c * c * c / (wall_m * wall_m) * width_rad;
+  const double nearest_m = wall_m / c, farthest_m = nearest_m / std::cos(elevation_limit);
+  double below = 0;
+  for (int k = static_cast<int>(nearest_m / range.step_m); k < range.count; ++k) {
+    const double to_m = (k + 1) * range.step_m;
+    const double within =
+        cos4_integral(to_m < farthest_m ? std::acos(std::min(1.0, nearest_m / to_m)) : elevation_limit);
+    lines[static_cast<std::size_t>(k)] += scale * (within - below);
+    if (to_m >= farthest_m) {
+      return;
+    }
+    below = within;
   }
-  return sum;
 }
 
+/// Over the width of each beam by the midpoint rule.
 EchoImage closed_form(const SonarSettings& settings) {
+  constexpr int steps = 400;
   EchoImage image{settings.aperture.beam_count(), settings.range.count, {}};
   for (int beam = 0; beam < image.beams; ++beam) {
     const double psi_from = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
     const double psi_to = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
-    for (int k = 0; k < image.lines; ++k) {
-      image.intensity.push_back(static_cast<float>(
-          beam_echo(psi_from, psi_to, std::max(1e-9, k * settings.range.step_m),
-                    (k + 1) * settings.range.step_m, settings.aperture.elevation_limit_rad())));
+    const double step = (psi_to - psi_from) / steps;
+    std::vector<double> lines(static_cast<std::size_t>(image.lines));
+    for (int i = 0; i < steps; ++i) {
+      add_wall_echo(psi_from + (i + 0.5) * step, step, settings.aperture.elevation_limit_rad(),
+                    settings.range, lines);
     }
+    image.intensity.insert(image.intensity.end(), lines.begin(), lines.end());
   }
   return image;
 }

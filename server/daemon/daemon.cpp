@@ -33,6 +33,7 @@
 #include "server/pose/pose_inputs.hpp"
 #include "server/pose/pose_intake.hpp"
 #include "server/recording/recorder.hpp"
+#include "server/rendering/engine_choice_file.hpp"
 #include "server/rendering/world_renderer.hpp"
 
 namespace sonard::server {
@@ -378,7 +379,7 @@ int run_daemon(DaemonConfig config) {
       spdlog::info("skip rule {} is off", entry.name);
     }
   }
-  return serve(config, world, world_renderer_factory(world, options));
+  return serve(config, world, world_renderer_factory(world, options, engine_choice_path()));
 }
 
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,

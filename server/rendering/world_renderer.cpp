@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rendering/world_renderer.hpp"
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <spdlog/spdlog.h>
 
+#include "renderer/errors.hpp"
 #include "renderer/pipeline/engine_trial.hpp"
 #include "renderer/pipeline/self_test.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "server/rendering/engine_choice_file.hpp"
 
 namespace sonard::server {
 namespace {
 
 class WorldRenderer final : public PingRenderer {
  public:
-  WorldRenderer(const render::World& world, const render::RendererOptions& options)
-      : renderer_(world, options), automatic_(options.engine == render::EngineKind::automatic) {}
+  WorldRenderer(const render::World& world, const render::RendererOptions& options,
+                std::filesystem::path choices)
+      : world_(world), options_(options), choices_(std::move(choices)), renderer_(world, options) {}
 
   std::string description() const override { return renderer_.engine_description(); }
 
@@ -31,8 +36,14 @@ class WorldRenderer final : public PingRenderer {
   }
 
   void warm_up(const std::vector<render::StreamPing>& first_pings) override {
-    if (automatic_) {
-      spdlog::info("engine auto: {}", describe(render::choose_engine(renderer_, first_pings)));
+    if (options_.engine == render::EngineKind::automatic && !take_kept_choice(first_pings)) {
+      const render::EngineTrial trial = render::choose_engine(renderer_, first_pings);
+      spdlog::info("engine auto: {}", describe(trial));
+      // A GPU that cannot be had is looked for again: that takes no time, and a driver may come.
+      if (!choices_.empty() && !trial.gpu.empty()) {
+        EngineChoiceFile(choices_).keep(situation_of(options_, world_, first_pings),
+                                        {trial.taken, describe(trial)});
+      }
       return;
     }
     for (const render::StreamPing& ping : first_pings) {
@@ -46,18 +57,40 @@ class WorldRenderer final : public PingRenderer {
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
  private:
+  /// Goes on with the engine that an earlier start has found the faster one. @return false where none has, or
+  /// where that engine cannot be had any more.
+  bool take_kept_choice(const std::vector<render::StreamPing>& first_pings) {
+    const auto kept = choices_.empty()
+                          ? std::nullopt
+                          : EngineChoiceFile(choices_).find(situation_of(options_, world_, first_pings));
+    if (!kept) {
+      return false;
+    }
+    try {
+      renderer_.use_engine(kept->taken);
+    } catch (const render::RendererError&) {
+      return false;
+    }
+    spdlog::info("engine auto: {} is taken, as an earlier start measured: {} (kept in {})",
+                 name_of(kept->taken), kept->measured, choices_.string());
+    return true;
+  }
+
+  const render::World& world_;
+  const render::RendererOptions options_;
+  const std::filesystem::path choices_;
   render::SonarRenderer renderer_;
-  const bool automatic_;
 };
 
 }  // namespace
 
-RendererFactory world_renderer_factory(const render::World& world, render::RendererOptions options) {
-  return [&world, options = std::move(options)] {
+RendererFactory world_renderer_factory(const render::World& world, render::RendererOptions options,
+                                       std::filesystem::path choices) {
+  return [&world, options = std::move(options), choices = std::move(choices)] {
     const render::SelfTestResult tested = render::run_self_test(options);
     spdlog::info("renderer self-test passed: error={:.2f}% engine=\"{}\"", 100.0 * tested.error,
                  tested.engine);
-    return std::make_unique<WorldRenderer>(world, options);
+    return std::make_unique<WorldRenderer>(world, options, choices);
   };
 }
 

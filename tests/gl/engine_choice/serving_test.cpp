@@ -96,7 +96,7 @@ TEST_F(ServingWithoutGpu, LosesOnePingAtMost) {
   options.skip.turn_off(render::SkipRule::unchanged_scene);  // the sonar rests, and every ping is an image
   options.report = [&](const std::string& line) { lines.push_back(line); };
   std::thread client([this] { play_topside(); });
-  const int code = serve(config_, world, world_renderer_factory(world, options));
+  const int code = serve(config_, world, world_renderer_factory(world, options, {}));
   client.join();
   EXPECT_EQ(code, exit_clean);
   EXPECT_EQ(lines.size(), 1U);

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/run_process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::test {
 namespace {
@@ -90,8 +91,10 @@ class ServedConfig {
   ServedConfig(const ServedConfig&) = delete;
   ServedConfig& operator=(const ServedConfig&) = delete;
 
-  /// `sonard run` without OpenGL, in a network of its own; SIGTERM when it is ready. The log is in `out`.
-  ProcessResult run_without_gl() const {
+  ProcessResult run_without_gl() const { return run({no_gl, "XDG_CACHE_HOME=/nonexistent"}); }
+
+  /// `sonard run` in a network of its own; SIGTERM when it is ready. The log is in `out`.
+  ProcessResult run(const std::vector<std::string>& environment) const {
     std::vector<std::string> command{"unshare", "--net"};
     if (geteuid() != 0) {
       command.emplace_back("--map-root-user");
@@ -101,11 +104,9 @@ class ServedConfig {
         "until grep -q 'sonard ready' \"$log\" || ! kill -0 $pid || [ $tries = 0 ]; do sleep 0.1; "
         "tries=$((tries - 1)); done; "
         "kill -TERM $pid; wait $pid; code=$?; cat \"$log\"; rm \"$log\"; exit $code";
-    for (const std::string& word :
-         {std::string("sh"), std::string("-c"), script, std::string("sh"), path_, std::string("env"), no_gl,
-          std::string(SONARD_PROGRAM), std::string("run"), path_}) {
-      command.push_back(word);
-    }
+    command.insert(command.end(), {"sh", "-c", script, "sh", path_, "env"});
+    command.insert(command.end(), environment.begin(), environment.end());
+    command.insert(command.end(), {SONARD_PROGRAM, "run", path_});
     return run_process(command);
   }
   const std::string& path() const { return path_; }
@@ -122,6 +123,18 @@ TEST(Run, serves_from_the_cpu_where_there_is_no_gl) {
               ContainsRegex("engine auto: cpu takes [0-9.]+ ms a ping .*gpu cannot be had: no OpenGL 4.5 "
                             "through EGL"));
   EXPECT_THAT(result.out, ContainsRegex("sonard ready heads=1 .*engine=\"cpu, Embree 3"));
+}
+
+TEST(Run, measures_the_engines_at_the_first_start_only) {
+  const ServedConfig config("auto");
+  const TemporaryFolder cache;
+  const std::vector<std::string> environment{"XDG_CACHE_HOME=" + cache.path().string()};
+  EXPECT_THAT(config.run(environment).out,
+              ContainsRegex("engine auto: cpu takes [0-9.]+ ms a ping .*; (cpu|gpu) is taken"));
+  const std::string again = config.run(environment).out;
+  EXPECT_THAT(again, ContainsRegex("engine auto: (cpu|gpu) is taken, as an earlier start measured: cpu takes "
+                                   "[0-9.]+ ms a ping .* \\(kept in .*/sonard/engine_choices\\)"));
+  EXPECT_THAT(again, HasSubstr("sonard ready heads=1"));
 }
 
 TEST(Run, ends_with_its_own_exit_code_when_the_gpu_is_asked_for_without_gl) {

@@ -143,6 +143,7 @@ std::string read_by_protoc(const Bytes& bytes) {
     text += part.data();
   }
   EXPECT_EQ(pclose(pipe), 0);
+  std::remove(path.c_str());
   return text;
 }
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/glf/log_view.hpp"
-#include "tests/unit/server/offline/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::server {
 namespace {

@@ -16,7 +16,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/server/offline/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::server {
 namespace {

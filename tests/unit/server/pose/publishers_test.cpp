@@ -23,9 +23,9 @@ using testing::HasSubstr;
 
 class PublishersTest : public SourceTest {
  protected:
-  static std::string file(const std::string& text) { return write_file(text).string(); }
+  std::string file(const std::string& text) const { return write_file(text).string(); }
   /// North at 2 m/s for half a second.
-  static std::string motion() {
+  std::string motion() const {
     return file("t,x,y,z,qx,qy,qz,qw\n0,0,0,-5,0,0,0,1\n0.25,0,0.5,-5,0,0,0,1\n0.5,0,1,-5,0,0,0,1\n");
   }
   int run(ChildProcess& child) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <chrono>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "server/pose/pose_source.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/wait_for.hpp"
 
 namespace sonard::server {
@@ -57,10 +57,8 @@ class SourceTest : public testing::Test {
     return result;
   }
 
-  /// A file of this test in this process, so that test runs side by side do not meet.
-  static std::filesystem::path write_file(const std::string& text) {
-    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    const std::filesystem::path path = testing::TempDir() + test + "_" + std::to_string(getpid()) + ".csv";
+  std::filesystem::path write_file(const std::string& text) const {
+    const std::filesystem::path path = folder_.path() / "trajectory.csv";
     std::ofstream{path} << text;
     return path;
   }
@@ -68,6 +66,7 @@ class SourceTest : public testing::Test {
   static constexpr Ipv4 localhost = 0x7F000001;
   static inline const AllowList loopback{{0x7F000000, 8}};
 
+  test::TemporaryFolder folder_;
   boost::asio::io_context io_;
   SteadyClock clock_;
   std::vector<Delivery> delivered_;

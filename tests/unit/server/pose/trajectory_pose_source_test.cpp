@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 class TrajectoryPoseSourceTest : public SourceTest {
  protected:
   /// East at 1 m/s for 0.3 s.
-  static std::filesystem::path file() {
+  std::filesystem::path file() const {
     return write_file("t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\n10.3,0.3,0,0,0,0,0,1\n");
   }
 };

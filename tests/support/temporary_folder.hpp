@@ -15,7 +15,7 @@ namespace sonard::test {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sonard-offline-XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "sonard-test-XXXXXX").string();
     path_ = mkdtemp(name.data());
   }
   ~TemporaryFolder() {
