@@ -9,6 +9,11 @@ target_compile_options(sonard_flags INTERFACE
   -ffp-contract=off
   # GCC before 14 reports false positives of these in optimised standard library code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow>)
+set(SONARD_SIMD "" CACHE STRING "Compile hot loops for sse2, avx2 or avx512f alone; empty: for all, the best is picked at load time")
+set_property(CACHE SONARD_SIMD PROPERTY STRINGS "" sse2 avx2 avx512f)
+if(SONARD_SIMD)
+  target_compile_definitions(sonard_flags INTERFACE SONARD_SIMD_ONLY="${SONARD_SIMD}")
+endif()
 if(CMAKE_UNITY_BUILD)
   # It takes a source that another one includes for a header.
   target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)

@@ -33,6 +33,9 @@ void OfflineArguments::declare_run(CLI::App& app) {
   app.add_flag("--overwrite", options_.overwrite, "Render existing frames again, whatever their settings");
   app.add_flag("--truth", options_.truth,
                "Also write which body echoes most in each bin; renders an echo for each body near");
+  app.add_option("--picture-every", options_.picture_every, "A picture of every so-many-th frame; 0: none")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
   app.add_option("--size", options_.radius_px, "Pixels of pictures from the apex to the full range")
       ->check(CLI::Range(64, 8192))
       ->capture_default_str();

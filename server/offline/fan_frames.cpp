@@ -37,6 +37,7 @@ int count_of(Survey& survey, int pings) {
 FanFrames::FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
                      const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth)
     : head_(head),
+      options_(options),
       place_(place),
       trajectory_(trajectory),
       survey_(std::move(survey)),
@@ -125,7 +126,9 @@ std::string FanFrames::sidecar(int frame, const render::PingRequest& request) co
   json["ping_number"] = frame;
   json["stream"] = place_.stream;
   json["seed"] = head_.seed;
-  json["picture"] = picture_name(name(frame));
+  if (options_.draws(frame)) {
+    json["picture"] = picture_name(name(frame));
+  }
   json["samples"] = samples_json(name(frame), job_.sixteen_bit, {"line", job_.bins()}, {"beam", beams});
   json["geometry"] = {{"line_step_m", job_.bin_m()},
                       {"range_m", job_.bin_m() * job_.bins()},

@@ -42,6 +42,7 @@ class FanFrames final : public FrameSource {
   std::string caption(int frame) const;
 
   const HeadConfig& head_;
+  const OfflineOptions options_;
   HeadPlace place_;
   const VehicleTrajectory& trajectory_;
   std::unique_ptr<Survey> survey_;

@@ -36,6 +36,7 @@ int bins_of(const Survey& survey, const std::vector<int>& first_lines) {
 SweepFrames::SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey,
                          const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth)
     : head_(head),
+      options_(options),
       stream_(stream),
       trajectory_(trajectory),
       survey_(std::move(survey)),
@@ -133,7 +134,9 @@ std::string SweepFrames::sidecar(int frame) const {
   json["first_ping_number"] = first;
   json["stream"] = stream_;
   json["seed"] = head_.seed;
-  json["picture"] = picture_name(name(frame));
+  if (options_.draws(frame)) {
+    json["picture"] = picture_name(name(frame));
+  }
   json["samples"] = samples_json(name(frame), false, {"bin", bins_}, {"line", end - first});
   json["geometry"] = {{"line_step_m", ping.bin_m()},
                       {"range_m", ping.range_m()},

@@ -41,6 +41,7 @@ class SweepFrames final : public FrameSource {
   std::string sidecar(int frame) const;
 
   const HeadConfig& head_;
+  const OfflineOptions options_;
   int stream_;
   const VehicleTrajectory& trajectory_;
   std::unique_ptr<Survey> survey_;

@@ -43,6 +43,17 @@ std::string vector_units() {
   return "none known";
 }
 
+/// What the hot loops of this program were compiled for (renderer/simd.hpp).
+std::string vectors_of_program() {
+#ifdef SONARD_SIMD_ONLY
+  return SONARD_SIMD_ONLY " alone";
+#elif defined(__x86_64__)
+  return "the best of sse2, avx2 and avx512f";
+#else
+  return "this processor's";
+#endif
+}
+
 }  // namespace
 
 std::string describe_machine() {
@@ -50,11 +61,13 @@ std::string describe_machine() {
   uname(&system);
   std::string load;
   std::getline(std::ifstream("/proc/loadavg"), load);
-  return fmt::format("processor {} ({}), {} cores, memory {}\nsystem    {} {}, load {}\ncompiler  {}, {}\n",
-                     value_in("/proc/cpuinfo", "model name"), vector_units(),
-                     std::thread::hardware_concurrency(), value_in("/proc/meminfo", "MemTotal"),
-                     static_cast<const char*>(system.sysname), static_cast<const char*>(system.release), load,
-                     compiler(), SONARD_BUILD_TYPE);
+  return fmt::format(
+      "processor {} ({}), {} cores, {} MHz, memory {}\nvectors   {}\nsystem    {} {}, load {}\ncompiler  {}, "
+      "{}\n",
+      value_in("/proc/cpuinfo", "model name"), vector_units(), std::thread::hardware_concurrency(),
+      value_in("/proc/cpuinfo", "cpu MHz"), value_in("/proc/meminfo", "MemTotal"), vectors_of_program(),
+      static_cast<const char*>(system.sysname), static_cast<const char*>(system.release), load, compiler(),
+      SONARD_BUILD_TYPE);
 }
 
 bool reset_peak_memory() {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // sonard_bench: run time against error, on the scenes of tests/scenes (docs/benchmark.md).
 #include <fmt/format.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,7 @@ namespace {
 
 struct Options {
   bool quick = false;
+  bool company = false;
   std::string json;
   std::string gpu_report;
   std::string engine = "both";
@@ -86,6 +90,10 @@ int main(int argc, char** argv) {
   sonard::bench::Options options;
   CLI::App app("Measures the time of a ping and the error of its image.");
   app.add_flag("--quick", options.quick, "Only what the project's targets need, in less than a minute");
+  app.add_flag("--company", options.company,
+               "Pings a second of the demo beside 0, 1, 2 and 4 busy processes, and of `sonard render`; two "
+               "minutes (tests/bench/company.py)")
+      ->excludes("--quick");
   app.add_option("--json", options.json,
                  "File for a flat list of {scene, engine, preset, metric, value, unit}");
   app.add_option("--engine", options.engine, "Which engines to measure")
@@ -99,6 +107,13 @@ int main(int argc, char** argv) {
       ->excludes("--quick");
   CLI11_PARSE(app, argc, argv);
   try {
+    if (options.company) {
+      fmt::print("{}", sonard::bench::describe_machine());
+      std::fflush(stdout);
+      const std::string programs = std::filesystem::canonical("/proc/self/exe").parent_path();
+      execlp("python3", "python3", SONARD_SOURCE_DIR "/tests/bench/company.py", programs.c_str(), nullptr);
+      throw std::runtime_error("python3 cannot be run");
+    }
     if (options.gpu_report.empty()) {
       sonard::bench::run(options);
     } else {

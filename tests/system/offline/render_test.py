@@ -125,6 +125,21 @@ class Files(Case):
             with open(os.path.join(out, sidecar["picture"]), "rb") as file:
                 self.assertEqual(file.read(8), PNG_MAGIC)
 
+    def test_pictures_of_every_third_frame_or_none(self):
+        arguments = [self.config(), "--trajectory", self.way(1.0), "--rate", "4", "--compression", "4"]
+        for every, drawn in (("3", [0, 3]), ("0", [])):
+            out = self.path("every" + every)
+            done = render(*arguments, "--out", out, "--picture-every", every)
+            self.assertEqual(done.stdout, f"{out}: 5 frames\n")
+            self.assertEqual(sorted(n for n in os.listdir(out) if n.endswith(".png")), [f"ping_{k:06}.png" for k in drawn])
+            for k in range(5):
+                self.assertEqual("picture" in self.sidecar(out, f"ping_{k:06}"), k in drawn)
+            before = sums(out)
+            render(*arguments, "--out", out, "--picture-every", every)
+            self.assertEqual(sums(out), before, "nothing is missing")
+        refused = render(*arguments, "--out", out, "--picture-every", "2", check=False)
+        self.assertEqual(refused.returncode, 5, "a folder holds the frames of one setting")
+
     def test_log_holds_the_arrays(self):
         """Unix times in the trajectory: those of the log."""
         start = 1_700_000_000.25

@@ -89,6 +89,7 @@ TEST(Targets, AreReadFromTheMeasurementsOfTheirEngine) {
   Measurements m;
   m.add({"swell1m", "cpu", "default"}, "ping_ms", 9, "ms");
   m.add({"swell100k", "cpu", "default"}, "ping_ms", 6, "ms");
+  m.add({"swell100k", "cpu", "point_8x1024"}, "ping_ms", 60, "ms");
   m.add({"swell100k", "gpu", "default"}, "ping_ms", 60, "ms");
   m.add({"swell100k", "cpu", "default"}, "bin_rms", 0.009, "1");
   m.add({"swell100k", "cpu", "default"}, "bin_rms_trim", 0.004, "1");
@@ -102,10 +103,14 @@ TEST(Targets, AreReadFromTheMeasurementsOfTheirEngine) {
   m.add({"swell100k", "cpu", "point_2x1"}, "samples", 2e6, "count");
   const std::vector<TargetRow> rows = target_rows(m, "cpu");
   EXPECT_NEAR(*row_named(rows, "swell1m / swell100k, default").measured, 1.5, 1e-12);
-  EXPECT_EQ(row_named(rows, "default swell100k, ms").verdict(), Verdict::aim_met);
+  const TargetRow& ping = row_named(rows, "default swell100k, % of points");
+  EXPECT_EQ(ping.ms, 6);
+  EXPECT_NEAR(*ping.measured, 10, 1e-12);
+  EXPECT_NEAR(ping.must, 20, 1e-12) << "15 of 75 ms";
+  EXPECT_EQ(ping.verdict(), Verdict::aim_met);
   // First order: .009 takes 1e7 points, a hundred times as many.
   EXPECT_NEAR(*row_named(rows, "samples at equal error, points / default, swell100k").measured, 100, 1e-6);
-  EXPECT_EQ(row_named(target_rows(m, "gpu"), "default swell100k, ms").verdict(), Verdict::missed);
+  EXPECT_EQ(row_named(target_rows(m, "gpu"), "default swell100k, % of points").verdict(), Verdict::missed);
 }
 
 TEST(Targets, ARepetitionThatDiffersIsAMiss) {
@@ -121,6 +126,7 @@ TEST(Targets, ThePrintedTableNamesVerdictAndError) {
   Measurements m;
   m.add({"flat100k", "cpu", "default"}, "ping_ms", 2, "ms");
   m.add({"flat100k", "cpu", "default"}, "bin_rms", 0.02, "1");
+  m.add({"swell100k", "cpu", "point_8x1024"}, "ping_ms", 75, "ms");
   const std::string text = format_targets(target_rows(m, "cpu"));
   EXPECT_NE(text.find("MISSED: error"), std::string::npos) << text;
   EXPECT_NE(text.find("2.00 %"), std::string::npos) << text;
