@@ -143,6 +143,9 @@ struct HeadConfig {
   bool hides_vehicle = false;  ///< whether DaemonConfig::vehicle_model is not in its images
   /// Everything of a ping that the device does not say by itself.
   render::SonarSettings acoustics;
+  /// Whether a faster preset than the one of `acoustics` is taken while pings cannot be made as fast as they
+  /// are asked for.
+  bool adaptive_quality = false;
   std::uint64_t seed = 1;  ///< of speckle and noise
   /// Folder that receives the samples of every ping as the renderer handed them over, for tests and
   /// debugging.

@@ -209,6 +209,7 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span
 
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   head.acoustics.sampling = context.sampling;
+  head.adaptive_quality = context.adaptive_quality;
   section.require("name", "a name of this head for the log");
   section.text("name", head.name, "unique; appears in every log line of this head");
   section.section("mount", "where the sonar sits on the vehicle",

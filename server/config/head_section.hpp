@@ -21,6 +21,7 @@ struct HeadContext {
   /// Speed the water really has; 0: that of the ping configuration.
   double water_sound_speed_mps = 0.0;
   render::Sampling sampling;
+  bool adaptive_quality = false;
   bool pings_by_source = false;  ///< by the clock of the source of the poses
 };
 

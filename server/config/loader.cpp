@@ -249,7 +249,7 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   }
 }
 
-void read_sampling(YamlSection& section, render::Sampling& sampling) {
+void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adaptive_quality) {
   section.introduce(
       "The error of the echo that is aimed at; what it takes is found by itself. See "
       "[accuracy.md](accuracy.md) for what is measured and [benchmark.md](benchmark.md) for what it costs.");
@@ -265,6 +265,14 @@ void read_sampling(YamlSection& section, render::Sampling& sampling) {
                   "where one would exceed 60 degrees");
   section.integer("columns_per_view", sampling.columns_per_view, 8, 4096, "pixels of a view across the fan");
   section.integer("rows", sampling.rows, 8, 4096, "pixels over the elevation of the fan");
+  section.boolean(
+      "adaptive_quality", adaptive_quality,
+      "takes the next faster preset while a client asks for more pings than this machine can make, "
+      "and comes back when there is time; the log says so. Images then depend on the machine and "
+      "its load. Not with `grid`, nor where poses bring the time (`poses.clock`)");
+  if (sampling.preset == Preset::grid && adaptive_quality) {
+    section.report("adaptive_quality", "a grid has no faster preset (expected false, or another `preset`)");
+  }
   if (sampling.preset != Preset::grid) {
     for (const char* key : {"views", "columns_per_view", "rows"}) {
       if (section.has(key)) {
@@ -373,8 +381,9 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.section("poses", "where the vehicle is",
                [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
   context.pings_by_source = config.poses.clock != PingClock::wall;
-  root.section("sampling", "the error that is aimed at",
-               [&](YamlSection& section) { read_sampling(section, context.sampling); });
+  root.section("sampling", "the error that is aimed at", [&](YamlSection& section) {
+    read_sampling(section, context.sampling, context.adaptive_quality);
+  });
   root.section(
       "recording", "logs of what the heads say; without it there are none",
       [&](YamlSection& section) { read_recording(section, context.folder, config.recording.emplace()); });

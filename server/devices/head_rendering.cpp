@@ -19,7 +19,10 @@ const render::Pose out_of_sight{{0.0, 0.0, -1e6}, {1.0, 0.0, 0.0, 0.0}};
 }  // namespace
 
 HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
-    : config_(config), stream_(stream), services_(services) {
+    : config_(config),
+      stream_(stream),
+      services_(services),
+      load_(config.acoustics.sampling.preset, config.adaptive_quality) {
   if (services.poses.ping_clock() != PingClock::wall) {
     ping_times_.emplace(services.poses);
   }
@@ -95,6 +98,12 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
   job.stream = stream_;
   job.head = config_.name;
   job.transmit_us = ping.transmit_us;
+  // Where poses bring the time, pings wait for them, and the image is to depend on nothing else; a recording
+  // is played as it is.
+  if (!ping_times_ && services_.playback == nullptr) {
+    load_.submitted(services_.clock.now());
+    ping.settings.sampling.preset = load_.preset();
+  }
   job.request = {ping.T_world_sonar, std::move(ping.settings), ping.number, config_.seed,
                  ping.T_world_sonar_at_end};
   job.pose_ns = services_.poses.stamp_at(ping.pose_time);
@@ -107,6 +116,9 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
 
 bool HeadRendering::take(const RenderResult& result) {
   submitted_ = false;
+  if (const std::string news = load_.answered(services_.clock.now()); !news.empty()) {
+    spdlog::info("head={} {}", config_.name, news);
+  }
   if (result.error.empty()) {
     ++counters_.pings_rendered;
     const render::PingStatistics& spent = result.statistics;
@@ -127,6 +139,7 @@ bool HeadRendering::withdraw() {
     return false;
   }
   submitted_ = false;
+  load_.answered(services_.clock.now());
   counters_.skipped.add(render::SkipRule::nobody_listening);
   return true;
 }

@@ -15,6 +15,7 @@
 #include "renderer/sonar_settings.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
+#include "server/devices/render_load.hpp"
 #include "server/pose/ping_times.hpp"
 #include "server/pose/posed_body.hpp"
 #include "server/program_log/peer_log.hpp"
@@ -89,6 +90,7 @@ class HeadRendering {
   std::optional<TimePoint> ping_time_;   ///< on that clock, of the ping that began last
   TimePoint last_wanted_{};              ///< on the clock of this machine
   bool submitted_ = false;               ///< and not answered
+  RenderLoad load_;
   RenderCounters counters_;
   std::string last_error_;
   PeerLog errors_;

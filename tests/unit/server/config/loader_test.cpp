@@ -593,6 +593,10 @@ TEST_F(Loader, reads_the_error_that_is_aimed_at) {
   EXPECT_EQ(preset("sampling: {preset: grid, rows: 64}\n"), Preset::grid);
   EXPECT_THAT(complaints(minimal_config + "sampling: {rows: 64}\n"),
               ElementsAre(AllOf(HasSubstr("sampling.rows"), HasSubstr("preset: grid"))));
+  EXPECT_TRUE(
+      load(minimal_config + "sampling: {adaptive_quality: on}\n").config.heads.at(0).adaptive_quality);
+  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: grid, adaptive_quality: true}\n"),
+              ElementsAre(AllOf(HasSubstr("sampling.adaptive_quality"), HasSubstr("no faster preset"))));
   EXPECT_THAT(complaints(minimal_config + "sampling: {preset: fine}\n"),
               ElementsAre(AllOf(HasSubstr("sampling.preset"), HasSubstr("reference"))));
 }

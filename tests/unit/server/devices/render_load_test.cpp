@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/devices/render_load.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace sonard::server {
+namespace {
+
+using Preset = render::Sampling::Preset;
+using std::chrono::milliseconds;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A client that asks for a ping every `interval`, or as soon as the last one is there.
+class Client {
+ public:
+  explicit Client(RenderLoad& load) : load_(load) {}
+
+  /// @return the lines for the operator
+  template <class TakenBy>
+  std::vector<std::string> ask(std::chrono::seconds duration, milliseconds interval, TakenBy taken_by) {
+    std::vector<std::string> lines;
+    for (const TimePoint end = now_ + duration; now_ < end;) {
+      const TimePoint asked = now_;
+      load_.submitted(now_);
+      now_ += milliseconds(taken_by(load_.preset()));
+      if (const std::string line = load_.answered(now_); !line.empty()) {
+        lines.push_back(line);
+      }
+      now_ = std::max(now_, asked + interval);
+    }
+    return lines;
+  }
+
+ private:
+  RenderLoad& load_;
+  TimePoint now_{std::chrono::seconds(1000)};
+};
+
+int milliseconds_of(Preset preset) {
+  return preset == Preset::fast ? 50 : preset == Preset::normal ? 120 : 900;
+}
+
+TEST(RenderLoad, SaysOnceWhatToDoWhereAClientAsksForTooMuch) {
+  RenderLoad load(Preset::normal, false);
+  Client client(load);
+  const auto lines = client.ask(std::chrono::seconds(20), milliseconds(60), milliseconds_of);
+  ASSERT_THAT(lines, ElementsAre(HasSubstr("sampling.preset: fast")));
+  EXPECT_THAT(lines[0],
+              HasSubstr("100 % of the time goes into rendering, 120.0 ms a ping, 8.3 pings a second"));
+  EXPECT_EQ(load.preset(), Preset::normal);
+}
+
+TEST(RenderLoad, NamesNoFasterPresetWhereThereIsNone) {
+  RenderLoad load(Preset::fast, true);
+  Client client(load);
+  const auto lines = client.ask(std::chrono::seconds(20), milliseconds(30), milliseconds_of);
+  ASSERT_THAT(lines, ElementsAre(HasSubstr("acoustics.fine_beams: 1")));
+  EXPECT_THAT(lines[0], ::testing::Not(HasSubstr("sampling.")));
+}
+
+TEST(RenderLoad, IsSilentWhereThereIsTime) {
+  RenderLoad load(Preset::normal, true);
+  Client client(load);
+  EXPECT_THAT(client.ask(std::chrono::seconds(20), milliseconds(200), milliseconds_of), IsEmpty());
+}
+
+TEST(RenderLoad, StepsDownAndComesBackWhenThereIsTime) {
+  RenderLoad load(Preset::reference, true);
+  Client client(load);
+  const auto down = client.ask(std::chrono::seconds(20), milliseconds(60), milliseconds_of);
+  ASSERT_THAT(down, ElementsAre(HasSubstr("from reference to default"), HasSubstr("from default to fast")));
+  EXPECT_EQ(load.preset(), Preset::fast);
+  const auto back = client.ask(std::chrono::seconds(20), milliseconds(500), milliseconds_of);
+  ASSERT_THAT(back, ElementsAre(HasSubstr("from fast back to default")))
+      << "`reference` would take nine tenths of a second of every half";
+  EXPECT_EQ(load.preset(), Preset::normal);
+}
+
+TEST(RenderLoad, DoesNotSwingToAndFro) {
+  RenderLoad load(Preset::normal, true);
+  Client client(load);
+  EXPECT_THAT(client.ask(std::chrono::seconds(120), milliseconds(110), milliseconds_of),
+              ElementsAre(HasSubstr("from default to fast")));
+}
+
+TEST(RenderLoad, AnIdleClientChangesNothing) {
+  RenderLoad load(Preset::normal, true);
+  EXPECT_THAT(load.answered(TimePoint(1)), IsEmpty());
+  Client client(load);
+  EXPECT_THAT(client.ask(std::chrono::seconds(60), std::chrono::seconds(20), milliseconds_of), IsEmpty());
+}
+
+}  // namespace
+}  // namespace sonard::server
