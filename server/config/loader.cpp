@@ -265,13 +265,13 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
                   "where one would exceed 60 degrees");
   section.integer("columns_per_view", sampling.columns_per_view, 8, 4096, "pixels of a view across the fan");
   section.integer("rows", sampling.rows, 8, 4096, "pixels over the elevation of the fan");
-  section.boolean(
-      "adaptive_quality", adaptive_quality,
-      "takes the next faster preset while a client asks for more pings than this machine can make, "
-      "and comes back when there is time; the log says so. Images then depend on the machine and "
-      "its load. Not with `grid`, nor where poses bring the time (`poses.clock`)");
+  section.choice(
+      "adaptive_quality", adaptive_quality, {{"off", false}, {"on", true}},
+      "`on` takes the next faster preset while a client asks for more pings than this machine can make, "
+      "and comes back when there is time; the log says so. Images then depend on the machine and its "
+      "load. Not with `grid`; without effect where poses bring the time (`poses.clock`)");
   if (sampling.preset == Preset::grid && adaptive_quality) {
-    section.report("adaptive_quality", "a grid has no faster preset (expected false, or another `preset`)");
+    section.report("adaptive_quality", "a grid has no faster preset (expected off, or another `preset`)");
   }
   if (sampling.preset != Preset::grid) {
     for (const char* key : {"views", "columns_per_view", "rows"}) {

@@ -83,7 +83,7 @@ std::string RenderLoad::decide(double share, double mean_ms, double pings_per_s)
     told_ = true;
     const char* with_preset = !faster     ? ""
                               : adaptive_ ? ""
-                                          : "sampling.preset: fast, or sampling.adaptive_quality: true; ";
+                                          : "sampling.preset: fast, or sampling.adaptive_quality: on; ";
     return fmt::format(
         "{}: a client that asks for more does not get it. Fewer range bins (a shorter range, or more "
         "compression) cost less, and so do: {}acoustics.fine_beams: 1, acoustics.multipath: off, a GPU",

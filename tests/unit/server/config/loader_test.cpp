@@ -595,7 +595,7 @@ TEST_F(Loader, reads_the_error_that_is_aimed_at) {
               ElementsAre(AllOf(HasSubstr("sampling.rows"), HasSubstr("preset: grid"))));
   EXPECT_TRUE(
       load(minimal_config + "sampling: {adaptive_quality: on}\n").config.heads.at(0).adaptive_quality);
-  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: grid, adaptive_quality: true}\n"),
+  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: grid, adaptive_quality: on}\n"),
               ElementsAre(AllOf(HasSubstr("sampling.adaptive_quality"), HasSubstr("no faster preset"))));
   EXPECT_THAT(complaints(minimal_config + "sampling: {preset: fine}\n"),
               ElementsAre(AllOf(HasSubstr("sampling.preset"), HasSubstr("reference"))));
