@@ -77,6 +77,13 @@ void run_quick(Campaign& campaign) {
     }
     campaign.run(scene, plan);
   }
+  Plan demo;  // its world and first pose; a ping of `gpu` takes seconds
+  for (const Point& point : preset_points()) {
+    if (point.name != "reference") {
+      demo.points.push_back({point, some, render::EngineKind::cpu});
+    }
+  }
+  campaign.run(test::make_scene("docking"), demo);
   for (const char* name : {"msis_swell", "msis_ripple"}) {
     campaign.run(test::make_scene(name), presets(name, many));
   }

@@ -194,6 +194,8 @@ std::vector<TargetRow> target_rows(const Measurements& measurements, const std::
   table.ping("fast", "flat100k", 2, 1, fast_rms);
   table.ping("fast", "swell100k", 6, 4.5, fast_rms);
   table.ping("fast", "ripple100k", 14, 9, fast_rms);
+  table.ping("default", "docking", 90, 60, default_rms);
+  table.ping("fast", "docking", 35, 20, fast_rms);
   table.ping("default", "msis_swell", 0.25, 0.1, default_rms);
   table.ping("default", "msis_ripple", 0.35, 0.2, default_rms);
   table.time("receiver 256x1000", "plane", table.find("plane", "default", "receiver_ms"), 0.5, 0.3);
