@@ -41,8 +41,8 @@ class PartFile {
   int file_ = -1;
 };
 
-/// What is in the folder under its real name is whole. One thread uses an object; any number of processes a
-/// folder.
+/// What is in the folder under its real name is whole. Any number of processes use a folder, and any number
+/// of threads write() into it; all else of an object is for one thread.
 class OutputFolder {
  public:
   /// Makes the folder. @throws OutputError
