@@ -139,7 +139,7 @@ bool HeadRendering::withdraw() {
     return false;
   }
   submitted_ = false;
-  load_.answered(services_.clock.now());
+  load_.withdrawn();
   counters_.skipped.add(render::SkipRule::nobody_listening);
   return true;
 }

@@ -12,7 +12,7 @@ using Preset = render::Sampling::Preset;
 
 constexpr std::chrono::seconds window_length{2};
 constexpr double too_busy = 0.9;  // share of the time
-constexpr double has_time = 0.6;  // which the preset above would take up
+constexpr double has_time = 0.6;  // which the slower preset would take up
 constexpr int fewest_pings = 3;   // fewer say nothing of a rate
 
 double seconds_of(TimePoint duration) {
@@ -32,7 +32,8 @@ std::optional<Preset> faster_than(Preset preset) {
   return std::nullopt;
 }
 
-Preset above(Preset preset, Preset asked) {
+/// At most the one that was asked for.
+Preset slower_than(Preset preset, Preset asked) {
   return preset == Preset::fast && asked != Preset::fast ? Preset::normal : asked;
 }
 
@@ -72,30 +73,26 @@ std::string RenderLoad::decide(double share, double mean_ms, double pings_per_s)
   const std::string busy =
       fmt::format("{:.0f} % of the time goes into rendering, {:.1f} ms a ping, {:.1f} pings a second",
                   100 * share, mean_ms, pings_per_s);
-  mean_ms_[static_cast<std::size_t>(preset_)] = mean_ms;
-  const std::optional<Preset> faster = faster_than(preset_);
+  const Preset before = preset_;
+  mean_ms_[static_cast<std::size_t>(before)] = mean_ms;
+  const std::optional<Preset> faster = faster_than(before);
   if (share > too_busy && adaptive_ && faster) {
     preset_ = *faster;
-    return fmt::format("{}: sampling goes from {} to {}", busy, name_of(above(preset_, asked_)),
-                       name_of(preset_));
+    return fmt::format("{}: sampling goes from {} to {}", busy, name_of(before), name_of(preset_));
   }
   if (share > too_busy && !told_) {
     told_ = true;
-    const char* with_preset = !faster     ? ""
-                              : adaptive_ ? ""
-                                          : "sampling.preset: fast, or sampling.adaptive_quality: on; ";
     return fmt::format(
         "{}: a client that asks for more does not get it. Fewer range bins (a shorter range, or more "
         "compression) cost less, and so do: {}acoustics.fine_beams: 1, acoustics.multipath: off, a GPU",
-        busy, with_preset);
+        busy, faster ? "sampling.preset: fast, or sampling.adaptive_quality: on; " : "");
   }
   if (share < has_time) {
     told_ = false;
   }
-  const Preset slower = above(preset_, asked_);
-  if (slower != preset_ && mean_ms > 0 &&
+  const Preset slower = slower_than(before, asked_);
+  if (slower != before && mean_ms > 0 &&
       share * mean_ms_[static_cast<std::size_t>(slower)] / mean_ms < has_time) {
-    const Preset before = preset_;
     preset_ = slower;
     return fmt::format("{}: sampling goes from {} back to {}", busy, name_of(before), name_of(preset_));
   }

@@ -25,9 +25,11 @@ class RenderLoad {
   render::Sampling::Preset preset() const { return preset_; }
 
   void submitted(TimePoint now);
-  /// The image is there, or will not come.
+  /// The image is there, or could not be made.
   /// @return what the operator is to know; empty: nothing new
   std::string answered(TimePoint now);
+  /// It was taken back before it was rendered, and says nothing of the load.
+  void withdrawn() { submitted_.reset(); }
 
  private:
   struct Window {

@@ -109,6 +109,9 @@ std::optional<KeptChoice> EngineChoiceFile::find(const std::string& situation) c
 }
 
 void EngineChoiceFile::keep(const std::string& situation, const KeptChoice& choice) const {
+  if (file_.empty()) {
+    return;
+  }
   std::vector<Line> lines = lines_of(file_);
   std::erase_if(lines, [&](const Line& line) { return line.situation == situation; });
   lines.push_back({situation, choice});

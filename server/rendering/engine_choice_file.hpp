@@ -19,12 +19,14 @@ struct KeptChoice {
   std::string measured;  ///< a line: both times and what they were measured on
 };
 
-/// A text file of one line a choice. It only saves time: a file that cannot be read, or a line that makes no
-/// sense, counts as nothing known; one that cannot be written is not. Several daemons may share it.
+/// A text file of one line a choice; an empty path: none. It only saves time: a file that cannot be read, or
+/// a line that makes no sense, counts as nothing known; one that cannot be written is not. Several daemons
+/// may share it.
 class EngineChoiceFile {
  public:
   explicit EngineChoiceFile(std::filesystem::path file) : file_(std::move(file)) {}
 
+  const std::filesystem::path& path() const { return file_; }
   std::optional<KeptChoice> find(const std::string& situation) const;
   /// Replaces what was known of the same situation; the oldest of many lines goes.
   void keep(const std::string& situation, const KeptChoice& choice) const;

@@ -36,14 +36,7 @@ class WorldRenderer final : public PingRenderer {
   }
 
   void warm_up(const std::vector<render::StreamPing>& first_pings) override {
-    if (options_.engine == render::EngineKind::automatic && !take_kept_choice(first_pings)) {
-      const render::EngineTrial trial = render::choose_engine(renderer_, first_pings);
-      spdlog::info("engine auto: {}", describe(trial));
-      // A GPU that cannot be had is looked for again: that takes no time, and a driver may come.
-      if (!choices_.empty() && !trial.gpu.empty()) {
-        EngineChoiceFile(choices_).keep(situation_of(options_, world_, first_pings),
-                                        {trial.taken, describe(trial)});
-      }
+    if (options_.engine == render::EngineKind::automatic && measure_engines(first_pings)) {
       return;
     }
     for (const render::StreamPing& ping : first_pings) {
@@ -57,28 +50,36 @@ class WorldRenderer final : public PingRenderer {
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
  private:
-  /// Goes on with the engine that an earlier start has found the faster one. @return false where none has, or
-  /// where that engine cannot be had any more.
-  bool take_kept_choice(const std::vector<render::StreamPing>& first_pings) {
-    const auto kept = choices_.empty()
-                          ? std::nullopt
-                          : EngineChoiceFile(choices_).find(situation_of(options_, world_, first_pings));
-    if (!kept) {
+  /// Unless an earlier start has. @return whether pings were rendered
+  bool measure_engines(const std::vector<render::StreamPing>& first_pings) {
+    const std::string situation = situation_of(options_, world_, first_pings);
+    if (const std::optional<KeptChoice> kept = choices_.find(situation); kept && take(*kept)) {
       return false;
     }
+    const render::EngineTrial trial = render::choose_engine(renderer_, first_pings);
+    spdlog::info("engine auto: {}", describe(trial));
+    // A GPU that cannot be had is looked for again: that takes no time, and a driver may come.
+    if (!trial.gpu.empty()) {
+      choices_.keep(situation, {trial.taken, describe(trial)});
+    }
+    return true;
+  }
+
+  /// @return false where that engine cannot be had any more
+  bool take(const KeptChoice& kept) {
     try {
-      renderer_.use_engine(kept->taken);
+      renderer_.use_engine(kept.taken);
     } catch (const render::RendererError&) {
       return false;
     }
     spdlog::info("engine auto: {} is taken, as an earlier start measured: {} (kept in {})",
-                 name_of(kept->taken), kept->measured, choices_.string());
+                 name_of(kept.taken), kept.measured, choices_.path().string());
     return true;
   }
 
   const render::World& world_;
   const render::RendererOptions options_;
-  const std::filesystem::path choices_;
+  const EngineChoiceFile choices_;
   render::SonarRenderer renderer_;
 };
 
