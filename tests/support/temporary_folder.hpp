@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -16,7 +17,10 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "sonard-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("no temporary folder at " + name);
+    }
+    path_ = std::filesystem::canonical(name);
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -27,11 +31,13 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Names of all files in it, sorted.
-  std::vector<std::string> names() const {
+  /// Names of the files in it that end so, sorted.
+  std::vector<std::string> names(const std::string& suffix = "") const {
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {
-      found.push_back(entry.path().filename().string());
+      if (const std::string name = entry.path().filename().string(); name.ends_with(suffix)) {
+        found.push_back(name);
+      }
     }
     std::sort(found.begin(), found.end());
     return found;

@@ -2,13 +2,10 @@
 // Files for one test, gone after it; and what a mesh measures.
 #pragma once
 
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,33 +13,18 @@
 #include <glm/geometric.hpp>
 
 #include "renderer/scene/world.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::render::test {
 
-class TempFolder {
+class TempFolder : public sonard::test::TemporaryFolder {
  public:
-  TempFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sonard-scene-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("mkdtemp failed");
-    }
-    path_ = std::filesystem::canonical(name);
-  }
-  ~TempFolder() { std::filesystem::remove_all(path_); }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
   std::filesystem::path write(const std::string& name, const std::string& content) const {
-    const std::filesystem::path file = path_ / name;
+    const std::filesystem::path file = path() / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << content;
     return file;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline glm::dvec3 corner(const TriangleMesh& mesh, std::size_t index) {

@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/server/config/config_text.hpp"
 
-#include <cstdlib>
 #include <fstream>
-#include <stdexcept>
 
 #include "server/devices/kinds/kinds.hpp"
 
 namespace sonard::server {
-
-ConfigFolder::ConfigFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "sonard_config_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error("no temporary folder at " + name);
-  }
-  folder_ = name;
-}
-
-ConfigFolder::~ConfigFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
 
 LoadedConfig ConfigFolder::load(const std::string& text) const {
   std::ofstream(folder_ / "config.yaml", std::ios::binary) << text;

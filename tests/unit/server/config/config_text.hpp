@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "server/config/loader.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::server {
 
@@ -29,15 +30,13 @@ inline const std::string minimal_config =
 /// A folder of its own for each test, gone when the test ends.
 class ConfigFolder : public testing::Test {
  protected:
-  ConfigFolder();
-  ~ConfigFolder() override;
-
   /// Writes `text` to "config.yaml" and loads it.
   LoadedConfig load(const std::string& text) const;
   /// What load() complains about, one line each, without the folder; empty when it succeeds.
   std::vector<std::string> complaints(const std::string& text) const;
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 }  // namespace sonard::server

@@ -2,11 +2,11 @@
 // A serial line as a pseudo terminal: clients that open and close a tty, and its link.
 #include <termios.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/server/net/link_fixture.hpp"
 
 namespace sonard::server {
@@ -184,19 +184,6 @@ TEST_F(PtyLink, serves_a_hundred_clients_one_after_the_other) {
 
 class PtyLinkName : public LinkTest {
  protected:
-  PtyLinkName() {
-    std::string name = (fs::temp_directory_path() / "sonard_pty_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no temporary folder at " + name);
-    }
-    folder_ = name;
-    link_name_ = folder_ / "micron";
-  }
-  ~PtyLinkName() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
   void open_named() { open({{}, {}, {{link_name_}}, 0}); }
   /// What opening complains about; empty when it does not.
   std::string complaint() {
@@ -208,8 +195,8 @@ class PtyLinkName : public LinkTest {
     return "";
   }
 
-  fs::path folder_;
-  fs::path link_name_;
+  const test::TemporaryFolder folder_;
+  fs::path link_name_ = folder_.path() / "micron";
 };
 
 TEST_F(PtyLinkName, leads_to_the_slave_until_it_stops) {
@@ -253,7 +240,7 @@ TEST_F(PtyLinkName, spares_a_folder_and_other_links) {
 }
 
 TEST_F(PtyLinkName, names_the_path_that_cannot_be_made) {
-  link_name_ = folder_ / "no" / "such" / "folder";
+  link_name_ = folder_.path() / "no" / "such" / "folder";
   EXPECT_THAT(complaint(),
               testing::AllOf(StartsWith("cannot make the link " + link_name_.string() + " to /dev/"),
                              HasSubstr("No such file or directory")));
@@ -268,7 +255,7 @@ TEST_F(PtyLinkName, leaves_alone_what_somebody_else_has_put_there) {
 }
 
 TEST_F(PtyLinkName, is_gone_when_another_port_cannot_be_opened) {
-  const fs::path bad = folder_ / "missing" / "name";
+  const fs::path bad = folder_.path() / "missing" / "name";
   EXPECT_THROW(open({{}, {}, {{link_name_}, {bad}}, 0}), SocketError);
   EXPECT_FALSE(fs::exists(fs::symlink_status(link_name_)));
 }

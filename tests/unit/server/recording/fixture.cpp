@@ -3,40 +3,14 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 
 namespace sonard::test {
 
 namespace fs = std::filesystem;
 using server::RecordingEvent;
 using server::TimePoint;
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "sonard-recording-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error("no temporary folder");
-  }
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-std::vector<std::string> TemporaryFolder::names(const std::string& suffix) const {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
-    if (const std::string name = entry.path().filename().string(); name.ends_with(suffix)) {
-      names.push_back(name);
-    }
-  }
-  std::ranges::sort(names);
-  return names;
-}
 
 FileSizeLimit::FileSizeLimit(std::uint64_t bytes) {
   std::signal(SIGXFSZ, SIG_IGN);

@@ -11,24 +11,9 @@
 
 #include "server/recording/events.hpp"
 #include "server/recording/log.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::test {
-
-/// A folder of its own, removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  /// Names of the files in it that end so, sorted.
-  std::vector<std::string> names(const std::string& suffix = "") const;
-
- private:
-  std::filesystem::path path_;
-};
 
 /// No file of this process may be longer than this while it lives: a full disk that needs no rights.
 class FileSizeLimit {
