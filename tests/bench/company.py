@@ -13,13 +13,15 @@ machine over its cores, `/ served` that rate over the one of serving alone.
 import argparse
 import os
 import re
-import signal
 import subprocess
 import sys
 import tempfile
 import time
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+sys.path.append(os.path.join(SOURCE, "tests", "system", "gemini"))
+from lab import Program
+
 CONFIG = os.path.join(SOURCE, "configs", "demo.yaml")
 TRAJECTORY = os.path.join(SOURCE, "configs", "trajectories", "docking_demo.csv")
 CORES = os.cpu_count()
@@ -34,38 +36,24 @@ def cpu_s(pid):
     return (int(fields[11]) + int(fields[12])) / TICKS_PER_S
 
 
-def stop(process):
-    process.send_signal(signal.SIGTERM)
-    process.wait()
-
-
 def serve(programs, seconds, busy):
     """(pings a second, CPU seconds of the daemon a second)"""
-    with tempfile.TemporaryFile("w+") as log:
-        daemon = subprocess.Popen([f"{programs}/sonard", "run", CONFIG], stderr=log)
-        others = []
-        try:
-            deadline = time.monotonic() + 60
-            while True:
-                log.seek(0)
-                if "sonard ready" in log.read():
-                    break
-                if daemon.poll() is not None or time.monotonic() > deadline:
-                    log.seek(0)
-                    sys.exit(f"company.py: the daemon did not start:\n{log.read()}")
-                time.sleep(0.1)
-            cast = [f"{programs}/posecast", TRAJECTORY, "--to", "127.0.0.1:14600", "--loop"]
-            others.append(subprocess.Popen(cast, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
-            others += [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(busy)]
-            before, began = cpu_s(daemon.pid), time.monotonic()
-            view = [f"{programs}/sonarview", "--continuous", str(INTERVAL_MS), "--range", "20", "--compression", "1",
-                    "--quiet", "--seconds", str(seconds)]
-            summary = subprocess.run(view, stdout=subprocess.PIPE, text=True, check=True).stdout
-            elapsed = time.monotonic() - began
-            used = (cpu_s(daemon.pid) - before) / elapsed
-        finally:
-            for process in [*others, daemon]:
-                stop(process)
+    daemon = Program([f"{programs}/sonard", "run", CONFIG], "sonard")
+    others = []
+    try:
+        daemon.wait_for_line("sonard ready", 60)
+        cast = [f"{programs}/posecast", TRAJECTORY, "--to", "127.0.0.1:14600", "--loop"]
+        others.append(Program(cast, "posecast"))
+        others += [Program([sys.executable, "-c", "while True: pass"], "busy") for _ in range(busy)]
+        before, began = cpu_s(daemon.pid), time.monotonic()
+        view = [f"{programs}/sonarview", "--continuous", str(INTERVAL_MS), "--range", "20", "--compression", "1",
+                "--quiet", "--seconds", str(seconds)]
+        summary = subprocess.run(view, stdout=subprocess.PIPE, text=True, check=True).stdout
+        elapsed = time.monotonic() - began
+        used = (cpu_s(daemon.pid) - before) / elapsed
+    finally:
+        for program in [*others, daemon]:
+            program.kill()
     return float(re.search(r"rate_hz=([0-9.]+)", summary)[1]), used
 
 

@@ -50,6 +50,15 @@ void run_gpu_report(const Options& options) {
   }
 }
 
+/// Does not return: the script goes on in this process.
+[[noreturn]] void run_company() {
+  fmt::print("{}", describe_machine());
+  std::fflush(stdout);
+  const std::string programs = std::filesystem::canonical("/proc/self/exe").parent_path();
+  execlp("python3", "python3", SONARD_SOURCE_DIR "/tests/bench/company.py", programs.c_str(), nullptr);
+  throw std::runtime_error("python3 cannot be run");
+}
+
 void run(const Options& options) {
   fmt::print("{}", describe_machine());
   const std::vector<render::EngineKind> engines = engines_of(options.engine);
@@ -89,7 +98,7 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   sonard::bench::Options options;
   CLI::App app("Measures the time of a ping and the error of its image.");
-  app.add_flag("--quick", options.quick, "Only what the project's targets need, in less than a minute");
+  app.add_flag("--quick", options.quick, "Only what the project's targets need, in a minute or two");
   app.add_flag("--company", options.company,
                "Pings a second of the demo beside 0, 1, 2 and 4 busy processes, and of `sonard render`; two "
                "minutes (tests/bench/company.py)")
@@ -108,13 +117,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (options.company) {
-      fmt::print("{}", sonard::bench::describe_machine());
-      std::fflush(stdout);
-      const std::string programs = std::filesystem::canonical("/proc/self/exe").parent_path();
-      execlp("python3", "python3", SONARD_SOURCE_DIR "/tests/bench/company.py", programs.c_str(), nullptr);
-      throw std::runtime_error("python3 cannot be run");
-    }
-    if (options.gpu_report.empty()) {
+      sonard::bench::run_company();
+    } else if (options.gpu_report.empty()) {
       sonard::bench::run(options);
     } else {
       sonard::bench::run_gpu_report(options);
