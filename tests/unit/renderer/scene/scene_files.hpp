@@ -2,7 +2,6 @@
 // Files for one test, gone after it; and what a mesh measures.
 #pragma once
 
-
 #include <filesystem>
 #include <fstream>
 #include <limits>
