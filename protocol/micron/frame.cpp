@@ -2,7 +2,6 @@
 #include "protocol/micron/frame.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "protocol/common/byte_writer.hpp"
 #include "protocol/micron/messages.hpp"
@@ -33,18 +32,24 @@ std::optional<unsigned> hex_digit(std::uint8_t c) {
   return std::nullopt;
 }
 
-/// The length that both spellings agree on.
-std::optional<std::size_t> stated_length(std::span<const std::uint8_t> bytes) {
-  std::size_t hex = 0;
+/// The length in its hexadecimal spelling.
+std::optional<std::size_t> spelled_length(std::span<const std::uint8_t> bytes) {
+  std::size_t length = 0;
   for (const std::uint8_t c : bytes.subspan(1, 4)) {
     const auto digit = hex_digit(c);
     if (!digit) {
       return std::nullopt;
     }
-    hex = hex << 4 | *digit;
+    length = length << 4 | *digit;
   }
+  return length;
+}
+
+/// The length that both spellings agree on.
+std::optional<std::size_t> stated_length(std::span<const std::uint8_t> bytes) {
+  const auto length = spelled_length(bytes);
   const std::size_t binary = bytes[5] | static_cast<std::size_t>(bytes[6]) << 8;
-  return hex == binary ? std::optional{hex} : std::nullopt;
+  return length == binary ? length : std::nullopt;
 }
 
 /// Whether the hexadecimal length may have been written with five digits, as one client does: the binary one
@@ -53,11 +58,9 @@ bool has_fifth_digit(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < lengths_end || bytes[0] != frame_start || !hex_digit(bytes[digits_end])) {
     return false;
   }
-  std::array<std::uint8_t, lengths_end> without{};
-  std::ranges::copy(bytes.first(digits_end), without.begin());
-  without[digits_end] = bytes[digits_end + 1];
-  without[digits_end + 1] = bytes.size() > lengths_end ? bytes[lengths_end] : std::uint8_t{0};
-  return stated_length(without).has_value();
+  const auto length = spelled_length(bytes);
+  return length && bytes[digits_end + 1] == (*length & 0xFF) &&
+         (bytes.size() == lengths_end || bytes[digits_end + 2] == *length >> 8);
 }
 
 std::vector<std::uint8_t> make_frame(const FrameHeader& header, std::span<const std::uint8_t> data) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <random>
 
 #include "tests/unit/protocol/micron/codec/fixture.hpp"
@@ -150,6 +151,25 @@ TEST(FrameBuffer, a_head_command_that_lost_a_byte_costs_no_other_command) {
   const auto frame = buffer.front(0ns);
   ASSERT_TRUE(frame);
   EXPECT_EQ(Bytes(frame->bytes.begin(), frame->bytes.end()), next);
+}
+
+TEST(FrameBuffer, takes_a_length_of_five_digits_however_the_stream_is_cut) {
+  for (const std::size_t data_size : {53U, 247U, 248U, 502U, 503U}) {  // lengths of one byte and of two
+    const Bytes frame = frame_to_head(0x02, 0x03, Bytes(data_size, 0x55));
+    Bytes stream = frame;
+    stream.insert(stream.begin() + 5, 'A');
+    for (std::size_t cut = 1; cut < stream.size(); ++cut) {
+      FrameBuffer buffer{1006};
+      std::vector<Bytes> found;
+      for (const Bytes& piece : {Bytes(stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(cut)),
+                                 Bytes(stream.begin() + static_cast<std::ptrdiff_t>(cut), stream.end())}) {
+        buffer.append({}, piece);
+        std::ranges::move(frames_in(buffer, {}), std::back_inserter(found));
+      }
+      EXPECT_EQ(found, std::vector<Bytes>{frame}) << data_size << " bytes of data, cut after " << cut;
+      EXPECT_EQ(buffer.dropped(), 1U);
+    }
+  }
 }
 
 TEST(FrameBuffer, takes_a_frame_that_was_cut_after_100_ms_of_silence) {
