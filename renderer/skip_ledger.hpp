@@ -111,7 +111,7 @@ inline constexpr std::array skip_rules{
                   "the line lies beyond `ring_down.end_m`, where 80 dB of the ring-down are gone", "lines",
                   1e-3, "of its highest output code"},
     SkipRuleEntry{SkipRule::no_interference, "no_interference",
-                  "the ping is not hit, or the line is nearer than where interference begins", "lines", 0,
+                  "the ping is not hit, or the line lies outside its burst of interference", "lines", 0,
                   "output codes"},
     SkipRuleEntry{SkipRule::clear_water, "clear_water",
                   "volume scattering below -75 dB/m^3, or a range of less than 20 m", "pings", 0.1,

@@ -120,15 +120,18 @@ struct RingDown {
   double level_db = 6.0;  ///< intensity at the peak, re the source intensity at 1 m, before TVG
   double peak_m = 0.28;   ///< > 0; it rises from 0 at half of this
   double end_m = 0.95;    ///< where it has fallen by 80 dB, > peak_m
+  double sd_db = 2.0;     ///< standard deviation of its level from ping to ping, >= 0
 
   bool operator==(const RingDown&) const = default;
 };
 
-/// Another sonar, or the vehicle: noise rises from some range to the end of a ping (docs/physics.md 2.16).
+/// Another sonar, or the vehicle: a burst of noise in a ping (docs/physics.md 2.16).
 struct Interference {
-  double probability = 0.0;  ///< of a ping to be hit, [0, 1]
-  double least_db = 2.0;     ///< noise rises by this at least
-  double most_db = 11.0;     ///< and at most; >= least_db
+  double probability = 0.0;      ///< of a ping to be hit, [0, 1]
+  double least_db = 2.0;         ///< noise rises by this at least
+  double most_db = 11.0;         ///< and at most; >= least_db
+  double median_length_m = 4.0;  ///< half of the bursts are shorter, none is longer than twice this; > 0
+  double to_the_end_probability = 0.1;  ///< of a burst to last to the end of the ping all the same, [0, 1]
 
   bool operator==(const Interference&) const = default;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/acoustics/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderer/acoustics/decibels.hpp"
@@ -27,13 +28,18 @@ std::vector<float> noise_profile(const SonarSettings& settings) {
   return profile;
 }
 
-InterferenceStreak draw_interference(const Interference& interference, int lines, RandomKey key) {
+InterferenceBurst draw_interference(const Interference& interference, const RangeLines& range,
+                                    RandomKey key) {
   if (!(uniform_number(key, 0) < interference.probability)) {
     return {};
   }
   const double raise_db =
       interference.least_db + (interference.most_db - interference.least_db) * uniform_number(key, 1);
-  return {static_cast<int>(lines * uniform_number(key, 2)),
+  const double first_line = std::floor(range.count * uniform_number(key, 2));
+  const double length_m = interference.median_length_m * std::exp2(2 * uniform_number(key, 3) - 1);
+  const bool to_the_end = uniform_number(key, 4) < interference.to_the_end_probability;
+  const double end_line = std::min<double>(range.count, first_line + std::ceil(length_m / range.step_m));
+  return {static_cast<int>(first_line), to_the_end ? range.count : static_cast<int>(end_line),
           static_cast<float>(std::sqrt(decibels_to_power(raise_db)))};
 }
 

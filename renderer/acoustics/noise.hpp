@@ -28,15 +28,17 @@ double noise_level_db(const NoiseBudget& budget);
 std::vector<float> noise_profile(const SonarSettings& settings);
 
 /// Interference in the noise of one ping.
-struct InterferenceStreak {
-  int first_line = 0;   ///< all range bins from here on are raised
+struct InterferenceBurst {
+  int first_line = 0;   ///< range bins from here on are raised
+  int end_line = 0;     ///< up to this one, which is not
   float factor = 1.0F;  ///< of amplitude; 1: this ping is not hit
 
   float factor_at(int line) const { return raises(line) ? factor : 1.0F; }
-  bool raises(int line) const { return factor != 1.0F && line >= first_line; }
+  bool raises(int line) const { return factor != 1.0F && line >= first_line && line < end_line; }
 };
 
-/// Draws whether a ping is hit, from where, and by how much: evenly among all lines and all dB.
-InterferenceStreak draw_interference(const Interference& interference, int lines, RandomKey key);
+/// Draws whether a ping is hit, from where, by how much and how far: evenly among all lines and all dB; its
+/// length evenly in its logarithm between half and twice the median.
+InterferenceBurst draw_interference(const Interference& interference, const RangeLines& range, RandomKey key);
 
 }  // namespace sonard::render

@@ -103,7 +103,7 @@ class PhysicalBins {
       return 0.0F;
     }
     const bool over = bin >= tables.ring_down_lines && skips(SkipRule::ring_down_over);
-    return over ? 0.0F : tables.ring_down[static_cast<std::size_t>(bin)];
+    return over ? 0.0F : ping_.ring_down * tables.ring_down[static_cast<std::size_t>(bin)];
   }
 
   /// Amplitude before TVG.

@@ -16,7 +16,8 @@ namespace sonard::render {
 struct PhysicalPing {
   const ReceiverTables& tables;
   RandomFieldOfPing speckle, texture, noise;
-  InterferenceStreak interference;
+  InterferenceBurst interference;
+  float ring_down = 1.0F;  ///< factor of the ring-down's amplitude
   const SkipSwitches& skip;
 };
 

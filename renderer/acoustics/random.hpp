@@ -19,6 +19,7 @@ enum class RandomField : std::uint64_t {
   paper_speckle = 3,
   texture = 4,
   interference = 5,
+  ring_down = 6,
   array_elements = 16
 };
 

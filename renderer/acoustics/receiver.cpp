@@ -5,6 +5,7 @@
 #include "renderer/acoustics/physical_receiver.hpp"
 #include "renderer/acoustics/quantizer.hpp"
 #include "renderer/acoustics/random.hpp"
+#include "renderer/acoustics/ring_down.hpp"
 
 namespace sonard::render {
 
@@ -57,7 +58,8 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
       speckle_of(state, request, stream),
       texture_of(state, request, stream),
       {.key = key(RandomField::noise)},
-      draw_interference(settings.physical.interference, settings.range.count, key(RandomField::interference)),
+      draw_interference(settings.physical.interference, settings.range, key(RandomField::interference)),
+      draw_ring_down(settings.physical.ring_down, key(RandomField::ring_down)),
       skip_};
   return receive_physical(echo, ping, settings, workers, skipped_);
 }
@@ -75,7 +77,8 @@ bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers)
   }
   state.fields.advance(request, state.tables);
   const PhysicalPing ping{
-      state.tables, speckle_of(state, request, stream), texture_of(state, request, stream), {}, {}, skip_};
+      state.tables, speckle_of(state, request, stream), texture_of(state, request, stream), {}, {}, {},
+      skip_};
   evolve_fields(ping, workers, skipped_);
   return true;
 }

@@ -38,4 +38,12 @@ int ring_down_lines(const RingDown& ring_down, const RangeLines& range) {
              : 0;
 }
 
+float draw_ring_down(const RingDown& ring_down, RandomKey key) {
+  // Real and imaginary part of CN(0, 1) have the variance 1/2.
+  float real = 0, imaginary = 0;
+  fill_complex_gaussian(key, 0, 1, &real, &imaginary);
+  const double normal = std::numbers::sqrt2 * static_cast<double>(real);
+  return static_cast<float>(std::sqrt(decibels_to_power(ring_down.sd_db * normal)));
+}
+
 }  // namespace sonard::render

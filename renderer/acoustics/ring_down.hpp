@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "renderer/acoustics/random.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
@@ -14,5 +15,8 @@ std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLi
 
 /// The first range bin beyond the end; 0: there is no ring-down.
 int ring_down_lines(const RingDown& ring_down, const RangeLines& range);
+
+/// Factor of the ring-down's amplitude in one ping: its level in dB is normally distributed.
+float draw_ring_down(const RingDown& ring_down, RandomKey key);
 
 }  // namespace sonard::render

@@ -42,6 +42,8 @@ void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
                  "intensity of the peak re the source intensity at 1 m, before TVG");
   section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0), "range of the peak");
   section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0), "where it is over; beyond `peak_m`");
+  section.number("sd_db", ring_down.sd_db, Range::from(0.0, 20.0),
+                 "standard deviation of its level from ping to ping");
   if (ring_down.end_m <= ring_down.peak_m) {
     section.report("end_m", "is not beyond peak_m (expected a larger range)");
   }
@@ -49,11 +51,15 @@ void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
 
 void read_interference(YamlSection& section, render::Interference& interference) {
   section.introduce(
-      "A ping that is hit has more noise from some range to its end: which pings, from where and by how much "
-      "is drawn evenly, by the seed.");
+      "A ping that is hit has a burst of noise: which pings, from where and by how much is drawn evenly, by "
+      "the seed.");
   section.number("probability", interference.probability, Range::from(0.0, 1.0), "of a ping to be hit");
   section.number("least_db", interference.least_db, Range::from(0.0, 100.0), "noise rises by this at least");
   section.number("most_db", interference.most_db, Range::from(0.0, 100.0), "and by this at most");
+  section.number("median_length_m", interference.median_length_m, Range::above(0.0, 1000.0),
+                 "median length of a burst; drawn between half and twice of it");
+  section.number("to_the_end_probability", interference.to_the_end_probability, Range::from(0.0, 1.0),
+                 "of a burst to last to the end of the ping instead");
   if (interference.most_db < interference.least_db) {
     section.report("most_db", "is less than least_db (expected at least as much)");
   }

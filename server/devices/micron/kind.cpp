@@ -139,8 +139,8 @@ const DeviceKind& micron_kind() {
 }
 
 // Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
-// 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 60 dB, and one ping of fourteen is hit
-// by interference, as recordings show (docs/physics.md 2.16).
+// 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 14 dB, and one ping of six is hit by
+// a burst of interference, as recordings show (docs/physics.md 2.16).
 render::SonarSettings micron_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
   render::SonarSettings acoustics;
@@ -156,7 +156,8 @@ render::SonarSettings micron_acoustics() {
   acoustics.physical.noise_level_db = -141.0;
   acoustics.physical.near_field_blank_m = 0.1;
   acoustics.physical.ring_down.on = true;
-  acoustics.physical.interference.probability = 0.07;
+  acoustics.physical.ring_down.level_db = -40.0;
+  acoustics.physical.interference.probability = 0.16;
   acoustics.physical.broadside_stripe_db = 0.0;
   return acoustics;
 }

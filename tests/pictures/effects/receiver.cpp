@@ -91,8 +91,8 @@ std::vector<EffectPicture> receiver_pictures() {
        .view = gained_tank,
        .caption_before = "interference: 0",
        .before = [](View& view) { view.settings.physical.interference.probability = 0; },
-       .caption_after = "interference: 0.07",
-       .after = [](View& view) { view.settings.physical.interference.probability = 0.07; }},
+       .caption_after = "interference: 0.16",
+       .after = [](View& view) { view.settings.physical.interference.probability = 0.16; }},
       {.name = "volume_reverberation",
        .view =
            [] {

@@ -23,48 +23,63 @@ TEST(Noise, LevelFollowsFromTheSonarEquation) {
 }
 
 TEST(Noise, InterferenceIsDrawnEvenlyBySeed) {
-  const Interference settings{0.07, 2, 11};
+  const Interference settings{0.07, 2, 11, 4, 0.1};
+  const RangeLines range{1000, 0.05, 0, false};
   constexpr int pings = 100'000;
-  double hit = 0, first = 0, raise_db = 0;
+  double hit = 0, first = 0, raise_db = 0, longer = 0, to_the_end = 0;
   for (int ping = 0; ping < pings; ++ping) {
     const auto key = make_random_key(1, 0, RandomField::interference, static_cast<std::uint64_t>(ping));
-    const InterferenceStreak streak = draw_interference(settings, 1000, key);
-    if (streak.factor == 1.0F) {
+    const InterferenceBurst burst = draw_interference(settings, range, key);
+    if (burst.factor == 1.0F) {
       continue;
     }
     ++hit;
-    first += streak.first_line;
-    const double db = 20 * std::log10(static_cast<double>(streak.factor));
+    first += burst.first_line;
+    const double db = 20 * std::log10(static_cast<double>(burst.factor));
     raise_db += db;
     EXPECT_GE(db, 2 - 1e-5);
     EXPECT_LE(db, 11 + 1e-5);
-    EXPECT_TRUE(streak.raises(999));
-    EXPECT_FALSE(streak.raises(streak.first_line - 1));
+    EXPECT_TRUE(burst.raises(burst.first_line));
+    EXPECT_TRUE(burst.raises(burst.end_line - 1));
+    EXPECT_FALSE(burst.raises(burst.first_line - 1));
+    EXPECT_FALSE(burst.raises(burst.end_line));
+    const int length = burst.end_line - burst.first_line;
+    to_the_end += burst.end_line == 1000 ? 1 : 0;
+    if (burst.end_line < 1000) {
+      EXPECT_GE(length, 40);  // half of 4 m
+      EXPECT_LE(length, 160);
+    }
+    longer += length > 80 ? 1 : 0;
   }
   EXPECT_NEAR(hit / pings, 0.07, 4 * std::sqrt(0.07 / pings));
   EXPECT_NEAR(first / hit, 500, 4 * 289 / std::sqrt(hit));
   EXPECT_NEAR(raise_db / hit, 6.5, 4 * 2.6 / std::sqrt(hit));
+  // Of 50 m: 0.1, and of the others those that begin within their length of the end, which is
+  // 4 m * 3 / (4 ln 2) / 50 m = 0.0866 of them: one in six.
+  EXPECT_NEAR(to_the_end / hit, 0.1 + 0.9 * 0.0866, 4 * 0.39 / std::sqrt(hit));
+  // Half of those of 4 m that end by themselves, where there is room, and those to the end.
+  EXPECT_NEAR(longer / hit, 0.92 * (0.1 + 0.9 / 2), 4 * 0.5 / std::sqrt(hit) + 0.005);
 }
 
-// A ping that is hit: noise rises by the drawn factor from the drawn line to the end, in all beams.
-TEST(Noise, InterferenceRaisesNoiseFromALineToTheEnd) {
+// A ping that is hit: noise rises by the drawn factor from the drawn line to the drawn end, in all beams.
+TEST(Noise, InterferenceRaisesNoiseWithinItsBurst) {
   WorkerPool workers;
   PingRequest request = bare_request(400);
   request.settings.physical.noise = true;
   request.settings.physical.noise_level_db = -40;
   const std::vector<double> calm =
       intensities_of(Receiver().receive(even_echo(request, 0), request, 0, workers));
-  request.settings.physical.interference = {1.0, 10, 10};
+  request.settings.physical.interference = {1.0, 10, 10, 1.0, 0.0};
   const std::vector<double> hit =
       intensities_of(Receiver().receive(even_echo(request, 0), request, 0, workers));
-  const int first =
-      draw_interference(request.settings.physical.interference, 400,
-                        make_random_key(request.seed, 0, RandomField::interference, request.ping_number))
-          .first_line;
-  ASSERT_GT(first, 0);
-  ASSERT_LT(first, 399);
+  const InterferenceBurst burst =
+      draw_interference(request.settings.physical.interference, request.settings.range,
+                        make_random_key(request.seed, 0, RandomField::interference, request.ping_number));
+  ASSERT_GT(burst.first_line, 0);
+  ASSERT_LT(burst.end_line, 399);
   for (std::size_t i = 0; i < hit.size(); ++i) {
-    const double factor = static_cast<int>(i / 256) < first ? 1 : 10;
+    const int line = static_cast<int>(i / 256);
+    const double factor = line >= burst.first_line && line < burst.end_line ? 10 : 1;
     ASSERT_NEAR(std::sqrt(hit[i]), std::sqrt(factor * calm[i]), 4.0 / 65535) << i;
   }
 }
@@ -89,7 +104,7 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
 TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
   WorkerPool workers;
   PingRequest request = bare_request(200);
-  request.settings.physical.ring_down = {true, -6, 0.3, 0.9};
+  request.settings.physical.ring_down = {true, -6, 0.3, 0.9, 0};
   request.settings.physical.gain_db = -6;
   const PingSamples samples = Receiver().receive(even_echo(request, 0), request, 0, workers);
   const std::vector<float> amplitude =
@@ -100,6 +115,18 @@ TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
                 1)
         << line;
   }
+  // Its level differs from ping to ping: sd 2 dB, here of 400 pings, which know it to 0.07 dB.
+  request.settings.physical.ring_down.sd_db = 2;
+  request.settings.range.count = 40;
+  double sum_db = 0, squares_db = 0;
+  for (request.ping_number = 1; request.ping_number <= 400; ++request.ping_number) {
+    const double code = Receiver().receive(even_echo(request, 0), request, 0, workers).u16[36 * 256 + 77];
+    const double db = 20 * std::log10(code / 65535 / static_cast<double>(amplitude[36])) + 6;
+    sum_db += db;
+    squares_db += db * db;
+  }
+  EXPECT_NEAR(sum_db / 400, 0, 0.4);
+  EXPECT_NEAR(std::sqrt(squares_db / 400), 2, 0.3);
   request.settings.transmit = false;
   for (const std::uint16_t code : Receiver().receive(even_echo(request, 0), request, 0, workers).u16) {
     ASSERT_EQ(code, 0);

@@ -189,7 +189,7 @@ TEST(ReceiverRules, ManyScatterersAreNotTextured) {
 TEST(ReceiverRules, RingDownIsNotFollowedBeyondItsEnd) {
   PingRequest request = request_of(64);
   request.settings.physical.noise = false;
-  request.settings.physical.ring_down = {true, -3, 0.2, 0.6};
+  request.settings.physical.ring_down = {true, -3, 0.2, 0.6, 0};
   const Outcome on = two_pings(SkipRule::ring_down_over, {}, request);
   EXPECT_EQ(on.skipped, 40u);
   const Outcome off =

@@ -25,7 +25,10 @@ constexpr double range_m = 25;
 
 class MicronClient {
  public:
-  explicit MicronClient(const server::HeadConfig& head) : head_(head) {}
+  explicit MicronClient(const server::HeadConfig& head)
+      : gain_db(server::micron_config(head).nominal_gain_db), head_(head) {}
+
+  double gain_db;
 
   /// The next line, as decoded.
   std::vector<std::uint8_t> line(float intensity, bool transmit = true, double bearing_rad = 0) {
@@ -34,7 +37,7 @@ class MicronClient {
     job.native_bins = bins;
     job.native_bin_m = range_m / bins;
     job.sound_speed_mps = 1500;
-    job.gain_db = server::micron_config(head_).nominal_gain_db;
+    job.gain_db = gain_db;
     job.transmit = transmit;
     render::PingRequest request;
     request.settings = server::micron_sonar_settings(job, head_);
@@ -85,22 +88,41 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
   EXPECT_EQ(*seen.rbegin(), 191);
 }
 
-// Blank first row; a peak at 0.2 to 0.35 m, gone by 0.8 to 1 m; the water behind it mostly exactly 0.
+// Blank first row; a peak at 0.2 to 0.35 m, gone by 0.8 to 1 m; the water behind it mostly exactly 0. At a
+// gain of 58 % it comes to 20 to 25 dB, at 88 % to 52, with a standard deviation of 1.5 to 3 dB from ping to
+// ping.
 TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
-  MicronClient client{server::micron_kind().make_default()};
-  const std::vector<std::uint8_t> line = client.line(0);
-  EXPECT_EQ(line[0], 0);
-  const auto peak = std::max_element(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(bin_at(2)));
-  const double peak_m = (static_cast<double>(peak - line.begin()) + 0.5) * range_m / bins;
-  EXPECT_GE(peak_m, 0.2);
-  EXPECT_LE(peak_m, 0.35);
-  // A level of 6 dB, the TVG of 30 log 0.275 m, and the gain of -9 dB re 80 dB.
-  EXPECT_NEAR(decibels_of(*peak), 6 + 30 * std::log10(0.275) - 9 + 80, 1);
-  EXPECT_GT(line[bin_at(0.6)], 0);
-  EXPECT_EQ(std::count(line.begin() + static_cast<std::ptrdiff_t>(bin_at(1)),
-                       line.begin() + static_cast<std::ptrdiff_t>(bin_at(5)), 0),
-            static_cast<std::ptrdiff_t>(bin_at(5) - bin_at(1)));
-  EXPECT_EQ(client.line(0)[bin_at(0.3)], line[bin_at(0.3)]) << "it is the same in every ping";
+  server::HeadConfig head = server::micron_kind().make_default();
+  head.acoustics.physical.interference.probability = 0;
+  MicronClient client{head};
+  const auto measure = [&](double gain_percent) {
+    client.gain_db = gain_percent * 0.8;
+    constexpr int pings = 400;
+    double sum_db = 0, squares = 0;
+    for (int ping = 0; ping < pings; ++ping) {
+      const std::vector<std::uint8_t> line = client.line(0);
+      EXPECT_EQ(line[0], 0);
+      const auto peak = std::ranges::max_element(line);
+      const double peak_m = (static_cast<double>(peak - line.begin()) + 0.5) * range_m / bins;
+      EXPECT_GE(peak_m, 0.2);
+      EXPECT_LE(peak_m, 0.35);
+      EXPECT_EQ(std::count(line.begin() + static_cast<std::ptrdiff_t>(bin_at(1)),
+                           line.begin() + static_cast<std::ptrdiff_t>(bin_at(3)), 0),
+                static_cast<std::ptrdiff_t>(bin_at(3) - bin_at(1)));
+      sum_db += decibels_of(*peak);
+      squares += decibels_of(*peak) * decibels_of(*peak);
+    }
+    const double mean_db = sum_db / pings;
+    const double sd_db = std::sqrt(squares / pings - mean_db * mean_db);
+    std::printf("gain %.0f %%: ring-down of %.1f dB, sd %.2f\n", gain_percent, mean_db, sd_db);
+    EXPECT_GE(sd_db, 1.5);
+    EXPECT_LE(sd_db, 3);
+    return mean_db;
+  };
+  const double at_58 = measure(58);
+  EXPECT_GE(at_58, 20);
+  EXPECT_LE(at_58, 25);
+  EXPECT_NEAR(measure(88), 52, 4);
 }
 
 TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
@@ -137,38 +159,49 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
   EXPECT_LT(std::abs(of_noise), 0.05);
 }
 
-// Noise of 40 dB in every bin, so that rises are seen: 7 % of 3000 pings are 210 +-14, and their raise is
-// even between 2 and 11 dB, 6.5 +-2.6 on the average. A quarter of a line is 125 exponentials in intensity,
-// whose mean level is known to 0.4 dB.
-TEST(MicronImage, OnePingOfFourteenIsHitByInterferenceToItsEnd) {
+// Noise of 40 dB in every bin, and bursts of 10 dB, so that each is seen: 14 to 18 % of the lines have one,
+// of a median length of 3 to 5 m. To the end of the 25 m last the one in ten that does so anyway, and of the
+// others 4 m * 3 / (4 ln 2) / 25 m = 17.3 %: 25.6 % in all (at 60 m one in six).
+TEST(MicronImage, OnePingOfSixIsHitByABurstOfInterference) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.noise_level_db = 40 - 80 + 9;
+  head.acoustics.physical.interference.least_db = 10;
+  head.acoustics.physical.interference.most_db = 10;
   MicronClient client{head};
-  const auto level_db = [](const std::vector<std::uint8_t>& line, int from, int to) {
-    double power = 0;
-    for (int i = from; i < to; ++i) {
-      power += std::pow(10.0, decibels_of(line[static_cast<std::size_t>(i)]) / 10);
-    }
-    return 10 * std::log10(power / (to - from));
-  };
+  constexpr int window = 20;  // 1 m: a mean intensity known to 1 dB
   constexpr int pings = 3000;
-  int hit = 0;
-  double raise_db = 0;
+  int hit = 0, to_the_end = 0;
+  std::vector<int> lengths_m;
   for (int ping = 0; ping < pings; ++ping) {
     const std::vector<std::uint8_t> line = client.line(0);
-    const double end_db = level_db(line, bins * 3 / 4, bins);
-    if (end_db > 41.3) {
+    int raised = 0;
+    bool last = false;
+    for (int begin = window; begin < bins; begin += window) {  // the first metre is the ring-down's
+      double power = 0;
+      for (int bin = begin; bin < begin + window; ++bin) {
+        power += std::pow(10.0, decibels_of(line[static_cast<std::size_t>(bin)]) / 10) / window;
+      }
+      last = 10 * std::log10(power) > 45.5;
+      raised += last ? 1 : 0;
+    }
+    if (raised > 0) {
       ++hit;
-      raise_db += end_db - 40;
-      EXPECT_LT(end_db, 52.5);
+      to_the_end += last ? 1 : 0;
+      lengths_m.push_back(raised);
     }
   }
-  // Those that begin within the last eighth or so are not seen.
-  EXPECT_GT(hit, 0.05 * pings);
-  EXPECT_LT(hit, 0.10 * pings);
-  EXPECT_NEAR(raise_db / hit, 6.3, 0.8);
+  ASSERT_GT(hit, 0);
+  std::ranges::nth_element(lengths_m, lengths_m.begin() + hit / 2);
+  const int median_m = lengths_m[static_cast<std::size_t>(hit / 2)];
+  std::printf("%.3f of the lines, %d m, %.3f of them to the end\n", static_cast<double>(hit) / pings,
+              median_m, static_cast<double>(to_the_end) / hit);
+  EXPECT_GE(hit, 0.14 * pings);
+  EXPECT_LE(hit, 0.18 * pings);
+  EXPECT_GE(median_m, 3);
+  EXPECT_LE(median_m, 5);
+  EXPECT_NEAR(static_cast<double>(to_the_end) / hit, 0.256, 4 * 0.436 / std::sqrt(hit));
 }
 
 }  // namespace
