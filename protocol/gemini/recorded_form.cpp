@@ -58,6 +58,7 @@ RecordedSettings settings_of(const PingHead& head) {
 PingRecord record_of(const PingHead& head, const PingImage& image) {
   PingRecord record;
   record.settings = settings_of(head);
+  record.range_compression_log2 = head.compression_log2();
   record.bearings_rad = bearings_rad(head.beams);
   record.sector_rad = sector_rad;
   record.samples = decoded_samples(head, image);

@@ -38,8 +38,9 @@ struct ImageRecord {
   Origin origin;
   std::uint32_t first_line = 0;
   std::uint32_t lines = 0;
-  /// Bits of a code that divides lines and frequency alike, so that it cancels: 0 for "as stored". Never
-  /// 0x20, by which a reader divides.
+  /// What the head averaged: 2^n of its own lines, n in the low four bits; with 0x20 set, n itself. Readers
+  /// divide lines and frequency alike by it, so that it cancels. Never 0x20 alone, which is a division by
+  /// zero.
   std::uint16_t range_compression = 0;
   std::uint32_t first_beam = 0;
   std::uint32_t beams = 0;
@@ -63,9 +64,8 @@ struct ImageRecord {
   bool operator==(const ImageRecord&) const = default;
 };
 
-/// Bearing in the table of a log for a bearing of the wire. Tables in logs run from about +60 degrees down,
-/// the wire's from port, -60 degrees, up, and pixels keep the wire's order of beams. Which side real logs
-/// mean by a positive bearing is not known (docs/logs.md 1.4); this is the one place to turn it around.
+/// Bearing in the table of a log for a bearing of the wire. Tables in logs run from about +60 degrees (port)
+/// down, the wire's from -60 degrees (port) up, and pixels keep the wire's order of beams (docs/logs.md 1.4).
 constexpr double bearing_for_log(double wire_bearing_rad) {
   return -wire_bearing_rad;
 }

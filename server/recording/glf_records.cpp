@@ -22,8 +22,8 @@ std::vector<double> log_bearings_rad(const std::vector<double>& bearings_rad) {
   return bearings;
 }
 
-// Frequency of lines as sent, so that a log need not mention range compression. A half is rounded up,
-// whatever the division made of it.
+// Frequency of lines as sent: the field of range compression changes no range. A half is rounded up, whatever
+// the division made of it.
 std::uint32_t line_frequency_hz(const RecordedSettings& settings) {
   constexpr double of_the_division = 1e-6;
   return static_cast<std::uint32_t>(
@@ -44,6 +44,7 @@ glf::ImageRecord glf_image(PingRecord ping, std::int64_t transmit_unix_ns, const
   image.transmit_time_s = image.origin.time_s;
   image.lines = static_cast<std::uint32_t>(settings.bins);
   image.beams = static_cast<std::uint32_t>(settings.beams);
+  image.range_compression = static_cast<std::uint16_t>(ping.range_compression_log2);
   image.pixels = std::move(ping.samples);
   image.bearings_rad = log_bearings_rad(ping.bearings_rad);
   image.modulation_frequency_hz = line_frequency_hz(settings);

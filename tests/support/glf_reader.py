@@ -49,6 +49,7 @@ class Image:
     header: Header
     lines: int
     beams: int
+    range_compression: int  # 2 to the power of this of the head's lines in one
     compression: str
     data_size: int
     pixels: bytes
@@ -146,7 +147,8 @@ def _image(dat, header):
     (record_type, tag, version, start_range, end_range, range_compression, start_bearing, end_bearing, compression,
      size) = struct.unpack_from("<HHHIIHIIHI", dat, at)
     need((record_type, tag, version) == (1, 0xEFEF, 3), "no image of version 3", at)
-    need((start_range, start_bearing, range_compression) == (0, 0, 0), "a part of a fan", at)
+    need((start_range, start_bearing) == (0, 0), "a part of a fan", at)
+    need(range_compression <= 4, f"range compression {range_compression}", at)
     need(header.length == 21 + 30 + size + 8 * end_bearing + 34, "length is not that of an image", at)
     data = dat[at + 30:at + 30 + size]
     compression, pixels = _pixels(data, compression, end_range * end_bearing, at + 30)
@@ -154,7 +156,7 @@ def _image(dat, header):
     tail = struct.unpack_from("<IIfdHfhBBBBH", dat, at + 30 + size + 8 * end_bearing)
     need(tail[10] == 0, "acoustic zoom", at)
     need(tail[11] == 0xDEDE, "no end tag", at)
-    return Image(header, end_range, end_bearing, compression, size, pixels, bearings_rad, *tail[:10])
+    return Image(header, end_range, end_bearing, range_compression, compression, size, pixels, bearings_rad, *tail[:10])
 
 
 def _status(dat, header):

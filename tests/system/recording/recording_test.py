@@ -288,6 +288,7 @@ class Logs(RecordingTest):
 
     def check_geometry(self, image, message, on_wire):
         self.assertEqual((image.header.device_id, image.header.node_id, message["device_id"]), (513, 100, 513))
+        self.assertEqual(image.range_compression, on_wire.head.compression)
         step_m = wire.line_step_m(1500.0) * (1 << on_wire.head.compression)
         self.assertAlmostEqual(image.metres_per_line * image.lines, step_m * image.lines, delta=0.001)
         self.assertAlmostEqual(message["metres_per_line"], step_m, delta=1e-9)

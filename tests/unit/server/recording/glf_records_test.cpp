@@ -23,6 +23,7 @@ PingRecord ping_of(int native_lines, int compression_log2) {
   ping.settings.bin_m = sound_speed_mps / (2.0 * line_rate_hz) * (1 << compression_log2);
   ping.settings.sound_speed_mps = sound_speed_mps;
   ping.settings.gain_percent = 49.7;
+  ping.range_compression_log2 = compression_log2;
   ping.bearings_rad = {-1.0405, 1.0405};
   ping.sector_rad = 2.0 * std::numbers::pi / 3.0;
   ping.samples.assign(static_cast<std::size_t>(ping.settings.bins * 2), 7);
@@ -62,7 +63,7 @@ TEST(GlfRecords, ALineIsAsLongAsTheHeadMadeIt) {
   for (const int compression : {0, 1, 2, 3, 4}) {
     const glf::ImageRecord image = image_of(ping_of(1024, compression));
     EXPECT_EQ(image.lines, 1024U >> compression);
-    EXPECT_EQ(image.range_compression, 0);
+    EXPECT_EQ(image.range_compression, compression) << "2 to the power of it";
     EXPECT_NEAR(image.sound_speed_mps, 1485.6, 1e-3);
     const double line_m = image.sound_speed_mps / 2.0 / image.modulation_frequency_hz;
     EXPECT_NEAR(image.lines * line_m, 1024 * 1485.6 / 2.0 / line_rate_hz, 0.001) << compression;
