@@ -32,8 +32,8 @@ struct PingRecord {
   /// Bearing of each beam about the vertical of the head: 0 ahead, positive to starboard.
   std::vector<double> bearings_rad;
   double sector_rad = 0.0;  ///< filled by the beams of a multibeam head; 0 for a scanning head
-  int range_compression_log2 =
-      0;                 ///< a bin is made of two to the power of this of the head's own range lines
+  /// A bin is made of two to the power of this of the head's own range lines.
+  int range_compression_log2 = 0;
   int bits_per_bin = 8;  ///< on the wire: 8, or 4 where samples are 0..15
   /// Bin after bin from near to far, each from port to starboard, as a client has them after decoding.
   std::vector<std::uint8_t> samples;
@@ -45,10 +45,8 @@ struct PingRecord {
 struct RecordedPing {
   std::uint64_t record = 0;  ///< PingJob::record
   RecordedSettings settings;
-  double bearing_rad = 0.0;  ///< of the beam of a scanning head, see PingRecord::bearings_rad
-  int range_compression_log2 =
-      0;                 ///< a bin is made of two to the power of this of the head's own range lines
-  int bits_per_bin = 8;  ///< see PingRecord
+  double bearing_rad = 0.0;        ///< of the beam of a scanning head, see PingRecord::bearings_rad
+  int bits_per_bin = 8;            ///< see PingRecord
   std::vector<std::uint8_t> wire;  ///< see PingRecord
   std::optional<TimePoint> due;    ///< earliest transmit time; nullopt: when a client wants it
 };

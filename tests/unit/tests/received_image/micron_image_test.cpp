@@ -95,6 +95,11 @@ TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.interference.probability = 0;
   MicronClient client{head};
+  const double nominal_gain_db = client.gain_db;
+  const std::vector<std::uint8_t> nominal = client.line(0);
+  EXPECT_EQ(std::count(nominal.begin() + static_cast<std::ptrdiff_t>(bin_at(1)),
+                       nominal.begin() + static_cast<std::ptrdiff_t>(bin_at(5)), 0),
+            static_cast<std::ptrdiff_t>(bin_at(5) - bin_at(1)));
   const auto measure = [&](double gain_percent) {
     client.gain_db = gain_percent * 0.8;
     constexpr int pings = 400;
@@ -122,7 +127,10 @@ TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
   const double at_58 = measure(58);
   EXPECT_GE(at_58, 20);
   EXPECT_LE(at_58, 25);
+  // A level of -40 dB, the TVG of 30 log 0.275 m, and -9 dB re 80 dB at the nominal gain.
+  EXPECT_NEAR(at_58, -40 + 30 * std::log10(0.275) - 9 + 80 + (58 * 0.8 - nominal_gain_db), 1);
   EXPECT_NEAR(measure(88), 52, 4);
+  EXPECT_GT(client.line(0)[bin_at(0.6)], 0);
 }
 
 TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
@@ -167,6 +175,8 @@ TEST(MicronImage, OnePingOfSixIsHitByABurstOfInterference) {
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.noise_level_db = 40 - 80 + 9;
+  EXPECT_EQ(head.acoustics.physical.interference.least_db, 2);
+  EXPECT_EQ(head.acoustics.physical.interference.most_db, 11);
   head.acoustics.physical.interference.least_db = 10;
   head.acoustics.physical.interference.most_db = 10;
   MicronClient client{head};
