@@ -121,6 +121,10 @@ struct RingDown {
   double peak_m = 0.28;   ///< > 0; it rises from 0 at half of this
   double end_m = 0.95;    ///< where it has fallen by 80 dB, > peak_m
   double sd_db = 2.0;     ///< standard deviation of its level from ping to ping, >= 0
+  /// What the vehicle around the head sends back: intensity at 1 m, re the source intensity at 1 m, before
+  /// TVG.
+  double vehicle_level_db = -70.0;
+  double vehicle_fall_db_per_m = 14.0;  ///< how fast that dies off; > 0
 
   bool operator==(const RingDown&) const = default;
 };
@@ -168,6 +172,11 @@ struct PhysicalModel {
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
   double noise_level_db = -138.2;  ///< render::noise_level_db() makes it of a sonar equation
+  /// Noise that enters behind TVG and gain, re full scale as gain_db; -infinity: none.
+  double output_noise_db = -std::numeric_limits<double>::infinity();
+  /// c / 2B of the receiver's band B, in which noise is even and by which the ends of a tone are rounded; 0:
+  /// noise has the band of the pulse, as behind a matched filter.
+  double noise_cell_m = 0.0;
   /// Effective number of scatterers in a cell at `texture_range_m`, nu of the K distribution, in proportion
   /// to the range (docs/physics.md 2.8); 0: of no number that shows.
   double texture_nu = 0.0;
@@ -182,7 +191,11 @@ struct PhysicalModel {
   double gain_db = 60.0;
   MultipathSettings multipath;
   // What recordings of multibeam heads show (docs/physics.md 2.16).
-  double near_field_blank_m = 0.7;   ///< output is exactly 0 nearer than this; 0 = off
+  double near_field_blank_m = 0.7;  ///< output is exactly 0 nearer than this; 0 = off
+  // Of a scanning head: noise differs between bearings by as much as this, the same in each sweep, and no two
+  // sweeps stop at quite the same bearing: standard deviation of where the beam points.
+  double noise_by_bearing_db = 0.0;
+  double bearing_jitter_rad = 0.0;
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   RingDown ring_down;
   Interference interference;

@@ -22,6 +22,13 @@ class ComplexRow {
   explicit ComplexRow(int width)
       : stride_(aligned_stride(width)), parts_(2 * static_cast<std::size_t>(stride_)) {}
 
+  /// Makes room; what the row held is lost where it had too little.
+  void ensure_width(int width) {
+    if (width > stride_) {
+      *this = ComplexRow(width);
+    }
+  }
+
   float* real() { return parts_.data(); }
   float* imaginary() { return parts_.data() + stride_; }
   const float* real() const { return parts_.data(); }

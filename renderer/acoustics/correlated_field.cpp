@@ -6,20 +6,44 @@
 
 namespace sonard::render {
 
-FieldReader::FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& field,
-                         const SkipSwitches& skip, SkipCounts& skipped)
-    : tables_(tables),
+Phasors correlate_along_range(const ComplexRow& white, int lines, const PulseCorrelation& along_range,
+                              ComplexRow& out) {
+  const int reach = along_range.reach();
+  if (reach == 0) {
+    return {white.real(), white.imaginary()};
+  }
+  out.ensure_width(lines);
+  std::vector<const float*> real, imaginary;
+  for (int j = 0; j <= 2 * reach; ++j) {
+    real.push_back(white.real() + j);
+    imaginary.push_back(white.imaginary() + j);
+  }
+  along_range.apply(real, lines, out.real());
+  along_range.apply(imaginary, lines, out.imaginary());
+  return {out.real(), out.imaginary()};
+}
+
+Phasors draw_along_range(RandomKey key, int lines, const PulseCorrelation& along_range, ComplexRow& white,
+                         ComplexRow& out) {
+  white.ensure_width(lines + 2 * along_range.reach());
+  white.draw(key, 0);
+  return correlate_along_range(white, lines, along_range, out);
+}
+
+FieldReader::FieldReader(const BeamFilter& filter, const PulseCorrelation& along_range,
+                         const RandomFieldOfPing& field, const SkipSwitches& skip, SkipCounts& skipped)
+    : filter_(filter),
+      along_range_(along_range),
       field_(field),
       skip_(skip),
       skipped_(skipped),
-      beams_(tables.filter.beams()),
-      copies_(tables.filter.copies() && skip.on(SkipRule::narrow_aperture)),
-      white_(tables.filter.row_width()),
+      beams_(filter.beams()),
+      copies_(filter.copies() && skip.on(SkipRule::narrow_aperture)),
+      white_(filter.row_width()),
       joined_(beams_) {
-  const std::size_t rows = 2 * static_cast<std::size_t>(tables.pulse_correlation.reach()) + 1;
-  const Drawn none{ComplexRow(copies_ ? tables.filter.row_width() : beams_),
-                   std::numeric_limits<int>::min(),
-                   {nullptr, nullptr}};
+  const std::size_t rows = 2 * static_cast<std::size_t>(along_range.reach()) + 1;
+  const Drawn none{
+      ComplexRow(copies_ ? filter.row_width() : beams_), std::numeric_limits<int>::min(), {nullptr, nullptr}};
   drawn_.assign(rows, none);
   real_.resize(rows);
   imaginary_.resize(rows);
@@ -29,7 +53,7 @@ Phasors FieldReader::line(int bin) {
   if (field_.beam.real != nullptr) {
     return {field_.beam.real + bin, field_.beam.imaginary + bin};
   }
-  const int reach = tables_.pulse_correlation.reach();
+  const int reach = along_range_.reach();
   if (reach == 0) {
     if (field_.kept != nullptr) {
       evolve(bin);
@@ -43,8 +67,8 @@ Phasors FieldReader::line(int bin) {
     real_[static_cast<std::size_t>(j + reach)] = one.real;
     imaginary_[static_cast<std::size_t>(j + reach)] = one.imaginary;
   }
-  tables_.pulse_correlation.apply(real_, beams_, joined_.real());
-  tables_.pulse_correlation.apply(imaginary_, beams_, joined_.imaginary());
+  along_range_.apply(real_, beams_, joined_.real());
+  along_range_.apply(imaginary_, beams_, joined_.imaginary());
   return {joined_.real(), joined_.imaginary()};
 }
 
@@ -75,14 +99,13 @@ Phasors FieldReader::row(int bin) {
 }
 
 Phasors FieldReader::draw(int bin, ComplexRow& row) {
-  const BeamFilter& filter = tables_.filter;
   if (copies_) {
     skipped_.add(SkipRule::narrow_aperture);
     row.draw(field_.key, bin);
-    return {filter.middle(row.real()), filter.middle(row.imaginary())};
+    return {filter_.middle(row.real()), filter_.middle(row.imaginary())};
   }
   white_.draw(field_.key, bin);
-  row.filter(filter, white_);
+  row.filter(filter_, white_);
   return {row.real(), row.imaginary()};
 }
 

@@ -5,9 +5,10 @@
 
 #include <vector>
 
+#include "renderer/acoustics/beam_correlation.hpp"
 #include "renderer/acoustics/complex_row.hpp"
+#include "renderer/acoustics/pulse.hpp"
 #include "renderer/acoustics/random.hpp"
-#include "renderer/acoustics/receiver_tables.hpp"
 #include "renderer/acoustics/speckle_field.hpp"
 #include "renderer/skip_ledger.hpp"
 
@@ -21,13 +22,22 @@ struct RandomFieldOfPing {
   Phasors beam{nullptr, nullptr};
 };
 
+/// Draws the field of a single beam: `lines` numbers correlated along the range. `white` and `out` are made
+/// as long as they need to be.
+Phasors draw_along_range(RandomKey key, int lines, const PulseCorrelation& along_range, ComplexRow& white,
+                         ComplexRow& out);
+/// out[i] = sum_j c_j white[i + reach + j].
+Phasors correlate_along_range(const ComplexRow& white, int lines, const PulseCorrelation& along_range,
+                              ComplexRow& out);
+
 /// Reads one field. Each thread has one of its own. Where lines share a pulse a kept field has to be evolved
 /// before any of its lines is read.
 class FieldReader {
  public:
-  /// All arguments outlive the reader. @param skipped gets what is left out.
-  FieldReader(const ReceiverTables& tables, const RandomFieldOfPing& field, const SkipSwitches& skip,
-              SkipCounts& skipped);
+  /// All arguments outlive the reader. @param along_range correlation from line to line. @param skipped gets
+  /// what is left out.
+  FieldReader(const BeamFilter& filter, const PulseCorrelation& along_range, const RandomFieldOfPing& field,
+              const SkipSwitches& skip, SkipCounts& skipped);
 
   /// The field in one line; valid until the next call.
   Phasors line(int bin);
@@ -40,9 +50,10 @@ class FieldReader {
   /// A line of the field correlated across beams alone.
   Phasors row(int bin);
   Phasors draw(int bin, ComplexRow& row);
-  int place(int bin) const { return bin + tables_.pulse_correlation.reach(); }
+  int place(int bin) const { return bin + along_range_.reach(); }
 
-  const ReceiverTables& tables_;
+  const BeamFilter& filter_;
+  const PulseCorrelation& along_range_;
   const RandomFieldOfPing& field_;
   const SkipSwitches& skip_;
   SkipCounts& skipped_;

@@ -24,7 +24,7 @@ void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tabl
     texture_ = speckle_;
     T_world_sonar_ = request.T_world_sonar;
   }
-  const int lines = request.settings.range.count + 2 * tables.pulse_correlation.reach();
+  const int lines = request.settings.range.count * tables.cells + 2 * tables.pulse_correlation.reach();
   const auto ensure = [&](Field& field) {
     if (!scans_) {
       field.fan.ensure_lines(lines);
@@ -46,6 +46,9 @@ void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tabl
     }
   }
   T_world_sonar_ = request.T_world_sonar;
+  jitter_rad_ =
+      model.bearing_jitter_rad *
+      normal_number(make_random_key(request.seed, 0, RandomField::bearing_jitter, request.ping_number));
 }
 
 /// Correlation falls with the motion since the last ping, over half the aperture and half a beam. The turns
@@ -78,8 +81,8 @@ RandomFieldOfPing KeptSpeckle::field_of(Field& field, RandomKey key, const SkipS
                                         SkipCounts& skipped) {
   RandomFieldOfPing of_ping{key};
   if (kept_ && scans_) {
-    of_ping.beam =
-        field.scanned.at(ScanPose(T_world_sonar_).bearing_rad, maker_.pulse_correlation, key, skip, skipped);
+    of_ping.beam = field.scanned.at(ScanPose(T_world_sonar_).bearing_rad + jitter_rad_,
+                                    maker_.pulse_correlation, key, skip, skipped);
   } else if (kept_) {
     of_ping.kept = &field.fan;
   }

@@ -49,7 +49,8 @@ class KeptSpeckle {
   bool scans_ = false;  ///< a single beam
   bool textured_ = false;
   Field speckle_, texture_;
-  Pose T_world_sonar_;  ///< at the last ping
+  Pose T_world_sonar_;     ///< at the last ping
+  double jitter_rad_ = 0;  ///< of the bearing of a single beam
 };
 
 }  // namespace sonard::render

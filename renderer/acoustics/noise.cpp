@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 
 #include "renderer/acoustics/decibels.hpp"
 
@@ -26,6 +28,19 @@ std::vector<float> noise_profile(const SonarSettings& settings) {
     profile.push_back(static_cast<float>(std::sqrt(1 + peak * std::exp(-x * x))));
   }
   return profile;
+}
+
+float noise_at_bearing(const PhysicalModel& model, double bearing_rad, RandomKey key) {
+  constexpr std::uint64_t levels = 40;
+  const double turns = bearing_rad / (2 * std::numbers::pi);
+  const double place = (turns - std::floor(turns)) * levels;
+  const double below = std::floor(place);
+  const auto level_db = [&](double number) {
+    return model.noise_by_bearing_db *
+           (uniform_number(key, static_cast<std::uint64_t>(number) % levels) - 0.5);
+  };
+  const double db = level_db(below) + (place - below) * (level_db(below + 1) - level_db(below));
+  return static_cast<float>(std::sqrt(decibels_to_power(db)));
 }
 
 InterferenceBurst draw_interference(const Interference& interference, const RangeLines& range,

@@ -27,6 +27,11 @@ double noise_level_db(const NoiseBudget& budget);
 /// (docs/physics.md 2.16).
 std::vector<float> noise_profile(const SonarSettings& settings);
 
+/// Amplitude of noise at a bearing of a scanning head, re the mean over all in decibels: levels drawn evenly
+/// within PhysicalModel::noise_by_bearing_db for every 9 degrees, and a straight line between them.
+/// @param bearing_rad as ScanPose has it
+float noise_at_bearing(const PhysicalModel& model, double bearing_rad, RandomKey key);
+
 /// Interference in the noise of one ping.
 struct InterferenceBurst {
   int first_line = 0;   ///< range bins from here on are raised

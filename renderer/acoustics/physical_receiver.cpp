@@ -46,9 +46,9 @@ class PhysicalBins {
       : ping_(ping),
         block_(block),
         beams_(ping.tables.filter.beams()),
-        speckle_(ping.tables, ping.speckle, ping.skip, skipped_),
-        texture_(ping.tables, ping.texture, ping.skip, skipped_),
-        noise_(ping.tables, ping.noise, ping.skip, skipped_),
+        speckle_(ping.tables.filter, ping.tables.pulse_correlation, ping.speckle, ping.skip, skipped_),
+        texture_(ping.tables.filter, ping.tables.pulse_correlation, ping.texture, ping.skip, skipped_),
+        noise_(ping.tables.filter, ping.tables.noise_correlation, ping.noise, ping.skip, skipped_),
         silence_(beams_),
         still_(beams_),
         textured_(static_cast<std::size_t>(beams_)),
@@ -63,31 +63,38 @@ class PhysicalBins {
     if (blanked && skips(SkipRule::blanked_near_field)) {
       return;
     }
-    const float gain = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(bin)];
-    const float strongest = block_.strongest(bin);
-    const float ring_down = ring_down_at(bin);
-    const float level = noise_level_at(bin);
-    const bool silent = level == 0 && skips(SkipRule::no_noise);
-    const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(bin);
-    // No echo in any beam: speckle would multiply 0. Later images get other random
-    // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
-    if (!(strongest > 0) && ring_down == 0 && skips(SkipRule::lines_without_echo)) {
-      if (silent) {
-        return;
-      }
-      noise_envelope_row(level, tables.profile.data(), noise.real, noise.imaginary, gain, beams_,
-                         codes_.data());
-    } else {
-      const Phasors phasors = speckle_of(bin);
-      envelope_row(echo_of(bin), phasors.real, phasors.imaginary, ring_down, level, tables.profile.data(),
-                   noise.real, noise.imaginary, gain, beams_, codes_.data());
+    gain_ = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(bin)];
+    ring_down_ = ring_down_at(bin);
+    noise_level_ = noise_level_at(bin);
+    has_echo_ = block_.strongest(bin) > 0 || ring_down_ != 0 || has_reverberation(bin) ||
+                !skips(SkipRule::lines_without_echo);
+    for (int cell = bin * tables.cells; cell < (bin + 1) * tables.cells; ++cell) {
+      add_cell(bin, cell, output);
     }
-    output.add(codes_.data());
   }
 
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
+  /// @param cell of the fields; a line of several beams is one
+  void add_cell(int bin, int cell, Quantizer& output) {
+    const bool silent = noise_level_ == 0 && skips(SkipRule::no_noise);
+    const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(cell);
+    // No echo in any beam: speckle would multiply 0. Later images get other random
+    // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
+    if (has_echo_) {
+      const Phasors phasors = speckle_of(cell);
+      envelope_row(echo_of(bin, cell), phasors.real, phasors.imaginary, ring_down_, noise_level_,
+                   ping_.tables.profile.data(), noise.real, noise.imaginary, gain_, beams_, codes_.data());
+    } else if (silent) {
+      return;
+    } else {
+      noise_envelope_row(noise_level_, ping_.tables.profile.data(), noise.real, noise.imaginary, gain_,
+                         beams_, codes_.data());
+    }
+    output.add(codes_.data());
+  }
+
   /// Counts too: to be asked only where the criterion of the rule is met.
   bool skips(SkipRule rule) {
     const bool on = ping_.skip.on(rule);
@@ -108,7 +115,7 @@ class PhysicalBins {
 
   /// Amplitude before TVG.
   float noise_level_at(int bin) {
-    const float level = ping_.tables.noise;
+    const float level = ping_.noise_factor * ping_.tables.noise[static_cast<std::size_t>(bin)];
     if (!(ping_.tables.model.interference.probability > 0) ||
         (!ping_.interference.raises(bin) && skips(SkipRule::no_interference))) {
       return level;
@@ -116,13 +123,29 @@ class PhysicalBins {
     return level * ping_.interference.factor_at(bin);
   }
 
-  Phasors speckle_of(int bin) {
+  /// Of the vehicle, which sends back what a scanning head sends.
+  bool has_reverberation(int bin) const {
+    return ping_.tables.rings && ping_.tables.vehicle[static_cast<std::size_t>(bin)] > 0;
+  }
+
+  Phasors speckle_of(int cell) {
     const bool off = ping_.tables.model.speckle == PhysicalModel::Speckle::off;
-    return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(bin);
+    return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(cell);
+  }
+
+  const float* echo_of(int bin, int cell) {
+    const float* echo = textured(bin, cell);
+    if (!has_reverberation(bin)) {
+      return echo;
+    }
+    for (std::size_t b = 0; b < textured_.size(); ++b) {
+      textured_[b] = echo[b] + ping_.tables.vehicle[static_cast<std::size_t>(bin)];
+    }
+    return textured_.data();
   }
 
   /// The echo behind its texture.
-  const float* echo_of(int bin) {
+  const float* textured(int bin, int cell) {
     const PhysicalModel& model = ping_.tables.model;
     const float* echo = block_.line(bin);
     if (!(model.texture_nu > 0) || model.speckle == PhysicalModel::Speckle::off) {
@@ -133,13 +156,16 @@ class PhysicalBins {
       return echo;
     }
     root_.set(scatterers);
-    root_.apply(echo, texture_.line(bin).real, beams_, textured_.data());
+    root_.apply(echo, texture_.line(cell).real, beams_, textured_.data());
     return textured_.data();
   }
 
   const PhysicalPing& ping_;
   const EchoBlock& block_;
   int beams_;
+  // Of the line that is being added:
+  float gain_ = 0, ring_down_ = 0, noise_level_ = 0;
+  bool has_echo_ = false;
   SkipCounts skipped_;
   FieldReader speckle_, texture_, noise_;
   ComplexRow silence_;  ///< noise of amplitude 0: 0 throughout
@@ -155,13 +181,13 @@ void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, Work
   if (field.kept == nullptr || reach == 0) {
     return;
   }
-  const int lines = ping.tables.range.count + 2 * reach;
+  const int lines = ping.tables.range.count * ping.tables.cells + 2 * reach;
   constexpr int lines_per_job = 64;
   const int jobs = (lines + lines_per_job - 1) / lines_per_job;
   std::mutex counting;
   workers.run(jobs, [&](int job) {
     SkipCounts own;
-    FieldReader reader(ping.tables, field, ping.skip, own);
+    FieldReader reader(ping.tables.filter, ping.tables.pulse_correlation, field, ping.skip, own);
     for (int line = job * lines_per_job; line < std::min((job + 1) * lines_per_job, lines); ++line) {
       reader.evolve(line - reach);
     }

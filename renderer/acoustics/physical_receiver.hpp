@@ -17,7 +17,8 @@ struct PhysicalPing {
   const ReceiverTables& tables;
   RandomFieldOfPing speckle, texture, noise;
   InterferenceBurst interference;
-  float ring_down = 1.0F;  ///< factor of the ring-down's amplitude
+  float ring_down = 1.0F;     ///< factor of the ring-down's amplitude
+  float noise_factor = 1.0F;  ///< of the noise's amplitude, at the bearing of this ping
   const SkipSwitches& skip;
 };
 

@@ -118,8 +118,20 @@ namespace {
 
 constexpr int most_lines_each_side = 32;
 
+/// Overlap of a tone that lasts from -1/2 to 1/2 with what the receiver's band makes of an instant, the main
+/// lobe of an even band of the width 1 / cell. Lengths in those of the tone.
+double rounded_tone(double at, double cell) {
+  constexpr int steps = 64;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double offset = 2 * (i + 0.5) / steps - 1;
+    sum += std::abs(at + offset * cell) <= 0.5 ? sinc_at(offset) : 0.0;
+  }
+  return sum;
+}
+
 /// Amplitude received `lines` away from an echo, of any scale; 0 beyond the main lobe.
-double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
+double pulse_amplitude(Pulse pulse, int lines, double line_cells, double receiver_cells) {
   const double cells = lines * line_cells;
   switch (pulse) {
     case Pulse::point:
@@ -129,6 +141,9 @@ double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
     case Pulse::windowed_chirp:  // the transform of a Hann window
       return cells < 2 ? sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1)) : 0.0;
     case Pulse::tone:
+      if (receiver_cells > 0) {
+        return rounded_tone(cells, receiver_cells);
+      }
       return std::max(0.0, std::min(0.5, cells + line_cells / 2) - std::max(-0.5, cells - line_cells / 2));
   }
   return 0.0;
@@ -150,14 +165,14 @@ void add_pair(const float* before, const float* after, float weight, int width, 
 
 }  // namespace
 
-PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m) {
+PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m, double receiver_cell_m) {
   if (!(cell_m > 0)) {
     return;
   }
   std::vector<double> amplitudes;
   double power = 0;
   for (int j = 0; j <= most_lines_each_side; ++j) {
-    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m);
+    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m, receiver_cell_m / cell_m);
     if (!(amplitude > 0)) {
       break;
     }

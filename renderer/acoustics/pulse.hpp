@@ -46,9 +46,10 @@ class PulseCorrelation {
  public:
   /// Lines without correlation.
   PulseCorrelation() = default;
-  /// Takes the main lobe of a chirp, the overlap of a tone. @param cell_m PhysicalModel::range_cell_m;
-  /// 0: a pulse without length.
-  PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m);
+  /// Takes the main lobe of a chirp, and a tone with the ends that the receiver's band leaves it.
+  /// @param cell_m PhysicalModel::range_cell_m; 0: a pulse without length
+  /// @param receiver_cell_m PhysicalModel::noise_cell_m; 0: a tone has sharp ends
+  PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m, double receiver_cell_m = 0);
 
   /// Lines to either side that one line shares its field with; 0: none.
   int reach() const { return static_cast<int>(weights_.size()) - 1; }

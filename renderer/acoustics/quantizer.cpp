@@ -38,12 +38,18 @@ void quantise_row(const float* __restrict codes, int count, std::uint16_t* __res
   }
 }
 
+void add_decibels(const float* amplitude, int count, float* sum) {
+  for (int b = 0; b < count; ++b) {
+    sum[b] += 20 * std::log10(std::max(amplitude[b], 1e-6F));
+  }
+}
+
 /// Codes of a scanning head: v = floor(k 255 / 160) with k half decibels, at most 120 (docs/physics.md 2.16).
-void quantise_decibels(const float* amplitude, int count, std::uint8_t* out) {
+void quantise_decibels(const float* sum_db, float terms, int count, std::uint8_t* out) {
   constexpr float full_scale_db = 80.0F;
   constexpr int highest = 120;
   for (int b = 0; b < count; ++b) {
-    const float level_db = full_scale_db + 20 * std::log10(std::max(amplitude[b], 1e-6F));
+    const float level_db = full_scale_db + sum_db[b] / terms;
     const int half_decibels = std::clamp(static_cast<int>(std::lround(2 * level_db)), 0, highest);
     out[b] = static_cast<std::uint8_t>(half_decibels * 255 / 160);
   }
@@ -74,13 +80,15 @@ Quantizer::Quantizer(const SonarSettings& settings, PingSamples& samples)
       sum_(static_cast<std::size_t>(samples.beams)) {}
 
 void Quantizer::begin() {
-  empty_ = true;
+  terms_ = 0;
 }
 
 void Quantizer::add(const float* codes) {
-  if (empty_) {
-    std::copy_n(codes, samples_.beams, sum_.data());
-    empty_ = false;
+  if (terms_++ == 0) {
+    std::fill_n(sum_.data(), samples_.beams, 0.0F);
+  }
+  if (scale_ == OutputScale::half_decibels) {
+    add_decibels(codes, samples_.beams, sum_.data());
   } else if (peak_) {
     raise_row(codes, samples_.beams, sum_.data());
   } else {
@@ -89,13 +97,13 @@ void Quantizer::add(const float* codes) {
 }
 
 void Quantizer::end(int output_line) {
-  if (empty_) {
+  if (terms_ == 0) {
     return;  // the samples are zero from the start
   }
   const auto beams = static_cast<std::size_t>(samples_.beams);
   const std::size_t at = static_cast<std::size_t>(output_line) * beams;
   if (scale_ == OutputScale::half_decibels) {
-    quantise_decibels(sum_.data(), samples_.beams, &samples_.u8[at]);
+    quantise_decibels(sum_.data(), static_cast<float>(terms_), samples_.beams, &samples_.u8[at]);
   } else if (samples_.u16.empty()) {
     quantise_row(sum_.data(), samples_.beams, &samples_.u8[at]);
   } else {

@@ -14,7 +14,8 @@ PingSamples make_samples(const SonarSettings& settings);
 /// range bins of a mean: amplitudes come to Quantizer multiplied with this.
 float codes_per_amplitude(const SonarSettings& settings);
 
-/// Joins range bins to output lines. Each thread has one of its own; they share the samples.
+/// Joins range bins to output lines: amplitudes to their mean or peak, decibels to their mean, for a receiver
+/// of decibels averages behind its logarithm. Each thread has one of its own; they share the samples.
 class Quantizer {
  public:
   Quantizer(const SonarSettings& settings, PingSamples& samples);
@@ -30,7 +31,7 @@ class Quantizer {
   PingSamples& samples_;
   OutputScale scale_;
   bool peak_;
-  bool empty_ = true;
+  int terms_ = 0;  ///< range bins, or cells, that were added
   AlignedVector<float> sum_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "renderer/simd.hpp"
 
@@ -48,6 +49,13 @@ RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std
 
 double uniform_number(RandomKey key, std::uint64_t index) {
   return static_cast<double>(mix(key.value ^ index) >> 11) * 0x1p-53;
+}
+
+double normal_number(RandomKey key) {
+  // Real and imaginary part of CN(0, 1) have the variance 1/2.
+  float real = 0, imaginary = 0;
+  fill_complex_gaussian(key, 0, 1, &real, &imaginary);
+  return std::numbers::sqrt2 * static_cast<double>(real);
 }
 
 SONARD_SIMD_CLONES

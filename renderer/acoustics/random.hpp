@@ -20,6 +20,9 @@ enum class RandomField : std::uint64_t {
   texture = 4,
   interference = 5,
   ring_down = 6,
+  noise_by_bearing = 7,
+  bearing_jitter = 8,
+  water_clutter = 9,
   array_elements = 16
 };
 
@@ -28,6 +31,9 @@ RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std
 
 /// Circular complex Gaussians CN(0, 1), that is E|z|^2 = 1, for columns 0 ... count - 1 of row `row`.
 void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* real, float* imaginary);
+
+/// A normal number of mean 0 and variance 1.
+double normal_number(RandomKey key);
 
 /// Number `index` of a field of even numbers, in [0, 1).
 double uniform_number(RandomKey key, std::uint64_t index);

@@ -17,6 +17,16 @@ std::uint64_t speckle_ping(const PingRequest& request) {
   return frozen ? 0 : request.ping_number;
 }
 
+/// A single beam has another level at every bearing.
+float noise_factor_of(const PingRequest& request, int stream) {
+  const PhysicalModel& model = request.settings.physical;
+  if (request.settings.aperture.beam_count() > 1 || model.noise_by_bearing_db == 0) {
+    return 1.0F;
+  }
+  return noise_at_bearing(model, ScanPose(request.T_world_sonar).bearing_rad,
+                          make_random_key(request.seed, stream, RandomField::noise_by_bearing, 0));
+}
+
 }  // namespace
 
 Receiver::Stream& Receiver::stream_for(const SonarSettings& settings, int stream) {
@@ -39,6 +49,17 @@ RandomFieldOfPing Receiver::texture_of(Stream& state, const PingRequest& request
       make_random_key(request.seed, stream, RandomField::texture, speckle_ping(request)), skip_, skipped_);
 }
 
+/// A single beam's is drawn at once.
+RandomFieldOfPing Receiver::noise_of(Stream& state, RandomKey key) {
+  const ReceiverTables& tables = state.tables;
+  if (tables.filter.beams() > 1 || !tables.model.noise) {
+    return {.key = key};
+  }
+  return {.key = key,
+          .beam = draw_along_range(key, tables.range.count * tables.cells, tables.noise_correlation,
+                                   state.white_noise, state.noise)};
+}
+
 PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
                               WorkerPool& workers) {
   const SonarSettings& settings = request.settings;
@@ -57,9 +78,10 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
       state.tables,
       speckle_of(state, request, stream),
       texture_of(state, request, stream),
-      {.key = key(RandomField::noise)},
+      noise_of(state, key(RandomField::noise)),
       draw_interference(settings.physical.interference, settings.range, key(RandomField::interference)),
       draw_ring_down(settings.physical.ring_down, key(RandomField::ring_down)),
+      noise_factor_of(request, stream),
       skip_};
   return receive_physical(echo, ping, settings, workers, skipped_);
 }
@@ -77,7 +99,7 @@ bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers)
   }
   state.fields.advance(request, state.tables);
   const PhysicalPing ping{
-      state.tables, speckle_of(state, request, stream), texture_of(state, request, stream), {}, {}, {},
+      state.tables, speckle_of(state, request, stream), texture_of(state, request, stream), {}, {}, {}, {},
       skip_};
   evolve_fields(ping, workers, skipped_);
   return true;

@@ -33,6 +33,7 @@ class Receiver {
   struct Stream {
     ReceiverTables tables;
     KeptSpeckle fields;
+    ComplexRow white_noise{0}, noise{0};  ///< of a single beam
   };
 
   /// With tables for these settings.
@@ -40,6 +41,7 @@ class Receiver {
   /// What the receiver makes of speckle and texture; good until the next call of anything.
   RandomFieldOfPing speckle_of(Stream& state, const PingRequest& request, int stream);
   RandomFieldOfPing texture_of(Stream& state, const PingRequest& request, int stream);
+  static RandomFieldOfPing noise_of(Stream& state, RandomKey key);
 
   SkipSwitches skip_;
   SkipCounts skipped_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/acoustics/receiver_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "renderer/acoustics/decibels.hpp"
 #include "renderer/acoustics/noise.hpp"
@@ -11,6 +13,44 @@
 
 namespace sonard::render {
 
+namespace {
+
+constexpr int most_cells = 16;
+
+/// A receiver of decibels joins what a single beam has received in a line.
+int cells_per_line(const SonarSettings& settings) {
+  // Under a Hann window its main lobe is twice as wide.
+  const bool windowed = settings.physical.pulse == PhysicalModel::Pulse::windowed_chirp;
+  const double cell_m = settings.physical.range_cell_m * (windowed ? 2.0 : 1.0);
+  const bool joins =
+      settings.aperture.beam_count() == 1 && settings.output_scale == OutputScale::half_decibels;
+  if (!joins || !(cell_m > 0)) {
+    return 1;
+  }
+  return std::clamp(static_cast<int>(settings.range.step_m / cell_m), 1, most_cells);
+}
+
+/// A tone has no matched filter: noise has the band of the receiver.
+PulseCorrelation noise_correlation_of(const PhysicalModel& model, double step_m) {
+  const bool matched = !(model.noise_cell_m > 0);
+  return {matched ? model.pulse : PhysicalModel::Pulse::chirp,
+          matched ? model.range_cell_m : model.noise_cell_m, step_m};
+}
+
+/// @param gain per range bin, amplitude
+std::vector<float> noise_amplitudes(const PhysicalModel& model, const std::vector<float>& gain) {
+  std::vector<float> amplitudes(gain.size(), 0.0F);
+  const double behind_gain = decibels_to_power(model.output_noise_db);
+  for (std::size_t k = 0; model.noise && k < gain.size(); ++k) {
+    const double power = static_cast<double>(gain[k]) * static_cast<double>(gain[k]);
+    amplitudes[k] =
+        static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db) + behind_gain / power));
+  }
+  return amplitudes;
+}
+
+}  // namespace
+
 ReceiverTables::ReceiverTables(const SonarSettings& settings)
     : aperture(settings.aperture),
       range(settings.range),
@@ -18,18 +58,19 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       sixteen_bit(settings.sixteen_bit),
       output_scale(settings.output_scale),
       rings(settings.transmit && model.ring_down.on),
+      cells(cells_per_line(settings)),
       filter(receive_kernel(aperture), aperture.beam_count()),
-      pulse_correlation(model.pulse, model.range_cell_m, range.step_m),
+      pulse_correlation(model.pulse, model.range_cell_m, range.step_m / cells, model.noise_cell_m),
+      noise_correlation(noise_correlation_of(model, range.step_m / cells)),
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)),
       ring_down(ring_down_amplitudes(model.ring_down, range)),
-      ring_down_lines(render::ring_down_lines(model.ring_down, range)) {
+      ring_down_lines(render::ring_down_lines(model.ring_down, range)),
+      vehicle(vehicle_reverberation(model.ring_down, range)) {
+  noise = noise_amplitudes(model, gain);
   const float codes = codes_per_amplitude(settings);
   for (float& g : gain) {
     g *= codes;
-  }
-  if (model.noise) {
-    noise = static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db)));
   }
 }
 

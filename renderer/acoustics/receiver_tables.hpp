@@ -19,13 +19,17 @@ struct ReceiverTables {
   OutputScale output_scale = OutputScale::linear;
   bool rings = false;  ///< there is a ring-down
 
+  /// Range cells in a line of a single beam, each with speckle and noise of its own; 1 for several beams.
+  int cells = 1;
   BeamFilter filter;
-  PulseCorrelation pulse_correlation;
+  PulseCorrelation pulse_correlation;  ///< of speckle and texture, from cell to cell
+  PulseCorrelation noise_correlation;
   std::vector<float> gain;       ///< per range bin: amplitude to codes, TVG included
   std::vector<float> profile;    ///< per beam: noise amplitude relative to that away from broadside
-  float noise = 0;               ///< amplitude before TVG; 0: off
+  std::vector<float> noise;      ///< per range bin: amplitude before TVG; 0: off
   std::vector<float> ring_down;  ///< per range bin: amplitude before TVG
   int ring_down_lines = 0;       ///< lines that the ring-down reaches
+  std::vector<float> vehicle;    ///< per range bin: mean intensity of the vehicle's reverberation
 
   ReceiverTables() = default;
   explicit ReceiverTables(const SonarSettings& settings);

@@ -32,6 +32,19 @@ std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLi
   return amplitudes;
 }
 
+std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeLines& range) {
+  std::vector<float> intensities(static_cast<std::size_t>(range.count), 0.0F);
+  for (std::size_t k = 0; ring_down.on && k < intensities.size(); ++k) {
+    const double range_m = (static_cast<double>(k) + 0.5) * range.step_m;
+    const double past_m = range_m - 1.0;
+    const double level_db = ring_down.vehicle_level_db - ring_down.vehicle_fall_db_per_m * past_m;
+    if (range_m >= ring_down.peak_m && past_m * ring_down.vehicle_fall_db_per_m < fall_db) {
+      intensities[k] = static_cast<float>(decibels_to_power(level_db));
+    }
+  }
+  return intensities;
+}
+
 int ring_down_lines(const RingDown& ring_down, const RangeLines& range) {
   return ring_down.on
              ? static_cast<int>(std::min<double>(range.count, std::ceil(ring_down.end_m / range.step_m)))
@@ -39,11 +52,7 @@ int ring_down_lines(const RingDown& ring_down, const RangeLines& range) {
 }
 
 float draw_ring_down(const RingDown& ring_down, RandomKey key) {
-  // Real and imaginary part of CN(0, 1) have the variance 1/2.
-  float real = 0, imaginary = 0;
-  fill_complex_gaussian(key, 0, 1, &real, &imaginary);
-  const double normal = std::numbers::sqrt2 * static_cast<double>(real);
-  return static_cast<float>(std::sqrt(decibels_to_power(ring_down.sd_db * normal)));
+  return static_cast<float>(std::sqrt(decibels_to_power(ring_down.sd_db * normal_number(key))));
 }
 
 }  // namespace sonard::render

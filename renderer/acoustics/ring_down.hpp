@@ -13,6 +13,9 @@ namespace sonard::render {
 /// peak as a half cosine, and from there by 80 dB down to the end, straight in dB and so on beyond.
 std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLines& range);
 
+/// Mean intensity per range bin, before TVG, of what the vehicle sends back behind the ring-down.
+std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeLines& range);
+
 /// The first range bin beyond the end; 0: there is no ring-down.
 int ring_down_lines(const RingDown& ring_down, const RangeLines& range);
 

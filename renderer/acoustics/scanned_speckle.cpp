@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "renderer/acoustics/correlated_field.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -18,7 +19,7 @@ namespace {
 // The field is correlated as a Gaussian of the difference in bearing, so the weights of the cells are one
 // too, narrower by sqrt 2; with two cells to the correlation width the sum is as good as the integral.
 constexpr double cells_per_correlation = 2.0;
-constexpr double most_cells = 1e6;
+constexpr double most_scan_cells = 1e6;
 constexpr double reach_correlations = 2.0;  // exp(-2 * 4): what is left out is below 1e-3
 
 SONARD_SIMD_CLONES
@@ -42,7 +43,7 @@ ScannedSpeckle::ScannedSpeckle(double beamwidth_rad, int lines)
     : lines_(lines), fresh_(lines), sum_(lines), out_(lines) {
   const double turn = 2 * std::numbers::pi;
   cell_count_ = static_cast<int>(
-      std::clamp(std::round(turn / (beamwidth_rad / 2) * cells_per_correlation), 1.0, most_cells));
+      std::clamp(std::round(turn / beamwidth_rad * cells_per_correlation), 1.0, most_scan_cells));
   correlation_rad_ = turn / cell_count_ * cells_per_correlation;
 }
 
@@ -89,22 +90,7 @@ Phasors ScannedSpeckle::at(double bearing_rad, const PulseCorrelation& pulse, Ra
     add_weighed(cell.real(0), weight, lines_, sum_.real());
     add_weighed(cell.imaginary(0), weight, lines_, sum_.imaginary());
   }
-  return joined(pulse);
-}
-
-Phasors ScannedSpeckle::joined(const PulseCorrelation& pulse) {
-  const int reach = pulse.reach();
-  if (reach == 0) {
-    return {sum_.real(), sum_.imaginary()};
-  }
-  std::vector<const float*> real, imaginary;
-  for (int j = 0; j <= 2 * reach; ++j) {
-    real.push_back(sum_.real() + j);
-    imaginary.push_back(sum_.imaginary() + j);
-  }
-  pulse.apply(real, lines_ - 2 * reach, out_.real());
-  pulse.apply(imaginary, lines_ - 2 * reach, out_.imaginary());
-  return {out_.real(), out_.imaginary()};
+  return correlate_along_range(sum_, lines_ - 2 * pulse.reach(), pulse, out_);
 }
 
 }  // namespace sonard::render

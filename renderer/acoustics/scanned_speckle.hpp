@@ -23,10 +23,9 @@ struct ScanPose {
 };
 
 /// CN(0, 1) per range bin, for one beam that is turned about the sonar's z axis. It sees what it saw a
-/// sweep ago: the field belongs to bearings of the world, white over cells of a quarter of a
+/// sweep ago: the field belongs to bearings of the world, white over cells of half a
 /// beamwidth, and a beam receives the cells around it. Two bearings apart by d are correlated by exp(-(d /
-/// half a beamwidth)^2), as in SpeckleField for a sonar that turns; only other motion fades
-/// (docs/physics.md 2.8).
+/// beamwidth)^2), as in recordings (docs/physics.md 2.16); only other motion than turning fades.
 class ScannedSpeckle {
  public:
   ScannedSpeckle() = default;
@@ -42,7 +41,6 @@ class ScannedSpeckle {
 
  private:
   SpeckleField& cell_at(int number);
-  Phasors joined(const PulseCorrelation& pulse);
 
   double correlation_rad_ = 1.0;  ///< bearings this far apart are correlated by 1 / e
   int lines_ = 0;                 ///< with those beyond both ends that the pulse reaches

@@ -44,6 +44,12 @@ void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
   section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0), "where it is over; beyond `peak_m`");
   section.number("sd_db", ring_down.sd_db, Range::from(0.0, 20.0),
                  "standard deviation of its level from ping to ping");
+  section.number(
+      "vehicle_level_db", ring_down.vehicle_level_db, level_db,
+      "what the vehicle sends back behind it: mean intensity at 1 m re the source intensity at 1 m, "
+      "before TVG");
+  section.number("vehicle_fall_db_per_m", ring_down.vehicle_fall_db_per_m, Range::above(0.0, 1000.0),
+                 "how fast that dies off");
   if (ring_down.end_m <= ring_down.peak_m) {
     section.report("end_m", "is not beyond peak_m (expected a larger range)");
   }
@@ -104,6 +110,13 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                  "noise intensity re the source intensity at 1 m, before TVG");
   section.section("noise_budget", "what `noise_level_db` follows from, instead of that key",
                   [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
+  section.number_or_word("output_noise_db", model.output_noise_db, level_db,
+                         {{"off", -std::numeric_limits<double>::infinity()}},
+                         "noise that enters behind TVG and gain, re full scale: what is seen in near water");
+  section.number(
+      "noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
+      "c / 2B of the receiver's band B, in which noise is even and which rounds the ends of a tone; "
+      "0: noise has the band of the pulse");
   section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
                  "scatterers in a cell at `texture_range_m`, growing with the range: sand 5 to 20, gravel "
                  "and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
@@ -125,6 +138,10 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                  "output is exactly 0 nearer than this");
   section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0),
                  "extra noise in the middle of the fan, as recordings show; 0 is off");
+  section.number("noise_by_bearing_db", model.noise_by_bearing_db, Range::from(0.0, 60.0),
+                 "of a scanning head: the noise of its bearings differs by as much, in each sweep alike");
+  section.angle("bearing_jitter_deg", model.bearing_jitter_rad, Range::from(0.0, 10.0),
+                "of a scanning head: standard deviation of the bearings at which its sweeps stop");
   section.section("ring_down", "the transducer's own ringing after the pulse",
                   [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
   section.section("interference", "pings that another sonar or the vehicle disturbs",

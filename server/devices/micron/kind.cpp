@@ -139,8 +139,9 @@ const DeviceKind& micron_kind() {
 }
 
 // Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
-// 80, the noise under the ceiling of the TVG to 5 dB, the ring-down to 14 dB, and one ping of six is hit by
-// a burst of interference, as recordings show (docs/physics.md 2.16).
+// 80 at the nominal gain, the noise under the ceiling of the TVG to 5 dB at a gain of 28 %, the ring-down to
+// 24 at 58 %, and one ping of six is hit by a burst of interference, as recordings show
+// (docs/physics.md 2.16).
 render::SonarSettings micron_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
   render::SonarSettings acoustics;
@@ -150,10 +151,13 @@ render::SonarSettings micron_acoustics() {
   acoustics.aperture.elevation =
       render::Aperture::Elevation::sinc_two_way;  // one transducer sends and receives
   acoustics.output_scale = render::OutputScale::half_decibels;
-  acoustics.physical.pulse = render::PhysicalModel::Pulse::chirp;
+  acoustics.physical.pulse = render::PhysicalModel::Pulse::windowed_chirp;
   acoustics.physical.gain_db = -9.0;
-  acoustics.physical.tvg_max_db = 75.0;
-  acoustics.physical.noise_level_db = -141.0;
+  acoustics.physical.tvg_max_db = 59.0;
+  acoustics.physical.noise_level_db = -110.0;
+  acoustics.physical.output_noise_db = -77.8;
+  acoustics.physical.noise_by_bearing_db = 7.0;
+  acoustics.physical.bearing_jitter_rad = 0.15 * degree;
   acoustics.physical.near_field_blank_m = 0.1;
   acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.level_db = -40.0;

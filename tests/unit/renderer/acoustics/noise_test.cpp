@@ -3,6 +3,7 @@
 #include "renderer/acoustics/noise.hpp"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -104,7 +105,7 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
 TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
   WorkerPool workers;
   PingRequest request = bare_request(200);
-  request.settings.physical.ring_down = {true, -6, 0.3, 0.9, 0};
+  request.settings.physical.ring_down = {true, -6, 0.3, 0.9, 0, -std::numeric_limits<double>::infinity()};
   request.settings.physical.gain_db = -6;
   const PingSamples samples = Receiver().receive(even_echo(request, 0), request, 0, workers);
   const std::vector<float> amplitude =

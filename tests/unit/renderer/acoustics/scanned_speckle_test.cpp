@@ -47,7 +47,7 @@ class Scan {
 
 constexpr double bound = 0.08;  // five standard errors of 4000 lines
 
-// exp(-(d / 1.5 degrees)^2) of the field, its square in the intensity, at any bearing and across +-180
+// exp(-(d / 3 degrees)^2) of the field, its square in the intensity, at any bearing and across +-180
 // degrees.
 TEST(ScannedSpeckle, BearingsAreCorrelatedByTheLawOfTheFan) {
   for (const double from_deg : {0.0, 33.3, 179.6, -90.1}) {
@@ -55,7 +55,7 @@ TEST(ScannedSpeckle, BearingsAreCorrelatedByTheLawOfTheFan) {
     const std::vector<double> first = scan.field_at(looking(from_deg * degree));
     for (const double apart_deg : {0.225, 0.45, 0.9, 1.8, 6.0}) {
       EXPECT_NEAR(test::correlation(first, scan.field_at(looking((from_deg + apart_deg) * degree))),
-                  std::exp(-2 * std::pow(apart_deg / 1.5, 2)), bound)
+                  std::exp(-2 * std::pow(apart_deg / 3, 2)), bound)
           << from_deg << ' ' << apart_deg;
     }
   }
