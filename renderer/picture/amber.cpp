@@ -2,6 +2,7 @@
 #include "renderer/picture/amber.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
 
@@ -40,21 +41,23 @@ cv::Vec3b colour_of(double value) {
 
 }  // namespace
 
-cv::Mat palette() {
+cv::Mat palette(Samples samples) {
   cv::Mat colours(1, 256, CV_8UC3);
   for (int value = 0; value < 256; ++value) {
-    colours.at<cv::Vec3b>(0, value) = colour_of(value);
+    colours.at<cv::Vec3b>(0, value) =
+        colour_of(samples == Samples::amplitudes ? std::sqrt(255.0 * value) : value);
   }
   return colours;
 }
 
-cv::Mat paint(const cv::Mat& samples, const cv::Mat& inside) {
-  static const cv::Mat colours = palette();
+cv::Mat paint(const cv::Mat& values, Samples samples, const cv::Mat& inside) {
+  static const cv::Mat of_amplitudes = palette(Samples::amplitudes);
+  static const cv::Mat of_decibels = palette(Samples::decibels);
   cv::Mat grey;
-  cv::cvtColor(samples, grey, cv::COLOR_GRAY2BGR);
+  cv::cvtColor(values, grey, cv::COLOR_GRAY2BGR);
   cv::Mat coloured;
-  cv::LUT(grey, colours, coloured);
-  cv::Mat picture(samples.size(), CV_8UC3, background());
+  cv::LUT(grey, samples == Samples::amplitudes ? of_amplitudes : of_decibels, coloured);
+  cv::Mat picture(values.size(), CV_8UC3, background());
   coloured.copyTo(picture, inside);
   return picture;
 }

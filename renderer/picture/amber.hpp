@@ -7,12 +7,16 @@
 
 namespace sonard::picture::amber {
 
-/// BGR colour of each sample value: 1 x 256, CV_8UC3. Brightness rises strictly with the value, so that a
-/// picture reads the same in grey.
-cv::Mat palette();
+/// What samples stand for. Amplitudes are shown by their square root, as displays stretch them: a bed and its
+/// shadows are a tenth of what steel sends back.
+enum class Samples { amplitudes, decibels };
+
+/// BGR colour of each sample value: 1 x 256, CV_8UC3. Brightness rises with the value, so that a picture
+/// reads the same in grey.
+cv::Mat palette(Samples samples);
 
 /// Samples (CV_8UC1) in colour, on the background where `inside` (CV_8UC1) is 0: CV_8UC3, BGR.
-cv::Mat paint(const cv::Mat& samples, const cv::Mat& inside);
+cv::Mat paint(const cv::Mat& values, Samples samples, const cv::Mat& inside);
 
 /// BGR.
 cv::Scalar background();

@@ -61,7 +61,7 @@ cv::Mat FanImage::project(const cv::Mat& polar) const {
 }
 
 cv::Mat FanImage::draw(const cv::Mat& polar, const std::string& caption) const {
-  cv::Mat picture = amber::paint(project(polar), inside_);
+  cv::Mat picture = amber::paint(project(polar), amber::Samples::amplitudes, inside_);
   if (style_.grid) {
     add_grid(picture, grid_, caption);
   }

@@ -129,7 +129,7 @@ SweepImage::Projection SweepImage::project(const std::vector<SweepLine>& lines) 
 
 cv::Mat SweepImage::draw(const std::vector<SweepLine>& lines, const std::string& caption) const {
   const Projection projection = project(lines);
-  cv::Mat picture = amber::paint(projection.samples, projection.covered);
+  cv::Mat picture = amber::paint(projection.samples, amber::Samples::decibels, projection.covered);
   if (style_.grid) {
     add_grid(picture, grid_, caption);
   }

@@ -25,7 +25,7 @@ using Bytes = std::vector<std::uint8_t>;
 /// 43 colours of echoes; 64 more each from the ground to the grid, to labels, and from the grid to labels.
 std::vector<cv::Vec3b> palette_of_pictures() {
   std::vector<cv::Vec3b> colours;
-  const cv::Mat echoes = amber::palette();
+  const cv::Mat echoes = amber::palette(amber::Samples::decibels);
   for (int value = 2; value < 256; value += 6) {
     colours.push_back(echoes.at<cv::Vec3b>(0, value));
   }

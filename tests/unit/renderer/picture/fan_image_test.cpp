@@ -139,7 +139,7 @@ TEST(FanImage, OneLineOfManyStaysVisible) {
 TEST(FanImage, DrawsEchoesInThePaletteOnTheBackground) {
   const FanImage fan(shape(), {.radius_px = 300, .grid = false});
   const cv::Mat picture = fan.draw(cv::Mat(lines, beams, CV_8UC1, cv::Scalar(160)), "");
-  const cv::Mat palette = amber::palette();
+  const cv::Mat palette = amber::palette(amber::Samples::amplitudes);
   EXPECT_EQ(picture.at<cv::Vec3b>(150, picture.cols / 2), palette.at<cv::Vec3b>(0, 160));
   const cv::Scalar background = amber::background();
   EXPECT_EQ(picture.at<cv::Vec3b>(0, 0),
@@ -164,7 +164,7 @@ TEST(FanImage, TheGridIsDrawnAtWholeRanges) {
 }
 
 TEST(Palette, GrowsBrighterWithTheEcho) {
-  const cv::Mat palette = amber::palette();
+  const cv::Mat palette = amber::palette(amber::Samples::decibels);
   double last = -1.0;
   for (int value = 0; value < 256; ++value) {
     const cv::Vec3b bgr = palette.at<cv::Vec3b>(0, value);

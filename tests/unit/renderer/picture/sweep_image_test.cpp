@@ -196,7 +196,7 @@ TEST(SweepImage, OneOfManyFineBinsStaysVisible) {
 TEST(SweepImage, DrawsEchoesInThePaletteAndSilenceAsBackground) {
   const SweepImage image(all_round(), plain);
   const cv::Mat picture = image.draw({even_line(3200, 160)}, "");
-  EXPECT_EQ(picture.at<cv::Vec3b>(200, 400), amber::palette().at<cv::Vec3b>(0, 160));
+  EXPECT_EQ(picture.at<cv::Vec3b>(200, 400), amber::palette(amber::Samples::decibels).at<cv::Vec3b>(0, 160));
   const cv::Scalar background = amber::background();
   EXPECT_EQ(picture.at<cv::Vec3b>(600, 400),
             cv::Vec3b(static_cast<uchar>(background[0]), static_cast<uchar>(background[1]),

@@ -20,7 +20,7 @@ std::filesystem::path some_file() {
 TEST(PngFile, KeepsTheColoursOfPictures) {
   // The whole palette, and what lies between ground and labels: within half a step of 6 codes.
   cv::Mat picture(3, 256, CV_8UC3);
-  picture::amber::palette().copyTo(picture.row(0));
+  picture::amber::palette(picture::amber::Samples::decibels).copyTo(picture.row(0));
   for (int x = 0; x < 256; ++x) {
     const double part = x / 255.0;
     const cv::Scalar label = picture::amber::background() * (1 - part) + picture::amber::label() * part;
@@ -43,7 +43,8 @@ TEST(PngFile, KeepsTheColoursOfPictures) {
 TEST(PngFile, WidthsAndHeightsOfAnySize) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 3), cv::Size(1, 300), cv::Size(1594, 2)}) {
     cv::Mat picture(size, CV_8UC3, picture::amber::background());
-    picture.at<cv::Vec3b>(size.height - 1, size.width - 1) = picture::amber::palette().at<cv::Vec3b>(0, 254);
+    picture.at<cv::Vec3b>(size.height - 1, size.width - 1) =
+        picture::amber::palette(picture::amber::Samples::decibels).at<cv::Vec3b>(0, 254);
     write_png(some_file(), picture);
     EXPECT_EQ(cv::norm(cv::imread(some_file().string()), picture, cv::NORM_INF), 0) << size;
   }
