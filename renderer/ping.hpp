@@ -14,12 +14,25 @@
 
 namespace sonard::render {
 
+/// The part of a mean echo that single points send back: its amplitude is steady, speckle does not touch it.
+struct SteadyEcho {
+  std::vector<std::int32_t> row_of_line;  ///< -1: the line has none; empty: no line has
+  std::vector<float> intensity;           ///< [row * beams + beam], no more than that of the image
+
+  /// One beam after the other; nullptr: the line has none.
+  const float* line(int line, int beams) const {
+    const std::int32_t row = row_of_line.empty() ? -1 : row_of_line[static_cast<std::size_t>(line)];
+    return row < 0 ? nullptr : &intensity[static_cast<std::size_t>(row) * static_cast<std::size_t>(beams)];
+  }
+};
+
 /// Mean echo intensity behind array and pulse, before speckle, noise and gain. Linear; mode `physical`: re
 /// the source intensity at 1 m, per beam and range bin; mode `paper`: the paper's I_bin in [0, 1].
 struct EchoImage {
   int beams = 0;
   int lines = 0;
   std::vector<float> intensity;  ///< [beam * lines + line]
+  SteadyEcho steady{};
 
   float at(int beam, int line) const {
     return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) +

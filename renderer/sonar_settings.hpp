@@ -122,8 +122,8 @@ struct RingDown {
   double end_m = 0.95;    ///< where it has fallen by 80 dB, > peak_m
   double sd_db = 2.0;     ///< standard deviation of its level from ping to ping, >= 0
   /// What the vehicle around the head sends back: intensity at 1 m, re the source intensity at 1 m, before
-  /// TVG.
-  double vehicle_level_db = -70.0;
+  /// TVG; -infinity: nothing.
+  double vehicle_level_db = -std::numeric_limits<double>::infinity();
   double vehicle_fall_db_per_m = 14.0;  ///< how fast that dies off; > 0
 
   bool operator==(const RingDown&) const = default;
@@ -138,6 +138,14 @@ struct Interference {
   double to_the_end_probability = 0.1;  ///< of a burst to last to the end of the ping all the same, [0, 1]
 
   bool operator==(const Interference&) const = default;
+};
+
+/// Single things that drift in the water: fish, weed, bubbles (docs/physics.md 2.16).
+struct WaterClutter {
+  double density_per_m3 = 0.0;        ///< 0: none
+  double target_strength_db = -45.0;  ///< of the mean intensity of one, re 1 m
+
+  bool operator==(const WaterClutter&) const = default;
 };
 
 /// What arrives by way of smooth surfaces, of mode `physical` (docs/physics.md 2.11). Where nothing in range
@@ -169,13 +177,15 @@ struct PhysicalModel {
   enum class Pulse { point, chirp, windowed_chirp, tone } pulse = Pulse::point;
   /// Scale of those with a length: c / 2B of a chirp of bandwidth B, c tau / 2 of a tone of duration tau.
   double range_cell_m = 0.0;
+  /// c / 2B of the band B that the transducer has there and back, which rounds the ends of a tone; 0: sharp.
+  double tone_rounding_m = 0.0;
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
   double noise_level_db = -138.2;  ///< render::noise_level_db() makes it of a sonar equation
   /// Noise that enters behind TVG and gain, re full scale as gain_db; -infinity: none.
   double output_noise_db = -std::numeric_limits<double>::infinity();
-  /// c / 2B of the receiver's band B, in which noise is even and by which the ends of a tone are rounded; 0:
-  /// noise has the band of the pulse, as behind a matched filter.
+  /// c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse, as behind a
+  /// matched filter.
   double noise_cell_m = 0.0;
   /// Effective number of scatterers in a cell at `texture_range_m`, nu of the K distribution, in proportion
   /// to the range (docs/physics.md 2.8); 0: of no number that shows.
@@ -183,6 +193,7 @@ struct PhysicalModel {
   double texture_range_m = 10.0;  ///< > 0
   /// Scattering strength of the water's volume, dB/m^3 (docs/physics.md 2.10); -infinity: none.
   double volume_scattering_db = -std::numeric_limits<double>::infinity();
+  WaterClutter water_clutter;
   double tvg_log_coefficient = 30.0;        ///< X of X log10 r + 2 alpha r
   double tvg_absorption_db_per_m = 0.2085;  ///< one way; what the device believes the water to be
   double tvg_max_db = 62.0;                 ///< ceiling of the two terms together

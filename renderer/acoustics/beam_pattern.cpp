@@ -239,6 +239,15 @@ double BeamPattern::share(int beam, int fine_beam) const {
   return static_cast<double>(in_band) + static_cast<double>(band.leak);
 }
 
+void BeamPattern::add_lobe(int fine_beam, float echo, std::vector<float>& beams) const {
+  for (std::size_t b = 0; b < bands_.size(); ++b) {
+    const int at = fine_beam - bands_[b].first;
+    if (at >= 0 && at < bands_[b].count) {
+      beams[b] += echo * weights_[bands_[b].weights + static_cast<std::size_t>(at)];
+    }
+  }
+}
+
 BeamPattern::LineSums BeamPattern::sum_lines(const EchoImage& fine, WorkerPool& workers) const {
   constexpr int lines_per_job = 256;
   const auto lines = static_cast<std::size_t>(fine.lines);

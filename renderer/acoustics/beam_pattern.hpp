@@ -41,6 +41,9 @@ class BeamPattern {
   int fine_beams() const { return static_cast<int>(inverse_width_.size()); }
   /// Share of the echo of fine beam f that beam b receives.
   double share(int beam, int fine_beam) const;
+  /// Adds to every beam what its main lobe, and the side lobes beside it, receive of an echo in a fine beam.
+  /// @param beams of as many numbers as there are beams
+  void add_lobe(int fine_beam, float echo, std::vector<float>& beams) const;
   /// The largest sum, of any beam, over what it receives of each fine beam more or less than it would with
   /// ideal edges: no bin changes by more than this times the strongest.
   double change() const { return change_; }

@@ -22,6 +22,8 @@ class EchoBlock {
   const float* line(int bin) const {
     return &rows_[static_cast<std::size_t>(bin - first_) * static_cast<std::size_t>(stride_)];
   }
+  /// What points send back in one of these lines; nullptr: nothing.
+  const float* steady(int bin) const { return echo_.steady.line(bin, echo_.beams); }
   /// The strongest beam of the line; 0: there is no echo in any.
   float strongest(int bin) const;
 

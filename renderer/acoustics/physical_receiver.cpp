@@ -14,16 +14,16 @@ namespace sonard::render {
 
 namespace {
 
-/// Envelope of echo, ring-down and noise.
+/// Envelope of an echo that speckle touches, of an amplitude that it does not, and of noise.
 SONARD_SIMD_CLONES
 void envelope_row(const float* __restrict echo, const float* __restrict speckle_re,
-                  const float* __restrict speckle_im, float ring_down, float noise,
+                  const float* __restrict speckle_im, const float* __restrict steady, float noise,
                   const float* __restrict profile, const float* __restrict noise_re,
                   const float* __restrict noise_im, float gain, int beams, float* __restrict out) {
   for (int b = 0; b < beams; ++b) {
     const float amplitude = std::sqrt(echo[b]);
     const float n = noise * profile[b];
-    const float re = (amplitude * speckle_re[b] + ring_down) + n * noise_re[b];
+    const float re = (amplitude * speckle_re[b] + steady[b]) + n * noise_re[b];
     const float im = amplitude * speckle_im[b] + n * noise_im[b];
     out[b] = gain * std::sqrt(re * re + im * im);
   }
@@ -52,6 +52,8 @@ class PhysicalBins {
         silence_(beams_),
         still_(beams_),
         textured_(static_cast<std::size_t>(beams_)),
+        steady_(static_cast<std::size_t>(beams_)),
+        diffuse_(static_cast<std::size_t>(beams_)),
         codes_(static_cast<std::size_t>(beams_)) {
     std::fill_n(still_.real(), beams_, 1.0F);
   }
@@ -64,10 +66,14 @@ class PhysicalBins {
       return;
     }
     gain_ = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(bin)];
-    ring_down_ = ring_down_at(bin);
+    const float ring_down = ring_down_at(bin);
+    std::ranges::fill(steady_, ring_down);
     noise_level_ = noise_level_at(bin);
-    has_echo_ = block_.strongest(bin) > 0 || ring_down_ != 0 || has_reverberation(bin) ||
+    has_echo_ = block_.strongest(bin) > 0 || ring_down != 0 || has_reverberation(bin) ||
                 !skips(SkipRule::lines_without_echo);
+    if (const float* steady = block_.steady(bin); steady != nullptr) {
+      take_apart(block_.line(bin), steady);
+    }
     for (int cell = bin * tables.cells; cell < (bin + 1) * tables.cells; ++cell) {
       add_cell(bin, cell, output);
     }
@@ -84,7 +90,7 @@ class PhysicalBins {
     // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
     if (has_echo_) {
       const Phasors phasors = speckle_of(cell);
-      envelope_row(echo_of(bin, cell), phasors.real, phasors.imaginary, ring_down_, noise_level_,
+      envelope_row(echo_of(bin, cell), phasors.real, phasors.imaginary, steady_.data(), noise_level_,
                    ping_.tables.profile.data(), noise.real, noise.imaginary, gain_, beams_, codes_.data());
     } else if (silent) {
       return;
@@ -133,6 +139,14 @@ class PhysicalBins {
     return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(cell);
   }
 
+  /// Into what speckle touches and what it does not.
+  void take_apart(const float* echo, const float* steady) {
+    for (std::size_t b = 0; b < steady_.size(); ++b) {
+      diffuse_[b] = std::max(echo[b] - steady[b], 0.0F);
+      steady_[b] += std::sqrt(steady[b]);
+    }
+  }
+
   const float* echo_of(int bin, int cell) {
     const float* echo = textured(bin, cell);
     if (!has_reverberation(bin)) {
@@ -147,7 +161,7 @@ class PhysicalBins {
   /// The echo behind its texture.
   const float* textured(int bin, int cell) {
     const PhysicalModel& model = ping_.tables.model;
-    const float* echo = block_.line(bin);
+    const float* echo = block_.steady(bin) != nullptr ? diffuse_.data() : block_.line(bin);
     if (!(model.texture_nu > 0) || model.speckle == PhysicalModel::Speckle::off) {
       return echo;
     }
@@ -164,14 +178,17 @@ class PhysicalBins {
   const EchoBlock& block_;
   int beams_;
   // Of the line that is being added:
-  float gain_ = 0, ring_down_ = 0, noise_level_ = 0;
+  float gain_ = 0, noise_level_ = 0;
   bool has_echo_ = false;
   SkipCounts skipped_;
   FieldReader speckle_, texture_, noise_;
   ComplexRow silence_;  ///< noise of amplitude 0: 0 throughout
   ComplexRow still_;    ///< speckle that is off: a constant phasor
   TextureRoot root_;
-  AlignedVector<float> textured_, codes_;
+  AlignedVector<float> textured_;
+  AlignedVector<float> steady_;   ///< amplitude that speckle does not touch: points, ring-down
+  AlignedVector<float> diffuse_;  ///< intensity of the others, where there are points
+  AlignedVector<float> codes_;
 };
 
 /// A line's neighbours may be another thread's.

@@ -3,6 +3,9 @@
 
 #include <utility>
 
+#include "renderer/acoustics/decibels.hpp"
+#include "renderer/acoustics/steady_echo.hpp"
+
 namespace sonard::render {
 
 void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int stream,
@@ -44,11 +47,12 @@ void PointSpread::prepare_pulse(const SonarSettings& settings, const SkipSwitche
   const PhysicalModel& model = settings.physical;
   const double step_m = settings.range.step_m;
   if (pulse_ && pulse_->pulse == model.pulse && pulse_->cell_m == model.range_cell_m &&
-      pulse_->step_m == step_m && skip.on(SkipRule::unchanged_settings)) {
+      pulse_->tone_rounding_m == model.tone_rounding_m && pulse_->step_m == step_m &&
+      skip.on(SkipRule::unchanged_settings)) {
     skipped.add(SkipRule::unchanged_settings);
   } else {
-    pulse_ = {model.pulse, model.range_cell_m, step_m,
-              PulseResponse(model.pulse, model.range_cell_m, step_m)};
+    pulse_ = {model.pulse, model.range_cell_m, model.tone_rounding_m, step_m,
+              PulseResponse(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m)};
   }
   uses_pulse_ = true;
   // A bin loses that share at most, and gets it of the bins around it.
@@ -65,10 +69,20 @@ SonarSettings PointSpread::sampled(const SonarSettings& settings) {
   return fine;
 }
 
+void PointSpread::form_beams(const EchoImage& fine, const SonarSettings& settings, EchoImage& beams,
+                             WorkerPool& workers, const SkipSwitches& skip, SkipCounts& skipped) const {
+  pattern_->apply(fine, beams, workers, skip, skipped);
+  // What comes to less than the noise is not looked at.
+  const PhysicalModel& model = settings.physical;
+  const double faintest = model.noise ? decibels_to_power(model.noise_level_db) : 0.0;
+  beams.steady = receive_points(find_points(fine, mixing_reach(settings), static_cast<float>(faintest)), fine,
+                                *pattern_, uses_pulse_ ? &pulse_->response : nullptr, beams.beams);
+}
+
 void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {
   if (uses_pulse_) {
     pulse_->response.apply(echo, memory_, workers);
-    std::swap(echo, memory_);
+    std::swap(echo.intensity, memory_.intensity);
   }
 }
 

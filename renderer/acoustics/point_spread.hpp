@@ -27,11 +27,9 @@ class PointSpread {
   bool has_pattern() const { return uses_pattern_; }
   /// The settings, with the fine beams in place of the beams.
   static SonarSettings sampled(const SonarSettings& settings);
-  /// From fine beams to beams.
-  void form_beams(const EchoImage& fine, EchoImage& beams, WorkerPool& workers, const SkipSwitches& skip,
-                  SkipCounts& skipped) const {
-    pattern_->apply(fine, beams, workers, skip, skipped);
-  }
+  /// From fine beams to beams, with the echoes of single points apart.
+  void form_beams(const EchoImage& fine, const SonarSettings& settings, EchoImage& beams, WorkerPool& workers,
+                  const SkipSwitches& skip, SkipCounts& skipped) const;
 
   /// Spreads the echo in range by the length of the pulse.
   void spread(EchoImage& echo, WorkerPool& workers);
@@ -40,6 +38,7 @@ class PointSpread {
   struct PulseTable {
     PhysicalModel::Pulse pulse;
     double cell_m;
+    double tone_rounding_m;
     double step_m;
     PulseResponse response;
   };

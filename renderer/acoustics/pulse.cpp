@@ -23,11 +23,23 @@ double sinc_at(double x) {
 constexpr double reach_cells = 16;
 constexpr int steps_per_cell = 32;  // of the integration
 
+/// Overlap of a tone that lasts from -1/2 to 1/2 with what the transducer's band makes of an instant, the
+/// main lobe of an even band; of any scale. @param rounding half of its width. Lengths in those of the tone.
+double rounded_tone(double at, double rounding) {
+  constexpr int steps = 64;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double offset = 2 * (i + 0.5) / steps - 1;
+    sum += std::abs(at + offset * rounding) <= 0.5 ? sinc_at(offset) : 0.0;
+  }
+  return sum;
+}
+
 /// Intensity `cells` away from the echo, of any scale.
-double response(Pulse pulse, double cells) {
+double response(Pulse pulse, double cells, double rounding) {
   switch (pulse) {
     case Pulse::tone:
-      return std::abs(cells) <= 0.5 ? 1.0 : 0.0;
+      return std::pow(rounded_tone(cells, rounding), 2);
     case Pulse::windowed_chirp: {
       // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
       const double amplitude = sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
@@ -42,17 +54,17 @@ double response(Pulse pulse, double cells) {
 
 /// Two points that lie evenly in lines `lines` apart are x apart with a density that falls to 0 a line to
 /// either side of that.
-double mean_response(Pulse pulse, int lines, double line_cells) {
+double mean_response(Pulse pulse, int lines, double line_cells, double rounding) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(line_cells * steps_per_cell)));
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
     const double offset = 2 * (i + 0.5) / steps - 1;
-    sum += (1 - std::abs(offset)) * response(pulse, (lines + offset) * line_cells);
+    sum += (1 - std::abs(offset)) * response(pulse, (lines + offset) * line_cells, rounding);
   }
   return sum * 2 / steps;
 }
 
-/// The mean over a tone, exactly: differences of the second integral of a box.
+/// The mean over a tone with sharp ends, exactly: differences of the second integral of a box.
 double mean_tone(int lines, double line_cells) {
   const auto second_integral = [](double x) {
     const double inside = std::clamp(x, -0.5, 0.5);
@@ -73,18 +85,20 @@ void add_scaled(const float* __restrict in, float share, std::size_t count, floa
 
 }  // namespace
 
-PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m) {
+PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
   if (pulse == Pulse::point || !(cell_m > 0)) {
     return;
   }
   const double line_cells = step_m / cell_m;
-  const double reach = pulse == Pulse::tone ? 0.5 : reach_cells;
+  const double rounding = tone_rounding_m / cell_m;
+  const double reach = pulse == Pulse::tone ? 0.5 + rounding : reach_cells;
   const int farthest = static_cast<int>(std::ceil(reach / line_cells));
   std::vector<double> shares;
   double total = 0;
   for (int lines = 0; lines <= farthest; ++lines) {
-    shares.push_back(pulse == Pulse::tone ? mean_tone(lines, line_cells)
-                                          : mean_response(pulse, lines, line_cells));
+    shares.push_back(pulse == Pulse::tone && rounding == 0
+                         ? mean_tone(lines, line_cells)
+                         : mean_response(pulse, lines, line_cells, rounding));
     total += lines == 0 ? shares.back() : 2 * shares.back();
   }
   for (const double share : shares) {
@@ -118,20 +132,8 @@ namespace {
 
 constexpr int most_lines_each_side = 32;
 
-/// Overlap of a tone that lasts from -1/2 to 1/2 with what the receiver's band makes of an instant, the main
-/// lobe of an even band of the width 1 / cell. Lengths in those of the tone.
-double rounded_tone(double at, double cell) {
-  constexpr int steps = 64;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double offset = 2 * (i + 0.5) / steps - 1;
-    sum += std::abs(at + offset * cell) <= 0.5 ? sinc_at(offset) : 0.0;
-  }
-  return sum;
-}
-
 /// Amplitude received `lines` away from an echo, of any scale; 0 beyond the main lobe.
-double pulse_amplitude(Pulse pulse, int lines, double line_cells, double receiver_cells) {
+double pulse_amplitude(Pulse pulse, int lines, double line_cells, double rounding) {
   const double cells = lines * line_cells;
   switch (pulse) {
     case Pulse::point:
@@ -141,8 +143,8 @@ double pulse_amplitude(Pulse pulse, int lines, double line_cells, double receive
     case Pulse::windowed_chirp:  // the transform of a Hann window
       return cells < 2 ? sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1)) : 0.0;
     case Pulse::tone:
-      if (receiver_cells > 0) {
-        return rounded_tone(cells, receiver_cells);
+      if (rounding > 0) {
+        return rounded_tone(cells, rounding);
       }
       return std::max(0.0, std::min(0.5, cells + line_cells / 2) - std::max(-0.5, cells - line_cells / 2));
   }
@@ -165,14 +167,14 @@ void add_pair(const float* before, const float* after, float weight, int width, 
 
 }  // namespace
 
-PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m, double receiver_cell_m) {
+PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
   if (!(cell_m > 0)) {
     return;
   }
   std::vector<double> amplitudes;
   double power = 0;
   for (int j = 0; j <= most_lines_each_side; ++j) {
-    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m, receiver_cell_m / cell_m);
+    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m, tone_rounding_m / cell_m);
     if (!(amplitude > 0)) {
       break;
     }

@@ -22,7 +22,8 @@ class PulseResponse {
   /// A pulse that spreads nothing.
   PulseResponse() = default;
   /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
-  PulseResponse(Pulse pulse, double cell_m, double step_m);
+  /// @param tone_rounding_m PhysicalModel::tone_rounding_m
+  PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0);
 
   /// Shares of an echo in its own line and the lines to one side of it; 0: nothing is spread.
   int taps() const { return static_cast<int>(share_.size()); }
@@ -46,10 +47,10 @@ class PulseCorrelation {
  public:
   /// Lines without correlation.
   PulseCorrelation() = default;
-  /// Takes the main lobe of a chirp, and a tone with the ends that the receiver's band leaves it.
+  /// Takes the main lobe of a chirp, and all of a tone.
   /// @param cell_m PhysicalModel::range_cell_m; 0: a pulse without length
-  /// @param receiver_cell_m PhysicalModel::noise_cell_m; 0: a tone has sharp ends
-  PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m, double receiver_cell_m = 0);
+  /// @param tone_rounding_m PhysicalModel::tone_rounding_m
+  PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0);
 
   /// Lines to either side that one line shares its field with; 0: none.
   int reach() const { return static_cast<int>(weights_.size()) - 1; }

@@ -60,7 +60,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       rings(settings.transmit && model.ring_down.on),
       cells(cells_per_line(settings)),
       filter(receive_kernel(aperture), aperture.beam_count()),
-      pulse_correlation(model.pulse, model.range_cell_m, range.step_m / cells, model.noise_cell_m),
+      pulse_correlation(model.pulse, model.range_cell_m, range.step_m / cells, model.tone_rounding_m),
       noise_correlation(noise_correlation_of(model, range.step_m / cells)),
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)),

@@ -13,6 +13,7 @@
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/acoustics/transmission_loss.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
+#include "renderer/acoustics/water_clutter.hpp"
 #include "renderer/engines/engine_switch.hpp"
 #include "renderer/multipath/multipath.hpp"
 #include "renderer/pipeline/echo_cache.hpp"
@@ -156,6 +157,7 @@ struct SonarRenderer::Impl {
     const SonarSettings& settings = settings_and_seed.settings;
     image.beams = settings.aperture.beam_count();
     image.lines = settings.range.count;
+    image.steady = {};
     if (!settings.transmit) {
       image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines),
                              0.0F);
@@ -164,12 +166,12 @@ struct SonarRenderer::Impl {
     PointSpread& point_spread = point_spreads[stream];
     point_spread.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
     if (point_spread.has_pattern()) {
-      sample_echo(PointSpread::sampled(settings), stream, motion, fine_echo);
+      sample_echo(PointSpread::sampled(settings), settings_and_seed.seed, stream, motion, fine_echo);
       Stopwatch watch;
-      point_spread.form_beams(fine_echo, image, workers, skip, statistics.skipped);
+      point_spread.form_beams(fine_echo, settings, image, workers, skip, statistics.skipped);
       statistics.azimuth_pattern_s = watch.lap();
     } else {
-      sample_echo(settings, stream, motion, image);
+      sample_echo(settings, settings_and_seed.seed, stream, motion, image);
     }
     Stopwatch watch;
     point_spread.spread(image, workers);
@@ -186,7 +188,8 @@ struct SonarRenderer::Impl {
   }
 
   /// The echo as it comes to the sonar.
-  void sample_echo(const SonarSettings& settings, int stream, const SonarMotion& motion, EchoImage& image) {
+  void sample_echo(const SonarSettings& settings, std::uint64_t seed, int stream, const SonarMotion& motion,
+                   EchoImage& image) {
     const EchoRequest request = engine_request(settings, stream, motion);
     MeanEcho echo{std::move(image), {}};
     if (const auto made = begun.find(stream); made != begun.end()) {
@@ -209,6 +212,7 @@ struct SonarRenderer::Impl {
     multipath.add_to(image.intensity, settings, motion.T_world_sonar, statistics.skipped);
     statistics.multipath_s = watch.lap();
     if (settings.model == Model::physical) {
+      add_water_clutter(settings, motion.T_world_sonar, seed, image);
       add_volume_reverberation(echo.open_sr, settings, image);
       if (has_volume_reverberation(settings) && echo.open_sr.empty()) {
         statistics.skipped.add(SkipRule::clear_water);

@@ -44,8 +44,9 @@ void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
   section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0), "where it is over; beyond `peak_m`");
   section.number("sd_db", ring_down.sd_db, Range::from(0.0, 20.0),
                  "standard deviation of its level from ping to ping");
-  section.number(
+  section.number_or_word(
       "vehicle_level_db", ring_down.vehicle_level_db, level_db,
+      {{"off", -std::numeric_limits<double>::infinity()}},
       "what the vehicle sends back behind it: mean intensity at 1 m re the source intensity at 1 m, "
       "before TVG");
   section.number("vehicle_fall_db_per_m", ring_down.vehicle_fall_db_per_m, Range::above(0.0, 1000.0),
@@ -69,6 +70,16 @@ void read_interference(YamlSection& section, render::Interference& interference)
   if (interference.most_db < interference.least_db) {
     section.report("most_db", "is less than least_db (expected at least as much)");
   }
+}
+
+void read_water_clutter(YamlSection& section, render::WaterClutter& clutter) {
+  section.introduce(
+      "They lie at places of the world that the seed draws, within 20 m, and are seen before the first echo "
+      "of a "
+      "beam.");
+  section.number("density_per_m3", clutter.density_per_m3, Range::from(0.0, 10.0), "how many; 0: none");
+  section.number("target_strength_db", clutter.target_strength_db, level_db,
+                 "of the mean intensity of one, re 1 m");
 }
 
 void read_multipath(YamlSection& section, render::MultipathSettings& multipath) {
@@ -115,8 +126,10 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                          "noise that enters behind TVG and gain, re full scale: what is seen in near water");
   section.number(
       "noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
-      "c / 2B of the receiver's band B, in which noise is even and which rounds the ends of a tone; "
-      "0: noise has the band of the pulse");
+      "c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse");
+  section.number(
+      "tone_rounding_m", model.tone_rounding_m, Range::from(0.0, 10.0),
+      "c / 2B of the transducer's band B, there and back, which rounds the ends of a tone; 0: sharp");
   section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
                  "scatterers in a cell at `texture_range_m`, growing with the range: sand 5 to 20, gravel "
                  "and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
@@ -124,13 +137,15 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
   section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
                          {{"off", -std::numeric_limits<double>::infinity()}},
                          "what a cubic metre of water scatters: -80 clear, -60 turbid or full of bubbles");
+  section.section("water_clutter", "single things that drift in the water: fish, weed, bubbles",
+                  [&](YamlSection& inner) { read_water_clutter(inner, model.water_clutter); });
   section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0),
                  "X of the gain X log10 r + 2 alpha r");
   section.number("tvg_absorption_db_per_km", model.tvg_absorption_db_per_m, Range::from(0.0, 10'000.0),
                  "alpha of this gain, one way: what the device believes the water to be", 1000.0);
   section.default_is("tvg_absorption_db_per_km", "absorption of the water");
   section.number("tvg_max_db", model.tvg_max_db, Range::from(0.0, 200.0),
-                 "ceiling of this gain: 62 dB at 720 kHz in the sea are reached at 37 m");
+                 "ceiling of this gain: 78 dB at 720 kHz in the sea, X being 40, are reached at 37 m");
   section.number("gain_db", model.gain_db, level_db,
                  "level of unit intensity after TVG, re full scale (80 dB where samples are decibels); the "
                  "client's gain is added");

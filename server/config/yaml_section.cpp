@@ -214,15 +214,17 @@ void YamlSection::number_or_word(std::string_view key, double& out, const Range&
                                  const std::vector<std::pair<std::string_view, double>>& words,
                                  std::string_view meaning) {
   std::vector<std::string_view> names;
-  std::string_view default_word;
+  std::string default_json = number_text(out);
   for (const auto& [word, value] : words) {
     names.push_back(word);
-    default_word = value == out ? word : default_word;
+    if (value == out) {
+      default_json = quoted_words({word}, '"');
+    }
   }
   document(
       key, fmt::format("{}, or {}", quoted_words(names, '`'), range_text(range)),
       fmt::format(R"("anyOf": [{{"enum": [{}]}}, {{{}}}])", quoted_words(names, '"'), range_schema(range)),
-      quoted_words({default_word}, '"'), meaning);
+      default_json, meaning);
   const Entry* entry = find(key);
   if (entry == nullptr) {
     return;

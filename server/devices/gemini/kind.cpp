@@ -233,17 +233,23 @@ const DeviceKind& gemini_kind() {
   return kind;
 }
 
-// The errors of the elements stand for all that a real head has: they let as much leak as recordings show
-// (docs/physics.md 2.16).
+// As much leaks and as much noise is seen as recordings show (docs/physics.md 2.16).
 render::SonarSettings gemini_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
   render::SonarSettings acoustics;
   acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
-  acoustics.aperture.element_amplitude_sd = 0.35;
-  acoustics.aperture.element_phase_sd_rad = 20 * degree;
+  acoustics.aperture.element_amplitude_sd = 0.12;
+  acoustics.aperture.element_phase_sd_rad = 7 * degree;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
-  // About one cell in a hundred is saturated where a bed fills the fan, as in recordings (the same).
-  acoustics.physical.gain_db = 54.0;
+  acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines that are sampled at 90
+  acoustics.physical.tvg_log_coefficient = 40.0;
+  acoustics.physical.tvg_max_db = 78.0;
+  acoustics.physical.tone_rounding_m = 0.022;  // 34 kHz: a Q of 21
+  acoustics.physical.gain_db = 31.0;
+  acoustics.physical.noise_level_db = -132.5;
+  acoustics.physical.output_noise_db = -46.0;
+  acoustics.physical.texture_nu = 3.0;
+  acoustics.physical.water_clutter.density_per_m3 = 0.1;
   // Whether transmitter and receiver share their height is not published: the pattern is taken once
   // (docs/physics.md 2.5).
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;

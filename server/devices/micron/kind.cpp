@@ -161,6 +161,7 @@ render::SonarSettings micron_acoustics() {
   acoustics.physical.near_field_blank_m = 0.1;
   acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.level_db = -40.0;
+  acoustics.physical.ring_down.vehicle_level_db = -70.0;
   acoustics.physical.interference.probability = 0.16;
   acoustics.physical.broadside_stripe_db = 0.0;
   return acoustics;

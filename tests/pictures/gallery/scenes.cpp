@@ -27,6 +27,7 @@ void take_effects_off(View& view) {
   physical.speckle = render::PhysicalModel::Speckle::off;
   physical.noise = false;
   physical.texture_nu = 0;
+  physical.water_clutter.density_per_m3 = 0;
   physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
   physical.multipath.level = render::MultipathSettings::Level::off;
   physical.broadside_stripe_db = 0;
@@ -41,7 +42,6 @@ void put_effects_on(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
   physical.backscatter = render::PhysicalModel::Backscatter::lambert_facet;
   physical.multipath.level = render::MultipathSettings::Level::full;
-  physical.texture_nu = 10;
   physical.volume_scattering_db = -65;
 }
 

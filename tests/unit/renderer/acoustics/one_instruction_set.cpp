@@ -22,6 +22,7 @@
 #include "renderer/acoustics/ring_down.cpp"
 #include "renderer/acoustics/scanned_speckle.cpp"
 #include "renderer/acoustics/speckle_field.cpp"
+#include "renderer/acoustics/steady_echo.cpp"
 #include "renderer/acoustics/texture.cpp"
 #include "renderer/acoustics/tvg.cpp"
 #include "renderer/sonar_settings.cpp"

@@ -40,7 +40,7 @@ std::vector<std::uint16_t> several_pings() {
   auto skipped = receiver.skipped();  // whatever it counts
   reception.prepare(request.settings, 1, 0, {}, skipped);
   EchoImage heard;
-  reception.form_beams(echo, heard, workers, {}, skipped);
+  reception.form_beams(echo, request.settings, heard, workers, {}, skipped);
   reception.spread(heard, workers);
   std::swap(echo, heard);
   std::vector<std::uint16_t> all;

@@ -57,7 +57,7 @@ Outcome receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& se
     const SonarSettings fine = PointSpread::sampled(settings);
     const EchoImage seen = echo_of(fine.aperture);
     if (reception.has_pattern()) {
-      reception.form_beams(seen, outcome.echo, workers, skip, skipped);
+      reception.form_beams(seen, settings, outcome.echo, workers, skip, skipped);
     } else {
       const int parts = settings.aperture.fine_beams;
       outcome.echo = {settings.aperture.beam_count(), lines, {}};

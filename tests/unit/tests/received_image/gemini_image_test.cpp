@@ -11,35 +11,20 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/gemini/device.hpp"
-#include "protocol/gemini/ping_settings.hpp"
-#include "protocol/gemini/topside.hpp"
-#include "renderer/acoustics/receiver.hpp"
-#include "server/config/config.hpp"
-#include "server/devices/gemini/kind.hpp"
-#include "server/devices/gemini/settings.hpp"
+#include "tests/support/gemini_client.hpp"
 
 namespace sonard {
 namespace {
 
-using namespace std::chrono_literals;
-
 constexpr int beams = gemini::beam_count;
 
-struct Image {
-  int lines = 0;
-  double line_m = 0;
-  std::vector<std::uint8_t> codes;  ///< [line * beams + beam]
-
-  double at(int line, int beam) const { return codes[static_cast<std::size_t>(line * beams + beam)]; }
-};
+using Image = test::GeminiImage;
 
 /// Head and topside with nothing lost between them; the world is an even echo.
 class Client {
  public:
   Client(const render::SonarSettings& acoustics, int native_lines, int compression_log2 = 0)
-      : device_(device_config(), now_), topside_(gemini::TopsideConfig{}) {
-    head_.acoustics = acoustics;
+      : acoustics_(acoustics) {
     gemini::PingSettings wanted;
     wanted.compression_log2 = compression_log2;
     config_ = gemini::make_ping_config(wanted);
@@ -47,71 +32,14 @@ class Client {
   }
 
   std::vector<Image> images(int pings, float intensity) {
-    std::vector<Image> images;
-    topside_.start(now_, config_, static_cast<std::uint64_t>(pings));
-    while (!topside_.finished() && now_ < 1000s) {
-      step(intensity);
-      for (const gemini::ReceivedPing& ping : topside_.take_pings()) {
-        EXPECT_TRUE(ping.complete());
-        images.push_back({ping.lines, line_m_, ping.samples.u8});
-      }
-    }
-    EXPECT_EQ(images.size(), static_cast<std::size_t>(pings));
-    return images;
+    server::HeadConfig head = server::gemini_kind().make_default();
+    head.acoustics = acoustics_;
+    return test::GeminiClient(head, config_, test::EvenEcho(intensity)).images(pings);
   }
 
  private:
-  static gemini::DeviceConfig device_config() {
-    gemini::DeviceConfig config;
-    config.alternate_address = head_address;
-    config.netmask = 0xFF000000;
-    return config;
-  }
-
-  void step(float intensity) {
-    happen(TimePassed{}, intensity);
-    topside_.advance(now_);
-    for (const auto& datagram : topside_.take_outgoing()) {
-      happen(BytesReceived{{0, {topside_address, 52900}, head_address}, SharedBytes(datagram.bytes)},
-             intensity);
-    }
-    now_ += 200us;
-  }
-
-  void happen(const Event& event, float intensity) {
-    const Actions actions = device_.step(now_, event);
-    for (const Outgoing& datagram : actions.send) {
-      topside_.on_datagram(now_, datagram.bytes);
-    }
-    if (actions.render) {
-      happen(PingRendered{render(*actions.render, intensity)}, intensity);
-    }
-  }
-
-  PingImage render(const PingJob& job, float intensity) {
-    render::PingRequest request;
-    request.settings = server::gemini_sonar_settings(job, head_);
-    request.ping_number = job.number;
-    request.seed = 7;
-    line_m_ = job.bin_m();
-    const render::EchoImage echo{
-        beams, job.native_bins,
-        std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(job.native_bins),
-                           intensity)};
-    return {job.number, receiver_.receive(echo, request, 0, workers_).u8, {}};
-  }
-
-  static constexpr Ipv4 head_address = 0x7F000002;
-  static constexpr Ipv4 topside_address = 0x7F000001;
-
-  server::HeadConfig head_ = server::gemini_kind().make_default();
-  TimePoint now_ = 0s;
-  gemini::Device device_;
-  gemini::Topside topside_;
+  render::SonarSettings acoustics_;
   gemini::PingConfig config_;
-  render::Receiver receiver_;
-  render::WorkerPool workers_{2};
-  double line_m_ = 0;
 };
 
 /// The head's own settings but for a gain that is the same at all ranges. Where the echo or the noise is the
@@ -122,6 +50,7 @@ constexpr double level = 0.05;
 render::SonarSettings even_gain() {
   render::SonarSettings settings = server::gemini_acoustics();
   settings.physical.pulse = render::PhysicalModel::Pulse::point;  // lines are independent
+  settings.physical.texture_nu = 0;                               // and Rayleigh
   settings.physical.tvg_log_coefficient = 0;
   settings.physical.tvg_absorption_db_per_m = 0;
   settings.physical.gain_db = 0;

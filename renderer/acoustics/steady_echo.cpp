@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/acoustics/steady_echo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace sonard::render {
+
+namespace {
+
+constexpr std::size_t most_points = 256;
+// Of what array and pulse mix, the spot has to hold this to be a point at all, and to be nothing but one.
+constexpr float least_dominance = 0.5F;
+constexpr float full_dominance = 0.8F;
+
+/// Sum over a rectangle around a cell, as far as it lies in the image.
+float sum_around(const EchoImage& fine, int fine_beam, int line, int beams, int lines) {
+  float sum = 0;
+  for (int f = std::max(0, fine_beam - beams); f <= std::min(fine.beams - 1, fine_beam + beams); ++f) {
+    const float* row = &fine.intensity[static_cast<std::size_t>(f) * static_cast<std::size_t>(fine.lines)];
+    for (int k = std::max(0, line - lines); k <= std::min(fine.lines - 1, line + lines); ++k) {
+      sum += row[k];
+    }
+  }
+  return sum;
+}
+
+bool is_peak(const EchoImage& fine, int fine_beam, int line) {
+  const float here = fine.at(fine_beam, line);
+  for (int f = std::max(0, fine_beam - 1); f <= std::min(fine.beams - 1, fine_beam + 1); ++f) {
+    for (int k = std::max(0, line - 1); k <= std::min(fine.lines - 1, line + 1); ++k) {
+      const float there = fine.at(f, k);
+      const bool first = f < fine_beam || (f == fine_beam && k < line);
+      if (there > here || (first && there == here)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// How much of a spot is steady: rises from 0 to 1 without a kink.
+float steady_share(const EchoImage& fine, int fine_beam, int line, const MixingReach& reach) {
+  const float spot = sum_around(fine, fine_beam, line, 1, 1);
+  const float all = sum_around(fine, fine_beam, line, reach.fine_beams, reach.lines);
+  const float x = std::clamp((spot / all - least_dominance) / (full_dominance - least_dominance), 0.0F, 1.0F);
+  return x * x * (3 - 2 * x);
+}
+
+}  // namespace
+
+MixingReach mixing_reach(const SonarSettings& settings) {
+  const Aperture& aperture = settings.aperture;
+  const std::vector<double>& edges = aperture.beam_edges_rad;
+  const double fine_sine = (std::sin(edges.front()) - std::sin(edges.back())) /
+                           (aperture.beam_count() * static_cast<double>(aperture.fine_beams));
+  const double lines = settings.physical.range_cell_m / settings.range.step_m;
+  return {std::max(2, static_cast<int>(std::lround(aperture.receive_beamwidth_rad / fine_sine))),
+          std::max(2, static_cast<int>(std::lround(lines)))};
+}
+
+std::vector<PointEcho> find_points(const EchoImage& fine, const MixingReach& reach, float faintest) {
+  std::vector<PointEcho> points;
+  for (int f = 0; f < fine.beams; ++f) {
+    const float* row = &fine.intensity[static_cast<std::size_t>(f) * static_cast<std::size_t>(fine.lines)];
+    for (int k = 2; k + 2 < fine.lines; ++k) {
+      // What is no more than this above the lines beside its spot is no point: most cells end here.
+      if (!(row[k] > faintest) || !(row[k] > 2 * (row[k - 2] + row[k + 2])) || !is_peak(fine, f, k)) {
+        continue;
+      }
+      if (const float share = steady_share(fine, f, k, reach); share > 0) {
+        points.push_back({f, k, share});
+      }
+    }
+  }
+  if (points.size() > most_points) {
+    const auto stronger = [&](const PointEcho& a, const PointEcho& b) {
+      return fine.at(a.fine_beam, a.line) > fine.at(b.fine_beam, b.line);
+    };
+    std::ranges::nth_element(points, points.begin() + most_points, stronger);
+    points.resize(most_points);
+  }
+  return points;
+}
+
+SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage& fine,
+                          const BeamPattern& pattern, const PulseResponse* pulse, int beams) {
+  SteadyEcho steady;
+  if (points.empty()) {
+    return steady;
+  }
+  steady.row_of_line.assign(static_cast<std::size_t>(fine.lines), -1);
+  const int taps = pulse != nullptr ? pulse->taps() : 1;
+  const auto row_at = [&](int line) {
+    std::int32_t& row = steady.row_of_line[static_cast<std::size_t>(line)];
+    if (row < 0) {
+      row = static_cast<std::int32_t>(steady.intensity.size() / static_cast<std::size_t>(beams));
+      steady.intensity.resize(steady.intensity.size() + static_cast<std::size_t>(beams), 0.0F);
+    }
+    return &steady.intensity[static_cast<std::size_t>(row) * static_cast<std::size_t>(beams)];
+  };
+  std::vector<float> received(static_cast<std::size_t>(beams));
+  for (const PointEcho& point : points) {
+    for (int k = std::max(0, point.line - 1); k <= std::min(fine.lines - 1, point.line + 1); ++k) {
+      std::ranges::fill(received, 0.0F);
+      for (int f = std::max(0, point.fine_beam - 1); f <= std::min(fine.beams - 1, point.fine_beam + 1);
+           ++f) {
+        pattern.add_lobe(f, point.share * fine.at(f, k), received);
+      }
+      for (int line = std::max(0, k - taps + 1); line <= std::min(fine.lines - 1, k + taps - 1); ++line) {
+        const auto of_pulse = static_cast<float>(pulse != nullptr ? pulse->share(std::abs(line - k)) : 1.0);
+        float* row = row_at(line);
+        for (std::size_t b = 0; b < received.size(); ++b) {
+          row[b] += of_pulse * received[b];
+        }
+      }
+    }
+  }
+  return steady;
+}
+
+}  // namespace sonard::render
