@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+// What targets, structures and beds look like: worlds that are made here, and those of configs/.
+#include <numbers>
+#include <queue>
+#include <set>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+#include "renderer/scene/materials.hpp"
+#include "tests/pictures/view.hpp"
+#include "tests/realism/rows.hpp"
+#include "tests/realism/statistics.hpp"
+#include "tests/support/engine_test.hpp"
+#include "tests/support/gemini_client.hpp"
+
+namespace sonard::realism {
+namespace {
+
+using test::GeminiImage;
+
+constexpr int beams = gemini::beam_count;
+constexpr double degree = std::numbers::pi / 180;
+
+struct Ask {
+  double range_m = 20;
+  double gain_percent = 50;
+  int pings = 1;
+  bool sixteen_bit = false;
+  std::uint64_t seed = 7;
+};
+
+std::vector<GeminiImage> images_of(const render::World& world, const render::Pose& T_world_sonar,
+                                   const Ask& ask) {
+  gemini::PingSettings wanted;
+  wanted.range_m = ask.range_m;
+  wanted.gain_percent = ask.gain_percent;
+  wanted.sixteen_bit = ask.sixteen_bit;
+  render::SonarRenderer renderer(world, {render::EngineKind::cpu, 0});
+  test::GeminiClient client(
+      server::gemini_kind().make_default(), gemini::make_ping_config(wanted),
+      [&](const render::PingRequest& request) { return renderer.render_ping(request); });
+  client.T_world_sonar = T_world_sonar;
+  client.seed = ask.seed;
+  return client.images(ask.pings);
+}
+
+render::Body ball(const glm::dvec3& at_m, double radius_m) {
+  render::Body body = test::make_body("ball", test::make_sphere(static_cast<float>(radius_m), 48));
+  body.parts[0].material = *render::find_acoustic_material("steel_fouled");
+  body.T_world_body.position_m = at_m;
+  return body;
+}
+
+render::World balls(const std::vector<glm::dvec3>& at_m, double radius_m) {
+  std::vector<render::Body> bodies;
+  for (const glm::dvec3& at : at_m) {
+    bodies.push_back(ball(at, radius_m));
+  }
+  return test::make_world(std::move(bodies));
+}
+
+double beam_sine(int beam) {
+  return std::sin(60 * degree) * (1 - (2 * beam + 1.0) / beams);
+}
+int beam_at(double azimuth_rad) {
+  return static_cast<int>((1 - std::sin(azimuth_rad) / std::sin(60 * degree)) * beams / 2);
+}
+
+/// Mean power over pings; noise is that of lines beside the target.
+std::vector<double> mean_power(const std::vector<GeminiImage>& images) {
+  std::vector<double> power(images.front().codes.size(), 0.0);
+  for (const GeminiImage& image : images) {
+    for (std::size_t i = 0; i < power.size(); ++i) {
+      power[i] += image.codes[i] * image.codes[i] / static_cast<double>(images.size());
+    }
+  }
+  return power;
+}
+
+struct Peak {
+  int line = 0, beam = 0;
+  double power = 0;
+};
+Peak peak_of(const std::vector<double>& power, int lines) {
+  const auto at = std::max_element(power.begin(), power.begin() + lines * beams) - power.begin();
+  return {static_cast<int>(at / beams), static_cast<int>(at % beams), power[static_cast<std::size_t>(at)]};
+}
+
+/// Cells beside the peak that have half of its power or more, with parts of cells at the ends.
+double width_of(const std::function<double(int)>& power) {
+  double width = 0;
+  for (const int direction : {-1, 1}) {
+    int i = 0;
+    while (power(i + direction) > power(0) / 2) {
+      i += direction;
+    }
+    width += std::abs(i) + (power(i) - power(0) / 2) / (power(i) - power(i + direction));
+  }
+  return width;
+}
+
+/// A small ball at 10 m, a third of a degree wide, its glint far over the noise.
+const render::World& small_ball() {
+  static const render::World world = balls({{10 * std::cos(0.2), 10 * std::sin(0.2), 0}}, 0.03);
+  return world;
+}
+
+struct SmallBall {
+  std::vector<double> power;
+  Peak peak;
+};
+SmallBall see_small_ball(std::uint64_t seed, int pings) {
+  const std::vector<GeminiImage> images =
+      images_of(small_ball(), {},
+                {.range_m = 50, .gain_percent = 50, .pings = pings, .sixteen_bit = true, .seed = seed});
+  std::vector<double> power = mean_power(images);
+  const Peak peak = peak_of(power, static_cast<int>(11 / images.front().line_m));
+  return {std::move(power), peak};
+}
+
+double point_width(bool in_beams) {
+  const auto [power, peak] = see_small_ball(7, 20);
+  return width_of([&](int i) {
+    const int at = in_beams ? peak.line * beams + peak.beam + i : (peak.line + i) * beams + peak.beam;
+    return power[static_cast<std::size_t>(at)];
+  });
+}
+
+/// The brightest beam of single pings with other seeds: speckle, noise and elements differ.
+double point_bearing_jitter() {
+  std::vector<double> bearings_deg;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    bearings_deg.push_back(std::asin(beam_sine(see_small_ball(seed, 1).peak.beam)) / degree);
+  }
+  return sd_of(bearings_deg);
+}
+
+/// One ball in empty water: of its rows, what beams farther than 60 from it have, without the noise.
+std::vector<double> leakage(std::uint64_t seed) {
+  const render::World world = balls({{9 * std::cos(0.5), 9 * std::sin(0.5), 0}}, 0.2);
+  const std::vector<double> power = mean_power(images_of(
+      world, {}, {.range_m = 12, .gain_percent = 50, .pings = 30, .sixteen_bit = true, .seed = seed}));
+  const Peak peak = peak_of(power, static_cast<int>(power.size()) / beams);
+  std::vector<double> noise, far;
+  for (int beam = 0; beam < beams; ++beam) {
+    if (std::abs(beam - peak.beam) > 60 && std::abs(beam - beams / 2) > 6) {
+      far.push_back(power[static_cast<std::size_t>(peak.line * beams + beam)] / peak.power);
+      for (int line = peak.line - 60; line < peak.line - 40; ++line) {
+        noise.push_back(power[static_cast<std::size_t>(line * beams + beam)] / peak.power);
+      }
+    }
+  }
+  const double floor = mean_of(noise);
+  for (double& share : far) {
+    share = std::max(share - floor, 0.0);
+  }
+  return far;
+}
+
+double leakage_db() {
+  std::vector<double> medians_db;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    medians_db.push_back(decibels(quantile_of(leakage(seed), 0.5) + 1e-9));
+  }
+  return quantile_of(medians_db, 0.5);
+}
+
+double leakage_variation() {
+  const std::vector<double> far = leakage(3);
+  return sd_of(far) / mean_of(far);
+}
+
+struct Region {
+  int cells = 0, first_beam = beams, last_beam = 0, line = 0;
+};
+
+/// Two thresholds: cells of 60 or more, where one of them has 120. Those within a beamwidth (two beams) and a
+/// pulse (four lines) of each other are one: the head cannot tell them apart.
+std::vector<Region> regions_of(const GeminiImage& image) {
+  std::vector<Region> regions;
+  std::set<int> left;
+  for (int i = 0; i < image.lines * beams; ++i) {
+    if (image.codes[static_cast<std::size_t>(i)] >= 60) {
+      left.insert(i);
+    }
+  }
+  while (!left.empty()) {
+    Region region;
+    double most = 0;
+    std::queue<int> open;
+    open.push(*left.begin());
+    left.erase(left.begin());
+    while (!open.empty()) {
+      const int at = open.front();
+      open.pop();
+      const int line = at / beams, beam = at % beams;
+      most = std::max(most, image.at(line, beam));
+      region = {region.cells + 1, std::min(region.first_beam, beam), std::max(region.last_beam, beam), line};
+      for (int dl = -4; dl <= 4; ++dl) {
+        for (int db = -2; db <= 2; ++db) {
+          const bool inside = beam + db >= 0 && beam + db < beams;
+          if (const auto next = left.find(at + dl * beams + db); inside && next != left.end()) {
+            open.push(*next);
+            left.erase(next);
+          }
+        }
+      }
+    }
+    if (most >= 120) {
+      regions.push_back(region);
+    }
+  }
+  return regions;
+}
+
+/// Two balls of 1 m, 6 m apart, 10 m away in empty water.
+std::vector<Region> regions_of_two_balls(std::uint64_t seed) {
+  const double aside = std::asin(0.3);
+  const render::World world = balls({{10 * std::cos(aside), 3, 0}, {10 * std::cos(aside), -3, 0}}, 0.5);
+  return regions_of(images_of(world, {}, {.range_m = 20, .seed = seed}).front());
+}
+
+/// The number that is farthest from two, of several draws.
+double regions() {
+  double farthest = 2;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto found = static_cast<double>(regions_of_two_balls(seed).size());
+    farthest = std::abs(found - 2) > std::abs(farthest - 2) ? found : farthest;
+  }
+  return farthest;
+}
+
+/// Width across the beams, which see the ball at an angle of 17 degrees, to its diameter of 1 m.
+double size_of_a_ball() {
+  double worst = 1;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const Region& region : regions_of_two_balls(seed)) {
+      const double size_m = 9.5 * (beam_sine(region.first_beam) - beam_sine(region.last_beam + 1)) / 0.95;
+      worst = std::max({worst, size_m, 1 / size_m});
+    }
+  }
+  return worst;
+}
+
+/// A world of configs/, by a head that is not configured, from where the picture of the gallery is taken.
+GeminiImage world_of(const std::string& config, double range_m, std::uint64_t seed = 7) {
+  const pictures::View view = pictures::configured_view(config, range_m);
+  return images_of(view.world, view.T_world_sonar, {.range_m = range_m, .seed = seed}).front();
+}
+
+double most_saturated() {
+  double most = 0;
+  for (const auto& [config, range_m] :
+       {std::pair{"demo.yaml", 20.0}, std::pair{"manifold.yaml", 25.0}, std::pair{"ssiv.yaml", 20.0}}) {
+    const GeminiImage image = world_of(config, range_m);
+    most = std::max(most, static_cast<double>(std::ranges::count(image.codes, 255.0)) /
+                              static_cast<double>(image.codes.size()));
+  }
+  return most;
+}
+
+double mean_code(const GeminiImage& image, double from_m, double to_m, double from_deg, double to_deg) {
+  std::vector<double> codes;
+  for (int line = static_cast<int>(from_m / image.line_m); line < static_cast<int>(to_m / image.line_m);
+       ++line) {
+    for (int beam = beam_at(-from_deg * degree); beam < beam_at(-to_deg * degree); ++beam) {
+      codes.push_back(image.at(line, beam));
+    }
+  }
+  return mean_of(codes);
+}
+
+/// Behind the docking station, and on the bed to both sides of it, at the same ranges.
+double shadow_db() {
+  const GeminiImage image = world_of("demo.yaml", 20);
+  const double beside = (mean_code(image, 16, 18, -26, -14) + mean_code(image, 16, 18, 14, 22)) / 2;
+  return 2 * decibels(beside / mean_code(image, 16, 18, -6, 4));
+}
+
+double highlights_db() {
+  const GeminiImage image = world_of("demo.yaml", 40);
+  gemini::PingSettings wanted;
+  wanted.range_m = 40;
+  test::GeminiClient silent(server::gemini_kind().make_default(), gemini::make_ping_config(wanted),
+                            test::EvenEcho(0));
+  return 2 *
+         decibels(quantile_of(image.codes, 0.999) / mean_code(silent.images(1).front(), 36, 39, -55, -10));
+}
+
+/// An even bed of sand 5 m under the sonar: mean of patches of 16 beams by 24 lines.
+double bed_variation() {
+  render::Body bed = test::make_body("bed", test::make_quad({-50, -50, -5}, {100, 0, 0}, {0, 100, 0}));
+  bed.parts[0].material = *render::find_acoustic_material("sand");
+  const GeminiImage image = images_of(test::make_world({bed}), test::looking({0, 0, 0}, 0, 20),
+                                      {.range_m = 20, .sixteen_bit = true})
+                                .front();
+  std::vector<double> variations;
+  for (int line = static_cast<int>(8 / image.line_m); line < static_cast<int>(16 / image.line_m);
+       line += 24) {
+    for (int beam = 60; beam + 16 < 196; beam += 16) {
+      std::vector<double> patch;
+      for (int i = 0; i < 24 * 16; ++i) {
+        patch.push_back(std::pow(image.at(line + i / 16, beam + i % 16), 2));
+      }
+      variations.push_back(std::pow(sd_of(patch) / mean_of(patch), 2));
+    }
+  }
+  return mean_of(variations);
+}
+
+/// Cells of near water that stand out: of ten times the median.
+double clutter_share() {
+  const render::World world = balls({{90, 0, 0}}, 0.1);
+  int bright = 0, all = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const GeminiImage image = images_of(world, {}, {.range_m = 20, .seed = seed}).front();
+    for (int line = static_cast<int>(0.9 / image.line_m); line < static_cast<int>(10 / image.line_m);
+         ++line) {
+      for (int beam = 0; beam < beams; ++beam, ++all) {
+        bright += image.at(line, beam) >= 12 ? 1 : 0;
+      }
+    }
+  }
+  return static_cast<double>(bright) / all;
+}
+
+}  // namespace
+
+std::vector<Row> gemini_scene_rows() {
+  return {
+      {"Gemini", "leakage of a ball: median of its row beyond 60 beams", "-30 or less, about -35", -40, -30,
+       "dB", leakage_db},
+      {"Gemini", "the same: variation along the row", "patchy", 0.3, 1.5, "", leakage_variation},
+      {"Gemini", "a point: width at -3 dB", "3.5", 2.4, 3.6, "beams", [] { return point_width(true); }},
+      {"Gemini", "a point: length at -3 dB", "2.1, of averages of two", 3, 5, "lines",
+       [] { return point_width(false); }},
+      {"Gemini", "a point: its bearing from draw to draw", "stable", 0, 0.1, "degrees", point_bearing_jitter},
+      {"Gemini", "two balls of 1 m and a detector with thresholds 120 and 60: regions", "2", 2, 2, "",
+       regions},
+      {"Gemini", "the same: factor between a region and a ball", "1", 1, 1.5, "", size_of_a_ball},
+      {"Gemini", "bed beside the docking station over its shadow", "10 or more", 10, 40, "dB", shadow_db},
+      {"Gemini", "most saturated of the docking station, the manifold and the valves",
+       "under 1e-4, 1e-2 over a bed", 0, 1e-3, "", most_saturated},
+      {"Gemini", "99.9 % of the docking station over the far noise", "19", 16, 22, "dB", highlights_db},
+      {"Gemini", "patches of a bed: variance of intensity over squared mean", "1.3 to 2.1", 1.3, 2.1, "",
+       bed_variation},
+      {"Gemini", "near water: share of cells of clutter", "isolated", 1e-5, 1e-2, "", clutter_share},
+  };
+}
+
+}  // namespace sonard::realism

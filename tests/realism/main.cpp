@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// realism: prints the table of docs/acoustics.md, and says how many rows are out of tolerance.
+#include <iostream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "tests/realism/rows.hpp"
+
+namespace {
+
+/// @return whether it is within its tolerance
+bool print(const sonard::realism::Row& row) {
+  const double ours = row.measure();
+  const bool within = ours >= row.least && ours <= row.most;
+  std::cout << fmt::format("| {} | {} | {} {} | {:.3g} {} | {:.3g} to {:.3g} | {} |\n", row.head, row.what,
+                           row.recorded, row.unit, ours, row.unit, row.least, row.most,
+                           within ? "yes" : "**no**")
+            << std::flush;
+  return within;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Measures images as a client has them, and compares with what recordings show.", "realism"};
+  CLI11_PARSE(app, argc, argv);
+  std::cout << "| head | what | recorded | ours | tolerance | within |\n|---|---|---|---|---|---|\n";
+  int out = 0;
+  for (const auto& rows : {sonard::realism::gemini_grain_rows(), sonard::realism::gemini_scene_rows(),
+                           sonard::realism::micron_rows()}) {
+    for (const sonard::realism::Row& row : rows) {
+      out += print(row) ? 0 : 1;
+    }
+  }
+  return out;
+}
