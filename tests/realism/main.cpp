@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   std::cout << "| head | what | recorded | ours | tolerance | within |\n|---|---|---|---|---|---|\n";
   int out = 0;
-  for (const auto& rows : {sonard::realism::gemini_grain_rows(), sonard::realism::gemini_scene_rows(),
+  for (const auto& rows : {sonard::realism::gemini_noise_rows(), sonard::realism::gemini_scene_rows(),
                            sonard::realism::micron_rows()}) {
     for (const sonard::realism::Row& row : rows) {
       out += print(row) ? 0 : 1;

@@ -19,7 +19,7 @@ struct Row {
   std::function<double()> measure;
 };
 
-std::vector<Row> gemini_grain_rows();
+std::vector<Row> gemini_noise_rows();
 std::vector<Row> gemini_scene_rows();
 std::vector<Row> micron_rows();
 

@@ -59,7 +59,7 @@ double echo_correlation(int lag_lines) {
 
 }  // namespace
 
-std::vector<Row> gemini_grain_rows() {
+std::vector<Row> gemini_noise_rows() {
   const auto noise = [](int lines, int beams) { return [=] { return noise_correlation(lines, beams); }; };
   const auto echo = [](int lines) { return [=] { return echo_correlation(lines); }; };
   return {
