@@ -20,6 +20,7 @@ render::SonarSettings truth_settings(render::SonarSettings settings) {
   settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
   settings.physical.pulse = render::PhysicalModel::Pulse::point;
   settings.physical.multipath.level = render::MultipathSettings::Level::off;
+  settings.physical.water_clutter.density_per_m3 = 0.0;
   settings.physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
   return settings;
 }

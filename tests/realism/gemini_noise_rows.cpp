@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grain of echo and noise, of an even echo and of none.
+// How echo and noise are distributed and correlated, of an even echo and of none.
 #include <functional>
 
 #include "tests/realism/rows.hpp"

@@ -55,6 +55,7 @@ HEAD = """
       physical:
         speckle: {speckle}
         noise: {noise}
+        water_clutter: {{density_per_m3: 0}}
     dump:
       directory: {dump}
 {more}"""

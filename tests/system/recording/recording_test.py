@@ -62,7 +62,7 @@ heads:
       seed: {seed}
       azimuth_pattern: ideal
       pulse: point
-      physical: {{speckle: {speckle}, noise: {noise}}}
+      physical: {{speckle: {speckle}, noise: {noise}, water_clutter: {{density_per_m3: 0}}}}
 {more}"""
 
 MICRON = """
