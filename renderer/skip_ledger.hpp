@@ -24,6 +24,7 @@ enum class SkipRule : std::uint8_t {
   flat_elevation,
   facet_kernel,
   multipath,
+  bounces,
   lines_without_echo,
   blanked_near_field,
   no_noise,
@@ -87,6 +88,9 @@ inline constexpr std::array skip_rules{
         "nothing in range mirrors more than -15 dB, R^2 exp(-P^2), at the least grazing angle it is "
         "seen at",
         "pings", 0.13, "of the echo of what would be mirrored"},
+    SkipRuleEntry{SkipRule::bounces, "bounces",
+                  "nothing in range sends on more than -15 dB, R^2 + pi mu, of the sound that it meets",
+                  "pings", 0.032, "of the sound that surfaces meet"},
     SkipRuleEntry{SkipRule::lines_without_echo, "lines_without_echo",
                   "no beam has an echo in the line: before the first echo, between, beyond the last", "lines",
                   1, "output code"},

@@ -154,8 +154,10 @@ struct MultipathSettings {
   enum class Level {
     off,      ///< nothing
     surface,  ///< ghosts in the water surface (World::water_surface_z_m)
-    full,     ///< ghosts in every surface that mirrors, and corner reflectors
+    full,     ///< ghosts in every surface that mirrors, corner reflectors, bounces
   } level = Level::full;
+  double bounce_loss_db = 3.0;  ///< what a surface takes each time, besides what R and mu say; >= 0
+  int most_bounces = 0;         ///< surfaces that a path may meet; below 2: no paths between rough surfaces
   double wavelength_m = 0.0020833;  ///< at the middle of the band; > 0
   /// Rms height of the water surface: 0 is a mirror; rippled by a light breeze some 0.02; with wind it has no
   /// image.

@@ -23,6 +23,7 @@ enum class RandomField : std::uint64_t {
   noise_by_bearing = 7,
   bearing_jitter = 8,
   water_clutter = 9,
+  bounces = 10,
   array_elements = 16
 };
 

@@ -12,8 +12,9 @@ namespace sonard::render {
 namespace {
 constexpr std::size_t triangles_per_group = 32;
 constexpr double one_plane_rad = 1e-4;
+}  // namespace
 
-MirrorSurvey::Ball ball_around(const TriangleMesh& mesh) {
+MirrorSurvey::Ball MirrorSurvey::ball_around(const TriangleMesh& mesh) {
   glm::vec3 low(mesh.positions.empty() ? glm::vec3(0) : mesh.positions[0]), high(low);
   for (const glm::vec3& position : mesh.positions) {
     low = glm::min(low, position);
@@ -21,7 +22,6 @@ MirrorSurvey::Ball ball_around(const TriangleMesh& mesh) {
   }
   return {0.5 * glm::dvec3(low + high), 0.5 * static_cast<double>(glm::length(high - low))};
 }
-}  // namespace
 
 MirrorSurvey::MirrorSurvey(const World& world) {
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {

@@ -20,11 +20,13 @@ class MirrorSurvey {
  public:
   explicit MirrorSurvey(const World& world);
 
-  /// A ball around a part that reflects, relative to the sonar, in world axes.
+  /// A ball around a part, relative to the sonar and in world axes where nothing else is said.
   struct Ball {
     glm::dvec3 centre_m{0.0};
     double radius_m = 0.0;
   };
+  /// Of a mesh, in its own frame.
+  static Ball ball_around(const TriangleMesh& mesh);
   /// The parts in range that are seen under no more than this angle: rays of a grid may miss them.
   std::vector<Ball> small_parts(const World& world, const glm::dvec3& sonar_position_m, double range_m,
                                 double angle_rad) const;

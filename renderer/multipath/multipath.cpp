@@ -41,7 +41,8 @@ Multipath::Multipath(SpatialIndex& index, WorkerPool& workers, const SkipSwitche
       skip_(skip),
       survey_(world_),
       scene_(index),
-      ghosts_(workers) {}
+      ghosts_(workers),
+      bounces_(world_, workers) {}
 
 bool Multipath::is_needed(const MultipathSettings& settings, double max_range_m,
                           const Pose& T_world_sonar) const {
@@ -59,20 +60,36 @@ void Multipath::add_to(std::vector<float>& echo, const SonarSettings& settings, 
   if (settings.model != Model::physical || multipath.level == MultipathSettings::Level::off) {
     return;
   }
-  const bool may_skip = skip_.on(SkipRule::multipath);
   const double max_range_m = settings.range.max_range_m();
-  if (may_skip && !is_needed(multipath, max_range_m, T_world_sonar)) {
+  const glm::dvec3& at_m = T_world_sonar.position_m;
+  const bool full = multipath.level == MultipathSettings::Level::full;
+  const bool may_skip = skip_.on(SkipRule::multipath);
+  const bool mirrors = !may_skip || is_needed(multipath, max_range_m, T_world_sonar);
+  const bool may_bounce = full && multipath.most_bounces > 1;
+  const bool bounces =
+      may_bounce && (!skip_.on(SkipRule::bounces) || bounces_.any_in_range(world_, at_m, max_range_m));
+  if (!mirrors) {
     skipped.add(SkipRule::multipath);
+  }
+  if (may_bounce && !bounces) {
+    skipped.add(SkipRule::bounces);
+  }
+  if (!mirrors && !bounces) {
     return;
   }
-  scene_.place(T_world_sonar.position_m, water_surface_of(multipath));
-  collect(settings, T_world_sonar,
-          {multipath.wavelength_m, max_range_m, may_skip ? least_mirror_gain : 0.0,
-           multipath.level == MultipathSettings::Level::full});
+  scene_.place(at_m, water_surface_of(multipath));
+  prepare(settings);
+  const PathLimits limits{multipath.wavelength_m, max_range_m, may_skip ? least_mirror_gain : 0.0, full};
+  if (mirrors) {
+    collect(settings, T_world_sonar, limits);
+  }
+  if (bounces) {
+    collect_bounces(settings, T_world_sonar, limits);
+  }
   sum(settings.range, echo);
 }
 
-void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar, const PathLimits& limits) {
+void Multipath::prepare(const SonarSettings& settings) {
   const double coarseness = settings.sampling.preset == Sampling::Preset::fast ? fast_coarseness : 1.0;
   if (!fan_ || fan_->aperture() != settings.aperture || fan_->coarseness() != coarseness) {
     fan_ = std::make_unique<PathFan>(settings.aperture, coarseness);
@@ -81,6 +98,21 @@ void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar
   for (std::vector<EchoPatch>& patches : patches_of_beam_) {
     patches.clear();
   }
+}
+
+void Multipath::collect_bounces(const SonarSettings& settings, const Pose& T_world_sonar,
+                                const PathLimits& limits) {
+  for (const std::vector<BeamPatch>& group :
+       bounces_.follow(scene_, *fan_, T_world_sonar, limits, settings.physical.multipath)) {
+    for (const BeamPatch& echo : group) {
+      if (is_finite(echo.patch)) {
+        patches_of_beam_[static_cast<std::size_t>(echo.beam)].push_back(echo.patch);
+      }
+    }
+  }
+}
+
+void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar, const PathLimits& limits) {
   const std::vector<GhostPaths::Result>& results = ghosts_.follow(scene_, *fan_, T_world_sonar, limits);
   for (const GhostPaths::Result& column : results) {
     for (const BeamPatch& ghost : column.patches) {

@@ -28,7 +28,8 @@ glm::vec3 lifted(const glm::dvec3& origin_m, const glm::dvec3& normal) {
 PathScene::PathScene(SpatialIndex& meshes) : meshes_(meshes) {
   for (const Body& body : meshes.world().bodies) {
     for (const BodyPart& part : body.parts) {
-      surfaces_.push_back({Mirror(part.material), part.material.lambert_mu, part.mesh});
+      const AcousticMaterial& material = part.material;
+      surfaces_.push_back({Mirror(material), material.lambert_mu, material.rms_slope, part.mesh});
     }
   }
 }

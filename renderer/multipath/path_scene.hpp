@@ -59,6 +59,10 @@ class PathScene {
   double lambert_mu(const PathHit& hit) const {
     return hit.surface == no_part ? 0.0 : surfaces_[hit.surface].lambert_mu;
   }
+  /// Of the facets that a rough surface has; those of the water surface are as under a light breeze.
+  double rms_slope(const PathHit& hit) const {
+    return hit.surface == no_part ? 0.1 : surfaces_[hit.surface].rms_slope;
+  }
   /// False where the facet stands for part of a curved surface: its vertex normals are not its own.
   bool is_flat(const PathHit& hit) const;
 
@@ -66,6 +70,7 @@ class PathScene {
   struct Surface {
     Mirror mirror;
     double lambert_mu;
+    double rms_slope;
     std::shared_ptr<const TriangleMesh> mesh;
   };
 

@@ -90,7 +90,15 @@ void read_multipath(YamlSection& section, render::MultipathSettings& multipath) 
   section.choice("level", multipath.level,
                  {{"full", Level::full}, {"surface", Level::surface}, {"off", Level::off}},
                  "`full`: every surface that is smooth enough mirrors, and corners of two or three are "
-                 "corner reflectors; `surface`: only the water surface of the world mirrors");
+                 "corner reflectors, and rough surfaces send sound on to one another; `surface`: only the "
+                 "water surface of the world mirrors");
+  section.integer("most_bounces", multipath.most_bounces, 0, 32,
+                  "how many surfaces sound may meet one after the other, with level `full`; below 2 nothing "
+                  "bounces between rough ones");
+  section.number(
+      "bounce_loss_db", multipath.bounce_loss_db, Range::from(0.0, 60.0),
+      "what a rough surface takes each time that it sends sound on, besides what its material says: "
+      "growth, thin plates");
   section.number("water_surface_rms_height_mm", multipath.water_surface_rms_height_m,
                  Range::from(0.0, 10'000.0),
                  "rms height of waves and ripples on that surface: 0 mirrors like glass, some 20 under a "

@@ -26,17 +26,22 @@ struct Ask {
   int pings = 1;
   bool sixteen_bit = false;
   std::uint64_t seed = 7;
+  bool no_bounces = false;
 };
 
 std::vector<GeminiImage> images_of(const render::World& world, const render::Pose& T_world_sonar,
                                    const Ask& ask) {
+  server::HeadConfig head = server::gemini_kind().make_default();
+  if (ask.no_bounces) {
+    head.acoustics.physical.multipath.most_bounces = 0;
+  }
   gemini::PingSettings wanted;
   wanted.range_m = ask.range_m;
   wanted.gain_percent = ask.gain_percent;
   wanted.sixteen_bit = ask.sixteen_bit;
   render::SonarRenderer renderer(world, {render::EngineKind::cpu, 0});
   test::GeminiClient client(
-      server::gemini_kind().make_default(), gemini::make_ping_config(wanted),
+      std::move(head), gemini::make_ping_config(wanted),
       [&](const render::PingRequest& request) { return renderer.render_ping(request); });
   client.T_world_sonar = T_world_sonar;
   client.seed = ask.seed;
@@ -269,11 +274,46 @@ double mean_code(const GeminiImage& image, double from_m, double to_m, double fr
   return mean_of(codes);
 }
 
-/// Behind the docking station, and on the bed to both sides of it, at the same ranges.
+/// Behind the docking station and its halo, and on the bed to both sides of it, at the same ranges.
 double shadow_db() {
   const GeminiImage image = world_of("demo.yaml", 20);
-  const double beside = (mean_code(image, 16, 18, -26, -14) + mean_code(image, 16, 18, 14, 22)) / 2;
-  return 2 * decibels(beside / mean_code(image, 16, 18, -6, 4));
+  const double beside = (mean_code(image, 17, 19, -26, -14) + mean_code(image, 17, 19, 14, 22)) / 2;
+  return 2 * decibels(beside / mean_code(image, 17, 19, -6, 4));
+}
+
+/// By how much bounces make it brighter in mid-fan, from `from_m` on, in steps of half a metre.
+std::vector<double> bounces_db(const GeminiImage& with, const GeminiImage& without, double from_m,
+                               double to_m, double half_deg) {
+  std::vector<double> brighter;
+  for (double at_m = from_m; at_m < to_m; at_m += 0.5) {
+    brighter.push_back(2 * decibels(mean_code(with, at_m, at_m + 0.5, -half_deg, half_deg) /
+                                    mean_code(without, at_m, at_m + 0.5, -half_deg, half_deg)));
+  }
+  return brighter;
+}
+
+/// How far behind the docking station, whose last wall is at 15.2 m, bounces show by 1 dB and more.
+double halo_m() {
+  const pictures::View view = pictures::configured_view("demo.yaml", 30);
+  const auto image = [&](bool no_bounces) {
+    return images_of(view.world, view.T_world_sonar,
+                     {.range_m = 30, .sixteen_bit = true, .no_bounces = no_bounces})
+        .front();
+  };
+  const std::vector<double> brighter = bounces_db(image(false), image(true), 15.5, 25, 5);
+  const auto end = std::ranges::find_if(brighter, [](double level_db) { return level_db < 1; });
+  return 0.3 + 0.5 * static_cast<double>(end - brighter.begin());
+}
+
+/// In the tank, whose farthest corner is 12 m away: what comes from there to 24 m.
+double tail_db() {
+  const render::World tank = render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf");
+  const render::Pose T_world_sonar{{-1, -0.5, -4}, {1, 0, 0, 0}};
+  const auto image = [&](bool no_bounces) {
+    return images_of(tank, T_world_sonar, {.range_m = 25, .sixteen_bit = true, .no_bounces = no_bounces})
+        .front();
+  };
+  return quantile_of(bounces_db(image(false), image(true), 13, 24, 55), 0.5);
 }
 
 double highlights_db() {
@@ -333,11 +373,15 @@ std::vector<Row> gemini_scene_rows() {
       {"Gemini", "a point: width at -3 dB", "3.5", 2.4, 3.6, "beams", [] { return point_width(true); }},
       {"Gemini", "a point: length at -3 dB", "2.1, of averages of two", 3, 5, "lines",
        [] { return point_width(false); }},
-      {"Gemini", "a point: its bearing from draw to draw", "stable", 0, 0.1, "degrees", point_bearing_jitter},
+      {"Gemini", "a point: its bearing from draw to draw", "0", 0, 0.1, "degrees", point_bearing_jitter},
       {"Gemini", "two balls of 1 m and a detector with thresholds 120 and 60: regions", "2", 2, 2, "",
        regions},
       {"Gemini", "the same: factor between a region and a ball", "1", 1, 1.5, "", size_of_a_ball},
-      {"Gemini", "bed beside the docking station over its shadow", "10 or more", 10, 40, "dB", shadow_db},
+      {"Gemini", "bed beside the docking station over its shadow, behind the halo", "10 or more", 10, 40,
+       "dB", shadow_db},
+      {"Gemini", "halo behind the docking station: depth", "3 to 6", 2.5, 6, "m", halo_m},
+      {"Gemini", "behind the walls of a tank: tail over the same without bounces", "more than 0", 3, 30, "dB",
+       tail_db},
       {"Gemini", "most saturated of the docking station, the manifold and the valves",
        "under 1e-4, 1e-2 over a bed", 0, 1e-3, "", most_saturated},
       {"Gemini", "99.9 % of the docking station over the far noise", "19", 16, 22, "dB", highlights_db},

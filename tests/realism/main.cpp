@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // realism: prints the table of docs/acoustics.md, and says how many rows are out of tolerance.
 #include <iostream>
+#include <string>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -13,9 +14,9 @@ namespace {
 bool print(const sonard::realism::Row& row) {
   const double ours = row.measure();
   const bool within = ours >= row.least && ours <= row.most;
-  std::cout << fmt::format("| {} | {} | {} {} | {:.3g} {} | {:.3g} to {:.3g} | {} |\n", row.head, row.what,
-                           row.recorded, row.unit, ours, row.unit, row.least, row.most,
-                           within ? "yes" : "**no**")
+  const std::string unit = row.unit.empty() ? "" : fmt::format(" {}", row.unit);
+  std::cout << fmt::format("| {} | {} | {}{} | {:.3g}{} | {:.3g} to {:.3g} | {} |\n", row.head, row.what,
+                           row.recorded, unit, ours, unit, row.least, row.most, within ? "yes" : "**no**")
             << std::flush;
   return within;
 }

@@ -154,7 +154,7 @@ std::vector<Row> micron_rows() {
        [] { return mean_of(ring_down_peaks(88)); }},
       {"Micron", "ring-down: standard deviation from ping to ping", "1.5 to 3", 1.5, 3, "dB",
        [] { return sd_of(ring_down_peaks(58)); }},
-      {"Micron", "the vehicle behind it at 1.2 to 2 m, gain 88 %", "seen for 2 to 4 m", 10, 45, "dB",
+      {"Micron", "the vehicle behind it at 1.2 to 2 m, gain 88 %", "some", 10, 45, "dB",
        level_behind_ring_down},
       {"Micron", "lines with a burst of interference between 30 and 50 m", "0.05 to 0.18", 0.05, 0.18, "",
        lines_hit},

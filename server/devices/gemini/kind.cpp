@@ -240,6 +240,7 @@ render::SonarSettings gemini_acoustics() {
   acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
   acoustics.aperture.element_amplitude_sd = 0.12;
   acoustics.aperture.element_phase_sd_rad = 7 * degree;
+  acoustics.physical.multipath.most_bounces = 6;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
   acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines that are sampled at 90
   acoustics.physical.tvg_log_coefficient = 40.0;

@@ -151,6 +151,7 @@ render::SonarSettings micron_acoustics() {
   acoustics.aperture.elevation =
       render::Aperture::Elevation::sinc_two_way;  // one transducer sends and receives
   acoustics.output_scale = render::OutputScale::half_decibels;
+  acoustics.physical.multipath.most_bounces = 6;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::windowed_chirp;
   acoustics.physical.gain_db = -9.0;
   acoustics.physical.tvg_max_db = 59.0;

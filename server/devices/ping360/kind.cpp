@@ -142,6 +142,7 @@ render::SonarSettings ping360_acoustics() {
   acoustics.aperture.vertical_beamwidth_rad = 25.0 * degree;
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // one transducer sends and hears
   acoustics.output_scale = render::OutputScale::half_decibels;
+  acoustics.physical.multipath.most_bounces = 6;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
   acoustics.physical.gain_db = -9.0;
   acoustics.physical.tvg_max_db = 75.0;

@@ -227,14 +227,15 @@ TEST_P(Reception, ConesReachBeyondTheFan) {
   EXPECT_EQ(std::max_element(sums.begin(), sums.end()) - sums.begin(), beam);
 }
 
-// docs/physics.md 2.16, as a client gets it: the median of a row beyond 60 beams from a strong target is -24
-// +- 4 dB re its peak.
+// docs/physics.md 2.16, as a client gets it: the median of a row beyond 60 beams from a strong target is some
+// 35 dB below its peak with the errors that a Gemini has by default.
 TEST_P(Reception, AStrongTargetLeaksAlongItsRow) {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
   request.settings.aperture.azimuth = Aperture::Azimuth::array;
-  request.settings.aperture.element_amplitude_sd = 0.35;
-  request.settings.aperture.element_phase_sd_rad = 20 * degree;
+  request.settings.aperture.element_amplitude_sd = 0.12;
+  request.settings.aperture.element_phase_sd_rad = 7 * degree;
+  request.settings.sixteen_bit = true;
   request.settings.range = {160, 0.1, 0, false};
   request.settings.sampling.preset = Sampling::Preset::fast;
   request.settings.physical.gain_db = 24;
@@ -242,25 +243,25 @@ TEST_P(Reception, AStrongTargetLeaksAlongItsRow) {
   std::vector<double> leaks_db;
   for (request.seed = 1; request.seed <= 15; ++request.seed) {
     const PingSamples samples = renderer.render_ping(request);
-    const auto peak = std::max_element(samples.u8.begin(), samples.u8.end()) - samples.u8.begin();
+    const auto peak = std::max_element(samples.u16.begin(), samples.u16.end()) - samples.u16.begin();
     const std::ptrdiff_t line = peak / samples.beams;
     const std::ptrdiff_t beam = peak % samples.beams;
-    ASSERT_LT(samples.u8[static_cast<std::size_t>(peak)], 255) << "saturated";
-    std::vector<std::uint8_t> far;
+    ASSERT_LT(samples.u16[static_cast<std::size_t>(peak)], 65535) << "saturated";
+    std::vector<std::uint16_t> far;
     for (std::ptrdiff_t b = 0; b < samples.beams; ++b) {
       if (std::abs(b - beam) > 60) {
-        far.push_back(samples.u8[static_cast<std::size_t>(line * samples.beams + b)]);
+        far.push_back(samples.u16[static_cast<std::size_t>(line * samples.beams + b)]);
       }
     }
     std::nth_element(far.begin(), far.begin() + static_cast<std::ptrdiff_t>(far.size() / 2), far.end());
     leaks_db.push_back(20 * std::log10(far[far.size() / 2] /
-                                       static_cast<double>(samples.u8[static_cast<std::size_t>(peak)])));
+                                       static_cast<double>(samples.u16[static_cast<std::size_t>(peak)])));
   }
   // The peak of a single row is one draw of speckle, some decibels wide.
   const double mean =
       std::accumulate(leaks_db.begin(), leaks_db.end(), 0.0) / static_cast<double>(leaks_db.size());
   RecordProperty("leak_db", std::to_string(mean));
-  EXPECT_NEAR(mean, -24, 4);
+  EXPECT_NEAR(mean, -35, 4);
 }
 
 /// Sum of the squared samples of a ping without speckle and noise, re full scale, dB.

@@ -24,6 +24,11 @@ View tank() {
   return view;
 }
 
+/// The docking station by a head that is not configured.
+View station() {
+  return configured_view("demo.yaml", 24);
+}
+
 /// A sphere under calm water.
 View sphere_under_water() {
   render::Body ball = test::make_body("ball", test::make_sphere(0.3F, 48), 0.03);
@@ -46,6 +51,12 @@ std::vector<EffectPicture> multipath_pictures() {
        .before = without,
        .caption_after = "level: full",
        .after = with},
+      {.name = "bounces",
+       .view = station,
+       .caption_before = "multipath: most_bounces: 0",
+       .before = [](View& view) { view.settings.physical.multipath.most_bounces = 0; },
+       .caption_after = "most_bounces: 6",
+       .after = [](View& view) { view.settings.physical.multipath.most_bounces = 6; }},
       {.name = "multipath_surface",
        .view = sphere_under_water,
        .caption_before = "multipath: level: off",
