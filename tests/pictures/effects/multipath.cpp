@@ -14,6 +14,7 @@ void without(View& view) {
 }
 void with(View& view) {
   view.settings.physical.multipath.level = Level::full;
+  view.settings.physical.multipath.most_bounces = 6;
 }
 
 /// The tank of configs/worlds from above its floor, looking along a wall: concrete, a steel ladder, water.
@@ -21,12 +22,15 @@ View tank() {
   View view = plain_view(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
                          {{-4, -2.5, -2.0}, {1, 0, 0, 0}}, 12);
   view.settings.aperture.vertical_beamwidth_rad = 0.7;
+  view.settings.physical.gain_db = 44;
   return view;
 }
 
-/// The docking station by a head that is not configured.
-View station() {
-  return configured_view("demo.yaml", 24);
+/// The same tank by a Micron that is not configured.
+View turn_in_the_tank() {
+  View view = configured_view("demo-micron.yaml", 30);
+  view.settings.physical.gain_db += 10;
+  return view;
 }
 
 /// A sphere under calm water.
@@ -52,7 +56,7 @@ std::vector<EffectPicture> multipath_pictures() {
        .caption_after = "level: full",
        .after = with},
       {.name = "bounces",
-       .view = station,
+       .view = turn_in_the_tank,
        .caption_before = "multipath: most_bounces: 0",
        .before = [](View& view) { view.settings.physical.multipath.most_bounces = 0; },
        .caption_after = "most_bounces: 6",

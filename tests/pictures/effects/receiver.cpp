@@ -70,7 +70,7 @@ std::vector<EffectPicture> receiver_pictures() {
              view.settings.physical.range_cell_m = 0.04;
            }},
       {.name = "texture",
-       .view = [] { return sharp_docking_station(20); },
+       .view = close_bed,
        .caption_before = "texture_nu: 0 (off)",
        .before = [](View& view) { view.settings.physical.texture_nu = 0; },
        .caption_after = "texture_nu: 0.5",
@@ -82,7 +82,12 @@ std::vector<EffectPicture> receiver_pictures() {
        .caption_after = "broadside_stripe_db: 3.5",
        .after = [](View& view) { view.settings.physical.broadside_stripe_db = 3.5; }},
       {.name = "ring_down",
-       .view = [] { return configured_view("demo-micron.yaml", 5); },
+       .view =
+           [] {
+             View view = configured_view("demo-micron.yaml", 5);
+             view.settings.physical.gain_db += 20;
+             return view;
+           },
        .caption_before = "ring_down: off",
        .before = [](View& view) { view.settings.physical.ring_down.on = false; },
        .caption_after = "ring_down: on",

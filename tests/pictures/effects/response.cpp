@@ -44,10 +44,10 @@ std::vector<EffectPicture> response_pictures() {
            },
        .caption_before = "element_amplitude_sd: 0, element_phase_sd_deg: 0",
        .before = [](View&) {},
-       .caption_after = "element_amplitude_sd: 0.35, element_phase_sd_deg: 20",
+       .caption_after = "element_amplitude_sd: 0.24, element_phase_sd_deg: 14",
        .after =
            [](View& view) {
-             view.settings.aperture.element_amplitude_sd = 0.35;
+             view.settings.aperture.element_amplitude_sd = 0.24;
              view.settings.aperture.element_phase_sd_rad = 20 * std::numbers::pi / 180;
            }},
       {.name = "pulse",
