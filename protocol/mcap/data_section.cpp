@@ -2,6 +2,9 @@
 #include "protocol/mcap/data_section.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "protocol/mcap/compression.hpp"
 
 namespace sonard::mcap {
 namespace {
@@ -122,6 +125,8 @@ class Scanner {
     index.offset = begin;
     index.length = end - begin;
     index.records_size = chunk.records_size;
+    index.stored_size = chunk.stored_size;
+    index.compression = chunk.compression;
     section_.last_chunk_end = end;
     section_.last_chunk_open = open;
     section_.last_indexes = std::move(chunk.indexes);
@@ -155,14 +160,22 @@ Result<Chunk, WireError> read_chunk(const Record& record) {
   const std::string compression = read_string(reader, "chunk.compression");
   const std::uint64_t stored_size = reader.u64le("chunk.records");
   const std::size_t records_offset = reader.offset();
-  const ByteView records = reader.bytes(static_cast<std::size_t>(stored_size), "chunk.records");
-  if (!compression.empty()) {
+  const ByteView stored = reader.bytes(static_cast<std::size_t>(stored_size), "chunk.records");
+  ByteView records = stored;
+  std::shared_ptr<Bytes> storage;
+  if (compression == zstd_name) {
+    if (auto unpacked = decompress_zstd(stored, records_size)) {
+      storage = std::make_shared<Bytes>(std::move(*unpacked));
+      records = *storage;
+    } else {
+      reader.fail_at(records_offset, WireErrorReason::bad_value, "chunk.records");
+    }
+  } else if (!compression.empty()) {
     reader.fail_at(compression_offset, WireErrorReason::bad_value, "chunk.compression");
-  }
-  if (records_size != stored_size) {
+  } else if (records_size != stored_size) {
     reader.fail_at(size_offset, WireErrorReason::bad_length, "chunk.uncompressed_size");
   }
-  if (crc != no_crc && crc != crc32(records)) {
+  if (reader.ok() && crc != no_crc && crc != crc32(records)) {
     reader.fail_at(crc_offset, WireErrorReason::bad_value, "chunk.uncompressed_crc");
   }
   if (!reader.ok()) {
@@ -172,12 +185,16 @@ Result<Chunk, WireError> read_chunk(const Record& record) {
   if (!chunk) {
     return shifted(chunk.error(), record.content_offset() + records_offset);
   }
+  chunk->storage = std::move(storage);
+  chunk->compression = compression;
+  chunk->stored_size = stored_size;
   return chunk;
 }
 
 Result<Chunk, WireError> read_chunk_records(ByteView records) {
   Chunk chunk;
-  chunk.records_size = records.size();
+  chunk.records = records;
+  chunk.records_size = chunk.stored_size = records.size();
   for (std::size_t offset = 0; offset < records.size();) {
     const auto inner = record_at(records, offset);
     if (!inner) {

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "protocol/mcap/summary.hpp"
@@ -18,19 +20,23 @@ using MessageIndexes = std::map<std::uint16_t, std::vector<IndexEntry>>;
 struct Chunk {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
-  std::vector<Message> messages;  ///< their data view the file
+  std::vector<Message> messages;         ///< their data view `records`
+  ByteView records;                      ///< in the file, or in `storage`
+  std::shared_ptr<const Bytes> storage;  ///< null where nothing had to be unpacked
+  std::string compression;
+  std::uint64_t stored_size = 0;
   MessageIndexes indexes;
   std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 when there is no message
   std::uint64_t end_time_ns = 0;    ///< latest log time; 0 when there is no message
   std::uint64_t records_size = 0;
 };
 
-/// Bytes of an uncompressed chunk before its records.
+/// Bytes of a chunk before its records, but for the name of the compression.
 inline constexpr std::size_t chunk_start_size = record_prefix_size + 8 + 8 + 8 + 4 + 4 + 8;
 /// Checksum field of an open chunk, which may still grow and whose length field may be out of date.
 inline constexpr std::uint32_t no_crc = 0;
 
-/// Requires record.is(Opcode::chunk). A compressed chunk is an error: sonard writes none.
+/// Requires record.is(Opcode::chunk). One that is compressed otherwise than with Zstandard is an error.
 Result<Chunk, WireError> read_chunk(const Record& record);
 
 /// Reads the records in a chunk. Offsets in errors are relative to `records`.

@@ -15,16 +15,24 @@ MessageCursor::MessageCursor(ByteView file, std::vector<ChunkIndex> chunks, std:
 }
 
 bool MessageCursor::Later::operator()(const Due& a, const Due& b) const {
-  return std::tie(a.message.log_time_ns, a.position) > std::tie(b.message.log_time_ns, b.position);
+  return std::tie(a.message.log_time_ns, a.chunk_offset, a.position) >
+         std::tie(b.message.log_time_ns, b.chunk_offset, b.position);
 }
 
 std::optional<Message> MessageCursor::next() {
   if (!open_due_chunks() || due_.empty()) {
     return std::nullopt;
   }
-  const Message message = due_.top().message;
+  last_ = due_.top();
   due_.pop();
-  return message;
+  return last_.message;
+}
+
+std::optional<MessagePlace> MessageCursor::place() const {
+  if (!last_.storage) {
+    return std::nullopt;
+  }
+  return MessagePlace{last_.chunk_offset, last_.position, last_.message.data.size()};
 }
 
 /// Opens chunks until none that is closed can hold an earlier message than those at hand.
@@ -61,7 +69,8 @@ bool MessageCursor::open(const ChunkIndex& index) {
   }
   for (const Message& message : chunk->messages) {
     if (channels_.empty() || channels_.contains(message.channel_id)) {
-      due_.push({message, static_cast<std::size_t>(message.data.data() - file_.data())});
+      due_.push({message, index.offset, static_cast<std::size_t>(message.data.data() - chunk->records.data()),
+                 chunk->storage});
     }
   }
   return true;
@@ -85,6 +94,19 @@ Result<Reader, WireError> Reader::open(ByteView file) {
 
 MessageCursor Reader::messages(std::set<std::uint16_t> channels) const {
   return {file_, summary_.chunks, std::move(channels)};
+}
+
+std::optional<Bytes> Reader::data_at(const MessagePlace& place) const {
+  const auto record = record_at(file_, static_cast<std::size_t>(place.chunk_offset));
+  if (!record || !record->is(Opcode::chunk)) {
+    return std::nullopt;
+  }
+  const auto chunk = read_chunk(*record);
+  if (!chunk || chunk->records.size() < place.offset || chunk->records.size() - place.offset < place.size) {
+    return std::nullopt;
+  }
+  const ByteView data = chunk->records.subspan(place.offset, place.size);
+  return Bytes(data.begin(), data.end());
 }
 
 }  // namespace sonard::mcap

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include "protocol/common/byte_writer.hpp"
+#include "protocol/mcap/compression.hpp"
 
 namespace sonard::mcap {
 namespace {
@@ -116,8 +117,8 @@ void append(Bytes& out, const ChunkIndex& index) {
     writer.u64le(offset);
   }
   writer.u64le(index.message_index_length);
-  write_string(writer, "");  // compression
-  writer.u64le(index.records_size);
+  write_string(writer, index.compression);
+  writer.u64le(index.stored_size);
   writer.u64le(index.records_size);
 }
 
@@ -203,10 +204,11 @@ Result<ChunkIndex, WireError> read_chunk_index(const Record& record) {
       index.message_index_offsets[channel_id] = entries.u64le("chunk_index.map");
     }
     index.message_index_length = reader.u64le("chunk_index.message_index_length");
-    if (!read_string(reader, "chunk_index.compression").empty()) {
+    index.compression = read_string(reader, "chunk_index.compression");
+    if (!index.compression.empty() && index.compression != zstd_name) {
       reader.fail(WireErrorReason::bad_value, "chunk_index.compression");
     }
-    reader.skip(8, "chunk_index.compressed_size");
+    index.stored_size = reader.u64le("chunk_index.compressed_size");
     index.records_size = reader.u64le("chunk_index.uncompressed_size");
   });
 }

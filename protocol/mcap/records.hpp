@@ -89,7 +89,9 @@ struct ChunkIndex {
   std::uint64_t length = 0;         ///< of the chunk record, prefix included
   std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< by channel, in the file
   std::uint64_t message_index_length = 0;                        ///< of all of them together
-  std::uint64_t records_size = 0;
+  std::uint64_t records_size = 0;                                ///< when they are unpacked
+  std::uint64_t stored_size = 0;                                 ///< as they are in the file
+  std::string compression{};                                     ///< empty: none
 
   bool operator==(const ChunkIndex&) const = default;
 };

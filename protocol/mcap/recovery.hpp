@@ -20,7 +20,7 @@ struct Recovery {
 /// Looks at all of `file`. Keeps everything up to the last whole chunk whose CRC is right, or to the last
 /// whole record of a chunk that was growing, which is closed; message indexes that are missing behind the
 /// last chunk are written again. An error when not even magic and header are whole, for then there is nothing
-/// in it to keep, and for a file with compressed chunks, which sonard did not write.
+/// in it to keep, and for a file with chunks compressed in another way, which sonard did not write.
 Result<Recovery, WireError> recover(ByteView file);
 
 }  // namespace sonard::mcap

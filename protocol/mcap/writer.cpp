@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/common/byte_writer.hpp"
+#include "protocol/mcap/compression.hpp"
 
 namespace sonard::mcap {
 namespace {
@@ -19,7 +20,8 @@ std::uint16_t next_id(const std::vector<Value>& values) {
 
 }  // namespace
 
-Writer::Writer(std::string_view library, std::size_t chunk_bytes) : chunk_bytes_(chunk_bytes) {
+Writer::Writer(std::string_view library, std::size_t chunk_bytes, Compression compression)
+    : chunk_bytes_(chunk_bytes), compression_(compression) {
   pending_.assign(magic.begin(), magic.end());
   append_header(pending_, "", library);
   data_crc_ = crc32(pending_);
@@ -74,7 +76,7 @@ void Writer::put_chunk_start(std::uint32_t crc) {
   ChunkIndex chunk;
   chunk.start_time_ns = start_time_ns_;
   chunk.end_time_ns = end_time_ns_;
-  chunk.records_size = records_.size();
+  chunk.records_size = chunk.stored_size = records_.size();
   Bytes start;
   append_chunk_start(start, chunk, crc);
   if (*open_at_ >= taken_size_) {
@@ -90,29 +92,61 @@ void Writer::end_chunk() {
     return;
   }
   flush();
-  const std::uint32_t crc = crc32(records_);
-  put_chunk_start(crc);
   ChunkIndex& chunk = summary_.chunks.emplace_back();
   chunk.start_time_ns = start_time_ns_;
   chunk.end_time_ns = end_time_ns_;
   chunk.offset = *open_at_;
-  chunk.records_size = records_.size();
-  chunk.length = chunk_start_size + records_.size();
+  const Bytes record = closed_chunk(chunk);
+  chunk.length = record.size();
+  put_closed_chunk(record);
 
   Bytes indexes;
   append_message_indexes(indexes, file_size(), indexes_, chunk);
   pending_.insert(pending_.end(), indexes.begin(), indexes.end());
-  Bytes start;
-  append_chunk_start(start, chunk, crc);
-  for (const Bytes* part : {&start, &records_, &indexes}) {
-    data_crc_ = crc32(*part, data_crc_);
-  }
+  data_crc_ = crc32(indexes, crc32(record, data_crc_));
   records_.clear();
   indexes_.clear();
   start_time_ns_ = 0;
   end_time_ns_ = 0;
   open_at_.reset();
   flushed_size_ = 0;
+}
+
+/// The whole record, compressed where that makes it shorter.
+Bytes Writer::closed_chunk(ChunkIndex& chunk) const {
+  chunk.records_size = chunk.stored_size = records_.size();
+  ByteView stored = records_;
+  Bytes packed;
+  if (compression_ == Compression::zstd) {
+    packed = compress_zstd(records_);
+    if (!packed.empty() && packed.size() + zstd_name.size() < records_.size()) {
+      stored = packed;
+      chunk.stored_size = packed.size();
+      chunk.compression = zstd_name;
+    }
+  }
+  Bytes record;
+  append_chunk_start(record, chunk, crc32(records_));
+  record.insert(record.end(), stored.begin(), stored.end());
+  return record;
+}
+
+/// In place of the open chunk, which is in the file, or waits to be taken, or both.
+void Writer::put_closed_chunk(const Bytes& record) {
+  if (*open_at_ >= taken_size_) {
+    pending_.resize(static_cast<std::size_t>(*open_at_ - taken_size_));
+    pending_.insert(pending_.end(), record.begin(), record.end());
+  } else if (record.size() == chunk_start_size + records_.size()) {
+    rewrite_.assign(record.begin(), record.begin() + chunk_start_size);  // the records are there, or wait
+    rewrite_offset_ = *open_at_;
+  } else {
+    const auto in_file = static_cast<std::size_t>(taken_size_ - *open_at_);
+    const auto end = record.begin() + static_cast<std::ptrdiff_t>(std::min(in_file, record.size()));
+    rewrite_.assign(record.begin(), end);
+    rewrite_offset_ = *open_at_;
+    cut_at_ = taken_size_ = *open_at_ + rewrite_.size();
+    pending_.assign(end, record.end());
+  }
 }
 
 void Writer::finish() {
@@ -123,19 +157,21 @@ void Writer::finish() {
 
 Piece Writer::take() {
   taken_size_ += pending_.size();
-  return {std::exchange(pending_, {}), std::exchange(rewrite_, {}), rewrite_offset_};
+  return {std::exchange(pending_, {}), std::exchange(rewrite_, {}), rewrite_offset_,
+          std::exchange(cut_at_, std::nullopt)};
 }
 
 void append_chunk_start(Bytes& out, const ChunkIndex& chunk, std::uint32_t crc) {
   ByteWriter writer{out};
   writer.u8(static_cast<std::uint8_t>(Opcode::chunk));
-  writer.u64le(chunk_start_size - record_prefix_size + chunk.records_size);
+  writer.u64le(chunk_start_size - record_prefix_size + chunk.compression.size() + chunk.stored_size);
   writer.u64le(chunk.start_time_ns);
   writer.u64le(chunk.end_time_ns);
   writer.u64le(chunk.records_size);
   writer.u32le(crc);
-  writer.u32le(0);  // compression: an empty string
-  writer.u64le(chunk.records_size);
+  writer.u32le(static_cast<std::uint32_t>(chunk.compression.size()));
+  out.insert(out.end(), chunk.compression.begin(), chunk.compression.end());
+  writer.u64le(chunk.stored_size);
 }
 
 void append_message_indexes(Bytes& out, std::uint64_t file_offset, const MessageIndexes& indexes,

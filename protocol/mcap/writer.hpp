@@ -14,13 +14,18 @@
 
 namespace sonard::mcap {
 
-/// Changes to make to the file, in this order.
+/// Changes to make to the file: `append`, then `rewrite`; with a cut `rewrite`, the cut, `append`.
 struct Piece {
   Bytes append;  ///< whole records; perhaps none
   /// Takes the place of bytes that are in the file since an earlier piece; empty: of none.
   Bytes rewrite;
   std::uint64_t rewrite_offset = 0;
+  /// Where the file then ends, before `append`: a chunk that was open has become shorter.
+  std::optional<std::uint64_t> cut_at{};
 };
+
+/// What becomes of a chunk when it is closed.
+enum class Compression { none, zstd };
 
 /// Messages gather in a chunk; a chunk that is full, its message indexes, and at the end the summary are what
 /// take() hands out. With flush() the chunk that is still open is handed out as far as it is: its beginning
@@ -28,14 +33,15 @@ struct Piece {
 /// told from one that is closed.
 ///
 /// A program that makes the changes of each piece and is killed loses what was not flushed and the piece that
-/// was being appended; recover() finishes what is there. Schemas and channels stand in the chunk that was
+/// was being appended, and with compression the chunk that it was just closing; recover() finishes what is
+/// there. Schemas and channels stand in the chunk that was
 /// open when they were added, so a file needs no summary to be read. Not thread-safe; holds one chunk and
 /// what has not been taken.
 class Writer {
  public:
   /// @param library who writes, for those who look into a file: "sonard 0.1.0"
   /// @param chunk_bytes a chunk of this size or more is closed; 1 puts every message into its own
-  Writer(std::string_view library, std::size_t chunk_bytes);
+  Writer(std::string_view library, std::size_t chunk_bytes, Compression compression = Compression::none);
 
   /// @return the id. At most 65535 of each may be added.
   std::uint16_t add_schema(std::string_view name, std::string_view encoding, ByteView data);
@@ -65,8 +71,11 @@ class Writer {
 
  private:
   void put_chunk_start(std::uint32_t crc);
+  Bytes closed_chunk(ChunkIndex& chunk) const;
+  void put_closed_chunk(const Bytes& record);
 
   std::size_t chunk_bytes_;
+  Compression compression_;
   Summary summary_;  ///< without the open chunk, but for schemas, channels and counts
   std::map<std::uint16_t, std::uint32_t> sequences_;
 
@@ -80,6 +89,7 @@ class Writer {
   Bytes pending_;
   Bytes rewrite_;  ///< of the chunk that begins in what was taken
   std::uint64_t rewrite_offset_ = 0;
+  std::optional<std::uint64_t> cut_at_;
   std::uint64_t taken_size_ = 0;
   std::uint32_t data_crc_ = 0;
 };

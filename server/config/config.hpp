@@ -167,6 +167,8 @@ struct RecordingConfig {
   std::filesystem::path directory;  ///< made when it is not there; one daemon at a time uses it
   bool glf = true;                  ///< of heads whose users know it (HeadKind)
   bool mcap = true;
+  bool mcap_wire_bytes = true;  ///< whether it has the bytes of both directions
+  bool mcap_zstd = false;       ///< whether its chunks are compressed, when they are full
   bool pcapng = true;
   std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< a file of this size or more ends all files
   std::chrono::nanoseconds rotate_after{std::chrono::hours{1}};  ///< > 0; and so does this time

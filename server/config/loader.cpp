@@ -326,6 +326,11 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
                "folder of the logs, made when it is not there; one daemon at a time records into it");
   section.boolean("glf", recording.glf, "a `.glf` of each head whose users know such logs");
   section.boolean("mcap", recording.mcap, "one MCAP file: images, poses, and the bytes of both directions");
+  section.boolean("mcap_wire_bytes", recording.mcap_wire_bytes,
+                  "whether these bytes are in it; a capture has them too, and images and replay do without");
+  section.choice("mcap_compression", recording.mcap_zstd, {{"none", false}, {"zstd", true}},
+                 "of each mebibyte or second of it, when that is full: `zstd` takes some processor time for "
+                 "a smaller file");
   section.boolean("pcapng", recording.pcapng, "one capture for Wireshark: the bytes of both directions");
   if (!recording.glf && !recording.mcap && !recording.pcapng) {
     section.report("directory", "no kind of log is to be written (expected glf, mcap or pcapng to be true)");

@@ -67,8 +67,8 @@ std::vector<std::uint8_t> bytes_of(const std::string& text) {
 }  // namespace
 
 McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(file)) {
-  for_each("sonard.log.SonarImage", [this](std::span<const std::uint8_t> message) { add_image(message); });
-  for_each("sonard.log.ScanLine", [this](std::span<const std::uint8_t> message) { add_line(message); });
+  for_each("sonard.log.SonarImage", [this](const Message& message) { add_image(message); });
+  for_each("sonard.log.ScanLine", [this](const Message& message) { add_line(message); });
   sort_by_time();
 }
 
@@ -80,13 +80,13 @@ void McapRecording::for_each(std::string_view schema, Add add) {
   }
   mcap::MessageCursor cursor = reader_.messages(channels);
   while (const std::optional<mcap::Message> message = cursor.next()) {
-    add(message->data);
+    add(Message{message->data, cursor.place()});
   }
   unreadable_ = cursor.error();  // the same place for all schemas
 }
 
-void McapRecording::add_image(std::span<const std::uint8_t> message) {
-  const auto image = log::decode<log::SonarImage>(message);
+void McapRecording::add_image(const Message& message) {
+  const auto image = log::decode<log::SonarImage>(message.bytes);
   if (!image || !makes_sense(*image)) {
     ++bad_images_;
     return;
@@ -100,11 +100,12 @@ void McapRecording::add_image(std::span<const std::uint8_t> message) {
                         .settings = settings_of(*image),
                         .wire = {},
                         .place = messages_.size()});
-  messages_.push_back({message, false});
+  messages_.push_back(
+      {message.place ? std::span<const std::uint8_t>() : message.bytes, message.place, false});
 }
 
-void McapRecording::add_line(std::span<const std::uint8_t> message) {
-  const auto line = log::decode<log::ScanLine>(message);
+void McapRecording::add_line(const Message& message) {
+  const auto line = log::decode<log::ScanLine>(message.bytes);
   if (!line || !makes_sense(*line)) {
     ++bad_lines_;
     return;
@@ -119,16 +120,22 @@ void McapRecording::add_line(std::span<const std::uint8_t> message) {
                         .bits_per_bin = line->bits_per_bin() == 4 ? 4 : 8,
                         .wire = bytes_of(line->wire_line()),
                         .place = messages_.size()});
-  messages_.push_back({message, true});
+  messages_.push_back({message.place ? std::span<const std::uint8_t>() : message.bytes, message.place, true});
 }
 
 std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
   const Message& message = messages_.at(ping.place);
+  const std::optional<mcap::Bytes> unpacked =
+      message.place ? reader_.data_at(*message.place) : std::optional(mcap::Bytes());
+  if (!unpacked) {
+    throw file_.error("a ping cannot be read");  // it could when the log was opened
+  }
+  const std::span<const std::uint8_t> bytes = message.place ? std::span(*unpacked) : message.bytes;
   if (message.is_line) {
-    if (const auto line = log::decode<log::ScanLine>(message.bytes)) {
+    if (const auto line = log::decode<log::ScanLine>(bytes)) {
       return bytes_of(line->bins());
     }
-  } else if (const auto image = log::decode<log::SonarImage>(message.bytes)) {
+  } else if (const auto image = log::decode<log::SonarImage>(bytes)) {
     return bytes_of(image->pixels());
   }
   throw file_.error("a ping cannot be read");  // it could when the log was opened

@@ -22,20 +22,22 @@ class McapRecording final : public Recording {
   const mcap::Reader& reader() const { return reader_; }
 
  private:
+  /// The message of a ping: a view of the file, or where its chunk has it.
+  struct Message {
+    std::span<const std::uint8_t> bytes;
+    std::optional<mcap::MessagePlace> place;
+    bool is_line = false;
+  };
+
   /// Hands every message of one schema, for example "sonard.log.SonarImage", to a function.
   template <class Add>
   void for_each(std::string_view schema, Add add);
   std::set<std::uint16_t> channels_of(std::string_view schema) const;
-  void add_image(std::span<const std::uint8_t> message);
-  void add_line(std::span<const std::uint8_t> message);
+  void add_image(const Message& message);
+  void add_line(const Message& message);
 
   const LogFile& file_;
   mcap::Reader reader_;
-  /// The message of a ping, a view of the file.
-  struct Message {
-    std::span<const std::uint8_t> bytes;
-    bool is_line = false;
-  };
   std::vector<Message> messages_;
   std::uint64_t bad_images_ = 0;
   std::uint64_t bad_lines_ = 0;

@@ -34,6 +34,15 @@ void GrowingLog::overwrite(std::uint64_t offset, std::span<const std::uint8_t> b
   }
 }
 
+void GrowingLog::truncate(std::uint64_t size) {
+  if (!file_.is_open()) {
+    return;
+  }
+  if (const std::error_code error = file_.truncate(size)) {
+    fail(error);
+  }
+}
+
 void GrowingLog::sync() {
   if (!file_.is_open()) {
     return;

@@ -29,6 +29,8 @@ class GrowingLog {
   void append(std::span<const std::uint8_t> piece);
   /// In place of bytes that were appended.
   void overwrite(std::uint64_t offset, std::span<const std::uint8_t> bytes);
+  /// Cuts it off behind bytes that were appended.
+  void truncate(std::uint64_t size);
   void sync();
   /// Nothing is written after that.
   void end();

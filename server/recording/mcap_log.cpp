@@ -80,7 +80,10 @@ log::WireBytes::Transport to_message(WireTransport transport) {
 
 }  // namespace
 
-McapLog::McapLog(const LogSetting& setting) : Log(setting), writer_("sonard " SONARD_VERSION, chunk_bytes) {}
+McapLog::McapLog(const LogSetting& setting)
+    : Log(setting),
+      writer_("sonard " SONARD_VERSION, chunk_bytes,
+              setting.config.mcap_zstd ? mcap::Compression::zstd : mcap::Compression::none) {}
 
 void McapLog::write(const RecordingEvent& event) {
   if (!file().failed()) {
@@ -113,6 +116,9 @@ void McapLog::add(int, TimePoint time, const PingPosed& pose) {
 }
 
 void McapLog::add(int head, TimePoint time, const WirePassed& wire) {
+  if (!setting().config.mcap_wire_bytes) {
+    return;
+  }
   const std::string topic = "/" + head_of(head).name + "/wire";
   for (const WirePiece& piece : wire.pieces) {
     log::WireBytes message;
@@ -172,8 +178,14 @@ void McapLog::flush(TimePoint now) {
 
 void McapLog::write_taken() {
   const mcap::Piece piece = writer_.take();
-  file().append(piece.append);
+  if (!piece.cut_at) {
+    file().append(piece.append);
+  }
   file().overwrite(piece.rewrite_offset, piece.rewrite);
+  if (piece.cut_at) {
+    file().truncate(*piece.cut_at);
+    file().append(piece.append);
+  }
 }
 
 void McapLog::close() {

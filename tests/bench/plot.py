@@ -32,9 +32,8 @@ def draw_engine(axes, results, scene, engine):
     axes.plot([p[0] for p in points], [p[1] for p in points], "x--", color=colour, ms=5, lw=0.8, alpha=0.55,
               label=f"{engine}: points, no footprint")
     presets = [p for name in PRESETS for p in results.curve(scene, engine, name) if p[2] == name]
-    for x, y, name in presets:
-        axes.plot(x, y, PRESETS[name], color=colour, ms=8, mec="black", mew=0.6)
-        axes.annotate(name, (x, y), textcoords="offset points", xytext=(6, 5), fontsize=7, color=colour)
+    for x, y, name in presets:  # named in the legend: beside the marks, names would print over each other
+        axes.plot(x, y, PRESETS[name], color=colour, ms=8, mec="black", mew=0.6, label=f"{engine}: {name}")
     front = pareto(grid + presets)
     axes.plot([p[0] for p in front], [p[1] for p in front], "-", color=colour, lw=1.4, label=f"{engine}: best")
 
@@ -65,8 +64,8 @@ def draw_fronts(results, scenes, path):
     for axes in panels.flat[max(0, len(scenes) - columns):len(scenes)]:
         axes.set_xlabel("ms per ping")
     handles, labels = panels.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=min(3, columns + 1), fontsize=8, frameon=False)
-    figure.tight_layout(rect=(0, 0.05 + 0.02 / rows, 1, 1))
+    figure.legend(handles, labels, loc="lower center", ncol=min(4, columns + 1), fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0, 0.06 + 0.06 / rows, 1, 1))
     save(figure, path)
 
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads what write_mcap_example writes with both readers of @mcap/core, and decodes its messages by the descriptors
-// in the file alone.   node check_mcap.js WRITER finished|recovered|growing
+// in the file alone.   node check_mcap.js WRITER finished|recovered|growing|zstd
 // The expectations are written here a second time, from what the messages are meant to hold.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
+import { decompress } from "fzstd";
 import protobuf from "protobufjs";
 import descriptor from "protobufjs/ext/descriptor/index.js";
 
 const [writer, kind] = process.argv.slice(2);
 const file = execFileSync(writer, [kind]);
+const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
 const start = 1_700_000_000_000_000_000n;
 const schemaNames = {
   "/bow/image": "sonard.log.SonarImage",
@@ -67,9 +69,13 @@ async function readIndexed() {
     size: async () => BigInt(file.length),
     read: async (offset, size) => new Uint8Array(file.subarray(Number(offset), Number(offset + size))),
   };
-  const reader = await McapIndexedReader.Initialize({ readable });
+  const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
   assert.equal(reader.header.library, "sonard tests");
   assert.ok(reader.chunkIndexes.length > 3);
+  for (const chunk of reader.chunkIndexes) {
+    assert.equal(chunk.compression, kind === "zstd" ? "zstd" : "");
+    assert.equal(chunk.compressedSize < chunk.uncompressedSize, kind === "zstd");
+  }
   const messages = [];
   for await (const message of reader.readMessages()) {
     messages.push(message);
@@ -84,7 +90,7 @@ async function readIndexed() {
 }
 
 function readStream() {
-  const reader = new McapStreamReader({ validateCrcs: true });
+  const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers });
   reader.append(file);
   const channels = new Map();
   const schemas = new Map();

@@ -77,13 +77,19 @@ log::PoseUsed pose_of(std::uint32_t ping) {
 
 /// Does to a file what a piece says.
 void write(const mcap::Piece& piece, mcap::Bytes& file) {
-  file.insert(file.end(), piece.append.begin(), piece.append.end());
+  if (!piece.cut_at) {
+    file.insert(file.end(), piece.append.begin(), piece.append.end());
+  }
   std::ranges::copy(piece.rewrite, file.begin() + static_cast<std::ptrdiff_t>(piece.rewrite_offset));
+  if (piece.cut_at) {
+    file.resize(static_cast<std::size_t>(*piece.cut_at));
+    file.insert(file.end(), piece.append.begin(), piece.append.end());
+  }
 }
 
 /// @param finished false: still being written, with the last chunk as far as it is
-mcap::Bytes example(bool finished) {
-  mcap::Writer writer{"sonard tests", 1000};
+mcap::Bytes example(bool finished, mcap::Compression compression) {
+  mcap::Writer writer{"sonard tests", 1000, compression};
   mcap::Bytes file;
   const auto add_channel = [&](const google::protobuf::Descriptor& message, std::string_view topic) {
     const auto schema = writer.add_schema(message.full_name(), log::encoding_name, log::schema_data(message));
@@ -124,11 +130,12 @@ mcap::Bytes recovered(const mcap::Bytes& whole) {
 
 int main(int argc, char** argv) {
   const std::string_view kind = argc == 2 ? argv[1] : "";
-  if (kind != "finished" && kind != "recovered" && kind != "growing") {
-    std::fputs("Usage: write_mcap_example finished|recovered|growing\n", stderr);
+  if (kind != "finished" && kind != "recovered" && kind != "growing" && kind != "zstd") {
+    std::fputs("Usage: write_mcap_example finished|recovered|growing|zstd\n", stderr);
     return 64;
   }
-  const mcap::Bytes whole = example(kind != "growing");
+  const mcap::Bytes whole =
+      example(kind != "growing", kind == "zstd" ? mcap::Compression::zstd : mcap::Compression::none);
   const mcap::Bytes file = kind == "recovered" ? recovered(whole) : whole;
   return std::fwrite(file.data(), 1, file.size(), stdout) == file.size() ? 0 : 1;
 }

@@ -373,6 +373,30 @@ class Logs(RecordingTest):
             for beam in lit:
                 self.assertAlmostEqual(math.degrees(table[beam]), 33.69, delta=9)
 
+    def test_an_mcap_file_without_wire_bytes_that_is_compressed(self):
+        """It has every ping, sonard reads it, and a client gets the same images when it is replayed."""
+        daemon = self.start_daemon(recording=", mcap_wire_bytes: false, mcap_compression: zstd")
+        viewer = self.start_viewer("--pings", "6")
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        self.end_daemon(daemon)
+        path, = self.files(".mcap")
+        with open(path, "rb") as file:
+            content = file.read()
+        self.assertIn(b"zstd", content)
+        self.assertNotIn(b"/bow/wire", content)
+        said = json.loads(subprocess.run([os.path.join(PROGRAMS, "sonard"), "info", path, "--json"], capture_output=True,
+                                         text=True, timeout=60, check=True).stdout)
+        self.assertTrue(said["closed"])
+        live = [line for line in viewer.output().splitlines() if "crc32=" in line]
+        daemon = self.start_daemon(play=path)
+        replayed = self.start_viewer("--pings", "6")
+        self.assertEqual(replayed.wait(PATIENCE_S), 0, replayed.tail())
+        self.end_daemon(daemon)
+        again = [line for line in replayed.output().splitlines() if "crc32=" in line]
+        checksums = [[line.split("crc32=")[1].split()[0] for line in lines] for lines in (live, again)]
+        self.assertEqual(len(checksums[0]), 6)
+        self.assertEqual(checksums[0], checksums[1])
+
     def test_a_micron_on_tcp_and_on_a_terminal(self):
         daemon = self.start_daemon(more=MICRON)
         link = os.path.join(self.folder.name, "micron")
