@@ -75,8 +75,9 @@ void PointSpread::form_beams(const EchoImage& fine, const SonarSettings& setting
   // What comes to less than the noise is not looked at.
   const PhysicalModel& model = settings.physical;
   const double faintest = model.noise ? decibels_to_power(model.noise_level_db) : 0.0;
-  beams.steady = receive_points(find_points(fine, mixing_reach(settings), static_cast<float>(faintest)), fine,
-                                *pattern_, uses_pulse_ ? &pulse_->response : nullptr, beams.beams);
+  beams.steady =
+      receive_points(find_points(fine, mixing_reach(settings), static_cast<float>(faintest), workers), fine,
+                     *pattern_, uses_pulse_ ? &pulse_->response : nullptr, beams.beams);
 }
 
 void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {

@@ -48,6 +48,21 @@ float steady_share(const EchoImage& fine, int fine_beam, int line, const MixingR
   return x * x * (3 - 2 * x);
 }
 
+void find_points_of_beam(const EchoImage& fine, int fine_beam, const MixingReach& reach, float faintest,
+                         std::vector<PointEcho>& points) {
+  const float* row =
+      &fine.intensity[static_cast<std::size_t>(fine_beam) * static_cast<std::size_t>(fine.lines)];
+  for (int k = 2; k + 2 < fine.lines; ++k) {
+    // What is no more than this above the lines beside its spot is no point: most cells end here.
+    if (!(row[k] > faintest) || !(row[k] > 2 * (row[k - 2] + row[k + 2])) || !is_peak(fine, fine_beam, k)) {
+      continue;
+    }
+    if (const float share = steady_share(fine, fine_beam, k, reach); share > 0) {
+      points.push_back({fine_beam, k, share});
+    }
+  }
+}
+
 }  // namespace
 
 MixingReach mixing_reach(const SonarSettings& settings) {
@@ -60,19 +75,20 @@ MixingReach mixing_reach(const SonarSettings& settings) {
           std::max(2, static_cast<int>(std::lround(lines)))};
 }
 
-std::vector<PointEcho> find_points(const EchoImage& fine, const MixingReach& reach, float faintest) {
-  std::vector<PointEcho> points;
-  for (int f = 0; f < fine.beams; ++f) {
-    const float* row = &fine.intensity[static_cast<std::size_t>(f) * static_cast<std::size_t>(fine.lines)];
-    for (int k = 2; k + 2 < fine.lines; ++k) {
-      // What is no more than this above the lines beside its spot is no point: most cells end here.
-      if (!(row[k] > faintest) || !(row[k] > 2 * (row[k - 2] + row[k + 2])) || !is_peak(fine, f, k)) {
-        continue;
-      }
-      if (const float share = steady_share(fine, f, k, reach); share > 0) {
-        points.push_back({f, k, share});
-      }
+std::vector<PointEcho> find_points(const EchoImage& fine, const MixingReach& reach, float faintest,
+                                   WorkerPool& workers) {
+  constexpr int beams_per_job = 16;
+  const int jobs = (fine.beams + beams_per_job - 1) / beams_per_job;
+  std::vector<std::vector<PointEcho>> found(static_cast<std::size_t>(jobs));
+  workers.run(jobs, [&](int job) {
+    const int end = std::min(fine.beams, (job + 1) * beams_per_job);
+    for (int f = job * beams_per_job; f < end; ++f) {
+      find_points_of_beam(fine, f, reach, faintest, found[static_cast<std::size_t>(job)]);
     }
+  });
+  std::vector<PointEcho> points;
+  for (const std::vector<PointEcho>& some : found) {
+    points.insert(points.end(), some.begin(), some.end());
   }
   if (points.size() > most_points) {
     const auto stronger = [&](const PointEcho& a, const PointEcho& b) {

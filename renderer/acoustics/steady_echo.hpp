@@ -7,6 +7,7 @@
 #include "renderer/acoustics/beam_pattern.hpp"
 #include "renderer/acoustics/pulse.hpp"
 #include "renderer/ping.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
@@ -29,7 +30,8 @@ struct MixingReach {
 MixingReach mixing_reach(const SonarSettings& settings);
 
 /// The strongest points, 256 at most. @param faintest intensity of a cell that is looked at
-std::vector<PointEcho> find_points(const EchoImage& fine, const MixingReach& reach, float faintest);
+std::vector<PointEcho> find_points(const EchoImage& fine, const MixingReach& reach, float faintest,
+                                   WorkerPool& workers);
 
 /// What beams receive of these points, inside their main lobes. @param pulse nullptr: a pulse without length
 SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage& fine,

@@ -21,7 +21,7 @@ constexpr double widest_cell_rad = 0.033;  // 1.9 degrees
 constexpr double latest_m = 3.0;           // behind the first echo: what comes later is as wide
 constexpr int least_paths = 256;           // of a narrow fan, whose cells are smaller
 constexpr double least_way_m = 0.02;       // what is nearer to the sonar does not hide it
-constexpr double divided_from = 0.3;       // of the power that a surface sends on: 16 paths for its cell
+constexpr double divided_from = 0.6;       // of the power that a surface sends on: 16 paths for its cell
 // Rays are too few to find where a smooth surface has its glint: no path brings more than a white wall.
 constexpr double strongest = std::numbers::inv_pi;
 

@@ -14,6 +14,11 @@ namespace {
 
 constexpr MixingReach reach{5, 4};
 
+WorkerPool& workers() {
+  static WorkerPool pool(2);
+  return pool;
+}
+
 EchoImage image_of(float everywhere) {
   EchoImage image{40, 60, {}, {}};
   image.intensity.assign(40 * 60, everywhere);
@@ -28,7 +33,7 @@ TEST(SteadyEcho, ASpotAloneIsAPoint) {
   EchoImage image = image_of(0);
   cell(image, 20, 30) = 3;
   cell(image, 20, 31) = 1;
-  const std::vector<PointEcho> points = find_points(image, reach, 0);
+  const std::vector<PointEcho> points = find_points(image, reach, 0, workers());
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].fine_beam, 20);
   EXPECT_EQ(points[0].line, 30);
@@ -36,12 +41,12 @@ TEST(SteadyEcho, ASpotAloneIsAPoint) {
 }
 
 TEST(SteadyEcho, ASurfaceHasNone) {
-  EXPECT_TRUE(find_points(image_of(1), reach, 0).empty());
+  EXPECT_TRUE(find_points(image_of(1), reach, 0, workers()).empty());
   EchoImage uneven = image_of(0);
   for (std::size_t i = 0; i < uneven.intensity.size(); ++i) {
     uneven.intensity[i] = static_cast<float>(uniform_number({7}, i));
   }
-  EXPECT_TRUE(find_points(uneven, reach, 0).empty());
+  EXPECT_TRUE(find_points(uneven, reach, 0, workers()).empty());
 }
 
 // Array and pulse mix 11 x 9 cells; the spot is 3 x 3 of them.
@@ -49,7 +54,7 @@ TEST(SteadyEcho, APointHasToOutshineWhatItIsMixedWith) {
   const auto share_of = [](float bright) {
     EchoImage image = image_of(1);
     cell(image, 20, 30) = bright;
-    const std::vector<PointEcho> points = find_points(image, reach, 0);
+    const std::vector<PointEcho> points = find_points(image, reach, 0, workers());
     return points.empty() ? 0.0F : points[0].share;
   };
   EXPECT_EQ(share_of(80), 0);             // 88 of 178
@@ -61,14 +66,14 @@ TEST(SteadyEcho, TwoInOneCellAreNone) {
   EchoImage image = image_of(0);
   cell(image, 18, 30) = 1;
   cell(image, 22, 30) = 1;
-  EXPECT_TRUE(find_points(image, reach, 0).empty());
+  EXPECT_TRUE(find_points(image, reach, 0, workers()).empty());
 }
 
 TEST(SteadyEcho, WhatIsFainterThanAskedForIsNotLookedAt) {
   EchoImage image = image_of(0);
   cell(image, 20, 30) = 1;
-  EXPECT_TRUE(find_points(image, reach, 1).empty());
-  EXPECT_EQ(find_points(image, reach, 0.9F).size(), 1u);
+  EXPECT_TRUE(find_points(image, reach, 1, workers()).empty());
+  EXPECT_EQ(find_points(image, reach, 0.9F, workers()).size(), 1u);
 }
 
 TEST(SteadyEcho, BeamsReceiveAPointThroughTheirPatternAndThePulse) {
