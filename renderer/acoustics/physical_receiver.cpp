@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "renderer/acoustics/complex_row.hpp"
 #include "renderer/acoustics/receive_bins.hpp"
@@ -67,7 +68,10 @@ class PhysicalBins {
     }
     gain_ = blanked ? 0.0F : tables.gain[static_cast<std::size_t>(bin)];
     const float ring_down = ring_down_at(bin);
-    std::ranges::fill(steady_, ring_down);
+    if (steady_is_ != ring_down) {
+      std::ranges::fill(steady_, ring_down);
+      steady_is_ = ring_down;
+    }
     noise_level_ = noise_level_at(bin);
     has_echo_ = block_.strongest(bin) > 0 || ring_down != 0 || has_reverberation(bin) ||
                 !skips(SkipRule::lines_without_echo);
@@ -141,6 +145,7 @@ class PhysicalBins {
 
   /// Into what speckle touches and what it does not.
   void take_apart(const float* echo, const float* steady) {
+    steady_is_.reset();
     for (std::size_t b = 0; b < steady_.size(); ++b) {
       diffuse_[b] = std::max(echo[b] - steady[b], 0.0F);
       steady_[b] += std::sqrt(steady[b]);
@@ -186,8 +191,9 @@ class PhysicalBins {
   ComplexRow still_;    ///< speckle that is off: a constant phasor
   TextureRoot root_;
   AlignedVector<float> textured_;
-  AlignedVector<float> steady_;   ///< amplitude that speckle does not touch: points, ring-down
-  AlignedVector<float> diffuse_;  ///< intensity of the others, where there are points
+  std::optional<float> steady_is_ = 0.0F;  ///< in all beams; nullopt: it differs
+  AlignedVector<float> steady_;            ///< amplitude that speckle does not touch: points, ring-down
+  AlignedVector<float> diffuse_;           ///< intensity of the others, where there are points
   AlignedVector<float> codes_;
 };
 
