@@ -123,10 +123,11 @@ SmallBall see_small_ball(std::uint64_t seed, int pings) {
 }
 
 double point_width(bool in_beams) {
-  const auto [power, peak] = see_small_ball(7, 20);
+  const SmallBall seen = see_small_ball(7, 20);
   return width_of([&](int i) {
-    const int at = in_beams ? peak.line * beams + peak.beam + i : (peak.line + i) * beams + peak.beam;
-    return power[static_cast<std::size_t>(at)];
+    const int at = in_beams ? seen.peak.line * beams + seen.peak.beam + i
+                            : (seen.peak.line + i) * beams + seen.peak.beam;
+    return seen.power[static_cast<std::size_t>(at)];
   });
 }
 

@@ -16,8 +16,6 @@
 namespace sonard {
 namespace {
 
-constexpr int beams = gemini::beam_count;
-
 using Image = test::GeminiImage;
 
 /// Head and topside with nothing lost between them; the world is an even echo.
