@@ -14,7 +14,8 @@
 
 namespace sonard::mcap {
 
-/// Changes to make to the file: `append`, then `rewrite`; with a cut `rewrite`, the cut, `append`.
+/// Changes to make to the file, in the order of apply_to(): a writer that is killed between two of them has
+/// lost nothing that was in the file.
 struct Piece {
   Bytes append;  ///< whole records; perhaps none
   /// Takes the place of bytes that are in the file since an earlier piece; empty: of none.
@@ -22,6 +23,19 @@ struct Piece {
   std::uint64_t rewrite_offset = 0;
   /// Where the file then ends, before `append`: a chunk that was open has become shorter.
   std::optional<std::uint64_t> cut_at{};
+
+  /// @param file has append(bytes), overwrite(offset, bytes) and truncate(size)
+  template <class File>
+  void apply_to(File& file) const {
+    if (!cut_at) {
+      file.append(append);
+    }
+    file.overwrite(rewrite_offset, rewrite);
+    if (cut_at) {
+      file.truncate(*cut_at);
+      file.append(append);
+    }
+  }
 };
 
 /// What becomes of a chunk when it is closed.

@@ -20,7 +20,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double widest_cell_rad = 0.033;  // 1.9 degrees
 constexpr double latest_m = 3.0;           // behind the first echo: what comes later is as wide
 constexpr int least_paths = 256;           // of a narrow fan, whose cells are smaller
-constexpr double least_way_m = 0.02;       // what is nearer to the sonar does not hide it
 constexpr double divided_from = 0.6;       // of the power that a surface sends on: 16 paths for its cell
 // Rays are too few to find where a smooth surface has its glint: no path brings more than a white wall.
 constexpr double strongest = std::numbers::inv_pi;
@@ -150,7 +149,7 @@ class Path {
   void come_back(bool ghost) {
     const double straight_m = glm::length(hit_.position_m);
     const double range_m = 0.5 * (length_m_ + straight_m);
-    if (!(straight_m > least_way_m) || !(range_m < ping_.limits.max_range_m)) {
+    if (!(range_m < ping_.limits.max_range_m)) {
       return;
     }
     const glm::dvec3 back = hit_.position_m / -straight_m;
@@ -160,8 +159,7 @@ class Path {
       return;
     }
     const double response = sent_back(back, cosine, ghost);
-    if (!(response > 0) ||
-        !ping_.scene.is_free(hit_.position_m, hit_.normal, back, straight_m - least_way_m)) {
+    if (!(response > 0) || !ping_.scene.sees_sonar(hit_)) {
       return;
     }
     const double weight = ping_.fan.aperture().elevation_weight(std::asin(std::clamp(p.z, -1.0, 1.0)));
@@ -218,7 +216,7 @@ class Path {
   glm::dvec3 direction_{0.0};
   PathHit hit_;
   double length_m_ = 0.0;
-  double power_ = 0.0;  ///< of the cell: what goes on does so undiminished, or not at all
+  double power_ = 0.0;  ///< of the cell, less the loss at each bounce: a path goes on whole or not at all
 };
 
 /// The paths of a few neighbouring cells, 4 x 4, which share the work of their first legs.

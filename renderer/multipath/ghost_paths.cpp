@@ -15,7 +15,6 @@ constexpr int parts_across = packet_side;  // of a cell at an edge
 constexpr int parts_up = 2 * packet_side;
 constexpr double corner_reach = 1.5;   // of a cell's diagonal: how near a ray must pass to find a corner
 constexpr double least_cosine = 1e-3;  // surfaces seen edge-on have no end in range, and no energy
-constexpr double nearest_m = 0.02;     // what is nearer to the sonar does not hide it
 
 /// The two range and bearing slopes of a path over its cell.
 struct Slopes {
@@ -208,20 +207,10 @@ std::uint64_t GhostPaths::follow_on(const Ping& ping, const glm::dvec3& directio
     return key;
   }
   path.target = target;
-  path.target_seen = sees_sonar(ping, target);
+  path.target_seen = ping.fan.contains(ping.R_sonar_world * glm::normalize(target.position_m)) &&
+                     ping.scene.sees_sonar(target);
   find_corners(ping, direction, path, result);
   return !is_flat ? 0 : mixed(mixed(key, surface_code(ping.scene, target)), path.target_seen ? 1 : 2);
-}
-
-bool GhostPaths::sees_sonar(const Ping& ping, const PathHit& target) {
-  const double range_m = glm::length(target.position_m);
-  if (!(range_m > nearest_m)) {
-    return false;
-  }
-  const glm::dvec3 back = target.position_m / -range_m;
-  // Seen from the side that the mirror lights.
-  return glm::dot(target.normal, back) > 0 && ping.fan.contains(ping.R_sonar_world * -back) &&
-         ping.scene.is_free(target.position_m, target.normal, back, range_m - nearest_m);
 }
 
 /// The path goes straight back to the sonar where the image of the sonar in its mirrors lies ahead.

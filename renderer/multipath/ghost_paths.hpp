@@ -77,7 +77,6 @@ class GhostPaths {
   struct Ping;
 
   static std::uint64_t follow_one(const Ping& ping, const FanCell& cell, Path& path, Result& result);
-  static bool sees_sonar(const Ping& ping, const PathHit& target);
   static void find_corners(const Ping& ping, const glm::dvec3& direction, const Path& path, Result& result);
   static void add_echoes(const Ping& ping, const FanCell& cell, const Path& path, Result& result);
   static std::uint64_t follow_on(const Ping& ping, const glm::dvec3& direction, Path& path, Result& result);

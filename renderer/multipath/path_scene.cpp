@@ -125,4 +125,14 @@ bool PathScene::is_free(const glm::dvec3& origin_m, const glm::dvec3& normal, co
   return meshes_.is_free(lifted(origin_m, normal), glm::vec3(direction), static_cast<float>(distance_m));
 }
 
+bool PathScene::sees_sonar(const PathHit& hit) const {
+  constexpr double nearest_m = 0.02;
+  const double range_m = glm::length(hit.position_m);
+  if (!(range_m > nearest_m)) {
+    return false;
+  }
+  const glm::dvec3 back = hit.position_m / -range_m;
+  return glm::dot(hit.normal, back) > 0 && is_free(hit.position_m, hit.normal, back, range_m - nearest_m);
+}
+
 }  // namespace sonard::render

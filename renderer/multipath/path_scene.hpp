@@ -51,6 +51,9 @@ class PathScene {
   /// Whether a straight leg from a surface reaches so far.
   bool is_free(const glm::dvec3& origin_m, const glm::dvec3& normal, const glm::dvec3& direction,
                double distance_m) const;
+  /// Whether sound goes straight from a surface, from the side that was met, to the sonar. What is within
+  /// 2 cm of the sonar does not hide it.
+  bool sees_sonar(const PathHit& hit) const;
 
   const Mirror& mirror(const PathHit& hit) const {
     return hit.surface == no_part ? water_surface_ : surfaces_[hit.surface].mirror;

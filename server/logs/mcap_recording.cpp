@@ -67,29 +67,32 @@ std::vector<std::uint8_t> bytes_of(const std::string& text) {
 }  // namespace
 
 McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(file)) {
-  for_each("sonard.log.SonarImage", [this](const Message& message) { add_image(message); });
-  for_each("sonard.log.ScanLine", [this](const Message& message) { add_line(message); });
+  for_each("sonard.log.SonarImage", false, &McapRecording::add_image);
+  for_each("sonard.log.ScanLine", true, &McapRecording::add_line);
   sort_by_time();
 }
 
-template <class Add>
-void McapRecording::for_each(std::string_view schema, Add add) {
+void McapRecording::for_each(std::string_view schema, bool is_line,
+                             bool (McapRecording::*add)(std::span<const std::uint8_t>)) {
   const std::set<std::uint16_t> channels = channels_of(schema);
   if (channels.empty()) {
     return;  // no channel would mean all of them
   }
   mcap::MessageCursor cursor = reader_.messages(channels);
   while (const std::optional<mcap::Message> message = cursor.next()) {
-    add(Message{message->data, cursor.place()});
+    if ((this->*add)(message->data)) {
+      const auto place = cursor.place();
+      messages_.push_back({place ? std::span<const std::uint8_t>() : message->data, place, is_line});
+    }
   }
   unreadable_ = cursor.error();  // the same place for all schemas
 }
 
-void McapRecording::add_image(const Message& message) {
-  const auto image = log::decode<log::SonarImage>(message.bytes);
+bool McapRecording::add_image(std::span<const std::uint8_t> bytes) {
+  const auto image = log::decode<log::SonarImage>(bytes);
   if (!image || !makes_sense(*image)) {
     ++bad_images_;
-    return;
+    return false;
   }
   LoggedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()), false);
   if (head.pings.empty()) {
@@ -100,15 +103,14 @@ void McapRecording::add_image(const Message& message) {
                         .settings = settings_of(*image),
                         .wire = {},
                         .place = messages_.size()});
-  messages_.push_back(
-      {message.place ? std::span<const std::uint8_t>() : message.bytes, message.place, false});
+  return true;
 }
 
-void McapRecording::add_line(const Message& message) {
-  const auto line = log::decode<log::ScanLine>(message.bytes);
+bool McapRecording::add_line(std::span<const std::uint8_t> bytes) {
+  const auto line = log::decode<log::ScanLine>(bytes);
   if (!line || !makes_sense(*line)) {
     ++bad_lines_;
-    return;
+    return false;
   }
   LoggedHead& head = this->head(line->head(), static_cast<std::uint16_t>(line->device_id()), true);
   if (head.pings.empty()) {
@@ -120,7 +122,7 @@ void McapRecording::add_line(const Message& message) {
                         .bits_per_bin = line->bits_per_bin() == 4 ? 4 : 8,
                         .wire = bytes_of(line->wire_line()),
                         .place = messages_.size()});
-  messages_.push_back({message.place ? std::span<const std::uint8_t>() : message.bytes, message.place, true});
+  return true;
 }
 
 std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {

@@ -29,12 +29,13 @@ class McapRecording final : public Recording {
     bool is_line = false;
   };
 
-  /// Hands every message of one schema, for example "sonard.log.SonarImage", to a function.
-  template <class Add>
-  void for_each(std::string_view schema, Add add);
+  /// Hands every message of one schema, for example "sonard.log.SonarImage", to a function, and keeps those
+  /// that it takes.
+  void for_each(std::string_view schema, bool is_line,
+                bool (McapRecording::*add)(std::span<const std::uint8_t>));
   std::set<std::uint16_t> channels_of(std::string_view schema) const;
-  void add_image(const Message& message);
-  void add_line(const Message& message);
+  bool add_image(std::span<const std::uint8_t> bytes);
+  bool add_line(std::span<const std::uint8_t> bytes);
 
   const LogFile& file_;
   mcap::Reader reader_;

@@ -177,15 +177,7 @@ void McapLog::flush(TimePoint now) {
 }
 
 void McapLog::write_taken() {
-  const mcap::Piece piece = writer_.take();
-  if (!piece.cut_at) {
-    file().append(piece.append);
-  }
-  file().overwrite(piece.rewrite_offset, piece.rewrite);
-  if (piece.cut_at) {
-    file().truncate(*piece.cut_at);
-    file().append(piece.append);
-  }
+  writer_.take().apply_to(file());
 }
 
 void McapLog::close() {

@@ -9,6 +9,7 @@
 #include "protocol/log/log_messages.hpp"
 #include "protocol/mcap/recovery.hpp"
 #include "protocol/mcap/writer.hpp"
+#include "tests/unit/protocol/mcap/files.hpp"
 
 namespace {
 
@@ -75,18 +76,6 @@ log::PoseUsed pose_of(std::uint32_t ping) {
   return used;
 }
 
-/// Does to a file what a piece says.
-void write(const mcap::Piece& piece, mcap::Bytes& file) {
-  if (!piece.cut_at) {
-    file.insert(file.end(), piece.append.begin(), piece.append.end());
-  }
-  std::ranges::copy(piece.rewrite, file.begin() + static_cast<std::ptrdiff_t>(piece.rewrite_offset));
-  if (piece.cut_at) {
-    file.resize(static_cast<std::size_t>(*piece.cut_at));
-    file.insert(file.end(), piece.append.begin(), piece.append.end());
-  }
-}
-
 /// @param finished false: still being written, with the last chunk as far as it is
 mcap::Bytes example(bool finished, mcap::Compression compression) {
   mcap::Writer writer{"sonard tests", 1000, compression};
@@ -106,11 +95,11 @@ mcap::Bytes example(bool finished, mcap::Compression compression) {
     writer.add_message(images, time + 1, time, encode(image_of(ping)));
     writer.add_message(lines, time + 3, time, encode(line_of(ping)));
     writer.flush();
-    write(writer.take(), file);
+    writer.take().apply_to(file);
   }
   if (finished) {
     writer.finish();
-    write(writer.take(), file);
+    writer.take().apply_to(file);
   }
   return file;
 }

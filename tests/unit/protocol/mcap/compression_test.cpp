@@ -14,17 +14,11 @@ std::string text_of(int i) {
   return std::string(400, static_cast<char>('a' + i));
 }
 
-/// Does to a file what a piece says.
-void change(const Piece& piece, Bytes& file) {
-  if (!piece.cut_at) {
-    append(file, piece.append);
-  }
-  std::ranges::copy(piece.rewrite, file.begin() + static_cast<std::ptrdiff_t>(piece.rewrite_offset));
-  if (piece.cut_at) {
-    ASSERT_LE(*piece.cut_at, file.size());
-    file.resize(static_cast<std::size_t>(*piece.cut_at));
-    append(file, piece.append);
-  }
+/// Changes a file as the writer asks for.
+void change(const Piece& piece, Bytes& bytes) {
+  FileInMemory file{std::move(bytes)};
+  piece.apply_to(file);
+  bytes = std::move(file.bytes);
 }
 
 /// Nine messages in chunks of three; taken after each, so that the open chunk is in the file when it is

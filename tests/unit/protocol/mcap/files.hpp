@@ -2,6 +2,7 @@
 // Small MCAP files for tests.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,17 @@ namespace sonard::mcap::testing {
 inline void append(Bytes& out, const Bytes& more) {
   out.insert(out.end(), more.begin(), more.end());
 }
+
+/// A file in memory, as Piece::apply_to() changes it.
+struct FileInMemory {
+  Bytes bytes;
+
+  void append(ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
+  void overwrite(std::uint64_t offset, ByteView by) {
+    std::ranges::copy(by, bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+  }
+  void truncate(std::uint64_t size) { bytes.resize(static_cast<std::size_t>(size)); }
+};
 
 inline Bytes bytes_of(std::string_view text) {
   return {text.begin(), text.end()};
