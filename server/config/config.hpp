@@ -177,6 +177,14 @@ struct RecordingConfig {
   std::size_t queue_bytes = std::size_t{128} << 20;  ///< what does not fit is dropped
 };
 
+/// The page in the browser, and what monitors ask.
+struct WebConfig {
+  Endpoint bind;
+  AllowList allow;
+  std::string token;                 ///< lets whoever knows it change state; empty: only this machine may
+  std::vector<std::string> origins;  ///< other sites whose pages may connect, "https://example.org"
+};
+
 struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
@@ -191,6 +199,7 @@ struct DaemonConfig {
   PoseConfig poses;
   std::vector<HeadConfig> heads;  ///< at least one
   std::optional<RecordingConfig> recording;
+  std::optional<WebConfig> web;  ///< nullopt: none is served
 };
 
 }  // namespace sonard::server

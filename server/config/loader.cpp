@@ -356,6 +356,21 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
   recording.queue_bytes = mebibytes << 20;
 }
 
+void read_web(YamlSection& section, WebConfig& web) {
+  section.introduce(
+      "A page in the browser that shows each head's pictures, the world, poses and what is wrong "
+      "([page.md](page.md)), and what monitors ask: `/metrics`, `/health`, `/api/status`.");
+  read_socket(section, web.bind, web.allow, endpoint_form, "the demo uses 127.0.0.1:8014",
+              "who may look; all may see what all see");
+  section.text("token", web.token,
+               "whoever sends it may also change state, as turning the recording on and off does; browsers "
+               "of this machine may without");
+  section.default_is("token", "none: nobody from elsewhere may");
+  constexpr TextForm origins{"an origin such as https://example.org", "origins", R"("type": "string")"};
+  section.parsed_list("origins", web.origins, &any_text, origins,
+                      "other sites whose pages may connect from a browser; the page's own always may");
+}
+
 void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config,
                    std::vector<ConfigWarning>& warnings) {
   HeadContext context;
@@ -392,6 +407,8 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.section(
       "recording", "logs of what the heads say; without it there are none",
       [&](YamlSection& section) { read_recording(section, context.folder, config.recording.emplace()); });
+  root.section("web", "a page to watch on, and metrics; without it there is none",
+               [&](YamlSection& section) { read_web(section, config.web.emplace()); });
   root.require("heads", "a list of sonar heads");
   root.sections("heads", "the sonars, one or more", [&](YamlSection& section) {
     config.heads.push_back(read_head(section, context, kinds, warnings));

@@ -95,6 +95,9 @@ std::vector<PlannedSocket> planned_sockets(const DaemonConfig& config) {
   if (config.poses.tcp) {
     sockets.push_back({Transport::tcp, config.poses.tcp->bind, "poses.tcp.bind"});
   }
+  if (config.web) {
+    sockets.push_back({Transport::tcp, config.web->bind, "web.bind"});
+  }
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
     for (PlannedSocket socket : config.heads[i].kind->sockets(config.heads[i])) {
       socket.key = head_key(i, socket.key);

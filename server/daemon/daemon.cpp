@@ -26,6 +26,7 @@
 #include "server/daemon/resolve_mounts.hpp"
 #include "server/devices/device_kind.hpp"
 #include "server/devices/head.hpp"
+#include "server/devices/head_status.hpp"
 #include "server/devices/ping_dump.hpp"
 #include "server/devices/playback.hpp"
 #include "server/net/udp_endpoint.hpp"
@@ -35,6 +36,7 @@
 #include "server/recording/recorder.hpp"
 #include "server/rendering/engine_choice_file.hpp"
 #include "server/rendering/world_renderer.hpp"
+#include "server/web/web_server.hpp"
 
 namespace sonard::server {
 namespace {
@@ -84,6 +86,18 @@ std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
   }
 }
 
+// Null when no page is served.
+std::unique_ptr<WebServer> make_page(const DaemonConfig& config) {
+  if (!config.web) {
+    return nullptr;
+  }
+  try {
+    return std::make_unique<WebServer>(*config.web);
+  } catch (const SocketError& error) {
+    throw StartError("web.bind", exit_network, error.what());
+  }
+}
+
 // Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
 // `io_`, and with it pose inputs, history and heads; each RenderService has a render thread. Scanning heads
 // have one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that
@@ -112,6 +126,8 @@ class Daemon {
   void start_inputs();
   void poses_changed();
   std::optional<std::chrono::nanoseconds> pose_lead() const;
+  void start_page(const DaemonConfig& config, const render::World& world);
+  DaemonStatus status() const;
   void wait_for_signal();
   void end_when_played();
   void run_io();
@@ -131,8 +147,10 @@ class Daemon {
   std::unique_ptr<PoseInputs> inputs_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
   std::unique_ptr<Recorder> recorder_;                           // null when nothing is recorded
+  std::unique_ptr<WebServer> page_;                              // null when none is served
   std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
+  std::filesystem::path recorded_into_;
   std::string ready_line_;
 };
 
@@ -148,6 +166,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
           [this] { return intake_.hold(); })),
       dumps_(make_dumps(config.heads)),
       recorder_(make_recorder(config)),
+      page_(make_page(config)),
       fan_renderer_(make_renderer_of(false, config, make_renderer)),
       beam_renderer_(make_renderer_of(true, config, make_renderer)) {
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
@@ -160,7 +179,8 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
                                 config.skip,
                                 playback_,
                                 recorder_.get(),
-                                config.vehicle_model};
+                                config.vehicle_model,
+                                page_.get()};
     try {
       heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
@@ -169,6 +189,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
   }
   start_inputs();
   warm_up(config.heads);
+  start_page(config, world);
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} engine=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(),
                             (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
@@ -199,6 +220,49 @@ void Daemon::warm_up(const std::vector<HeadConfig>& heads) const {
       renderer->warm_up(std::move(first_pings));
     }
   }
+}
+
+void Daemon::start_page(const DaemonConfig& config, const render::World& world) {
+  if (!page_) {
+    return;
+  }
+  recorded_into_ = config.recording ? config.recording->directory : "";
+  const RenderService& renderer = *(fan_renderer_ ? fan_renderer_ : beam_renderer_);
+  page_->start({.ask_status =
+                    [this](std::function<void(DaemonStatus)> take) {
+                      asio::post(io_, [this, take = std::move(take)] {
+                        page_->on_page([take, now = status()]() mutable { take(std::move(now)); });
+                      });
+                    },
+                .turn_recording =
+                    recorder_ ? std::function<void(bool)>([this](bool on) { recorder_->turn(on); }) : nullptr,
+                .identity = {config.file.string(), renderer.renderer_description(), world.name,
+                             world.water_surface_z_m},
+                .world = world});
+  spdlog::info("page: {}", page_->address());
+}
+
+// On the I/O thread.
+DaemonStatus Daemon::status() const {
+  DaemonStatus status;
+  status.at = clock_.now();
+  for (const std::unique_ptr<Head>& head : heads_) {
+    status.heads.push_back(head->status());
+  }
+  for (std::size_t i = 0; i < inputs_->size(); ++i) {
+    const PoseSource& source = inputs_->source(i);
+    status.inputs.push_back({source.description(), source.received(),
+                             inputs_->statistics(i).in_all(status.at), source.counters()});
+  }
+  const TimePoint present = poses_.present(status.at);
+  if (const std::optional<PoseEstimate> vehicle = poses_.at(present)) {
+    status.T_world_vehicle = vehicle->T_world_vehicle;
+  }
+  status.bodies = poses_.bodies_at(present);
+  if (recorder_) {
+    status.recording = {recorded_into_.string(), recorder_->on(), recorder_->counters()};
+  }
+  return status;
 }
 
 RenderServiceHooks Daemon::hooks() {
@@ -254,6 +318,9 @@ int Daemon::run() {
 
   lifetime_.run();
 
+  if (page_) {
+    page_->stop();
+  }
   asio::post(io_, [this] { stop_io(); });
   for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
     if (renderer != nullptr) {

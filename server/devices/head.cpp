@@ -13,7 +13,10 @@
 #include "server/devices/device_kind.hpp"
 #include "server/devices/head_log.hpp"
 #include "server/devices/head_rendering.hpp"
+#include "server/devices/head_status.hpp"
+#include "server/devices/ping_viewer.hpp"
 #include "server/devices/playback.hpp"
+#include "server/devices/recent_activity.hpp"
 #include "server/net/deadline_timer.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/recording/head_recording.hpp"
@@ -49,6 +52,9 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   HeadLog log;
   HeadRecording recording;
   PosesToRecord poses_to_record;
+  RecentClients clients;
+  RecentPings recent_pings;
+  std::optional<NewestPing> newest;
 
   std::deque<Event> events;  ///< that are not taken yet
   std::optional<TimePoint> wake_at;
@@ -61,6 +67,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   void stop();
   TransportEvents transport_events();
   HeadCounts counts() const;
+  HeadStatus status() const;
 
   void happen(Event event);
   void pump();
@@ -68,7 +75,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   void step(TimePoint now, const Event& event);
   std::optional<std::uint64_t> carry_out(TimePoint now, Actions actions);
   void send(std::vector<Outgoing> messages);
-  void record(PingRecord ping);
+  void record(TimePoint now, PingRecord ping);
   void note_water(TimePoint now);
   void feed(TimePoint now);
   bool grant(TimePoint now);
@@ -97,6 +104,9 @@ void Head::poses_changed() {
 }
 std::optional<std::chrono::nanoseconds> Head::pose_lead() const {
   return impl_->rendering.pose_lead();
+}
+HeadStatus Head::status() const {
+  return impl_->status();
 }
 ConnectedDevice& Head::connected() {
   return *impl_->connected;
@@ -153,8 +163,20 @@ TransportEvents Head::Impl::transport_events() {
       self->happen(std::move(event));
     }
   };
-  TransportEvents hooks{.received = happens,
-                        .gone = happens,
+  TransportEvents hooks{.received =
+                            [weak](BytesReceived received) {
+                              if (const auto self = weak.lock()) {
+                                self->clients.heard(received.from.remote, self->services.clock.now());
+                                self->happen(std::move(received));
+                              }
+                            },
+                        .gone =
+                            [weak](const ClientGone& gone) {
+                              if (const auto self = weak.lock()) {
+                                self->clients.gone(gone.who.remote);
+                                self->happen(gone);
+                              }
+                            },
                         .writable = [happens] { happens(TimePassed{}); },
                         .notice =
                             [weak](const Notice& notice) {
@@ -174,6 +196,20 @@ TransportEvents Head::Impl::transport_events() {
 HeadCounts Head::Impl::counts() const {
   return {rendering.counters(), connected->device().progress(), connected->device().counts(),
           connected->transport().counts()};
+}
+
+HeadStatus Head::Impl::status() const {
+  const TimePoint now = services.clock.now();
+  return {.name = config.name,
+          .kind = std::string(kind.type()),
+          .scanning = kind.scanning(),
+          .serves = connected->transport().descriptions(),
+          .clients = clients.since(now - std::chrono::minutes{1}),
+          .counts = counts(),
+          .pings_per_s = recent_pings.per_s(now),
+          .newest = newest,
+          .spent = rendering.newest_statistics(),
+          .latency = recent_pings.latency()};
 }
 
 // ---- Events
@@ -230,7 +266,7 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
     log.notice(notice);
   }
   if (actions.record) {
-    record(std::move(*actions.record));
+    record(now, std::move(*actions.record));
   }
   send(std::move(actions.send));
   wake_at = actions.wake_at;
@@ -262,7 +298,12 @@ void Head::Impl::send(std::vector<Outgoing> messages) {
   connected->transport().send(std::move(messages));
 }
 
-void Head::Impl::record(PingRecord ping) {
+void Head::Impl::record(TimePoint now, PingRecord ping) {
+  recent_pings.sent(now, ping.transmit_time);
+  if (services.viewer != nullptr && services.viewer->wants(stream)) {
+    services.viewer->show(std::make_shared<const ShownPing>(
+        ShownPing{stream, now, ping, newest ? newest->T_world_mount : std::nullopt}));
+  }
   if (recording.on() && poses_to_record.poses && poses_to_record.number == ping.number) {
     recording.ping({std::move(ping), poses_to_record.poses});
   }
@@ -332,10 +373,17 @@ bool Head::Impl::render(const PingJob& job) {
   }
   const render::Pose T_world_sonar = T_world_transducer(*T_world_mount, job.bearing_rad);
   log.ping(job, kind.scanning(), T_world_sonar);
+  render::SonarSettings settings = kind.sonar_settings(job, config);
+  newest = NewestPing{job.settings,
+                      job.range_m(),
+                      job.bearing_rad,
+                      T_world_mount,
+                      settings.aperture.beam_edges_rad.front() - settings.aperture.beam_edges_rad.back(),
+                      2 * settings.aperture.elevation_limit_rad()};
   // A recorded ping goes to the recording under the number that it has there.
   rendering.submit(
       {job.record.value_or(job.number), pose_time, job.transmit_us, T_world_sonar, T_world_at_end,
-       kind.sonar_settings(job, config)},
+       std::move(settings)},
       [weak = weak_from_this(), number = job.number](RenderResult result) {
         const auto self = weak.lock();
         if (!self) {

@@ -18,10 +18,12 @@ class io_context;
 namespace sonard::server {
 
 class ConnectedDevice;
+class PingViewer;
 class Playback;
 class PoseHistory;
 class Recorder;
 class RenderService;
+struct HeadStatus;
 struct RenderCounters;
 
 /// What a head needs of the daemon. Everything outlives the head.
@@ -35,6 +37,7 @@ struct HeadServices {
   Playback* playback = nullptr;             ///< null: pings are rendered
   Recorder* recorder = nullptr;             ///< null: nothing is recorded
   std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
+  PingViewer* viewer = nullptr;             ///< null: nobody can watch
 };
 
 /// Passes events to Device::step() and carries out its actions, for every kind of device alike. While the
@@ -61,6 +64,7 @@ class Head {
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
+  HeadStatus status() const;
   ConnectedDevice& connected();
   const RenderCounters& render_counters() const;
 

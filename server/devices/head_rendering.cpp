@@ -18,6 +18,16 @@ const render::Pose out_of_sight{{0.0, 0.0, -1e6}, {1.0, 0.0, 0.0, 0.0}};
 
 }  // namespace
 
+StageSeconds& StageSeconds::operator+=(const render::PingStatistics& ping) {
+  visibility += ping.visibility_s;
+  binning += ping.binning_s;
+  multipath += ping.multipath_s;
+  azimuth_pattern += ping.azimuth_pattern_s;
+  pulse += ping.pulse_s;
+  receiver += ping.receiver_s;
+  return *this;
+}
+
 HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
     : config_(config),
       stream_(stream),
@@ -124,7 +134,9 @@ bool HeadRendering::take(const RenderResult& result) {
     const render::PingStatistics& spent = result.statistics;
     counters_.render_seconds +=
         spent.visibility_s + spent.binning_s + spent.azimuth_pattern_s + spent.pulse_s + spent.receiver_s;
+    counters_.stages += spent;
     counters_.skipped += spent.skipped;
+    newest_ = spent;
     return true;
   }
   if (result.error != last_error_) {

@@ -24,12 +24,20 @@
 
 namespace sonard::server {
 
+/// Seconds of rendering, by stage.
+struct StageSeconds {
+  double visibility = 0.0, binning = 0.0, multipath = 0.0, azimuth_pattern = 0.0, pulse = 0.0, receiver = 0.0;
+
+  StageSeconds& operator+=(const render::PingStatistics& ping);
+};
+
 /// Counters, which only grow.
 struct RenderCounters {
   std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
   std::uint64_t pings_rendered = 0;
-  double render_seconds = 0.0;  ///< all of them together
-  render::SkipCounts skipped;   ///< of all pings
+  double render_seconds = 0.0;  ///< all of them together, ghosts and bounces apart
+  StageSeconds stages;
+  render::SkipCounts skipped;  ///< of all pings
 };
 
 /// One ping of a head for the render thread.
@@ -77,6 +85,8 @@ class HeadRendering {
   void count_missing_pose() { ++counters_.pings_without_pose; }
 
   const RenderCounters& counters() const { return counters_; }
+  /// Of the newest ping that was rendered.
+  const render::PingStatistics& newest_statistics() const { return newest_; }
 
  private:
   void rest_when_idle(TimePoint now);
@@ -92,6 +102,7 @@ class HeadRendering {
   bool submitted_ = false;               ///< and not answered
   RenderLoad load_;
   RenderCounters counters_;
+  render::PingStatistics newest_;
   std::string last_error_;
   PeerLog errors_;
 };

@@ -88,6 +88,7 @@ struct Recorder::Impl {
   EventQueue queue;
   SteadyClock clock;
   std::atomic<bool> stopping{false};
+  std::atomic<bool> on{true};
   std::atomic<std::uint64_t> images{0}, images_lost{0}, logs_written{0}, logs_failed{0};
 
   // Used by the recorder's thread only:
@@ -114,7 +115,20 @@ Recorder::~Recorder() {
 }
 
 void Recorder::push(RecordingEvent event) {
-  impl_->queue.push(std::move(event));
+  if (impl_->on) {
+    impl_->queue.push(std::move(event));
+  }
+}
+
+void Recorder::turn(bool on) {
+  if (impl_->on.exchange(on) != on) {
+    spdlog::info("recording: turned {}", on ? "on" : "off");
+    impl_->queue.wake();
+  }
+}
+
+bool Recorder::on() const {
+  return impl_->on;
 }
 
 void Recorder::stop() {
@@ -142,6 +156,9 @@ void Recorder::Impl::run() {
       record(event);
       queue.done(event);
       event.what = StreamEnded{};  // gives its memory back now
+    }
+    if (!on) {
+      end_set();
     }
     look_after_logs();
     pack_slice();

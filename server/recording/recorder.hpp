@@ -54,6 +54,10 @@ class Recorder {
 
   /// Any thread; never waits. An event that does not fit the queue is dropped and counted.
   void push(RecordingEvent event);
+  /// Any thread. False: the logs that are open are closed, and what is pushed is left out, uncounted, until
+  /// it is turned on again, with new logs.
+  void turn(bool on);
+  bool on() const;
   /// Writes what was pushed before, closes and packs the logs, and logs what was done. Harmless when called
   /// again.
   void stop();

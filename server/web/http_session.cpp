@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/web/http_session.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+
+#include "server/web/live_session.hpp"
+
+namespace sonard::server {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+namespace {
+
+constexpr std::uint32_t most_header_bytes = 8192;
+constexpr std::uint64_t most_body_bytes = 4096;
+constexpr std::chrono::seconds patience{30};  // for a request to come, and for an answer to go
+
+}  // namespace
+
+HttpSession::HttpSession(Site& site, boost::asio::ip::tcp::socket socket, const Endpoint& peer)
+    : site_(site), stream_(std::move(socket)), peer_(peer) {}
+
+HttpSession::~HttpSession() {
+  if (counted_) {
+    site_.close_connection();
+  }
+}
+
+void HttpSession::read() {
+  parser_.emplace();
+  parser_->header_limit(most_header_bytes);
+  parser_->body_limit(most_body_bytes);
+  stream_.expires_after(patience);
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
+}
+
+void HttpSession::on_read(beast::error_code error) {
+  if (error) {
+    close();
+    return;
+  }
+  HttpRequest request = parser_->release();
+  if (beast::websocket::is_upgrade(request) && !site_.refusal(request) && request.target() == "/api/live") {
+    upgrade(std::move(request));
+    return;
+  }
+  stream_.expires_never();  // the answer may take a while, and is not theirs to make
+  site_.answer(request, peer_,
+               [self = shared_from_this()](HttpResponse response) { self->send(std::move(response)); });
+}
+
+void HttpSession::upgrade(HttpRequest request) {
+  stream_.expires_never();
+  counted_ = false;
+  const auto session = std::make_shared<LiveSession>(site_, std::move(stream_));
+  site_.add(session);
+  session->start(std::move(request));
+}
+
+void HttpSession::send(HttpResponse response) {
+  const auto kept = std::make_shared<HttpResponse>(std::move(response));
+  stream_.expires_after(patience);
+  http::async_write(stream_, *kept, [self = shared_from_this(), kept](beast::error_code error, std::size_t) {
+    if (error || kept->need_eof()) {
+      self->close();
+    } else {
+      self->read();
+    }
+  });
+}
+
+void HttpSession::close() {
+  beast::error_code ignored;
+  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// One connection of a browser or a monitor: requests one after the other, until it becomes a WebSocket.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+
+#include "server/web/site.hpp"
+
+namespace sonard::server {
+
+/// Belongs to the thread of the page. It lives as long as one of its operations is under way; `site` outlives
+/// it, and counts it as long as it is there.
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  /// The site has counted the connection.
+  HttpSession(Site& site, boost::asio::ip::tcp::socket socket, const Endpoint& peer);
+  ~HttpSession();
+  HttpSession(const HttpSession&) = delete;
+  HttpSession& operator=(const HttpSession&) = delete;
+
+  void start() { read(); }
+
+ private:
+  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+
+  void read();
+  void on_read(boost::beast::error_code error);
+  void upgrade(HttpRequest request);
+  void send(HttpResponse response);
+  void close();
+
+  Site& site_;
+  boost::beast::tcp_stream stream_;
+  Endpoint peer_;
+  bool counted_ = true;
+  boost::beast::flat_buffer buffer_;
+  std::optional<Parser> parser_;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/web/json.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace sonard::server {
+
+using nlohmann::json;
+
+namespace {
+
+double seconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+json vector_json(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+json where_json(const std::optional<render::Pose>& pose) {
+  return pose ? placed_json(*pose) : json(nullptr);
+}
+
+json stages_json(const render::PingStatistics& spent) {
+  return {{"visibility", 1e3 * spent.visibility_s}, {"binning", 1e3 * spent.binning_s},
+          {"multipath", 1e3 * spent.multipath_s},   {"azimuth_pattern", 1e3 * spent.azimuth_pattern_s},
+          {"pulse", 1e3 * spent.pulse_s},           {"receiver", 1e3 * spent.receiver_s}};
+}
+
+double render_ms(const render::PingStatistics& spent) {
+  return 1e3 * (spent.visibility_s + spent.binning_s + spent.multipath_s + spent.azimuth_pattern_s +
+                spent.pulse_s + spent.receiver_s);
+}
+
+json skipped_json(const render::SkipCounts& skipped) {
+  json rules = json::array();
+  for (const render::SkipRuleEntry& entry : render::skip_rules) {
+    if (const std::uint64_t count = skipped.of(entry.rule); count > 0) {
+      rules.push_back(
+          {{"rule", entry.name}, {"count", count}, {"unit", entry.counts}, {"why", entry.criterion}});
+    }
+  }
+  return rules;
+}
+
+json counters_json(const HeadCounts& counts) {
+  json counters = json::array();
+  for (const std::vector<Counter>* group : {&counts.device, &counts.transport}) {
+    for (const Counter& counter : *group) {
+      if (!counter.name.empty()) {
+        counters.push_back({{"name", counter.name}, {"value", counter.value}});
+      }
+    }
+  }
+  return counters;
+}
+
+json clients_json(const HeadStatus& head, TimePoint at) {
+  json clients = json::array();
+  for (const ClientSeen& client : head.clients) {
+    clients.push_back(
+        {{"address", client.address == Endpoint{} ? "serial line" : endpoint_text(client.address)},
+         {"idle_s", seconds(at - client.last)},
+         {"messages", client.pieces}});
+  }
+  return clients;
+}
+
+/// What is known of a head only when it has asked for a ping.
+void add_newest_ping(json& head, const HeadStatus& status) {
+  const NewestPing newest = status.newest.value_or(NewestPing{});
+  json settings = json::array();
+  for (const Setting& setting : newest.settings) {
+    settings.push_back({{"name", setting.name}, {"value", setting.value}});
+  }
+  head["settings"] = std::move(settings);
+  head["range_m"] = newest.range_m;
+  head["bearing_rad"] = newest.bearing_rad;
+  head["pose"] = where_json(newest.T_world_mount);
+  head["aperture"] = {{"azimuth_rad", newest.azimuth_rad}, {"elevation_rad", newest.elevation_rad}};
+}
+
+json head_json(const HeadStatus& status, TimePoint at) {
+  json head{{"name", status.name},
+            {"kind", status.kind},
+            {"scanning", status.scanning},
+            {"serves", status.serves},
+            {"clients", clients_json(status, at)},
+            {"pings", status.counts.pings.sent},
+            {"pings_per_s", status.pings_per_s},
+            {"pings_without_pose", status.counts.rendering.pings_without_pose},
+            {"render_ms", nullptr},
+            {"latency_ms", nullptr},
+            {"stages_ms", stages_json(status.spent)},
+            {"skipped", skipped_json(status.counts.rendering.skipped)},
+            {"counters", counters_json(status.counts)},
+            {"findings", json::array()}};
+  if (status.counts.rendering.pings_rendered > 0) {
+    head["render_ms"] = render_ms(status.spent);
+  }
+  if (status.latency) {
+    head["latency_ms"] = 1e3 * seconds(*status.latency);
+  }
+  add_newest_ping(head, status);
+  return head;
+}
+
+json input_json(const PoseInputStatus& status) {
+  constexpr std::string_view from = "from ";
+  const std::string& publisher = status.publisher;
+  return {{"input", status.input},
+          {"publisher", publisher.starts_with(from) ? publisher.substr(from.size()) : publisher},
+          {"poses", status.poses.poses},
+          {"rate_hz", status.poses.rate_hz},
+          {"age_s", status.poses.age ? json(seconds(*status.poses.age)) : json(nullptr)},
+          {"gaps", status.poses.gaps},
+          {"jumps", status.poses.jumps},
+          {"clock_restarts", status.poses.clock_restarts},
+          {"bad_messages", status.counters.malformed + status.counters.bad_value},
+          {"refused", status.counters.refused},
+          {"findings", json::array()}};
+}
+
+json poses_json(const DaemonStatus& status) {
+  json inputs = json::array();
+  for (const PoseInputStatus& input : status.inputs) {
+    inputs.push_back(input_json(input));
+  }
+  json bodies = json::array();
+  for (const PosedBody& body : status.bodies) {
+    json pose = placed_json(body.T_world_body);
+    pose["name"] = body.name;
+    bodies.push_back(std::move(pose));
+  }
+  return {{"inputs", std::move(inputs)},
+          {"vehicle", where_json(status.T_world_vehicle)},
+          {"bodies", std::move(bodies)}};
+}
+
+json recording_json(const std::optional<RecordingStatus>& recording) {
+  if (!recording) {
+    return nullptr;
+  }
+  const RecorderCounters& counters = recording->counters;
+  return {{"directory", recording->directory},   {"on", recording->on},
+          {"images", counters.images},           {"images_lost", counters.images_lost},
+          {"dropped", counters.dropped.total()}, {"logs_written", counters.logs_written},
+          {"logs_failed", counters.logs_failed}};
+}
+
+}  // namespace
+
+json placed_json(const render::Pose& pose) {
+  const glm::dquat& q = pose.orientation;
+  return {{"position_m", vector_json(pose.position_m)}, {"orientation_wxyz", {q.w, q.x, q.y, q.z}}};
+}
+
+json status_json(const DaemonIdentity& identity, const DaemonStatus& status,
+                 std::chrono::duration<double> uptime) {
+  json heads = json::array();
+  for (const HeadStatus& head : status.heads) {
+    heads.push_back(head_json(head, status.at));
+  }
+  const json surface = identity.water_surface_z_m ? json(*identity.water_surface_z_m) : json(nullptr);
+  return {{"version", SONARD_VERSION},
+          {"configuration", identity.configuration},
+          {"uptime_s", uptime.count()},
+          {"engine", identity.engine},
+          {"world", {{"name", identity.world}, {"water_surface_z_m", surface}}},
+          {"heads", std::move(heads)},
+          {"poses", poses_json(status)},
+          {"recording", recording_json(status.recording)}};
+}
+
+std::string text_of(const json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/web/metrics.hpp"
+
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+namespace {
+
+using Labels = std::initializer_list<std::pair<std::string_view, std::string_view>>;
+
+std::string escaped(std::string_view value) {
+  std::string text;
+  for (const char c : value) {
+    if (c == '\n') {
+      text += "\\n";
+      continue;
+    }
+    if (c == '\\' || c == '"') {
+      text += '\\';
+    }
+    text += c;
+  }
+  return text;
+}
+
+/// One metric: its lines of help and type come before its first value, and not at all without one.
+class Metric {
+ public:
+  Metric(std::string& out, std::string_view name, std::string_view type, std::string_view help)
+      : out_(out), name_(name), type_(type), help_(help) {}
+
+  template <class Number>
+  void value(Labels labels, Number number) {
+    if (!std::exchange(begun_, true)) {
+      out_ += fmt::format("# HELP {} {}\n# TYPE {} {}\n", name_, help_, name_, type_);
+    }
+    out_ += name_;
+    char before = '{';
+    for (const auto& [label, text] : labels) {
+      out_ += fmt::format("{}{}=\"{}\"", before, label, escaped(text));
+      before = ',';
+    }
+    out_ += fmt::format("{} {}\n", labels.size() > 0 ? "}" : "", number);
+  }
+
+ private:
+  std::string& out_;
+  std::string_view name_, type_, help_;
+  bool begun_ = false;
+};
+
+void add_pings(std::string& out, const std::vector<HeadStatus>& heads) {
+  Metric pings(out, "sonard_pings_total", "counter", "Pings that went out to their end.");
+  for (const HeadStatus& head : heads) {
+    pings.value({{"head", head.name}}, head.counts.pings.sent);
+  }
+  Metric rate(out, "sonard_pings_per_second", "gauge", "Pings a second over the last five seconds.");
+  for (const HeadStatus& head : heads) {
+    rate.value({{"head", head.name}}, head.pings_per_s);
+  }
+  Metric rendered(out, "sonard_pings_rendered_total", "counter", "Pings that were rendered.");
+  for (const HeadStatus& head : heads) {
+    rendered.value({{"head", head.name}}, head.counts.rendering.pings_rendered);
+  }
+  Metric without(out, "sonard_pings_without_pose_total", "counter",
+                 "Pings that were not made, as no pose was known.");
+  for (const HeadStatus& head : heads) {
+    without.value({{"head", head.name}}, head.counts.rendering.pings_without_pose);
+  }
+}
+
+void add_stages(std::string& out, const std::vector<HeadStatus>& heads) {
+  Metric metric(out, "sonard_ping_seconds_total", "counter", "Time spent on rendering, by stage.");
+  for (const HeadStatus& head : heads) {
+    const StageSeconds& spent = head.counts.rendering.stages;
+    const std::initializer_list<std::pair<std::string_view, double>> stages{
+        {"visibility", spent.visibility}, {"binning", spent.binning},
+        {"multipath", spent.multipath},   {"azimuth_pattern", spent.azimuth_pattern},
+        {"pulse", spent.pulse},           {"receiver", spent.receiver}};
+    for (const auto& [stage, seconds] : stages) {
+      metric.value({{"head", head.name}, {"stage", stage}}, seconds);
+    }
+  }
+}
+
+void add_clients(std::string& out, const std::vector<HeadStatus>& heads) {
+  Metric clients(out, "sonard_clients", "gauge", "Clients that have sent something in the last minute.");
+  for (const HeadStatus& head : heads) {
+    clients.value({{"head", head.name}}, head.clients.size());
+  }
+  Metric latency(out, "sonard_ping_latency_seconds", "gauge",
+                 "From the transmission of the newest ping to when it went out.");
+  for (const HeadStatus& head : heads) {
+    if (head.latency) {
+      latency.value({{"head", head.name}}, std::chrono::duration<double>(*head.latency).count());
+    }
+  }
+}
+
+void add_events(std::string& out, const std::vector<HeadStatus>& heads) {
+  Metric metric(out, "sonard_head_events_total", "counter",
+                "What the device and its transport count: retries, lines lost, bad messages, faults.");
+  for (const HeadStatus& head : heads) {
+    for (const auto& [part, counters] :
+         {std::pair("device", &head.counts.device), std::pair("transport", &head.counts.transport)}) {
+      for (const Counter& counter : *counters) {
+        if (!counter.name.empty()) {
+          metric.value({{"head", head.name}, {"part", part}, {"event", counter.name}}, counter.value);
+        }
+      }
+    }
+  }
+}
+
+void add_skipped(std::string& out, const std::vector<HeadStatus>& heads) {
+  Metric metric(out, "sonard_skipped_total", "counter",
+                "Work that was left out since it would not change the image, by rule.");
+  for (const HeadStatus& head : heads) {
+    for (const render::SkipRuleEntry& entry : render::skip_rules) {
+      if (const std::uint64_t count = head.counts.rendering.skipped.of(entry.rule); count > 0) {
+        metric.value({{"head", head.name}, {"rule", entry.name}}, count);
+      }
+    }
+  }
+}
+
+void add_poses(std::string& out, const std::vector<PoseInputStatus>& inputs) {
+  Metric poses(out, "sonard_poses_total", "counter", "Poses of the vehicle that arrived.");
+  for (const PoseInputStatus& input : inputs) {
+    poses.value({{"input", input.input}}, input.poses.poses);
+  }
+  Metric age(out, "sonard_pose_age_seconds", "gauge", "Time since the newest pose arrived.");
+  for (const PoseInputStatus& input : inputs) {
+    if (input.poses.age) {
+      age.value({{"input", input.input}}, std::chrono::duration<double>(*input.poses.age).count());
+    }
+  }
+  Metric bad(out, "sonard_bad_pose_messages_total", "counter", "Messages that gave no pose, by reason.");
+  for (const PoseInputStatus& input : inputs) {
+    bad.value({{"input", input.input}, {"reason", "malformed"}}, input.counters.malformed);
+    bad.value({{"input", input.input}, {"reason", "bad_value"}}, input.counters.bad_value);
+    bad.value({{"input", input.input}, {"reason", "refused"}}, input.counters.refused);
+  }
+}
+
+void add_recording(std::string& out, const std::optional<RecordingStatus>& recording) {
+  if (!recording) {
+    return;
+  }
+  const RecorderCounters& counters = recording->counters;
+  Metric(out, "sonard_recording_on", "gauge", "1 while pings are recorded.").value({}, recording->on ? 1 : 0);
+  Metric(out, "sonard_recording_images_total", "counter", "Images that came to the recorder.")
+      .value({}, counters.images);
+  Metric(out, "sonard_recording_images_lost_total", "counter", "Images that no log could take.")
+      .value({}, counters.images_lost);
+  Metric(out, "sonard_recording_dropped_total", "counter", "Events dropped since the disk is too slow.")
+      .value({}, counters.dropped.total());
+  Metric(out, "sonard_recording_logs_failed_total", "counter", "Logs that could not be written.")
+      .value({}, counters.logs_failed);
+}
+
+}  // namespace
+
+std::string metrics_text(const DaemonIdentity& identity, const DaemonStatus& status,
+                         std::chrono::duration<double> uptime) {
+  std::string out;
+  Metric(out, "sonard_info", "gauge", "What runs.")
+      .value({{"version", SONARD_VERSION}, {"world", identity.world}, {"engine", identity.engine}}, 1);
+  Metric(out, "sonard_uptime_seconds", "gauge", "Time since the start.").value({}, uptime.count());
+  add_pings(out, status.heads);
+  add_stages(out, status.heads);
+  add_clients(out, status.heads);
+  add_events(out, status.heads);
+  add_skipped(out, status.heads);
+  add_poses(out, status.inputs);
+  add_recording(out, status.recording);
+  return out;
+}
+
+}  // namespace sonard::server

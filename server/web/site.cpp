@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/web/site.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "server/web/access.hpp"
+#include "server/web/assets.hpp"
+#include "server/web/json.hpp"
+#include "server/web/live_frame.hpp"
+#include "server/web/metrics.hpp"
+#include "server/web/world_view.hpp"
+
+namespace sonard::server {
+
+namespace http = boost::beast::http;
+
+namespace {
+
+constexpr std::chrono::milliseconds status_age{250};
+constexpr std::chrono::seconds want_lasts{5};
+constexpr std::chrono::milliseconds least_interval{50};
+constexpr std::chrono::milliseconds interval_of_each{15};
+constexpr std::size_t most_frames = 8;  // of different heads and sizes, at one moment
+
+std::string_view as_view(boost::beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+HttpResponse response(const HttpRequest& request, http::status status, std::string_view type,
+                      std::string body) {
+  HttpResponse answer{status, request.version()};
+  answer.set(http::field::server, "sonard");
+  answer.set(http::field::content_type, boost::beast::string_view(type.data(), type.size()));
+  answer.set(http::field::cache_control, "no-store");
+  answer.set("X-Content-Type-Options", "nosniff");
+  answer.set("Content-Security-Policy",
+             "default-src 'self'; img-src 'self' blob: data:; style-src 'self'; frame-ancestors 'none'");
+  answer.keep_alive(request.keep_alive());
+  answer.body() = std::move(body);
+  answer.prepare_payload();
+  if (request.method() == http::verb::head) {
+    answer.body().clear();  // the length stays that of the answer to GET
+  }
+  return answer;
+}
+
+HttpResponse json_response(const HttpRequest& request, http::status status, const nlohmann::json& json) {
+  return response(request, status, "application/json", text_of(json) + "\n");
+}
+
+HttpResponse error_response(const HttpRequest& request, http::status status, const std::string& text) {
+  return json_response(request, status, {{"error", text}});
+}
+
+std::string_view path_of(const HttpRequest& request) {
+  const std::string_view target = as_view(request.target());
+  return target.substr(0, target.find('?'));
+}
+
+bool reads(const HttpRequest& request) {
+  return request.method() == http::verb::get || request.method() == http::verb::head;
+}
+
+}  // namespace
+
+Site::Site(WebConfig config, WebSources sources)
+    : config_(std::move(config)), sources_(std::move(sources)), started_(clock_.now()) {}
+
+// ---- Requests
+
+std::optional<std::string> Site::refusal(const HttpRequest& request) const {
+  const std::string_view host = as_view(request[http::field::host]);
+  if (!trusted_host(host)) {
+    return "The Host of this request is neither an address nor localhost; open the page by its address.";
+  }
+  const std::string_view origin = as_view(request[http::field::origin]);
+  if (!trusted_origin(origin, host, config_)) {
+    return fmt::format("Pages of {} may not connect; web.origins in the configuration lists who may.",
+                       origin);
+  }
+  return std::nullopt;
+}
+
+void Site::answer(const HttpRequest& request, const Endpoint& peer, std::function<void(HttpResponse)> send) {
+  const std::string_view path = path_of(request);
+  if (const auto why = refusal(request)) {
+    send(error_response(request, http::status::forbidden, *why));
+  } else if (path == "/api/recording") {
+    send(change_recording(request, peer));
+  } else if (!reads(request)) {
+    send(error_response(request, http::status::method_not_allowed, "This address is only read (GET)."));
+  } else if (path == "/api/status") {
+    with_status_text([request, send](const std::shared_ptr<const std::string>& text) {
+      send(response(request, http::status::ok, "application/json", *text));
+    });
+  } else if (path == "/metrics") {
+    with_status([this, request, send](const DaemonStatus& status) {
+      send(response(request, http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
+                    metrics_text(sources_.identity, status, uptime())));
+    });
+  } else if (path == "/health") {
+    // Who gets an answer knows that the I/O thread runs; a renderer that fails ends the daemon.
+    with_status([request, send](const DaemonStatus&) {
+      send(json_response(request, http::status::ok, {{"status", "ok"}}));
+    });
+  } else if (auto world = world_answer(request, path)) {
+    send(std::move(*world));
+  } else if (const Asset* asset = find_asset(path == "/" ? "/index.html" : path)) {
+    send(response(request, http::status::ok, asset->type, std::string(asset->bytes)));
+  } else {
+    send(error_response(request, http::status::not_found, "There is nothing at this address."));
+  }
+}
+
+std::optional<HttpResponse> Site::world_answer(const HttpRequest& request, std::string_view path) {
+  const auto made_once = [](std::optional<std::string>& kept, auto make) {
+    if (!kept) {
+      kept = make();
+    }
+    return *kept;
+  };
+  if (path == "/api/world") {
+    return response(request, http::status::ok, "application/json",
+                    made_once(world_json_, [this] { return text_of(world_json(sources_.world)); }));
+  }
+  if (path == "/api/world/top.png") {
+    return response(request, http::status::ok, "image/png",
+                    made_once(world_above_, [this] { return world_png(sources_.world, ViewFrom::above); }));
+  }
+  if (path == "/api/world/side.png") {
+    return response(request, http::status::ok, "image/png",
+                    made_once(world_south_, [this] { return world_png(sources_.world, ViewFrom::south); }));
+  }
+  return std::nullopt;
+}
+
+HttpResponse Site::change_recording(const HttpRequest& request, const Endpoint& peer) {
+  if (request.method() != http::verb::post) {
+    return error_response(request, http::status::method_not_allowed, "Send {\"on\": true or false} by POST.");
+  }
+  if (!may_change(peer, as_view(request[http::field::authorization]), config_)) {
+    return error_response(request, http::status::forbidden,
+                          "Only this machine, or who sends the token of web.token, may change this.");
+  }
+  if (!sources_.turn_recording) {
+    return error_response(request, http::status::conflict,
+                          "The configuration has no section recording, so nothing can be recorded.");
+  }
+  const auto wish = nlohmann::json::parse(request.body(), nullptr, false);
+  if (!wish.is_object() || !wish.contains("on") || !wish["on"].is_boolean()) {
+    return error_response(request, http::status::bad_request, "Send {\"on\": true} or {\"on\": false}.");
+  }
+  sources_.turn_recording(wish["on"].get<bool>());
+  return json_response(request, http::status::ok, {{"on", wish["on"]}});
+}
+
+// ---- Status
+
+void Site::with_status(std::function<void(const DaemonStatus&)> take) {
+  if (status_ && now() - status_at_ < status_age) {
+    take(*status_);
+    return;
+  }
+  waiting_.push_back(std::move(take));
+  if (waiting_.size() == 1) {
+    sources_.ask_status([this](DaemonStatus status) { took_status(std::move(status)); });
+  }
+}
+
+void Site::took_status(DaemonStatus status) {
+  status_ = std::move(status);
+  status_at_ = now();
+  for (const auto& take : std::exchange(waiting_, {})) {
+    take(*status_);
+  }
+}
+
+void Site::with_status_text(std::function<void(std::shared_ptr<const std::string>)> take) {
+  with_status([this, take = std::move(take)](const DaemonStatus& status) {
+    take(std::make_shared<const std::string>(text_of(status_json(sources_.identity, status, uptime()))));
+  });
+}
+
+// ---- Connections
+
+bool Site::open_connection() {
+  if (connections_ >= most_connections) {
+    return false;
+  }
+  ++connections_;
+  return true;
+}
+
+void Site::add(const std::shared_ptr<Viewer>& viewer) {
+  std::erase_if(viewers_, [](const std::weak_ptr<Viewer>& other) { return other.expired(); });
+  viewers_.push_back(viewer);
+}
+
+void Site::show(const std::shared_ptr<const ShownPing>& ping) {
+  std::erase_if(frames_, [&](const Frame& frame) { return frame.ping->head == ping->head; });
+  for (const std::weak_ptr<Viewer>& weak : viewers_) {
+    if (const auto viewer = weak.lock()) {
+      viewer->show(ping);
+    }
+  }
+}
+
+void Site::close_viewers() {
+  for (const std::weak_ptr<Viewer>& weak : std::exchange(viewers_, {})) {
+    if (const auto viewer = weak.lock()) {
+      viewer->close();
+    }
+  }
+}
+
+void Site::want(std::size_t head) {
+  if (head < wanted_until_ns_.size()) {
+    wanted_until_ns_[head] = TimePoint(now() + want_lasts).count();
+  }
+}
+
+bool Site::wants(std::size_t head) const {
+  return head < wanted_until_ns_.size() && wanted_until_ns_[head] > now().count();
+}
+
+std::chrono::milliseconds Site::interval() const {
+  return std::max(least_interval, interval_of_each * static_cast<int>(viewers_.size()));
+}
+
+std::shared_ptr<const std::string> Site::frame_of(const std::shared_ptr<const ShownPing>& ping,
+                                                  int max_rows) {
+  const auto known = std::ranges::find_if(
+      frames_, [&](const Frame& frame) { return frame.ping == ping && frame.max_rows == max_rows; });
+  if (known != frames_.end()) {
+    return known->bytes;
+  }
+  auto bytes = std::make_shared<const std::string>(live_frame(std::array{ping}, max_rows));
+  if (frames_.size() == most_frames) {
+    frames_.erase(frames_.begin());
+  }
+  frames_.push_back({ping, max_rows, bytes});
+  return bytes;
+}
+
+}  // namespace sonard::server

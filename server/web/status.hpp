@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the daemon says of itself to people and monitors.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/pose/pose_codec.hpp"
+#include "renderer/pose.hpp"
+#include "server/clock/clock.hpp"
+#include "server/devices/head_status.hpp"
+#include "server/pose/pose_source.hpp"
+#include "server/pose/pose_statistics.hpp"
+#include "server/pose/posed_body.hpp"
+#include "server/recording/recorder.hpp"
+
+namespace sonard::server {
+
+/// What stays as it is while a daemon runs.
+struct DaemonIdentity {
+  std::string configuration;  ///< the file
+  std::string engine;         ///< one line
+  std::string world;
+  std::optional<double> water_surface_z_m;
+};
+
+struct PoseInputStatus {
+  std::string input;      ///< PoseSource::description()
+  std::string publisher;  ///< PoseSource::received()
+  PoseStatistics::Summary poses;
+  PoseSourceCounters counters;
+};
+
+struct RecordingStatus {
+  std::string directory;
+  bool on = true;
+  RecorderCounters counters;
+};
+
+/// The daemon at one moment.
+struct DaemonStatus {
+  TimePoint at{};
+  std::vector<HeadStatus> heads;
+  std::vector<PoseInputStatus> inputs;
+  std::optional<render::Pose> T_world_vehicle;
+  std::vector<PosedBody> bodies;
+  std::optional<RecordingStatus> recording;
+};
+
+}  // namespace sonard::server

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page in the browser, /metrics and the rest, on a thread of their own.
+#pragma once
+
+#include <memory>
+
+#include "server/devices/ping_viewer.hpp"
+#include "server/web/site.hpp"
+
+namespace sonard::server {
+
+/// Its thread has the lowest priority: people who watch take no time from pings. wants() and show() are
+/// called on the I/O thread, everything else on main.
+class WebServer final : public PingViewer {
+ public:
+  /// Opens the port. @throws SocketError
+  explicit WebServer(const WebConfig& config);
+  /// Calls stop().
+  ~WebServer() override;
+
+  /// Serves from now on. Called once.
+  void start(WebSources sources);
+  /// Closes all connections and ends the thread. Harmless when called again.
+  void stop();
+  /// Runs a function on the thread of the page. Any thread.
+  void on_page(std::function<void()> task);
+
+  /// "http://127.0.0.1:8014"
+  std::string address() const;
+
+  bool wants(int head) const override;
+  void show(std::shared_ptr<const ShownPing> ping) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::server
