@@ -15,13 +15,13 @@ export function ringStep(range_m) {
   return power * [1, 2, 5, 10].find((factor) => factor * power >= least * 0.999);
 }
 
-function bearingsOf(model) {
+function bearingsOf(mode, model) {
   const width = (model.last_rad - model.first_rad) / DEGREE;
   const step = [5, 10, 15, 30, 45].find((one) => width / one <= 8) ?? 45;
   const from = Math.ceil(model.first_rad / DEGREE / step - 0.01) * step;
   const all = [];
   for (let bearing = from; bearing <= model.last_rad / DEGREE + 0.01; bearing += step) {
-    if (!(model.turns && bearing === -180)) {
+    if (!(mode === "fan" && model.turns && bearing === -180)) {
       all.push(bearing);
     }
   }
@@ -72,7 +72,7 @@ export class Grid {
         this.ring(model, projection, ring, text);
       }
     }
-    for (const bearing of bearingsOf(model)) {
+    for (const bearing of bearingsOf(mode, model)) {
       this.bearing(mode, projection, bearing);
     }
     if (mode === "fan") {
@@ -96,7 +96,7 @@ export class Grid {
       return;
     }
     const [x, y] = projection.pixel(range_m, model.last_rad);
-    const away = 7 * this.scale;
+    const away = 9 * this.scale;
     this.label(text, x + away * Math.cos(model.last_rad), y + away * Math.sin(model.last_rad), "left");
   }
 
@@ -119,13 +119,14 @@ export class Grid {
     const bearing = bearing_deg * DEGREE;
     const [x, y] = projection.pixel(projection.range_m, bearing);
     const base = projection.pixel(0, bearing);
-    this.line(base, [x, y]);
+    // Towards the apex of a fan the lines would hide what is near.
+    this.line(mode === "polar" ? base : projection.pixel(0.12 * projection.range_m, bearing), [x, y]);
     const text = `${number(bearing_deg)}°`;
     if (mode === "polar") {
       this.label(text, x, base[1] + 13 * this.scale);
     } else {
       const away = 13 * this.scale;
-      this.label(text, x + away * 1.2 * Math.sin(bearing), y - away * Math.cos(bearing));
+      this.label(text, x + 1.5 * away * Math.sin(bearing), y - away * Math.cos(bearing));
     }
   }
 

@@ -3,7 +3,7 @@
 import { mapNames } from "./colour.js";
 import { make, onChange, setFindings, setPairs, setText, words } from "./dom.js";
 import { Picture } from "./picture.js";
-import { count, degrees, duration, milliseconds, number } from "./text.js";
+import { count, duration, milliseconds, number } from "./text.js";
 
 const OLD_PICTURE_MS = 3000;
 
@@ -27,11 +27,11 @@ export class Head {
     this.findings = make("ul", { class: "findings", hidden: true });
     this.empty = make("p", { class: "empty", text: "No ping yet. The picture begins when a client asks this sonar for one." });
     this.age = make("p", { class: "age", hidden: true });
-    this.picture.stage.append(this.findings, this.empty, this.age);
+    this.picture.stage.append(this.empty, this.age);
     this.facts = make("dl", { class: "facts" });
     this.makeMore();
     this.element = make("article", { class: "head", data: { head: index, frames: 0 } },
-      make("div", { class: "look" }, make("header", {}, this.title, this.kind, this.fault), this.picture.stage,
+      make("div", { class: "look" }, make("header", {}, this.title, this.kind, this.fault), this.findings, this.picture.stage,
         this.picture.legend, this.controls()),
       make("div", { class: "said" }, this.facts, this.stages, this.clients, this.skipped, this.settings, this.counters));
     new IntersectionObserver((entries) => {
@@ -142,18 +142,13 @@ export class Head {
 
   updateFacts(status) {
     const facts = [
-      ["Pings", count(status.pings)],
       ["Rate", number(status.pings_per_s, 1, "/s")],
       ["Render", milliseconds(status.render_ms)],
       ["Latency", milliseconds(status.latency_ms)],
       ["Pose age", milliseconds(status.pose_age_ms)],
-      ["Range", number(status.range_m, status.range_m < 10 ? 2 : 1, "m")],
+      ["Range", status.range_m > 0 ? number(status.range_m, status.range_m < 10 ? 2 : 1, "m") : number(null)],
+      ["Pings", count(status.pings)],
     ];
-    if (status.scanning) {
-      facts.push(["Bearing", degrees(status.bearing_rad)]);
-    } else {
-      facts.push(["Fan", degrees(status.aperture?.azimuth_rad, 0)]);
-    }
     if (status.pings_without_pose > 0) {
       facts.push(["Without pose", count(status.pings_without_pose)]);
     }

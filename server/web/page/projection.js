@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a range and a bearing lie in a picture. Pixels are those of the canvas; ahead is up, port is on the left.
 
-const MARGIN = { fan: { left: 30, right: 30, top: 24, bottom: 14 }, polar: { left: 46, right: 14, top: 12, bottom: 26 } };
+const MARGIN = { fan: { left: 42, right: 42, top: 26, bottom: 14 }, polar: { left: 46, right: 20, top: 12, bottom: 26 } };
 
 /** Least and greatest value of a function of the bearing over a sector, and at its apex, where it is 0. */
 function bounds(model, value) {
@@ -19,7 +19,7 @@ function bounds(model, value) {
 /** The scene from above. */
 class FanProjection {
   constructor(model, width, height, scale) {
-    const margin = MARGIN.fan;
+    const margin = { ...MARGIN.fan, ...(model.turns && { bottom: MARGIN.fan.top }) };
     this.range_m = model.rows * model.bin_m;
     const [left, right] = bounds(model, Math.sin);
     const [bottom, top] = bounds(model, Math.cos);

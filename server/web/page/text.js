@@ -55,7 +55,7 @@ export function bytes(value) {
 
 /** A count with groups of three digits. */
 export function count(value) {
-  return known(value) ? String(value).replace(/\B(?=(\d{3})+(?!\d))/g, " ") : UNKNOWN;
+  return known(value) ? String(value).replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f") : UNKNOWN;
 }
 
 export function degrees(radians, decimals = 1) {

@@ -7,9 +7,10 @@ import { number } from "./text.js";
 
 const MARGIN = { left: 40, right: 14, top: 12, bottom: 24 };
 const ARC_STEPS = 24;
+const LEAST_STEP_PX = 60;  // between lines of the grid
 const THINNEST_RAD = 0.03;
 const COLOUR = {
-  grid: "rgba(140, 170, 200, 0.13)", axis: "#7d8b99", still: "rgba(150, 172, 194, 0.45)", moving: "#8fc7d8",
+  grid: "rgba(140, 170, 200, 0.13)", axis: "#7d8b99", still: "rgba(150, 172, 194, 0.6)", moving: "#8fc7d8",
   name: "#c9d3dd", halo: "rgba(8, 11, 16, 0.9)", fan: "rgba(229, 165, 82, 0.2)", edge: "rgba(229, 165, 82, 0.8)",
   vehicle: "#ffe2b4", water: "rgba(96, 168, 208, 0.7)",
 };
@@ -132,7 +133,7 @@ export class WorldView {
 
   drawGrid(width, height) {
     const { context } = this;
-    const step = ringStep(Math.max(width, height) / this.perMetre);
+    const step = ringStep((5 * LEAST_STEP_PX) / this.perMetre);
     const decimals = step < 1 ? 1 : 0;
     context.fillStyle = COLOUR.axis;
     context.textAlign = "center";
