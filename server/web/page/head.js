@@ -112,6 +112,7 @@ export class Head {
     this.picture.take(ping);
     this.element.dataset.frames = this.picture.frames;
     this.element.dataset.ping = ping.number;
+    this.element.dataset.bin = ping.bin_m;
     this.tick();
   }
 
