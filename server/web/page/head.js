@@ -19,8 +19,9 @@ export class Head {
     this.index = index;
     this.changed = changed;
     this.frozen = false;
-    this.inView = true;
-    this.picture = new Picture();
+    this.frames = 0;  // that were drawn
+    this.inView = false;  // until the browser says otherwise
+    this.picture = new Picture((ping) => this.drawn(ping));
     this.title = make("h2");
     this.kind = make("span", { class: "kind" });
     this.fault = make("span", { class: "fault", hidden: true });
@@ -110,10 +111,13 @@ export class Head {
     }
     this.empty.hidden = true;
     this.picture.take(ping);
-    this.element.dataset.frames = this.picture.frames;
-    this.element.dataset.ping = ping.number;
-    this.element.dataset.bin = ping.bin_m;
     this.tick();
+  }
+
+  /** A ping is on the screen now. */
+  drawn(ping) {
+    Object.assign(this.element.dataset, { frames: ++this.frames, ping: ping.number, bin: ping.bin_m });
+    this.changed();
   }
 
   /** Says how old a picture is when nothing new comes. */

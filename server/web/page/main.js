@@ -92,11 +92,7 @@ async function switchRecording() {
 
 const live = new Live({
   status: showStatus,
-  ping: (ping) => {
-    heads[ping.head]?.take(ping);
-    // Once drawn, not before: a page that draws slowly asks less often.
-    requestAnimationFrame(() => live.ask());
-  },
+  ping: (ping) => heads[ping.head]?.take(ping),
   error: say,
   state: showState,
   wanted: () => heads.map((head) => head.wanted()).filter(Boolean),

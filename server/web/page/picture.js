@@ -12,11 +12,12 @@ const MOST_ROWS = 1200;
 const BACKGROUND = "#06090d";
 
 export class Picture {
-  constructor() {
+  /** `drawn` is called with each ping that has been drawn. */
+  constructor(drawn) {
+    this.drawn = drawn;
     this.mode = "fan";
     this.map = "Amber";
     this.gain_db = 0;
-    this.frames = 0;
     this.cursor = null;  // of the page, from the corner of the stage
     this.image = make("canvas", { class: "echoes" });
     this.overlay = make("canvas", { class: "grid" });
@@ -59,7 +60,7 @@ export class Picture {
     }
     this.model.take(ping);
     this.ping = ping;
-    ++this.frames;
+    this.isNew = true;
     if (this.model.shape !== this.shape || this.bits !== ping.bits) {
       this.shape = this.model.shape;
       this.bits = ping.bits;
@@ -106,6 +107,10 @@ export class Picture {
     }
     this.viewChanged = this.imageChanged = this.gridChanged = false;
     this.read();
+    if (this.isNew) {
+      this.isNew = false;
+      this.drawn(this.ping);
+    }
   }
 
   prepare() {

@@ -87,21 +87,23 @@ async function firstStrongEcho(page, index) {
         }
       }
     }
+    const bin_m = Number(canvas.closest("[data-bin]").dataset.bin);
+    const pixels = (drawn.bottom - drawn.top) * (turns && !polar ? 0.5 : 1);  // of the full range
     const box = canvas.getBoundingClientRect();
     const scale = box.width / width;
-    return { x: box.left + (first.x + 0.5) * scale, y: box.top + (first.y + 0.5) * scale, pixels: (drawn.bottom - drawn.top) * (turns && !polar ? 0.5 : 1) };
+    return { bin_m, pixels, x: box.left + (first.x + 0.5) * scale, y: box.top + (first.y + 0.5) * scale };
   });
 }
 
 /** Points at the first strong echo; what the page reads there is the target, within a bin and the pixel pointed at. */
 export async function readsTarget(page, index, { range_m, bearing_deg }, full_range_m) {
-  const bin_m = Number(await head(page, index).getAttribute("data-bin"));
   await head(page, index).locator(".stage").scrollIntoViewIfNeeded();
   const echo = await firstStrongEcho(page, index);
   await page.mouse.move(echo.x, echo.y);
   const readout = head(page, index).locator(".readout[data-range]");
   await readout.waitFor();
   const [range, bearing, value] = await Promise.all(["range", "bearing", "value"].map(async (name) => Number(await readout.getAttribute(`data-${name}`))));
+  const { bin_m } = echo;
   const pixel_m = full_range_m / echo.pixels;
   assert.ok(Math.abs(range - range_m) <= bin_m + pixel_m, `range ${range} m, the target is at ${range_m} m, a bin has ${bin_m} m`);
   assert.ok(Math.abs(bearing - bearing_deg) <= 3, `bearing ${bearing}, the target is at ${bearing_deg}`);

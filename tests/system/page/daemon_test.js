@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of a running daemon with two heads, each with a client, and a publisher of poses.
+//   node daemon_test.js PROGRAMS WORLD     on a machine of its own: ports are those of the defaults
+// The target's place follows from WORLD, tests/data/system/sphere_to_port.sdf: a sphere of radius 0.5 m at (3, 2, 0).
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { after, afterEach, before, test } from "node:test";
+import { framesAdvance, head, open, readsTarget, savesPng, startBrowser, state, until } from "./browser.js";
+
+const [programs, world] = process.argv.slice(2);
+const ADDRESS = "127.0.0.1:8014";
+const RANGE_M = 10;
+const TARGET = { range_m: Math.hypot(3, 2) - 0.5, bearing_deg: (Math.atan2(-2, 3) * 180) / Math.PI };
+const READY_MS = 60000;
+
+// What stands where a vehicle must not be taken to be, and what the page says of it.
+const WRONG_POSES = [
+  { name: "in the air", position: [0, 0, 25.6], says: /above the surface/ },
+  { name: "far from everything", position: [60, 0, 0], says: /nearest body 'sphere'/ },
+];
+
+const CONFIG = `
+engine: cpu
+world: {file: ${world}}
+poses: {initial: {position_m: [0, 0, 0]}, udp: {bind: 127.0.0.1:14600}}
+web: {bind: ${ADDRESS}}
+heads:
+  - name: bow
+    type: gemini_720i
+    sonar_id: 513
+    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0, status: [127.0.0.1]}
+  - name: stern
+    type: micron
+    serial: {tcp: [{bind: 127.0.0.1:4001}]}
+    timing: {line_period_ms: 10}
+`;
+
+const folder = mkdtempSync(path.join(tmpdir(), "sonard-page-"));
+let running = [];
+let browser;
+let page;
+
+/** Starts a program; `output` collects what it says. */
+function start(name, ...options) {
+  const child = spawn(path.join(programs, name), options, { stdio: ["ignore", "pipe", "pipe"] });
+  child.output = "";
+  for (const stream of [child.stdout, child.stderr]) {
+    stream.setEncoding("utf-8").on("data", (text) => (child.output = (child.output + text).slice(-20000)));
+  }
+  running.push(child);
+  return child;
+}
+
+async function end(child, signal = "SIGKILL") {
+  running = running.filter((one) => one !== child);
+  if (child.exitCode === null && child.signalCode === null) {
+    const ended = new Promise((resolve) => child.once("exit", resolve));
+    child.kill(signal);
+    await ended;
+  }
+}
+
+async function startDaemon() {
+  const daemon = start("sonard", "run", path.join(folder, "sonard.yaml"));
+  await until("the daemon to be ready", () => {
+    assert.equal(daemon.exitCode, null, `the daemon ended: ${daemon.output}`);
+    return daemon.output.includes("sonard ready");
+  }, READY_MS);
+  return daemon;
+}
+
+function startClients() {
+  return [
+    start("sonarview", "--range", String(RANGE_M), "--continuous", "100", "--ping-wait", "0", "--surface-address", "127.0.0.1", "--quiet"),
+    start("sonarview", "micron", "--tcp", "127.0.0.1:4001", "--range", String(RANGE_M), "--turns", "0", "--line-wait", "0", "--quiet"),
+  ];
+}
+
+/** A publisher that keeps the vehicle in one place. */
+function publish([x, y, z]) {
+  const file = path.join(folder, "pose.csv");
+  writeFileSync(file, `t,x,y,z,qx,qy,qz,qw\n0,${x},${y},${z},0,0,0,1\n600,${x},${y},${z},0,0,0,1\n`);
+  return start("posecast", file, "--to", "127.0.0.1:14600");
+}
+
+async function openPage() {
+  page = await open(browser, ADDRESS);
+  await state(page, "live");
+}
+
+before(async () => {
+  writeFileSync(path.join(folder, "sonard.yaml"), CONFIG);
+  browser = await startBrowser();
+});
+
+afterEach(async () => {
+  const complaints = page?.complaints ?? [];
+  await page?.close();
+  page = null;
+  await Promise.all(running.map((child) => end(child)));
+  assert.deepEqual(complaints, []);
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+});
+process.on("exit", () => running.forEach((child) => child.kill("SIGKILL")));
+
+test("two heads are seen, a target is read off, a picture saved", async () => {
+  await startDaemon();
+  startClients();
+  publish([0, 0, 0]);
+  await openPage();
+  await Promise.all([framesAdvance(page, 0), framesAdvance(page, 1)]);
+  assert.deepEqual(await page.locator(".head h2").allTextContents(), ["bow", "stern"]);
+  await until("the publisher", async () => /127\.0\.0\.1:\d+/.test(await page.locator("#pose-body td[data-label=Publisher]").first().textContent()));
+  await until("the client", async () => /127\.0\.0\.1:\d+.*messages/.test(await head(page, 0).locator(".clients").textContent()));
+  await head(page, 0).locator(".freeze").click();
+  await readsTarget(page, 0, TARGET, RANGE_M);
+  await savesPng(page, 0, 600, 400);
+});
+
+test("the world is drawn with what is in it", async () => {
+  await startDaemon();
+  await openPage();
+  await page.locator("#world summary").click();
+  await until("both views", async () => (await page.locator("#views canvas").count()) === 2);
+  assert.match(await page.locator(".views-head").textContent(), /1 body/);
+});
+
+test("a daemon that is killed and started again is regained", async () => {
+  const daemon = await startDaemon();
+  startClients();
+  await openPage();
+  await framesAdvance(page, 0);
+  await end(daemon);
+  await state(page, "lost");
+  await Promise.all(running.map((child) => end(child)));
+  await startDaemon();
+  startClients();
+  await state(page, "live");
+  await framesAdvance(page, 0);
+});
+
+for (const { name, position, says } of WRONG_POSES) {
+  test(`a vehicle ${name} is said to be there`, async () => {
+    await startDaemon();
+    startClients();
+    publish(position);
+    await openPage();
+    await until("the finding", async () => says.test(await head(page, 0).locator(".findings").textContent()), 60000);
+    assert.ok(await head(page, 0).locator(".findings").isVisible());
+  });
+}

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The daemon's page in a browser, each case on a machine of its own (a network namespace).
+
+    page_test.py --programs DIR --npm DIR [TestCase.test_name ...]
+
+What is looked at is in mock_test.js and daemon_test.js, for a browser is driven in JavaScript.
+"""
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
+sys.path.append(os.path.join(HERE, "..", "gemini"))
+from lab import Namespace, need  # noqa: E402
+
+PAGE = os.path.join(SOURCE, "server", "web", "page")
+WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+PROGRAMS = None  # folder of the programs under test
+NPM = None  # folder with the scripts and their node_modules
+PATIENCE_S = 270
+
+
+class Page(unittest.TestCase):
+    def run_script(self, script, *arguments):
+        """Runs a script of node's test runner; its report is the message where it fails."""
+        need("chromium")
+        namespace = Namespace(f"sonard-page-{os.getpid()}")
+        self.addCleanup(namespace.remove)
+        process = subprocess.Popen(namespace.command("node", script, *arguments), cwd=NPM, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True, start_new_session=True)
+        try:
+            report, _ = process.communicate(timeout=PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            report, _ = process.communicate()
+            self.fail(f"{script} has not ended within {PATIENCE_S} s\n{report}")
+        self.assertEqual(process.returncode, 0, report)
+
+    def test_alone(self):
+        self.run_script("mock_test.js", PAGE)
+
+    def test_with_a_daemon(self):
+        self.run_script("daemon_test.js", PROGRAMS, WORLD)
+
+
+def main():
+    global PROGRAMS, NPM
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--programs", required=True, help="folder of sonard, sonarview and posecast")
+    parser.add_argument("--npm", required=True, help="folder with the scripts, where npm has installed their needs")
+    options, rest = parser.parse_known_args()
+    PROGRAMS, NPM = os.path.abspath(options.programs), options.npm
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()
