@@ -92,6 +92,7 @@ json head_json(const HeadStatus& status, TimePoint at) {
             {"pings_without_pose", status.counts.rendering.pings_without_pose},
             {"render_ms", nullptr},
             {"latency_ms", nullptr},
+            {"pose_age_ms", nullptr},
             {"stages_ms", stages_json(status.spent)},
             {"skipped", skipped_json(status.counts.rendering.skipped)},
             {"counters", counters_json(status.counts)},
@@ -138,6 +139,17 @@ json poses_json(const DaemonStatus& status) {
           {"bodies", std::move(bodies)}};
 }
 
+/// Of the newest pose of any input.
+std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status) {
+  std::optional<std::chrono::nanoseconds> least;
+  for (const PoseInputStatus& input : status.inputs) {
+    if (input.poses.age && (!least || *input.poses.age < *least)) {
+      least = input.poses.age;
+    }
+  }
+  return least;
+}
+
 json recording_json(const std::optional<RecordingStatus>& recording) {
   if (!recording) {
     return nullptr;
@@ -160,7 +172,11 @@ json status_json(const DaemonIdentity& identity, const DaemonStatus& status,
                  std::chrono::duration<double> uptime) {
   json heads = json::array();
   for (const HeadStatus& head : status.heads) {
-    heads.push_back(head_json(head, status.at));
+    json about = head_json(head, status.at);
+    if (const auto age = age_of_poses(status)) {
+      about["pose_age_ms"] = 1e3 * seconds(*age);
+    }
+    heads.push_back(std::move(about));
   }
   const json surface = identity.water_surface_z_m ? json(*identity.water_surface_z_m) : json(nullptr);
   return {{"version", SONARD_VERSION},

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Metrics against the text format of Prometheus 0.0.4 (its page "Exposition formats").
+#include "server/web/metrics.hpp"
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+DaemonStatus status_of_two_heads() {
+  DaemonStatus status;
+  for (const char* name : {"bow", "st\"ern\\\n"}) {
+    HeadStatus head;
+    head.name = name;
+    head.counts.pings.sent = 42;
+    head.counts.device = {{.name = "lines_resent", .value = 7}};
+    head.latency = std::chrono::milliseconds{20};
+    status.heads.push_back(head);
+  }
+  status.inputs.push_back({"pose stream udp 127.0.0.1:14600", "", {}, {}});
+  status.recording.emplace();
+  return status;
+}
+
+std::string text() {
+  return metrics_text({"demo.yaml", "cpu", "tank", {}}, status_of_two_heads(), std::chrono::seconds{3});
+}
+
+TEST(Metrics, HaveHelpTypeAndValuesOfEachNameTogether) {
+  const std::regex sample(
+      R"re((sonard_[a-z_]+)(\{[a-z_]+="([^"\\]|\\.)*"(,[a-z_]+="([^"\\]|\\.)*")*\})? [0-9.e+-]+)re");
+  std::set<std::string> begun;
+  std::string current;
+  std::istringstream lines(text());
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (line.starts_with("# HELP ")) {
+      current = line.substr(7, line.find(' ', 7) - 7);
+      EXPECT_TRUE(begun.insert(current).second) << current << " comes twice";
+    } else if (line.starts_with("# TYPE ")) {
+      EXPECT_TRUE(line == "# TYPE " + current + " counter" || line == "# TYPE " + current + " gauge") << line;
+    } else {
+      ASSERT_TRUE(std::regex_match(line, match, sample)) << line;
+      EXPECT_EQ(match[1], current) << line;
+      EXPECT_EQ(line.find("_total") != std::string::npos,
+                text().find("# TYPE " + current + " counter") != std::string::npos);
+    }
+  }
+  EXPECT_TRUE(text().ends_with("\n"));
+}
+
+TEST(Metrics, CountThePingsOfEachHead) {
+  EXPECT_NE(text().find("sonard_pings_total{head=\"bow\"} 42\n"), std::string::npos);
+}
+
+TEST(Metrics, EscapeNames) {
+  EXPECT_NE(text().find("sonard_pings_total{head=\"st\\\"ern\\\\\\n\"} 42\n"), std::string::npos);
+}
+
+TEST(Metrics, AreInSeconds) {
+  EXPECT_NE(text().find("sonard_ping_latency_seconds{head=\"bow\"} 0.02\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sonard::server
