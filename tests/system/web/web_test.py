@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What the page's server answers to monitors and viewers, on a machine of its own (a network namespace).
+
+    web_test.py --programs DIR [TestCase.test_name ...]
+
+Requests are written byte by byte, and viewers are those of another implementation (python3-websockets).
+"""
+
+import argparse
+import asyncio
+import ctypes
+import http.client
+import json
+import os
+import re
+import socket
+import struct
+import sys
+import tempfile
+import time
+import unittest
+
+import websockets
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
+from lab import CLONE_NEWNET, Namespace, Program  # noqa: E402
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+PROGRAMS = None  # folder of the programs under test
+START_S = 60
+PATIENCE_S = 30
+PORT = 8014
+
+CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+sampling: {{preset: fast}}
+web:
+  bind: 127.0.0.1:{port}
+  token: secret
+{more}
+heads:
+  - name: bow
+    type: gemini_720i
+    sonar_id: 513
+    network:
+      alternate_address: 127.0.0.2
+      netmask: 255.0.0.0
+      status: [127.0.0.1]
+"""
+
+
+def enter(namespace):
+    """From here on sockets of this process are made in the namespace."""
+    with open(f"/run/netns/{namespace.name}", "rb") as there:
+        if ctypes.CDLL(None, use_errno=True).setns(there.fileno(), CLONE_NEWNET) != 0:
+            raise OSError(ctypes.get_errno(), "setns")
+
+
+class Web(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.namespace = Namespace(f"sonard-web-{os.getpid()}")
+        enter(cls.namespace)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.namespace.remove()
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def start(self, more=""):
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(CONFIG.format(world=WORLD, port=PORT, more=more))
+        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", START_S)
+        return daemon
+
+    def client(self, seconds):
+        client = Program([os.path.join(PROGRAMS, "sonarview"), "--continuous", "60", "--range", "10", "--seconds",
+                          str(seconds), "--out", self.folder.name], "sonarview")
+        self.addCleanup(client.kill)
+        client.wait_for_line("[1-9][0-9]* pings", START_S)
+        return client
+
+    def ask(self, method, path, body=None, headers=None):
+        connection = http.client.HTTPConnection("127.0.0.1", PORT, timeout=PATIENCE_S)
+        self.addCleanup(connection.close)
+        connection.request(method, path, body, headers or {})
+        answer = connection.getresponse()
+        return answer.status, answer.read().decode(), answer
+
+    def test_monitors(self):
+        daemon = self.start()
+        self.assertRegex(daemon.output(), rf"page: http://127\.0\.0\.1:{PORT}\b")
+        status, text, _ = self.ask("GET", "/health")
+        self.assertEqual((status, json.loads(text)), (200, {"status": "ok"}))
+        status, text, answer = self.ask("GET", "/metrics")
+        self.assertEqual(status, 200)
+        self.assertEqual(answer.getheader("Content-Type"), "text/plain; version=0.0.4; charset=utf-8")
+        self.assertRegex(text, r'(?m)^sonard_pings_total\{head="bow"\} \d+$')
+        status, text, _ = self.ask("GET", "/api/status")
+        head = json.loads(text)["heads"][0]
+        self.assertEqual((head["name"], head["kind"], head["scanning"]), ("bow", "gemini_720i", False))
+        status, text, _ = self.ask("GET", "/api/world")
+        body = json.loads(text)["bodies"][0]
+        self.assertEqual(body["name"], "sphere")
+        # A sphere of 0.5 m at (3, 2, 0): its outline is as wide as that.
+        self.assertAlmostEqual(body["min_m"][0], 2.5, delta=0.01)
+        self.assertAlmostEqual(body["max_m"][1], 2.5, delta=0.01)
+        self.assertEqual(self.ask("HEAD", "/")[0], 200)
+        self.assertEqual(self.ask("GET", "/nothing")[0], 404)
+        self.assertEqual(self.ask("DELETE", "/api/status")[0], 405)
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def test_other_sites_are_refused(self):
+        self.start()
+        self.assertEqual(self.ask("GET", "/api/status", headers={"Host": "evil.example"})[0], 403)
+        self.assertEqual(self.ask("GET", "/api/status", headers={"Origin": "http://evil.example"})[0], 403)
+        own = {"Origin": f"http://127.0.0.1:{PORT}"}
+        self.assertEqual(self.ask("GET", "/api/status", headers=own)[0], 200)
+
+        async def viewer(origin):
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", origin=origin):
+                return "open"
+
+        self.assertEqual(asyncio.run(viewer(own["Origin"])), "open")
+        with self.assertRaises(websockets.InvalidStatusCode):
+            asyncio.run(viewer("http://evil.example"))
+
+    def test_recording_is_turned_off_and_on(self):
+        logs = os.path.join(self.folder.name, "logs")
+        daemon = self.start(f"recording: {{directory: {logs}, glf: false, pcapng: false}}")
+        self.client(600)
+
+        def mcaps():
+            return [name for name in os.listdir(logs) if name.endswith(".mcap")]
+
+        def until(what, holds):
+            end = time.monotonic() + PATIENCE_S
+            while not holds():
+                self.assertLess(time.monotonic(), end, f"waited for: {what}; {daemon.tail()}")
+                time.sleep(0.1)
+
+        until("a log", lambda: len(mcaps()) == 1)
+        self.assertEqual(self.ask("POST", "/api/recording", '{"on": false}')[:2], (200, '{"on":false}\n'))
+        until("the log to be closed",
+              lambda: json.loads(self.ask("GET", "/api/status")[1])["recording"]["logs_written"] == 1)
+        time.sleep(1.5)  # names of logs have a resolution of a second, and pings go on
+        self.assertEqual(len(mcaps()), 1)
+        self.assertEqual(self.ask("POST", "/api/recording", '{"on": true}')[0], 200)
+        until("a second log", lambda: len(mcaps()) == 2)
+        self.assertEqual(self.ask("POST", "/api/recording", "nonsense")[0], 400)
+        evil = {"Origin": "http://evil.example"}
+        self.assertEqual(self.ask("POST", "/api/recording", '{"on": false}', evil)[0], 403)
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def test_nothing_can_be_recorded_without_a_folder(self):
+        self.start()
+        self.assertEqual(self.ask("POST", "/api/recording", '{"on": true}')[0], 409)
+
+    def test_bad_requests_harm_nobody(self):
+        self.start()
+        for request in (b"\0" * 100, b"GET / HTTP/1.1\r\nHost: " + b"a" * 20000, b"GET\r\n\r\n",
+                        b"POST /api/recording HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 99999999\r\n\r\n"):
+            with socket.create_connection(("127.0.0.1", PORT), timeout=PATIENCE_S) as raw:
+                raw.sendall(request)
+                raw.shutdown(socket.SHUT_WR)
+                try:
+                    raw.recv(4096)
+                except ConnectionResetError:
+                    pass
+
+        async def talk():
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live") as live:
+                for text in ("nonsense", "[]", '{"type": 7}', '{"type": "want", "head": -1, "max_rows": 9}',
+                             '{"type": "want", "head": 99999999999999999999, "max_rows": 9}'):
+                    await live.send(text)
+                    self.assertEqual(json.loads(await asyncio.wait_for(live.recv(), PATIENCE_S))["type"], "error")
+                await live.send("x" * 5000)  # longer than any message: the connection ends
+                with self.assertRaises(websockets.ConnectionClosed):
+                    await asyncio.wait_for(live.recv(), PATIENCE_S)
+
+        asyncio.run(talk())
+        self.assertEqual(self.ask("GET", "/health")[0], 200)
+
+    def test_twenty_viewers_and_one_that_never_reads(self):
+        daemon = self.start()
+        client = self.client(600)
+
+        def memory_kib():
+            with open(f"/proc/{daemon.pid}/status", encoding="ascii") as file:
+                return int(re.search(r"VmRSS:\s+(\d+)", file.read())[1])
+
+        async def viewer(seen, index, seconds):
+            end = time.monotonic() + seconds
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_size=None) as live:
+                while time.monotonic() < end:
+                    await live.send('{"type": "want", "head": 0, "max_rows": 500}')
+                    frame = await asyncio.wait_for(live.recv(), PATIENCE_S)
+                    size = struct.unpack_from("<I", frame)[0]
+                    header = json.loads(frame[4:4 + size])
+                    self.assertEqual(len(frame), 4 + size + 4 * header["beams"] + header["beams"] * header["rows"])
+                    self.assertLessEqual(header["rows"], 500)
+                    seen[index] = header["number"]
+
+        async def deaf(seconds):
+            """Asks for a thousand pings and reads none of them."""
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_queue=1) as live:
+                for _ in range(1000):
+                    await live.send('{"type": "want", "head": 0, "max_rows": 4000}')
+                    await asyncio.sleep(seconds / 1000)
+
+        async def all_of_them(seen, seconds):
+            await asyncio.gather(deaf(seconds), *(viewer(seen, i, seconds) for i in range(20)))
+
+        seen = {}
+        asyncio.run(all_of_them(seen, 3))
+        before_kib = memory_kib()
+        asyncio.run(all_of_them(seen, 10))
+        self.assertEqual(len(seen), 20)
+        self.assertLess(memory_kib() - before_kib, 20_000)
+        client.terminate(PATIENCE_S)
+        self.assertRegex(client.output(), r"summary pings_complete=[1-9].* lines_missing=0 ")
+
+    def test_a_hidden_viewer_gets_nothing(self):
+        self.start()
+        self.client(600)
+
+        async def hidden():
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live") as live:
+                with self.assertRaises(asyncio.TimeoutError):
+                    await asyncio.wait_for(live.recv(), 2)
+
+        asyncio.run(hidden())
+
+
+def main():
+    global PROGRAMS
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--programs", required=True, help="folder of sonard and sonarview")
+    options, rest = parser.parse_known_args()
+    PROGRAMS = os.path.abspath(options.programs)
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()
