@@ -6,6 +6,8 @@ import { Picture } from "./picture.js";
 import { count, duration, milliseconds, number } from "./text.js";
 
 const OLD_PICTURE_MS = 3000;
+const STAGES = ["visibility", "binning", "multipath", "azimuth_pattern", "pulse", "receiver"];  // in the order of a ping
+const LEAST_STAGE_MS = 0.05;
 
 function button(text, title, press) {
   const element = make("button", { type: "button", text, title });
@@ -161,7 +163,8 @@ export class Head {
   }
 
   updateStages(stages) {
-    const all = Object.entries(stages).filter(([, spent]) => spent > 0);
+    const names = [...STAGES, ...Object.keys(stages).filter((name) => !STAGES.includes(name))];
+    const all = names.map((name) => [name, stages[name]]).filter(([, spent]) => spent >= LEAST_STAGE_MS);
     const total = all.reduce((sum, [, spent]) => sum + spent, 0);
     if (!total) {
       this.stages.replaceChildren();
@@ -169,7 +172,8 @@ export class Head {
     }
     const bar = make("div", { class: "stack" });
     const list = make("ul");
-    all.forEach(([name, spent], place) => {
+    all.forEach(([name, spent]) => {
+      const place = names.indexOf(name);
       const part = make("i", { data: { stage: place } });
       part.style.flexGrow = spent / total;
       bar.append(part);

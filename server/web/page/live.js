@@ -100,6 +100,7 @@ export class Live {
       this.owed.delete(ping.head);
       this.handlers.ping(ping);
     } catch (error) {
+      this.owed.clear();  // whose frame it was is not known; all are asked for again with the next status
       this.handlers.error(error.message);
     }
   }

@@ -7,6 +7,7 @@ import { number } from "./text.js";
 
 const MARGIN = { left: 40, right: 14, top: 12, bottom: 24 };
 const ARC_STEPS = 24;
+const GROUND_ALPHA = 0.42;  // names and fans must stand out from it
 const LEAST_STEP_PX = 60;  // between lines of the grid
 const THINNEST_RAD = 0.03;
 const COLOUR = {
@@ -60,12 +61,18 @@ export class WorldView {
     this.context.lineJoin = "round";
     this.labels = [];
     this.fit(width, height);
+    this.drawAxes(width, height);
+    this.context.save();
+    this.context.beginPath();
+    this.context.rect(MARGIN.left, 0, width - MARGIN.left, height - MARGIN.bottom);
+    this.context.clip();
     this.drawGround();
     this.drawGrid(width, height);
     this.drawBodies();
     this.drawHeads();
     this.drawVehicle();
     this.writeNames();
+    this.context.restore();
   }
 
   flat(point) {
@@ -112,7 +119,7 @@ export class WorldView {
       const { min, max } = this.world.extent_m;
       const [left, bottom] = this.pixel(min);
       const [right, top] = this.pixel(max);
-      this.context.globalAlpha = 0.75;
+      this.context.globalAlpha = GROUND_ALPHA;
       this.context.drawImage(this.picture, left, top, right - left, bottom - top);
       this.context.globalAlpha = 1;
     }
@@ -131,28 +138,34 @@ export class WorldView {
     context.stroke();
   }
 
-  drawGrid(width, height) {
-    const { context } = this;
+  /** Calls `each` with the coordinate and the pixel of every line of the grid, of one axis. */
+  everyLine(axis, width, height, each) {
     const step = ringStep((5 * LEAST_STEP_PX) / this.perMetre);
-    const decimals = step < 1 ? 1 : 0;
+    const from = axis === 0 ? (MARGIN.left - this.x) / this.perMetre : (this.y - height + MARGIN.bottom) / this.perMetre;
+    const to = axis === 0 ? (width - this.x) / this.perMetre : this.y / this.perMetre;
+    for (let line = Math.ceil(from / step); line * step <= to; ++line) {
+      const value = line * step;
+      each(number(value, step < 1 ? 1 : 0), axis === 0 ? this.x + value * this.perMetre : this.y - value * this.perMetre);
+    }
+  }
+
+  drawAxes(width, height) {
+    const { context } = this;
     context.fillStyle = COLOUR.axis;
-    context.textAlign = "center";
     context.textBaseline = "middle";
-    for (let right = Math.ceil((MARGIN.left - this.x) / this.perMetre / step) * step; this.x + right * this.perMetre < width - 8; right += step) {
-      const x = this.x + right * this.perMetre;
-      this.stroke([[x, 0], [x, height - MARGIN.bottom + 4]], COLOUR.grid);
-      context.fillText(number(right, decimals), x, height - 10);
-    }
+    context.textAlign = "center";
+    this.everyLine(0, width, height, (text, x) => x < width - 10 && context.fillText(text, x, height - 10));
     context.textAlign = "right";
-    for (let up = Math.ceil((this.y - height + MARGIN.bottom) / this.perMetre / step) * step; this.y - up * this.perMetre > 8; up += step) {
-      const y = this.y - up * this.perMetre;
-      this.stroke([[MARGIN.left - 4, y], [width, y]], COLOUR.grid);
-      context.fillText(number(up, decimals), MARGIN.left - 8, y);
-    }
+    this.everyLine(1, width, height, (text, y) => y > 8 && context.fillText(text, MARGIN.left - 7, y));
+  }
+
+  drawGrid(width, height) {
+    this.everyLine(0, width, height, (_, x) => this.stroke([[x, 0], [x, height]], COLOUR.grid));
+    this.everyLine(1, width, height, (_, y) => this.stroke([[0, y], [width, y]], COLOUR.grid));
     if (this.upright && typeof this.world.water_surface_z_m === "number") {
       const y = this.y - this.world.water_surface_z_m * this.perMetre;
-      this.stroke([[MARGIN.left, y], [width, y]], COLOUR.water);
-      this.labels.push({ text: "water surface", at: [width - 46, y - 8], weight: 0 });
+      this.stroke([[0, y], [width, y]], COLOUR.water);
+      this.labels.push({ text: "water surface", at: [width - 46, y - 8], weight: 1e5 });
     }
   }
 
@@ -169,7 +182,7 @@ export class WorldView {
       if (points.length > 1 && !ground) {
         this.stroke([...points, points[0]], body.moves ? COLOUR.moving : COLOUR.still);
       }
-      this.labels.push({ text: body.name, at: this.middleOf(points, pose), weight: body.moves ? 0 : extent, size: extent });
+      this.labels.push({ text: body.name, at: this.middleOf(points, pose), weight: body.moves ? 1e6 : ground ? -1 : extent, size: extent });
     }
   }
 
@@ -203,18 +216,18 @@ export class WorldView {
     const turn = Math.atan2(noseY - y, noseX - x);
     const corner = (angle, length) => [x + length * Math.cos(turn + angle), y + length * Math.sin(turn + angle)];
     this.stroke([corner(0, 9), corner(2.5, 8), corner(Math.PI, 3), corner(-2.5, 8)], COLOUR.halo, COLOUR.vehicle);
-    this.labels.push({ text: "vehicle", at: [x, y + 16], weight: -1 });
+    this.labels.push({ text: "vehicle", at: [x, y + 16], weight: Infinity });
   }
 
-  /** Names, those of small things first; one that would lie on another moves, or is left out. */
+  /** Names: the vehicle, what moves, then the largest first. One that would lie on another goes below its body, or is left out. */
   writeNames() {
     const { context } = this;
     const taken = [];
     context.textAlign = "center";
     context.textBaseline = "middle";
-    for (const { text, at, size } of this.labels.sort((a, b) => a.weight - b.weight)) {
+    for (const { text, at, size } of this.labels.sort((a, b) => b.weight - a.weight)) {
       const half = context.measureText(text).width / 2 + 4;
-      const free = [0, -14, 14 + (size > 20 ? 8 : 16), -28].map((up) => [this.held(at[0], half), this.heldUp(at[1] + up)]).find(([x, y]) =>
+      const free = [0, 16 + Math.min(40, size ?? 0)].map((up) => [this.held(at[0], half), this.heldUp(at[1] + up)]).find(([x, y]) =>
         taken.every((box) => Math.abs(box.x - x) >= box.half + half || Math.abs(box.y - y) >= 13));
       if (!free) {
         continue;

@@ -91,11 +91,18 @@ async function firstStrongEcho(page, index) {
     const pixels = (drawn.bottom - drawn.top) * (turns && !polar ? 0.5 : 1);  // of the full range
     const box = canvas.getBoundingClientRect();
     const scale = box.width / width;
-    return { bin_m, pixels, x: box.left + (first.x + 0.5) * scale, y: box.top + (first.y + 0.5) * scale };
+    // By the laws of the two pictures: ahead is up and port on the left; or bearing to the right, range upwards.
+    const drawnAt = polar
+      ? { share: (drawn.bottom + 1 - first.y) / pixels, bearing_deg: ((first.x - drawn.left) / (drawn.right - drawn.left) - 0.5) * (turns ? 360 : 120) }
+      : { share: Math.hypot(first.x - apex.x, first.y - apex.y) / pixels, bearing_deg: (Math.atan2(first.x - apex.x, apex.y - first.y) * 180) / Math.PI };
+    return { bin_m, pixels, drawnAt, x: box.left + (first.x + 0.5) * scale, y: box.top + (first.y + 0.5) * scale };
   });
 }
 
-/** Points at the first strong echo; what the page reads there is the target, within a bin and the pixel pointed at. */
+/**
+ * Points at the first strong echo of a head, a fan of 120 degrees or a turn: it is drawn where the target is, and what
+ * the page reads there is the target, within a bin and the pixel pointed at.
+ */
 export async function readsTarget(page, index, { range_m, bearing_deg }, full_range_m) {
   await head(page, index).locator(".stage").scrollIntoViewIfNeeded();
   const echo = await firstStrongEcho(page, index);
@@ -103,8 +110,11 @@ export async function readsTarget(page, index, { range_m, bearing_deg }, full_ra
   const readout = head(page, index).locator(".readout[data-range]");
   await readout.waitFor();
   const [range, bearing, value] = await Promise.all(["range", "bearing", "value"].map(async (name) => Number(await readout.getAttribute(`data-${name}`))));
-  const { bin_m } = echo;
+  const { bin_m, drawnAt } = echo;
   const pixel_m = full_range_m / echo.pixels;
+  const drawn_m = drawnAt.share * full_range_m;
+  assert.ok(Math.abs(drawn_m - range_m) <= bin_m + 2 * pixel_m, `drawn at ${drawn_m} m, the target is at ${range_m} m`);
+  assert.ok(Math.abs(drawnAt.bearing_deg - bearing_deg) <= 3, `drawn at ${drawnAt.bearing_deg} degrees, the target is at ${bearing_deg}`);
   assert.ok(Math.abs(range - range_m) <= bin_m + pixel_m, `range ${range} m, the target is at ${range_m} m, a bin has ${bin_m} m`);
   assert.ok(Math.abs(bearing - bearing_deg) <= 3, `bearing ${bearing}, the target is at ${bearing_deg}`);
   assert.ok(value > 0, "the echo has a value");

@@ -23,7 +23,7 @@ PAGE = os.path.join(SOURCE, "server", "web", "page")
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
 NPM = None  # folder with the scripts and their node_modules
-PATIENCE_S = 270
+PATIENCE_S = 380
 
 
 class Page(unittest.TestCase):
