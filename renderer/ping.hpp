@@ -73,6 +73,8 @@ struct PingStatistics {
   double pulse_s = 0.0;
   double receiver_s = 0.0;
   std::uint64_t samples = 0;
+  /// False: no surface is in range and fan. What surfaces mirror and water scatters may still be.
+  bool sees_surface = true;
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
   /// Echoes beyond what the sums of GpuBinner hold, taken as that: 2^14 times unit response or more.
   std::uint64_t saturated_samples = 0;

@@ -16,6 +16,7 @@ struct CachedEcho {
   std::uint64_t seed = 0;
   SonarMotion motion;
   std::uint64_t world_revision = 0;  ///< 0: there is none yet
+  bool sees_surface = true;          ///< PingStatistics::sees_surface
 
   /// Whether all that the mean echo depends on is what it was made of.
   bool fits(const PingRequest& wanted, const SonarMotion& motion_wanted, std::uint64_t revision) const;

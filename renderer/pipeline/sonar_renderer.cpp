@@ -208,6 +208,8 @@ struct SonarRenderer::Impl {
       }
     }
     image = std::move(echo.image);
+    statistics.sees_surface =
+        std::ranges::any_of(image.intensity, [](float echo_of_bin) { return echo_of_bin > 0; });
     Stopwatch watch;
     multipath.add_to(image.intensity, settings, motion.T_world_sonar, statistics.skipped);
     statistics.multipath_s = watch.lap();
@@ -381,6 +383,7 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   CachedEcho& cached = impl_->cached_echoes[stream];
   if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);
+    impl_->statistics.sees_surface = cached.sees_surface;
     return cached.image;
   }
   cached.world_revision = 0;  // until all of it is there
@@ -388,6 +391,7 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   cached.settings = request.settings;
   cached.seed = request.seed;
   cached.motion = motion;
+  cached.sees_surface = impl_->statistics.sees_surface;
   cached.world_revision = impl_->world_revision;
   return cached.image;
 }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@
 #include "server/devices/head_status.hpp"
 #include "server/devices/ping_dump.hpp"
 #include "server/devices/playback.hpp"
+#include "server/diagnosis/pose_stream.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/pose/pose_inputs.hpp"
@@ -125,6 +127,7 @@ class Daemon {
   void warm_up(const std::vector<HeadConfig>& heads) const;
   void start_inputs();
   void poses_changed();
+  void look_at_streams();
   std::optional<std::chrono::nanoseconds> pose_lead() const;
   void start_page(const DaemonConfig& config, const render::World& world);
   DaemonStatus status() const;
@@ -150,6 +153,8 @@ class Daemon {
   std::unique_ptr<WebServer> page_;                              // null when none is served
   std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
+  asio::steady_timer stream_timer_{io_};
+  std::set<std::string> told_;  // codes of findings on poses that were logged, by input
   std::filesystem::path recorded_into_;
   std::string ready_line_;
 };
@@ -180,7 +185,8 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
                                 playback_,
                                 recorder_.get(),
                                 config.vehicle_model,
-                                page_.get()};
+                                page_.get(),
+                                &world};
     try {
       heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
@@ -252,7 +258,8 @@ DaemonStatus Daemon::status() const {
   for (std::size_t i = 0; i < inputs_->size(); ++i) {
     const PoseSource& source = inputs_->source(i);
     status.inputs.push_back({source.description(), source.received(),
-                             inputs_->statistics(i).in_all(status.at), source.counters()});
+                             inputs_->statistics(i).in_all(status.at), source.counters(),
+                             look_at_stream(*inputs_, i, status.at)});
   }
   const TimePoint present = poses_.present(status.at);
   if (const std::optional<PoseEstimate> vehicle = poses_.at(present)) {
@@ -294,6 +301,23 @@ void Daemon::poses_changed() {
   }
 }
 
+// Every two seconds; each finding is logged once.
+void Daemon::look_at_streams() {
+  for (std::size_t i = 0; i < inputs_->size(); ++i) {
+    for (const Finding& finding : look_at_stream(*inputs_, i, clock_.now())) {
+      if (told_.insert(fmt::format("{} {}", i, finding.code)).second) {
+        spdlog::warn("{}: {}", inputs_->source(i).description(), finding.text);
+      }
+    }
+  }
+  stream_timer_.expires_after(std::chrono::seconds{2});
+  stream_timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      look_at_streams();
+    }
+  });
+}
+
 std::optional<std::chrono::nanoseconds> Daemon::pose_lead() const {
   std::optional<std::chrono::nanoseconds> most;
   for (const std::unique_ptr<Head>& head : heads_) {
@@ -313,6 +337,7 @@ int Daemon::run() {
       head->start();
     }
     spdlog::info(ready_line_);
+    look_at_streams();
     end_when_played();
   });
 
@@ -381,6 +406,7 @@ void Daemon::run_io() {
 
 void Daemon::stop_io() {
   playback_timer_.cancel();
+  stream_timer_.cancel();
   inputs_->stop();
   intake_.stop();
   for (const std::unique_ptr<Head>& head : heads_) {

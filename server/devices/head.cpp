@@ -11,6 +11,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "server/devices/device_kind.hpp"
+#include "server/devices/head_diagnosis.hpp"
 #include "server/devices/head_log.hpp"
 #include "server/devices/head_rendering.hpp"
 #include "server/devices/head_status.hpp"
@@ -55,6 +56,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   RecentClients clients;
   RecentPings recent_pings;
   std::optional<NewestPing> newest;
+  HeadDiagnosis diagnosis;
 
   std::deque<Event> events;  ///< that are not taken yet
   std::optional<TimePoint> wake_at;
@@ -125,7 +127,8 @@ Head::Impl::Impl(const HeadConfig& head_config, int stream_number, const HeadSer
       timer(services.io),
       report_timer(services.io),
       log(config.name),
-      recording(services.recorder, stream, services.clock) {}
+      recording(services.recorder, stream, services.clock),
+      diagnosis(config, services) {}
 
 // ---- Life
 
@@ -209,7 +212,8 @@ HeadStatus Head::Impl::status() const {
           .pings_per_s = recent_pings.per_s(now),
           .newest = newest,
           .spent = rendering.newest_statistics(),
-          .latency = recent_pings.latency()};
+          .latency = recent_pings.latency(),
+          .findings = diagnosis.findings()};
 }
 
 // ---- Events
@@ -317,6 +321,10 @@ void Head::Impl::note_water(TimePoint now) {
   const bool out = T_world_mount && T_world_mount->position_m.z > *services.water_surface_z_m;
   if (out != out_of_water) {
     out_of_water = out;
+    // In the air no pings are made, whose pictures would tell.
+    NewestPing here = newest.value_or(NewestPing{});
+    here.T_world_mount = T_world_mount;
+    diagnosis.look(now, services.poses.present(now), here, false);
     step(now, WaterChanged{out});
   }
 }
@@ -384,12 +392,14 @@ bool Head::Impl::render(const PingJob& job) {
   rendering.submit(
       {job.record.value_or(job.number), pose_time, job.transmit_us, T_world_sonar, T_world_at_end,
        std::move(settings)},
-      [weak = weak_from_this(), number = job.number](RenderResult result) {
+      [weak = weak_from_this(), number = job.number, pose_time](RenderResult result) {
         const auto self = weak.lock();
         if (!self) {
           return;
         }
         if (self->rendering.take(result)) {
+          self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
+                               result.statistics.sees_surface);
           self->happen(PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16)}});
         } else {
           self->happen(PingNotRendered{number});

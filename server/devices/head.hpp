@@ -15,6 +15,10 @@ namespace boost::asio {
 class io_context;
 }
 
+namespace sonard::render {
+struct World;
+}
+
 namespace sonard::server {
 
 class ConnectedDevice;
@@ -38,6 +42,7 @@ struct HeadServices {
   Recorder* recorder = nullptr;             ///< null: nothing is recorded
   std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
   PingViewer* viewer = nullptr;             ///< null: nobody can watch
+  const render::World* world = nullptr;     ///< where the head looks around; null: it does not
 };
 
 /// Passes events to Device::step() and carries out its actions, for every kind of device alike. While the

@@ -14,6 +14,7 @@
 #include "renderer/pose.hpp"
 #include "server/clock/clock.hpp"
 #include "server/devices/head_log.hpp"
+#include "server/diagnosis/finding.hpp"
 
 namespace sonard::server {
 
@@ -47,6 +48,7 @@ struct HeadStatus {
   render::PingStatistics spent;  ///< on the newest ping that was rendered
   /// From its transmission to when the newest ping went out.
   std::optional<std::chrono::nanoseconds> latency;
+  std::vector<Finding> findings;  ///< what looks wrong about its place in the world
 };
 
 }  // namespace sonard::server

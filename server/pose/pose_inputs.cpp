@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pose/pose_inputs.hpp"
 
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +9,12 @@
 #include <boost/asio/io_context.hpp>
 
 namespace sonard::server {
+namespace {
+
+constexpr std::chrono::seconds at_once{2};
+constexpr std::size_t most_publishers = 8;  // that are told apart
+
+}  // namespace
 
 PoseInputs::PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock,
                        PoseSink sink, PoseHold hold, std::chrono::milliseconds report_period)
@@ -15,13 +22,16 @@ PoseInputs::PoseInputs(boost::asio::io_context& io, const PoseConfig& config, co
   const auto measured_sink = [&] {
     PoseStatistics& statistics =
         *statistics_.emplace_back(std::make_unique<PoseStatistics>(config.extrapolation_limit));
-    return [&statistics, sink](const pose::PoseSample& sample, TimePoint arrival) {
+    return [this, &statistics, sink, index = statistics_.size() - 1](const pose::PoseSample& sample,
+                                                                     TimePoint arrival) {
       statistics.observe(sample, arrival);
+      note_publisher(index, arrival);
       sink(sample, arrival);
     };
   };
   sources_ = make_pose_sources(io, config, clock, measured_sink, hold);
   told_silent_.resize(sources_.size());
+  publishers_.resize(sources_.size());
 }
 
 void PoseInputs::start() {
@@ -46,6 +56,32 @@ void PoseInputs::stop() {
     spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}{}", name, done.samples,
                  done.malformed, done.bad_value, done.refused, sources_[i]->details());
   }
+}
+
+void PoseInputs::note_publisher(std::size_t index, TimePoint now) {
+  std::string who = index < sources_.size() ? sources_[index]->received() : "";
+  constexpr std::string_view from = "from ";
+  if (!who.starts_with(from)) {
+    return;
+  }
+  LastHeard& heard = publishers_[index];
+  heard.insert_or_assign(who.substr(from.size()), now);
+  if (heard.size() > most_publishers) {
+    std::erase_if(heard, [now](const auto& publisher) { return now - publisher.second > at_once; });
+  }
+  if (heard.size() > most_publishers) {
+    heard.erase(heard.begin());
+  }
+}
+
+std::vector<std::string> PoseInputs::publishers(std::size_t index, TimePoint now) const {
+  std::vector<std::string> recent;
+  for (const auto& [publisher, last] : publishers_[index]) {
+    if (now - last <= at_once) {
+      recent.push_back(publisher);
+    }
+  }
+  return recent;
 }
 
 void PoseInputs::report_every_period() {

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <boost/asio/steady_timer.hpp>
@@ -31,8 +33,13 @@ class PoseInputs {
   std::size_t size() const { return sources_.size(); }
   const PoseSource& source(std::size_t index) const { return *sources_[index]; }
   const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
+  /// Who has sent poses by an input within the last two seconds; empty where publishers are not told apart.
+  std::vector<std::string> publishers(std::size_t index, TimePoint now) const;
 
  private:
+  using LastHeard = std::map<std::string, TimePoint>;
+
+  void note_publisher(std::size_t index, TimePoint now);
   void report_every_period();
   void report();
 
@@ -40,7 +47,8 @@ class PoseInputs {
   std::chrono::milliseconds report_period_;
   std::vector<std::unique_ptr<PoseStatistics>> statistics_;  // by source
   std::vector<std::unique_ptr<PoseSource>> sources_;
-  std::vector<bool> told_silent_;  // by source
+  std::vector<LastHeard> publishers_;  // by source: when each gave a pose
+  std::vector<bool> told_silent_;      // by source
   bool running_ = false;
   boost::asio::steady_timer report_timer_;
 };

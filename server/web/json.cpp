@@ -22,6 +22,14 @@ json where_json(const std::optional<render::Pose>& pose) {
   return pose ? placed_json(*pose) : json(nullptr);
 }
 
+json findings_json(const std::vector<Finding>& findings) {
+  json list = json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"code", finding.code}, {"text", finding.text}});
+  }
+  return list;
+}
+
 json stages_json(const render::PingStatistics& spent) {
   return {{"visibility", 1e3 * spent.visibility_s}, {"binning", 1e3 * spent.binning_s},
           {"multipath", 1e3 * spent.multipath_s},   {"azimuth_pattern", 1e3 * spent.azimuth_pattern_s},
@@ -96,7 +104,7 @@ json head_json(const HeadStatus& status, TimePoint at) {
             {"stages_ms", stages_json(status.spent)},
             {"skipped", skipped_json(status.counts.rendering.skipped)},
             {"counters", counters_json(status.counts)},
-            {"findings", json::array()}};
+            {"findings", findings_json(status.findings)}};
   if (status.counts.rendering.pings_rendered > 0) {
     head["render_ms"] = render_ms(status.spent);
   }
@@ -120,7 +128,7 @@ json input_json(const PoseInputStatus& status) {
           {"clock_restarts", status.poses.clock_restarts},
           {"bad_messages", status.counters.malformed + status.counters.bad_value},
           {"refused", status.counters.refused},
-          {"findings", json::array()}};
+          {"findings", findings_json(status.findings)}};
 }
 
 json poses_json(const DaemonStatus& status) {

@@ -10,6 +10,7 @@
 #include "renderer/pose.hpp"
 #include "server/clock/clock.hpp"
 #include "server/devices/head_status.hpp"
+#include "server/diagnosis/finding.hpp"
 #include "server/pose/pose_source.hpp"
 #include "server/pose/pose_statistics.hpp"
 #include "server/pose/posed_body.hpp"
@@ -30,6 +31,7 @@ struct PoseInputStatus {
   std::string publisher;  ///< PoseSource::received()
   PoseStatistics::Summary poses;
   PoseSourceCounters counters;
+  std::vector<Finding> findings;  ///< what looks wrong about it
 };
 
 struct RecordingStatus {

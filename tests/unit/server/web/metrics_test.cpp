@@ -23,7 +23,7 @@ DaemonStatus status_of_two_heads() {
     head.latency = std::chrono::milliseconds{20};
     status.heads.push_back(head);
   }
-  status.inputs.push_back({"pose stream udp 127.0.0.1:14600", "", {}, {}});
+  status.inputs.emplace_back().input = "pose stream udp 127.0.0.1:14600";
   status.recording.emplace();
   return status;
 }

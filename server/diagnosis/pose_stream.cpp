@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/diagnosis/pose_stream.hpp"
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr std::uint64_t enough_poses = 20;  // to judge a clock by
+
+struct Unit {
+  std::string_view name;
+  double time_rate;  ///< of stamps in this unit that are taken for nanoseconds
+};
+constexpr std::array units{Unit{"microseconds", 1e-3}, Unit{"milliseconds", 1e-6}, Unit{"seconds", 1e-9}};
+
+}  // namespace
+
+std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now) {
+  std::vector<Finding> findings;
+  const PoseStatistics::Summary summary = inputs.statistics(index).in_all(now);
+  const std::vector<std::string> publishers = inputs.publishers(index, now);
+  if (publishers.size() > 1) {
+    findings.push_back({"several_publishers", fmt::format("{} publishers send poses at once: {}.",
+                                                          publishers.size(), fmt::join(publishers, ", "))});
+  } else if (summary.clock_restarts > 0) {
+    findings.push_back({"clock_backwards",
+                        fmt::format("The clock of the publisher went back {} times: a simulation that was "
+                                    "started anew, or stamps that are not those of one clock.",
+                                    summary.clock_restarts)});
+  }
+  if (summary.poses >= enough_poses && summary.time_rate) {
+    for (const Unit& unit : units) {
+      if (*summary.time_rate > 0.2 * unit.time_rate && *summary.time_rate < 5 * unit.time_rate) {
+        findings.push_back(
+            {"stamps_unit",
+             fmt::format("Stamps of poses look like {}: they are to be in nanoseconds.", unit.name)});
+      }
+    }
+  }
+  return findings;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// What looks wrong about the poses of one input.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "server/diagnosis/finding.hpp"
+#include "server/pose/pose_inputs.hpp"
+
+namespace sonard::server {
+
+/// Stamps of another unit, a clock that was set back, several publishers at once. Belongs to the I/O thread.
+/// @param index of the input
+std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now);
+
+}  // namespace sonard::server

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/diagnosis/sight.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+namespace sonard::server {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double thousand = 1000.0;
+
+struct Box {
+  glm::dvec3 min_m{std::numeric_limits<double>::infinity()};
+  glm::dvec3 max_m{-std::numeric_limits<double>::infinity()};
+
+  void include(const glm::dvec3& p) {
+    min_m = glm::min(min_m, p);
+    max_m = glm::max(max_m, p);
+  }
+  bool contains(const glm::dvec3& p, double margin_m = 0.0) const {
+    return glm::all(glm::lessThanEqual(min_m - margin_m, p)) &&
+           glm::all(glm::lessThanEqual(p, max_m + margin_m));
+  }
+  double distance_m(const glm::dvec3& p) const { return glm::length(p - glm::clamp(p, min_m, max_m)); }
+};
+
+/// Calls `take` with the corners of each triangle of a body, in the body's frame.
+template <class Take>
+void each_triangle(const render::Body& body, Take take) {
+  for (const render::BodyPart& part : body.parts) {
+    const render::TriangleMesh& mesh = *part.mesh;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      take(std::array<glm::dvec3, 3>{part.T_body_part * glm::dvec3(mesh.positions[mesh.indices[i]]),
+                                     part.T_body_part * glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
+                                     part.T_body_part * glm::dvec3(mesh.positions[mesh.indices[i + 2]])});
+    }
+  }
+}
+
+Box box_of(const render::Body& body) {
+  Box box;
+  for (const render::BodyPart& part : body.parts) {
+    for (const glm::vec3& position : part.mesh->positions) {
+      box.include(part.T_body_part * glm::dvec3(position));
+    }
+  }
+  return box;
+}
+
+glm::dvec3 nearest_on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 along = b - a;
+  const double length2 = glm::dot(along, along);
+  const double share = length2 > 0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
+  return a + share * along;
+}
+
+/// The foot of the perpendicular where it is within the triangle, else the nearest point of an edge.
+glm::dvec3 nearest_on_triangle(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) {
+  const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+  const double area2 = glm::dot(normal, normal);
+  if (area2 > 0) {
+    const glm::dvec3 foot = p - glm::dot(p - t[0], normal) / area2 * normal;
+    bool within = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      within = within && glm::dot(glm::cross(t[(i + 1) % 3] - t[i], foot - t[i]), normal) >= 0;
+    }
+    if (within) {
+      return foot;
+    }
+  }
+  glm::dvec3 nearest = nearest_on_segment(p, t[0], t[1]);
+  for (const glm::dvec3& other : {nearest_on_segment(p, t[1], t[2]), nearest_on_segment(p, t[2], t[0])}) {
+    if (glm::length(p - other) < glm::length(p - nearest)) {
+      nearest = other;
+    }
+  }
+  return nearest;
+}
+
+/// Whether a ray meets a triangle (Moeller and Trumbore 1997).
+bool meets(const glm::dvec3& from, const glm::dvec3& direction, const std::array<glm::dvec3, 3>& t) {
+  const glm::dvec3 a = t[1] - t[0];
+  const glm::dvec3 b = t[2] - t[0];
+  const glm::dvec3 p = glm::cross(direction, b);
+  const double determinant = glm::dot(a, p);
+  if (determinant == 0.0) {
+    return false;
+  }
+  const glm::dvec3 s = from - t[0];
+  const double u = glm::dot(s, p) / determinant;
+  const glm::dvec3 q = glm::cross(s, a);
+  const double v = glm::dot(direction, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(b, q) / determinant > 0;
+}
+
+/// Inside a closed mesh rays leave through an odd number of triangles. Three odd directions, so that an open
+/// mesh, as a bed or a tank without a lid, is not taken for a closed one.
+bool is_inside(const render::Body& body, const glm::dvec3& p_body) {
+  const std::array<glm::dvec3, 3> directions{
+      glm::dvec3(0.137, 0.071, 0.988), glm::dvec3(-0.113, 0.989, 0.093), glm::dvec3(0.991, -0.127, -0.043)};
+  std::array<int, 3> crossings{};
+  each_triangle(body, [&](const std::array<glm::dvec3, 3>& triangle) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      crossings[i] += meets(p_body, directions[i], triangle) ? 1 : 0;
+    }
+  });
+  return std::ranges::all_of(crossings, [](int count) { return count % 2 == 1; });
+}
+
+/// A body where it is now, seen from the sonar.
+struct Neighbour {
+  const render::Body* body = nullptr;
+  render::Pose T_world_body;
+  Box box;                  ///< in its own frame
+  glm::dvec3 sonar_m{0.0};  ///< likewise
+};
+
+class LookAround {
+ public:
+  LookAround(const render::World& world, const std::vector<PosedBody>& moved, const Sight& sight)
+      : world_(world), sight_(sight) {
+    for (const render::Body& body : world.bodies) {
+      if (body.name == sight.vehicle_model && sight.hides_vehicle) {
+        continue;
+      }
+      Neighbour neighbour{&body, body.T_world_body, box_of(body), {}};
+      for (const PosedBody& posed : moved) {
+        if (posed.name == body.name) {
+          neighbour.T_world_body = posed.T_world_body;
+        }
+      }
+      neighbour.sonar_m = render::inverse(neighbour.T_world_body) * sight.T_world_sonar.position_m;
+      neighbours_.push_back(neighbour);
+    }
+  }
+
+  std::vector<Finding> findings() {
+    note_surface();
+    note_upside_down();
+    note_inside();
+    if (findings_.empty() && !sight_.sees_surface) {
+      note_nothing_near();
+    }
+    return std::move(findings_);
+  }
+
+ private:
+  void add(std::string code, std::string text) { findings_.push_back({std::move(code), std::move(text)}); }
+
+  /// Whether a place is within the box of any body, or below the surface and right above one.
+  bool is_in_the_world(const glm::dvec3& p) const {
+    return std::ranges::any_of(neighbours_, [&](const Neighbour& neighbour) {
+      const glm::dvec3 p_body = render::inverse(neighbour.T_world_body) * p;
+      return neighbour.box.contains(p_body, sight_.range_m);
+    });
+  }
+
+  bool is_a_thousand_times_off() const {
+    const glm::dvec3& p = sight_.T_world_sonar.position_m;
+    return glm::length(p) > thousand && !is_in_the_world(p) && is_in_the_world(p / thousand);
+  }
+
+  void note_surface() {
+    const glm::dvec3& p = sight_.T_world_sonar.position_m;
+    if (!world_.water_surface_z_m || p.z <= *world_.water_surface_z_m) {
+      return;
+    }
+    const double above_m = p.z - *world_.water_surface_z_m;
+    const bool turned = is_in_the_world({p.x, p.y, -p.z}) && -p.z <= *world_.water_surface_z_m;
+    add("above_surface", fmt::format("The sonar is {:.1f} m above the water surface, in the air{}.", above_m,
+                                     is_a_thousand_times_off() ? " (are positions in millimetres?)"
+                                     : turned                  ? " (is z down?)"
+                                                               : ""));
+  }
+
+  /// A quaternion that comes with w first, read as x, y, z, w.
+  void note_upside_down() {
+    const glm::dquat& q = sight_.T_world_vehicle.orientation;
+    const auto up_of = [](const glm::dquat& turn) { return (turn * glm::dvec3(0, 0, 1)).z; };
+    if (up_of(q) < 0.0 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.9) {
+      add("quaternion_w_first",
+          "The vehicle lies upside down, and would be upright if its quaternion came with w first: messages "
+          "want x, y, z, w.");
+    }
+  }
+
+  void note_inside() {
+    for (const Neighbour& neighbour : neighbours_) {
+      const render::Body& body = *neighbour.body;
+      const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
+      const bool is_vehicle = body.name == sight_.vehicle_model;
+      // One may be inside of a tank or a harbour, and see it.
+      const bool holds_a_sonar = sight_.sees_surface && !is_vehicle && glm::length(size) > 5.0;
+      if (!holds_a_sonar && neighbour.box.contains(neighbour.sonar_m) && is_inside(body, neighbour.sonar_m)) {
+        add("inside_body",
+            fmt::format("The sonar is inside of the body '{}'{}.", body.name,
+                        is_vehicle ? ", its own vehicle (hides_vehicle: true leaves it out)" : ""));
+      }
+    }
+  }
+
+  void note_nothing_near() {
+    const Neighbour* nearest = nullptr;
+    glm::dvec3 point_world{0.0};
+    double distance_m = std::numeric_limits<double>::infinity();
+    std::ranges::sort(neighbours_, {},
+                      [](const Neighbour& neighbour) { return neighbour.box.distance_m(neighbour.sonar_m); });
+    for (const Neighbour& neighbour : neighbours_) {
+      if (neighbour.box.distance_m(neighbour.sonar_m) > distance_m) {
+        break;
+      }
+      each_triangle(*neighbour.body, [&](const std::array<glm::dvec3, 3>& triangle) {
+        const glm::dvec3 point = nearest_on_triangle(neighbour.sonar_m, triangle);
+        const double away_m = glm::length(point - neighbour.sonar_m);
+        if (away_m < distance_m) {
+          distance_m = away_m;
+          nearest = &neighbour;
+          point_world = neighbour.T_world_body * point;
+        }
+      });
+    }
+    if (nearest == nullptr) {
+      add("empty_world", "The world has no body that could send an echo.");
+    } else if (distance_m > sight_.range_m) {
+      note_far(*nearest, distance_m);
+    } else {
+      note_beside(*nearest, distance_m, point_world);
+    }
+  }
+
+  void note_far(const Neighbour& nearest, double distance_m) {
+    const glm::dvec3& p = sight_.T_world_sonar.position_m;
+    const std::string text =
+        fmt::format("Nothing is within {:.4g} m; the nearest body, '{}', is {:.4g} m away", sight_.range_m,
+                    nearest.body->name, distance_m);
+    if (is_a_thousand_times_off()) {
+      add("millimetres", text +
+                             ". A thousandth of the position would be in the world: positions look like "
+                             "millimetres.");
+    } else if (is_in_the_world({p.x, p.y, -p.z})) {
+      add("z_down", text + ". With z the other way it would be in the world (is z down?).");
+    } else {
+      add("nothing_near", text + ".");
+    }
+  }
+
+  void note_beside(const Neighbour& nearest, double distance_m, const glm::dvec3& point_world) {
+    const glm::dvec3 p = render::inverse(sight_.T_world_sonar) * point_world;
+    const double bearing_rad = std::atan2(-p.y, p.x);  // to starboard
+    const double elevation_rad = std::atan2(p.z, std::hypot(p.x, p.y));
+    add("nothing_in_fan",
+        fmt::format(
+            "Nothing is in the fan; the nearest body, '{}', is {:.4g} m away, {:.0f} degrees to {} and "
+            "{:.0f} degrees {} the axis of the sonar.",
+            nearest.body->name, distance_m, std::abs(bearing_rad) / degree,
+            bearing_rad < 0 ? "port" : "starboard", std::abs(elevation_rad) / degree,
+            elevation_rad < 0 ? "below" : "above"));
+  }
+
+  const render::World& world_;
+  const Sight& sight_;
+  std::vector<Neighbour> neighbours_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+std::vector<Finding> look_around(const render::World& world, const std::vector<PosedBody>& moved,
+                                 const Sight& sight) {
+  return LookAround(world, moved, sight).findings();
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a picture is black, in a world of one cube whose distances are worked out by hand.
+#include "server/diagnosis/sight.hpp"
+
+#include <memory>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace sonard::server {
+namespace {
+
+/// A closed cube of 2 m.
+std::shared_ptr<const render::TriangleMesh> cube() {
+  auto mesh = std::make_shared<render::TriangleMesh>();
+  for (int i = 0; i < 8; ++i) {
+    mesh->positions.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  }
+  mesh->indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                   2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  return mesh;
+}
+
+/// The cube's middle at (10, 0, -20), under water whose surface is at 0.
+render::World pier() {
+  render::World world;
+  world.bodies = {{"pier", {{10, 0, -20}, {1, 0, 0, 0}}, {{cube(), {}, {}, nullptr}}}};
+  world.water_surface_z_m = 0.0;
+  return world;
+}
+
+Sight at(const glm::dvec3& position_m, const glm::dquat& orientation = {1, 0, 0, 0}) {
+  Sight sight;
+  sight.T_world_vehicle = sight.T_world_sonar = {position_m, orientation};
+  sight.azimuth_rad = 2.0;
+  sight.elevation_rad = 0.4;
+  sight.range_m = 5.0;
+  return sight;
+}
+
+std::vector<Finding> only(const std::string& code, const std::string& text) {
+  return {{code, text}};
+}
+
+TEST(LookAround, FindsNothingWrongWhereASurfaceIsSeen) {
+  Sight sight = at({7, 0, -20});
+  sight.sees_surface = true;
+  EXPECT_TRUE(look_around(pier(), {}, sight).empty());
+}
+
+TEST(LookAround, NamesTheNearestBodyAndItsDistance) {
+  // From (2, 0, -20) to the face at x = 9.
+  EXPECT_EQ(look_around(pier(), {}, at({2, 0, -20})),
+            only("nothing_near", "Nothing is within 5 m; the nearest body, 'pier', is 7 m away."));
+}
+
+TEST(LookAround, TakesBodiesWhereTheyAreNow) {
+  // The face at x = 99.
+  EXPECT_EQ(look_around(pier(), {{"pier", {{100, 0, -20}, {1, 0, 0, 0}}}}, at({2, 0, -20})),
+            only("nothing_near", "Nothing is within 5 m; the nearest body, 'pier', is 97 m away."));
+}
+
+TEST(LookAround, SaysWhichWayTheNearestBodyIs) {
+  // 3 m from the face at x = 9, and the sonar looks to +y, so that it is on the right: starboard.
+  const double half = std::numbers::pi / 4;
+  EXPECT_EQ(
+      look_around(pier(), {}, at({6, 0, -20}, {std::cos(half), 0, 0, std::sin(half)})),
+      only("nothing_in_fan",
+           "Nothing is in the fan; the nearest body, 'pier', is 3 m away, 90 degrees to starboard and 0 "
+           "degrees above the axis of the sonar."));
+}
+
+TEST(LookAround, SuspectsThatZIsDown) {
+  EXPECT_EQ(look_around(pier(), {}, at({7, 0, 20})),
+            only("above_surface", "The sonar is 20.0 m above the water surface, in the air (is z down?)."));
+  render::World no_surface = pier();
+  no_surface.water_surface_z_m.reset();
+  const auto found = look_around(no_surface, {}, at({7, 0, 20}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "z_down");
+}
+
+TEST(LookAround, SuspectsMillimetres) {
+  const auto found = look_around(pier(), {}, at({7000, 0, -20000}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "millimetres");
+  EXPECT_NE(found[0].text.find("positions look like millimetres"), std::string::npos);
+}
+
+TEST(LookAround, SuspectsAQuaternionWithWFirst) {
+  // No turn, (w, x, y, z) = (1, 0, 0, 0), sent in this order and read as x, y, z, w: half a turn about x.
+  Sight sight = at({7, 0, -20}, {0, 1, 0, 0});
+  sight.sees_surface = true;
+  const auto found = look_around(pier(), {}, sight);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "quaternion_w_first");
+}
+
+TEST(LookAround, SaysThatTheSonarIsInsideOfABody) {
+  Sight sight = at({10.2, 0.1, -20.3});
+  sight.sees_surface = true;  // the inner side
+  EXPECT_EQ(look_around(pier(), {}, sight), only("inside_body", "The sonar is inside of the body 'pier'."));
+  sight.vehicle_model = "pier";
+  EXPECT_EQ(look_around(pier(), {}, sight)[0].text,
+            "The sonar is inside of the body 'pier', its own vehicle (hides_vehicle: true leaves it out).");
+  sight.hides_vehicle = true;
+  EXPECT_TRUE(look_around(pier(), {}, sight).empty());
+}
+
+TEST(LookAround, SaysThatAWorldIsEmpty) {
+  EXPECT_EQ(look_around({}, {}, at({0, 0, 0})),
+            only("empty_world", "The world has no body that could send an echo."));
+}
+
+}  // namespace
+}  // namespace sonard::server
