@@ -239,8 +239,20 @@ double BeamPattern::share(int beam, int fine_beam) const {
   return static_cast<double>(in_band) + static_cast<double>(band.leak);
 }
 
-void BeamPattern::add_lobe(int fine_beam, float echo, std::vector<float>& beams) const {
-  for (std::size_t b = 0; b < bands_.size(); ++b) {
+BeamPattern::Beams BeamPattern::receivers_of(int first_fine_beam, int last_fine_beam) const {
+  Beams beams;
+  for (int b = 0; b < static_cast<int>(bands_.size()); ++b) {
+    const Band& band = bands_[static_cast<std::size_t>(b)];
+    if (first_fine_beam < band.first + band.count && last_fine_beam >= band.first) {
+      beams = {beams.end == 0 ? b : beams.begin, b + 1};
+    }
+  }
+  return beams;
+}
+
+void BeamPattern::add_lobe(int fine_beam, float echo, const Beams& of, std::vector<float>& beams) const {
+  for (int beam = of.begin; beam < of.end; ++beam) {
+    const auto b = static_cast<std::size_t>(beam);
     const int at = fine_beam - bands_[b].first;
     if (at >= 0 && at < bands_[b].count) {
       beams[b] += echo * weights_[bands_[b].weights + static_cast<std::size_t>(at)];

@@ -41,9 +41,15 @@ class BeamPattern {
   int fine_beams() const { return static_cast<int>(inverse_width_.size()); }
   /// Share of the echo of fine beam f that beam b receives.
   double share(int beam, int fine_beam) const;
-  /// Adds to every beam what its main lobe, and the side lobes beside it, receive of an echo in a fine beam.
+  /// Beams, from the first to before the last.
+  struct Beams {
+    int begin = 0, end = 0;
+  };
+  /// The beams that receive some of these fine beams in their main lobe or the side lobes beside it.
+  Beams receivers_of(int first_fine_beam, int last_fine_beam) const;
+  /// Adds to each of these beams what those lobes receive of an echo in a fine beam.
   /// @param beams of as many numbers as there are beams
-  void add_lobe(int fine_beam, float echo, std::vector<float>& beams) const;
+  void add_lobe(int fine_beam, float echo, const Beams& of, std::vector<float>& beams) const;
   /// The largest sum, of any beam, over what it receives of each fine beam more or less than it would with
   /// ideal edges: no bin changes by more than this times the strongest.
   double change() const { return change_; }

@@ -50,8 +50,25 @@ FieldReader::FieldReader(const BeamFilter& filter, const PulseCorrelation& along
 }
 
 Phasors FieldReader::line(int bin) {
+  if (const std::optional<Phasors> one = unjoined(bin)) {
+    return *one;
+  }
+  along_range_.apply(real_, beams_, joined_.real());
+  along_range_.apply(imaginary_, beams_, joined_.imaginary());
+  return {joined_.real(), joined_.imaginary()};
+}
+
+const float* FieldReader::real_line(int bin) {
+  if (const std::optional<Phasors> one = unjoined(bin)) {
+    return one->real;
+  }
+  along_range_.apply(real_, beams_, joined_.real());
+  return joined_.real();
+}
+
+std::optional<Phasors> FieldReader::unjoined(int bin) {
   if (field_.beam.real != nullptr) {
-    return {field_.beam.real + bin, field_.beam.imaginary + bin};
+    return Phasors{field_.beam.real + bin, field_.beam.imaginary + bin};
   }
   const int reach = along_range_.reach();
   if (reach == 0) {
@@ -67,9 +84,7 @@ Phasors FieldReader::line(int bin) {
     real_[static_cast<std::size_t>(j + reach)] = one.real;
     imaginary_[static_cast<std::size_t>(j + reach)] = one.imaginary;
   }
-  along_range_.apply(real_, beams_, joined_.real());
-  along_range_.apply(imaginary_, beams_, joined_.imaginary());
-  return {joined_.real(), joined_.imaginary()};
+  return std::nullopt;
 }
 
 void FieldReader::evolve(int bin) {

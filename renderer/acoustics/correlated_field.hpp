@@ -3,6 +3,7 @@
 // pulse.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "renderer/acoustics/beam_correlation.hpp"
@@ -41,12 +42,16 @@ class FieldReader {
 
   /// The field in one line; valid until the next call.
   Phasors line(int bin);
+  /// Its real part alone, for half of the work.
+  const float* real_line(int bin);
   /// Brings a kept field up to date, from -reach of the pulse to as much beyond the last
   /// line.
   void evolve(int bin);
 
  private:
   bool skips(SkipRule rule);
+  /// A line that is not joined of several; nullopt: it is, of those that `real_` and `imaginary_` now hold.
+  std::optional<Phasors> unjoined(int bin);
   /// A line of the field correlated across beams alone.
   Phasors row(int bin);
   Phasors draw(int bin, ComplexRow& row);

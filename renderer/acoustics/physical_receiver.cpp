@@ -175,7 +175,7 @@ class PhysicalBins {
       return echo;
     }
     root_.set(scatterers);
-    root_.apply(echo, texture_.line(cell).real, beams_, textured_.data());
+    root_.apply(echo, texture_.real_line(cell), beams_, textured_.data());
     return textured_.data();
   }
 

@@ -71,13 +71,15 @@ SonarSettings PointSpread::sampled(const SonarSettings& settings) {
 
 void PointSpread::form_beams(const EchoImage& fine, const SonarSettings& settings, EchoImage& beams,
                              WorkerPool& workers, const SkipSwitches& skip, SkipCounts& skipped) const {
-  pattern_->apply(fine, beams, workers, skip, skipped);
-  // What comes to less than the noise is not looked at.
+  // What comes to less than the noise is not looked at. Before the pattern: the beams, which are wanted next,
+  // stay in the caches.
   const PhysicalModel& model = settings.physical;
   const double faintest = model.noise ? decibels_to_power(model.noise_level_db) : 0.0;
+  const std::vector<PointEcho> points =
+      find_points(fine, mixing_reach(settings), static_cast<float>(faintest), workers);
+  pattern_->apply(fine, beams, workers, skip, skipped);
   beams.steady =
-      receive_points(find_points(fine, mixing_reach(settings), static_cast<float>(faintest), workers), fine,
-                     *pattern_, uses_pulse_ ? &pulse_->response : nullptr, beams.beams);
+      receive_points(points, fine, *pattern_, uses_pulse_ ? &pulse_->response : nullptr, beams.beams);
 }
 
 void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {

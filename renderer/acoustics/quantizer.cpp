@@ -84,11 +84,14 @@ void Quantizer::begin() {
 }
 
 void Quantizer::add(const float* codes) {
-  if (terms_++ == 0) {
-    std::fill_n(sum_.data(), samples_.beams, 0.0F);
-  }
+  const bool first = terms_++ == 0;
   if (scale_ == OutputScale::half_decibels) {
+    if (first) {
+      std::fill_n(sum_.data(), samples_.beams, 0.0F);
+    }
     add_decibels(codes, samples_.beams, sum_.data());
+  } else if (first) {
+    std::copy_n(codes, samples_.beams, sum_.data());
   } else if (peak_) {
     raise_row(codes, samples_.beams, sum_.data());
   } else {

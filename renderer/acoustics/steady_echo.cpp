@@ -135,17 +135,19 @@ SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage&
   };
   std::vector<float> received(static_cast<std::size_t>(beams));
   for (const PointEcho& point : points) {
+    const int first = std::max(0, point.fine_beam - 1);
+    const int last = std::min(fine.beams - 1, point.fine_beam + 1);
+    const BeamPattern::Beams lobes = pattern.receivers_of(first, last);
     for (int k = std::max(0, point.line - 1); k <= std::min(fine.lines - 1, point.line + 1); ++k) {
-      std::ranges::fill(received, 0.0F);
-      for (int f = std::max(0, point.fine_beam - 1); f <= std::min(fine.beams - 1, point.fine_beam + 1);
-           ++f) {
-        pattern.add_lobe(f, point.share * fine.at(f, k), received);
+      std::fill(received.begin() + lobes.begin, received.begin() + lobes.end, 0.0F);
+      for (int f = first; f <= last; ++f) {
+        pattern.add_lobe(f, point.share * fine.at(f, k), lobes, received);
       }
       for (int line = std::max(0, k - taps + 1); line <= std::min(fine.lines - 1, k + taps - 1); ++line) {
         const auto of_pulse = static_cast<float>(pulse != nullptr ? pulse->share(std::abs(line - k)) : 1.0);
         float* row = row_at(line);
-        for (std::size_t b = 0; b < received.size(); ++b) {
-          row[b] += of_pulse * received[b];
+        for (int b = lobes.begin; b < lobes.end; ++b) {
+          row[b] += of_pulse * received[static_cast<std::size_t>(b)];
         }
       }
     }

@@ -2,9 +2,11 @@
 #include "renderer/acoustics/texture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <numbers>
 #include <vector>
 
@@ -74,16 +76,18 @@ std::vector<float> table_of(double nu) {
   return roots;
 }
 
-const std::vector<std::vector<float>>& tables() {
-  static const std::vector<std::vector<float>> made = [] {
-    std::vector<std::vector<float>> all;
-    const int count = static_cast<int>(most_log2_nu - least_log2_nu) * tables_per_octave + 1;
-    for (int i = 0; i < count; ++i) {
-      all.push_back(table_of(std::exp2(least_log2_nu + static_cast<double>(i) / tables_per_octave)));
-    }
-    return all;
-  }();
-  return made;
+constexpr std::size_t table_count =
+    static_cast<std::size_t>(most_log2_nu - least_log2_nu) * tables_per_octave + 1;
+
+/// Made when first asked for, by whichever thread comes first: all of them take tens of milliseconds, and a
+/// sonar needs a few.
+const std::vector<float>& table(std::size_t number) {
+  static std::array<std::once_flag, table_count> made;
+  static std::array<std::vector<float>, table_count> tables;
+  std::call_once(made[number], [&] {
+    tables[number] = table_of(std::exp2(least_log2_nu + static_cast<double>(number) / tables_per_octave));
+  });
+  return tables[number];
 }
 
 SONARD_SIMD_CLONES
@@ -106,10 +110,10 @@ void apply_texture(const float* __restrict root, const float* __restrict intensi
 void TextureRoot::set(double nu) {
   const double at =
       (std::clamp(std::log2(nu), least_log2_nu, most_log2_nu) - least_log2_nu) * tables_per_octave;
-  const std::size_t below = std::min(static_cast<std::size_t>(at), tables().size() - 2);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), table_count - 2);
   const auto share = static_cast<float>(at - static_cast<double>(below));
-  const std::vector<float>& low = tables()[below];
-  const std::vector<float>& high = tables()[below + 1];
+  const std::vector<float>& low = table(below);
+  const std::vector<float>& high = table(below + 1);
   root_.resize(low.size());
   for (std::size_t i = 0; i < low.size(); ++i) {
     root_[i] = low[i] + share * (high[i] - low[i]);

@@ -29,12 +29,25 @@ class Clutter {
       : settings_(settings),
         T_world_sonar_(T_world_sonar),
         image_(image),
+        upwards_(T_world_sonar.orientation * glm::dvec3(0, 0, 1)),
+        limit_cosine_(std::cos(settings.aperture.elevation_limit_rad())),
+        limit_sine_(std::sin(settings.aperture.elevation_limit_rad())),
         first_echo_(static_cast<std::size_t>(image.beams)) {
     for (int beam = 0; beam < image.beams; ++beam) {
       const float* row = row_of(beam);
       first_echo_[static_cast<std::size_t>(beam)] =
           static_cast<int>(std::find_if(row, row + image.lines, [](float echo) { return echo > 0; }) - row);
     }
+  }
+
+  /// False: nothing within so many metres of a point is received.
+  bool may_receive(const glm::dvec3& position_m, double around_m) const {
+    const glm::dvec3 from_sonar_m = position_m - T_world_sonar_.position_m;
+    const double up_m = std::abs(glm::dot(from_sonar_m, upwards_));
+    const double distance2 = glm::dot(from_sonar_m, from_sonar_m);
+    const double across_m = std::sqrt(std::max(0.0, distance2 - up_m * up_m));
+    const double reach_m = farthest_m + around_m;
+    return distance2 < reach_m * reach_m && up_m * limit_cosine_ - across_m * limit_sine_ < around_m;
   }
 
   void add(const glm::dvec3& position_m, double strength) {
@@ -70,6 +83,8 @@ class Clutter {
   const SonarSettings& settings_;
   const Pose& T_world_sonar_;
   EchoImage& image_;
+  glm::dvec3 upwards_;  ///< the sonar's z axis in the world
+  double limit_cosine_, limit_sine_;
   std::vector<int> first_echo_;  ///< line of it, per beam
 };
 
@@ -87,10 +102,14 @@ void add_water_clutter(const SonarSettings& settings, const Pose& T_world_sonar,
   const glm::ivec3 low(glm::floor((at - reach_m) / edge_m));
   const glm::ivec3 high(glm::floor((at + reach_m) / edge_m));
   const double mean = decibels_to_power(water.target_strength_db);
+  const double half_diagonal_m = 1.001 * std::sqrt(0.75) * edge_m;
   Clutter clutter(settings, T_world_sonar, image);
   for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z) {
     for (cell.y = low.y; cell.y <= high.y; ++cell.y) {
       for (cell.x = low.x; cell.x <= high.x; ++cell.x) {
+        if (!clutter.may_receive((glm::dvec3(cell) + 0.5) * edge_m, half_diagonal_m)) {
+          continue;
+        }
         const RandomKey own = make_random_key(seed, 0, RandomField::water_clutter, number_of(cell));
         if (uniform_number(own, 0) >= clutter_per_cell) {
           continue;

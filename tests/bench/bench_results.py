@@ -6,9 +6,10 @@ import json
 
 
 class Results:
-    """Values by (scene, engine, preset) and metric."""
+    """Values by (scene, engine, preset) and metric; `time` is the metric of curves against time."""
 
-    def __init__(self, path):
+    def __init__(self, path, time="ping_ms"):
+        self.time = time
         with open(path, encoding="utf-8") as file:
             rows = json.load(file)
         self.points = collections.defaultdict(dict)
@@ -25,8 +26,9 @@ class Results:
         """{preset: {metric: value}} in the order they were measured."""
         return {p: values for (s, b, p), values in self.points.items() if (s, b) == (scene, engine)}
 
-    def curve(self, scene, engine, start, x="ping_ms", y="bin_rms"):
-        """[(x, y, preset)] of the presets whose name starts with `start`, by growing x."""
+    def curve(self, scene, engine, start, x=None, y="bin_rms"):
+        """[(x, y, preset)] of the presets whose name starts with `start`, by growing x; of None: the time."""
+        x = x or self.time
         return sorted((values[x], values[y], preset) for preset, values in self.of(scene, engine).items()
                       if preset.startswith(start) and values.get(x, 0) > 0 and values.get(y, 0) > 0)
 

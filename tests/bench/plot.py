@@ -20,6 +20,7 @@ COLOURS = {"cpu": "#0b6fb8", "gpu": "#c2570c"}  # told apart by colour-blind rea
 PRESETS = {"fast": "v", "default": "s", "reference": "D"}
 SEABED = ["plane", "flat100k", "swell100k", "ripple100k", "swell1m", "docking"]
 SCANNING = ["msis_swell", "msis_ripple"]
+LEGEND_LINE_IN = 0.18
 SIZES = {"triangles": "triangles", "beams": "beams", "bins": "range lines", "cores": "cores"}
 
 
@@ -63,10 +64,16 @@ def draw_fronts(results, scenes, path):
         axes.set_ylabel("bin RMS error")
     for axes in panels.flat[max(0, len(scenes) - columns):len(scenes)]:
         axes.set_xlabel("ms per ping")
-    handles, labels = panels.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=min(4, columns + 1), fontsize=8, frameon=False)
-    figure.tight_layout(rect=(0, 0.06 + 0.06 / rows, 1, 1))
+    add_legend(figure, panels.flat[0], min(4, columns + 1))
     save(figure, path)
+
+
+def add_legend(figure, axes, columns):
+    """Below all panels, on a strip of the figure that is kept free for its lines."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=columns, fontsize=8, frameon=False)
+    strip_in = 0.15 + LEGEND_LINE_IN * -(-len(labels) // columns)
+    figure.tight_layout(rect=(0, strip_in / figure.get_figheight(), 1, 1))
 
 
 def draw_growth(results, path):
@@ -82,8 +89,8 @@ def draw_growth(results, path):
     for axes, (what, members) in zip(panels.flat, families.items()):
         for engine in results.engines():
             for preset, marker in PRESETS.items():
-                line = [(x, results.points[s, engine, preset]["ping_ms"]) for x, s in sorted(members)
-                        if "ping_ms" in results.points.get((s, engine, preset), {})]
+                line = [(x, results.points[s, engine, preset][results.time]) for x, s in sorted(members)
+                        if results.time in results.points.get((s, engine, preset), {})]
                 axes.plot([p[0] for p in line], [p[1] for p in line], marker + "-", color=COLOURS[engine], ms=4,
                           lw=1, label=f"{engine} {preset}" if line else None)
         axes.set(xscale="log", yscale="log", xlabel=SIZES.get(what, what))
@@ -91,9 +98,7 @@ def draw_growth(results, path):
             axes.set(xscale="linear", xticks=[x for x, _ in sorted(members)])
         axes.grid(True, which="major", lw=0.3)
     panels[0, 0].set_ylabel("ms per ping")
-    handles, labels = panels[0, -1].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=len(labels), fontsize=8, frameon=False)
-    figure.tight_layout(rect=(0, 0.08, 1, 1))
+    add_legend(figure, panels[0, -1], 6)
     save(figure, path)
 
 
@@ -107,9 +112,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("json", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--least", action="store_true", help="least times and not medians: of a busy machine")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
-    results = Results(arguments.json)
+    results = Results(arguments.json, "ping_ms_min" if arguments.least else "ping_ms")
     standard = [s for s in results.scenes() if "@" not in s]
     draw_fronts(results, [s for s in SEABED if s in standard], arguments.folder / "pareto_seabed.png")
     draw_fronts(results, [s for s in SCANNING if s in standard], arguments.folder / "pareto_scanning.png")
