@@ -23,6 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -630,24 +631,24 @@ TEST_F(Loader, names_decimal_commas) {
               ElementsAre(AllOf(
                   StartsWith("config.yaml:12:12: water.depth_m: '20,5' has a decimal comma, write 20.5"),
                   HasSubstr("(expected a number from 0 to 11000, in m)"))));
-  EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {position_m: [1,5, 2,0, 3,1]}}\n")[0],
-              AllOf(StartsWith("config.yaml:2:31: poses.initial.position_m: is a list of 6"),
-                    HasSubstr("decimals have a point")));
+  EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {position_m: [1,5, 2,0, 3,1]}}\n"),
+              Contains(AllOf(StartsWith("config.yaml:2:31: poses.initial.position_m: is a list of 6"),
+                             HasSubstr("decimals have a point"))));
 }
 
 TEST_F(Loader, names_ipv6_addresses) {
   const std::string udp = "world: {file: w}\nposes:\n  udp:\n";
-  EXPECT_THAT(complaints(udp + "    bind: ::1\n")[0],
-              AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: '::1' is an IPv6 address"),
-                    HasSubstr("127.0.0.1")));
-  EXPECT_THAT(complaints(udp + "    bind: \"[::1]:14600\"\n")[0],
-              StartsWith("config.yaml:4:11: poses.udp.bind: '[::1]:14600' is an IPv6 address"));
+  EXPECT_THAT(complaints(udp + "    bind: ::1\n"),
+              Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: '::1' is an IPv6 address"),
+                             HasSubstr("127.0.0.1"))));
+  EXPECT_THAT(complaints(udp + "    bind: \"[::1]:14600\"\n"),
+              Contains(StartsWith("config.yaml:4:11: poses.udp.bind: '[::1]:14600' is an IPv6 address")));
   EXPECT_THAT(complaints(udp + "    bind: [::1]:14600\n"),
               ElementsAre(StartsWith("config.yaml:4:11: '[::1]:14600' is an IPv6 address")));
-  EXPECT_THAT(complaints(udp + "    bind: [::1]\n")[0],
-              AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: is a list"), HasSubstr("IPv6")));
-  EXPECT_THAT(complaints(udp + "    bind: 0.0.0.0:14600\n    allow: [fe80::1/64]\n")[0],
-              StartsWith("config.yaml:5:13: poses.udp.allow[0]: 'fe80::1/64' is an IPv6 address"));
+  EXPECT_THAT(complaints(udp + "    bind: [::1]\n"),
+              Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: is a list"), HasSubstr("IPv6"))));
+  EXPECT_THAT(complaints(udp + "    bind: 0.0.0.0:14600\n    allow: [fe80::1/64]\n"),
+              Contains(StartsWith("config.yaml:5:13: poses.udp.allow[0]: 'fe80::1/64' is an IPv6 address")));
 }
 
 TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
