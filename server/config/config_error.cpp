@@ -7,6 +7,8 @@
 namespace sonard::server {
 namespace {
 
+constexpr std::size_t longest_key_shown = 300;  // of what is shown
+
 std::vector<ConfigProblem> in_file_order(std::vector<ConfigProblem> problems) {
   std::stable_sort(problems.begin(), problems.end(), [](const ConfigProblem& a, const ConfigProblem& b) {
     return std::tie(a.at.line, a.at.column) < std::tie(b.at.line, b.at.column);
@@ -33,7 +35,8 @@ std::string problem_text(const std::filesystem::path& file, const ConfigProblem&
     text += ':' + std::to_string(problem.at.line) + ':' + std::to_string(problem.at.column);
   }
   if (!problem.key.empty()) {
-    text += ": " + problem.key;
+    text += ": " + (problem.key.size() > longest_key_shown ? problem.key.substr(0, longest_key_shown) + "..."
+                                                           : problem.key);
   }
   return text + ": " + problem.message;
 }

@@ -37,7 +37,7 @@ double read_noise_budget(YamlSection& section, double carrier_hz) {
 void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
   section.introduce(
       "It rises from nothing at half of `peak_m`, and falls from the peak to `end_m` by 80 dB.");
-  section.boolean("on", ring_down.on, "");
+  section.boolean("on", ring_down.on, "whether the transducer rings after its pulse");
   section.number("level_db", ring_down.level_db, level_db,
                  "intensity of the peak re the source intensity at 1 m, before TVG");
   section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0), "range of the peak");

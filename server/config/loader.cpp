@@ -14,10 +14,14 @@
 #include "server/config/network_section.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/config/yaml_section.hpp"
+#include "server/config/yaml_trouble.hpp"
 #include "server/net/addresses.hpp"
 
 namespace sonard::server {
 namespace {
+
+constexpr std::uintmax_t most_bytes = 4
+                                      << 20;  // a thousand times those that ship; more takes minutes to parse
 
 std::string read_file(const std::filesystem::path& file) {
   const auto fail = [&](const std::error_code& cause) {
@@ -27,6 +31,11 @@ std::string read_file(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
     fail(std::make_error_code(std::errc::is_a_directory));
+  }
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, ignored);
+      !ignored && bytes > most_bytes) {
+    throw ConfigError(file,
+                      {{{}, "", fmt::format("is {} bytes long (expected at most {})", bytes, most_bytes)}});
   }
   std::ifstream in(file, std::ios::binary);
   if (!in) {
@@ -38,16 +47,16 @@ std::string read_file(const std::filesystem::path& file) {
 }
 
 YAML::Node parse_yaml(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(read_file(file));
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() != 1) {
       throw ConfigError(file,
                         {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents.size())}});
     }
     return documents.front();
   } catch (const YAML::Exception& error) {
-    throw ConfigError(file,
-                      {{position_of(error.mark), "", fmt::format("{} (expected valid YAML)", error.msg)}});
+    throw ConfigError(file, {yaml_trouble(text, position_of(error.mark), error.msg)});
   }
 }
 
@@ -211,7 +220,7 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   });
   section.section("tcp", "varint-delimited pose messages ([poses.md](poses.md))", [&](YamlSection& inner) {
     TcpPoseInput& tcp = poses.tcp.emplace();
-    read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "", "who may publish");
+    read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "where publishers connect", "who may publish");
     inner.integer("max_clients", tcp.max_clients, 1, 1000, "further connections are closed at once");
   });
   section.section("mavlink",
@@ -432,6 +441,10 @@ LoadedConfig load_config(const std::filesystem::path& file, std::span<const Head
   }
   if (findings.problems.empty()) {
     findings.problems = find_overlaps(loaded.config, findings.positions);
+  }
+  if (findings.problems_left_out > 0) {
+    findings.problems.push_back({findings.problems.back().at, "",
+                                 fmt::format("{} more problems are not shown", findings.problems_left_out)});
   }
   if (!findings.problems.empty()) {
     throw ConfigError(file, std::move(findings.problems));

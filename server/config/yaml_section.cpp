@@ -11,8 +11,13 @@
 
 #include <fmt/format.h>
 
+#include "server/config/yaml_trouble.hpp"
+
 namespace sonard::server {
 namespace {
+
+constexpr std::size_t most_problems = 100;      // of one file
+constexpr std::size_t longest_known_key = 100;  // of those that are known, thrice
 
 constexpr std::string_view plain_tag = "?";  // what yaml-cpp gives to scalars without quotes
 
@@ -49,7 +54,7 @@ std::string_view last_key(std::string_view path) {
 std::string describe(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Scalar:
-      return fmt::format("'{}'", node.Scalar());
+      return in_quotes(node.Scalar());
     case YAML::NodeType::Sequence:
       return "a list";
     case YAML::NodeType::Map:
@@ -57,6 +62,18 @@ std::string describe(const YAML::Node& node) {
     default:
       return "empty";
   }
+}
+
+std::string ipv6_text(std::string_view value, std::string_view expected) {
+  return fmt::format("{} is an IPv6 address; IPv6 is not served (expected {})", in_quotes(value), expected);
+}
+
+/// A list of an IPv6 address is one in brackets.
+std::string describe_with_ipv6(const YAML::Node& node) {
+  const bool address =
+      node.IsSequence() && node.size() == 1 && node[0].IsScalar() && is_ipv6(node[0].Scalar());
+  return address ? "a list, as YAML reads the brackets of an IPv6 address; IPv6 is not served"
+                 : describe(node);
 }
 
 /// True for "10C", "5 ms", "-3.5deg": a number that something follows.
@@ -152,6 +169,7 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
               fmt::format("duplicate key (expected once; first given on line {})", first->key_at.line));
       continue;
     }
+    entry_of_.emplace(name, entries_.size());
     entries_.push_back({name, key_at, pair.second});
   }
 }
@@ -280,9 +298,10 @@ void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& ra
   }
   if (!entry->value.IsSequence() || entry->value.size() != 3) {
     problem(position_of(entry->value.Mark()), path_of(key),
-            fmt::format("is {} (expected a list of three numbers)",
+            fmt::format("is {} (expected a list of three numbers{})",
                         entry->value.IsSequence() ? fmt::format("a list of {}", entry->value.size())
-                                                  : describe(entry->value)));
+                                                  : describe(entry->value),
+                        entry->value.size() > 3 ? "; commas part them, decimals have a point" : ""));
     return;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -398,33 +417,36 @@ void YamlSection::document_list(std::string_view key, const TextForm& form, std:
 
 const YamlSection::Entry* YamlSection::find(std::string_view key) {
   known_key(key);
-  for (Entry& entry : entries_) {
-    if (entry.name == key) {
-      entry.read = true;
-      findings_.positions.emplace(path_of(key), position_of(entry.value.Mark()));
-      return &entry;
-    }
+  const auto found = entry_of_.find(key);
+  if (found == entry_of_.end()) {
+    return nullptr;
   }
-  return nullptr;
+  Entry& entry = entries_[found->second];
+  entry.read = true;
+  findings_.positions.emplace(path_of(key), position_of(entry.value.Mark()));
+  return &entry;
 }
 
 const YamlSection::Entry* YamlSection::peek(std::string_view key) const {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [key](const Entry& entry) { return entry.name == key; });
-  return found == entries_.end() ? nullptr : &*found;
+  const auto found = entry_of_.find(key);
+  return found == entry_of_.end() ? nullptr : &entries_[found->second];
 }
 
 void YamlSection::problem(const SourcePosition& at, std::string path, std::string message) {
   // What follows from a value that was refused is not worth a second line.
-  const bool reported = std::any_of(findings_.problems.begin(), findings_.problems.end(),
-                                    [&](const ConfigProblem& earlier) { return earlier.key == path; });
-  if (!reported) {
-    findings_.problems.push_back({at, std::move(path), std::move(message)});
+  if (!findings_.keys_with_problems.insert(path).second) {
+    return;
   }
+  if (findings_.problems.size() >= most_problems) {
+    ++findings_.problems_left_out;
+    return;
+  }
+  findings_.problems.push_back({at, std::move(path), std::move(message)});
 }
 
 void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {
-  report(key, fmt::format("'{}' is not understood (expected {})", value, expected));
+  report(key, is_ipv6(value) ? ipv6_text(value, expected)
+                             : fmt::format("{} is not understood (expected {})", in_quotes(value), expected));
 }
 
 void YamlSection::report_unknown(const Entry& entry) {
@@ -434,7 +456,8 @@ void YamlSection::report_unknown(const Entry& entry) {
       return;
     }
   }
-  const std::string_view meant = closest(entry.name, known_);
+  const bool too_long = entry.name.size() > longest_known_key;
+  const std::string_view meant = too_long ? std::string_view{} : closest(entry.name, known_);
   std::string message = "unknown key";
   if (!meant.empty()) {
     message += fmt::format(", did you mean '{}'?", meant);
@@ -445,7 +468,7 @@ void YamlSection::report_unknown(const Entry& entry) {
   }
   message +=
       names.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(names, ", "));
-  problem(entry.key_at, path_of(entry.name), std::move(message));
+  problem(entry.key_at, path_of(too_long ? in_quotes(entry.name) : entry.name), std::move(message));
 }
 
 std::optional<double> YamlSection::number_of(const YAML::Node& node, const std::string& path,
@@ -464,13 +487,19 @@ std::optional<double> YamlSection::number_of(const YAML::Node& node, const std::
   double value = 0.0;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (is_number_with_unit(text)) {
+  if (const std::string meant = with_decimal_point(text); !meant.empty()) {
     problem(at, path,
-            fmt::format("'{}' carries a unit; units belong to the key (expected {})", text, expected));
+            fmt::format("{} has a decimal comma, write {} (expected {})", in_quotes(text), meant, expected));
+    return std::nullopt;
+  }
+  if (is_number_with_unit(text)) {
+    problem(
+        at, path,
+        fmt::format("{} carries a unit; units belong to the key (expected {})", in_quotes(text), expected));
     return std::nullopt;
   }
   if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-    problem(at, path, fmt::format("'{}' is not a finite number (expected {})", text, expected));
+    problem(at, path, fmt::format("{} is not a finite number (expected {})", in_quotes(text), expected));
     return std::nullopt;
   }
   if (!range.holds(value)) {
@@ -529,7 +558,7 @@ std::optional<std::string> YamlSection::plain_text(std::string_view key, std::st
   }
   if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
     problem(position_of(entry->value.Mark()), path_of(key),
-            fmt::format("is {} (expected {})", describe(entry->value), expected));
+            fmt::format("is {} (expected {})", describe_with_ipv6(entry->value), expected));
     return std::nullopt;
   }
   return entry->value.Scalar();
@@ -551,7 +580,9 @@ bool YamlSection::each_text(std::string_view key, std::string_view expected,
     const YAML::Node item = entry->value[i];
     if (!item.IsScalar() || !take(item.Scalar())) {
       problem(position_of(item.Mark()), fmt::format("{}[{}]", path_of(key), i),
-              fmt::format("is {} (expected {})", describe(item), expected));
+              item.IsScalar() && is_ipv6(item.Scalar())
+                  ? ipv6_text(item.Scalar(), expected)
+                  : fmt::format("is {} (expected {})", describe(item), expected));
       complete = false;
     }
   }

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,7 +28,9 @@ namespace sonard::server {
 /// Where problems and the places of keys gather while one file is read.
 struct YamlFindings {
   std::vector<ConfigProblem> problems;
-  KeyPositions positions;   ///< of the value of every key that was read
+  std::set<std::string, std::less<>> keys_with_problems;  ///< of these
+  std::size_t problems_left_out = 0;                      ///< beyond the most that are worth reading
+  KeyPositions positions;                                 ///< of the value of every key that was read
   bool describing = false;  ///< no file is read: every section is entered, for what it knows (KeyReference)
 };
 
@@ -202,6 +206,7 @@ class YamlSection {
   SourcePosition at_;
   bool is_map_ = true;
   std::vector<Entry> entries_;
+  std::map<std::string, std::size_t, std::less<>> entry_of_;  ///< by name, places in entries_
   std::vector<KeyReference> known_;
   std::vector<std::pair<std::string_view, std::string_view>> retired_;
   std::string introduction_;

@@ -19,7 +19,12 @@ void OfflineArguments::declare_run(CLI::App& app) {
       ->required();
   app.add_option("--out", options_.out, "Folder for all files; existing frames are not rendered again")
       ->required();
-  app.add_option("--axes", axes_, "Axes of world and vehicle in the trajectory")
+  app.add_option("--body", bodies_,
+                 "NAME=FILE: a body of the world moves along this trajectory, CSV or TUM, on the clock of "
+                 "--trajectory; once for each body")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--axes", axes_, "Axes of world, vehicle and bodies in the trajectories")
       ->check(CLI::IsMember({"enu_flu", "ned_frd"}))
       ->capture_default_str();
   app.add_option("--head", options_.head, "Name of a head in CONFIG; default: the first");
@@ -70,6 +75,13 @@ OfflineOptions OfflineArguments::options() const {
                                fmt::format("expected I/N with 0 <= I <= N and N >= 1, found '{}'", shard_));
   }
   options.shard = *shard;
+  for (const std::string& body : bodies_) {
+    const std::size_t equals = body.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == body.size()) {
+      throw CLI::ValidationError("--body", fmt::format("expected NAME=FILE, found '{}'", body));
+    }
+    options.bodies.push_back({body.substr(0, equals), body.substr(equals + 1)});
+  }
   return options;
 }
 

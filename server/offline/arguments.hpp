@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "server/offline/options.hpp"
 
@@ -32,6 +33,7 @@ class OfflineArguments {
   // As they are typed.
   std::string axes_ = "enu_flu";
   std::string shard_ = "0/1";
+  std::vector<std::string> bodies_;
 };
 
 }  // namespace sonard::server

@@ -66,7 +66,7 @@ render::PingRequest FanFrames::request(int frame) const {
 
 void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
-  place_vehicle(trajectory_, times_.at(frame), renderer, nullptr);
+  place_bodies(trajectory_, times_.at(frame), renderer, nullptr);
   if (!renderer.pass_ping(ping, place_.stream)) {
     renderer.render_ping(ping, place_.stream);
   }
@@ -74,7 +74,7 @@ void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
 
 Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
-  place_vehicle(trajectory_, times_.at(frame), renderer, truth_);
+  place_bodies(trajectory_, times_.at(frame), renderer, truth_);
   render::PingSamples rendered = renderer.render_ping(ping, place_.stream);
   auto samples = std::make_shared<const npy::Table>(
       npy::Table{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});

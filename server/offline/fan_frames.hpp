@@ -2,6 +2,7 @@
 // The pings of a multibeam head along a trajectory.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,6 +29,10 @@ class FanFrames final : public FrameSource {
   std::string name(int frame) const override;
   Frame render(render::SonarRenderer& renderer, int frame) override;
   void pass(render::SonarRenderer& renderer, int frame) override;
+  double natural_period_s() const override {
+    return std::chrono::duration<double>(survey_->natural_period()).count();
+  }
+  double period_s() const override { return times_.period_ns / 1e9; }
   nlohmann::ordered_json settings_json() const override;
   bool makes_glf() const override;
   std::optional<glf::ImageRecord> record(int frame, std::string_view npy) const override;

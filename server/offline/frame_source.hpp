@@ -47,6 +47,10 @@ class FrameSource {
   /// Leaves the renderer as render() does. @throws the same
   virtual void pass(render::SonarRenderer& renderer, int frame) = 0;
 
+  /// The shortest time from ping to ping that the head can keep, and the one asked for.
+  virtual double natural_period_s() const = 0;
+  virtual double period_s() const = 0;
+
   /// What frames are made with, as a JSON object.
   virtual nlohmann::ordered_json settings_json() const = 0;
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "protocol/pose/pose_codec.hpp"
 #include "server/devices/survey.hpp"
@@ -31,10 +32,15 @@ struct OfflineOptions {
   std::optional<double> rate_hz;  ///< pings a second, > 0; nullopt: as fast as the head can
   Shard shard;
   bool overwrite = false;
-  bool truth = false;     ///< also which body echoes most in each bin
-  int radius_px = 900;    ///< of pictures
-  int picture_every = 1;  ///< frames from picture to picture, >= 1; 0: none is drawn
-  SurveyOptions survey;   ///< what the sonar is asked for
+  bool truth = false;   ///< also which body echoes most in each bin
+  int radius_px = 900;  ///< of pictures
+  struct BodyWay {
+    std::string body;  ///< of the world
+    std::filesystem::path trajectory;
+  };
+  std::vector<BodyWay> bodies;  ///< bodies that move along files of their own, in the axes of `trajectory`
+  int picture_every = 1;        ///< frames from picture to picture, >= 1; 0: none is drawn
+  SurveyOptions survey;         ///< what the sonar is asked for
 
   bool draws(int frame) const { return picture_every > 0 && frame % picture_every == 0; }
 };

@@ -37,6 +37,15 @@ std::string progress_text(const ProgressState& state) {
   return text;
 }
 
+std::string found_text(int frames, int found) {
+  return fmt::format("{} of {} frames are there; {} to render", found, frames, frames - found);
+}
+
+std::string interrupted_text(const ProgressState& state) {
+  return fmt::format("interrupted: {} of {} frames are there; the same command goes on with the rest",
+                     state.found + state.made, state.frames);
+}
+
 Progress::Progress(int frames, int found)
     : terminal_(isatty(STDERR_FILENO) == 1),
       state_{frames, found, 0, {}},

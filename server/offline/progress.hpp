@@ -20,6 +20,13 @@ struct ProgressState {
 /// them from.
 std::string progress_text(const ProgressState& state);
 
+/// What a run begins with where frames of an earlier one are there: "40 of 300 frames are there; 260 to
+/// render".
+std::string found_text(int frames, int found);
+/// What one that was interrupted leaves: "interrupted: 120 of 300 frames are there; the same command goes
+/// on".
+std::string interrupted_text(const ProgressState& state);
+
 /// Shows it on standard error: on a terminal as a bar, elsewhere as a line now and then.
 class Progress {
  public:
@@ -29,6 +36,7 @@ class Progress {
   void made(std::chrono::nanoseconds now);
   /// Ends the bar, so that a line can follow.
   void end();
+  const ProgressState& state() const { return state_; }
 
  private:
   void show();

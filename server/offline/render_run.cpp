@@ -2,6 +2,8 @@
 #include "server/offline/render_run.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <cstddef>
 #include <deque>
 #include <fstream>
@@ -67,6 +69,48 @@ HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
   return place;
 }
 
+/// @throws StartError, pose::TrajectoryError
+VehicleTrajectory trajectory_with_bodies(const OfflineOptions& options, const render::World& world,
+                                         const std::string& vehicle_model) {
+  VehicleTrajectory trajectory(pose::load_trajectory(options.trajectory, options.axes), vehicle_model);
+  for (const OfflineOptions::BodyWay& way : options.bodies) {
+    const bool known = std::any_of(world.bodies.begin(), world.bodies.end(),
+                                   [&](const render::Body& body) { return body.name == way.body; });
+    if (!known || way.body == trajectory.vehicle_model()) {
+      std::vector<std::string> names;
+      for (const render::Body& body : world.bodies) {
+        if (body.name != trajectory.vehicle_model()) {
+          names.push_back(body.name);
+        }
+      }
+      throw StartError(
+          "world.file", exit_config,
+          fmt::format("--body: '{}' cannot be moved (expected one of {})", way.body, fmt::join(names, ", ")));
+    }
+    trajectory.add({way.body, pose::load_trajectory(way.trajectory, options.axes)});
+  }
+  return trajectory;
+}
+
+/// A rate that the head cannot keep is rendered all the same, for a user may want more than there is.
+void warn_of_rate(const FrameSource& frames, const std::string& head) {
+  if (frames.period_s() < frames.natural_period_s() * (1.0 - 1e-9)) {
+    spdlog::warn(
+        "--rate {:g} is beyond head '{}', which sends {:.4g} pings per second at most with these settings",
+        1.0 / frames.period_s(), head, 1.0 / frames.natural_period_s());
+  }
+}
+
+/// Remembers the first SIGINT or SIGTERM; the next one ends the process as it would without this.
+std::atomic<int> interrupted_by{0};
+void watch_for_interruption() {
+  struct sigaction action {};
+  action.sa_handler = [](int signal) { interrupted_by = signal; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
 std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, std::size_t head,
                                          const VehicleTrajectory& trajectory, const OfflineOptions& options,
                                          BodyTruth* truth) {
@@ -93,6 +137,7 @@ class RenderRun {
  public:
   RenderRun(const LoadedConfig& loaded, const OfflineOptions& options);
 
+  /// Stops between two frames when it is interrupted.
   void render_missing();
   /// The log, where all frames of all processes are there.
   void finish();
@@ -165,12 +210,13 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       options_(options),
       head_(chosen_head(loaded, options.head)),
       world_(world_without_hidden(config_, head_)),
-      trajectory_(pose::load_trajectory(options.trajectory, options.axes),
-                  config_.heads[head_].hides_vehicle ? std::string() : config_.vehicle_model),
+      trajectory_(trajectory_with_bodies(options, world_,
+                                         config_.heads[head_].hides_vehicle ? "" : config_.vehicle_model)),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
       folder_(options.out) {
+  warn_of_rate(*frames_, config_.heads[head_].name);
   const OutputFolder::Lock lock(folder_);
   choose_engine();
   folder_.claim(manifest(), options.overwrite);
@@ -198,18 +244,21 @@ void RenderRun::choose_engine() {
 
 // All that the bytes of frames follow from, as far as it is not in the program; nothing of this process.
 std::string RenderRun::manifest() const {
-  const Json json{{"program", app_name},
-                  {"config_crc32", fmt::format("{:08x}", crc_of(config_.file))},
-                  {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
-                  {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
-                  {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
-                  {"engine", render::name_of(renderer_.engine())},
-                  {"head", config_.heads[head_].name},
-                  {"settings", frames_->settings_json()},
-                  {"frames", frames_->count()},
-                  {"radius_px", options_.radius_px},
-                  {"picture_every", options_.picture_every},
-                  {"truth", options_.truth}};
+  Json json{{"program", app_name},
+            {"config_crc32", fmt::format("{:08x}", crc_of(config_.file))},
+            {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
+            {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
+            {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
+            {"engine", render::name_of(renderer_.engine())},
+            {"head", config_.heads[head_].name},
+            {"settings", frames_->settings_json()},
+            {"frames", frames_->count()},
+            {"radius_px", options_.radius_px},
+            {"picture_every", options_.picture_every},
+            {"truth", options_.truth}};
+  for (const OfflineOptions::BodyWay& way : options_.bodies) {
+    json["bodies_crc32"][way.body] = fmt::format("{:08x}", crc_of(way.trajectory));
+  }
   return sidecar_text(json);
 }
 
@@ -259,7 +308,11 @@ void RenderRun::render_missing() {
   for (int frame = 0; frame < frames_->count(); ++frame) {
     of_shard += options_.shard.has(frame) ? 1 : 0;
   }
-  Progress progress(of_shard, of_shard - static_cast<int>(missing.size()));
+  const int found = of_shard - static_cast<int>(missing.size());
+  if (found > 0) {
+    fmt::print(stderr, "{}: {}\n", folder_.path().string(), found_text(of_shard, found));
+  }
+  Progress progress(of_shard, found);
   std::deque<std::future<void>> writing;
   const auto wait_until_fewer_than = [&](std::size_t count) {
     while (writing.size() >= count) {
@@ -271,6 +324,9 @@ void RenderRun::render_missing() {
   const std::size_t writers = std::max(1U, std::thread::hardware_concurrency() / 2);
   int next = 0;
   for (const int frame : missing) {
+    if (interrupted_by != 0) {
+      break;
+    }
     for (; next < frame; ++next) {
       frames_->pass(renderer_, next);
     }
@@ -282,6 +338,9 @@ void RenderRun::render_missing() {
   }
   wait_until_fewer_than(1);
   progress.end();
+  if (interrupted_by != 0 && progress.state().found + progress.state().made < of_shard) {
+    fmt::print(stderr, "{}: {}\n", folder_.path().string(), interrupted_text(progress.state()));
+  }
 }
 
 int RenderRun::missing_frames() const {
@@ -328,7 +387,11 @@ void RenderRun::make_glf() const {
 
 int render_trajectory(const LoadedConfig& loaded, const OfflineOptions& options) {
   RenderRun run(loaded, options);
+  watch_for_interruption();
   run.render_missing();
+  if (interrupted_by != 0) {
+    std::raise(interrupted_by);  // the handler is gone: whoever started it sees what ended it
+  }
   run.finish();
   return exit_clean;
 }

@@ -64,7 +64,7 @@ render::PingRequest SweepFrames::request(int line) const {
 void SweepFrames::pass(render::SonarRenderer& renderer, int frame) {
   for (int line = first_line(frame); line < first_line(frame + 1); ++line) {
     const render::PingRequest ping = request(line);
-    place_vehicle(trajectory_, times_.at(line), renderer, nullptr);
+    place_bodies(trajectory_, times_.at(line), renderer, nullptr);
     if (!renderer.pass_ping(ping, stream_)) {
       renderer.render_ping(ping, stream_);
     }
@@ -83,7 +83,7 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   auto lines = std::make_shared<std::vector<picture::SweepLine>>();
   for (int column = 0; column < columns; ++column) {
     const render::PingRequest ping = request(first + column);
-    place_vehicle(trajectory_, times_.at(first + column), renderer, truth_);
+    place_bodies(trajectory_, times_.at(first + column), renderer, truth_);
     picture::SweepLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
                             renderer.render_ping(ping, stream_).u8};
     const std::vector<std::uint16_t> nearby =

@@ -2,6 +2,7 @@
 // The sweeps of a scanning head along a trajectory.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,10 @@ class SweepFrames final : public FrameSource {
   std::string name(int frame) const override;
   Frame render(render::SonarRenderer& renderer, int frame) override;
   void pass(render::SonarRenderer& renderer, int frame) override;
+  double natural_period_s() const override {
+    return std::chrono::duration<double>(survey_->natural_period()).count();
+  }
+  double period_s() const override { return times_.period_ns / 1e9; }
   nlohmann::ordered_json settings_json() const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(first_line(frame))); }
 

@@ -3,16 +3,19 @@
 
 namespace sonard::server {
 
-void place_vehicle(const VehicleTrajectory& trajectory, std::int64_t time_ns, render::SonarRenderer& renderer,
-                   BodyTruth* truth) {
-  const std::string& model = trajectory.vehicle_model();
-  if (model.empty()) {
-    return;
+void place_bodies(const VehicleTrajectory& trajectory, std::int64_t time_ns, render::SonarRenderer& renderer,
+                  BodyTruth* truth) {
+  const auto place = [&](const std::string& body, const render::Pose& T_world_body) {
+    renderer.set_body_pose(body, T_world_body);
+    if (truth != nullptr) {
+      truth->set_body_pose(body, T_world_body);
+    }
+  };
+  for (const VehicleTrajectory::BodyWay& way : trajectory.bodies()) {
+    place(way.body, way.T_world_body(time_ns));
   }
-  const render::Pose T_world_vehicle = trajectory.T_world_vehicle(time_ns);
-  renderer.set_body_pose(model, T_world_vehicle);
-  if (truth != nullptr) {
-    truth->set_body_pose(model, T_world_vehicle);
+  if (!trajectory.vehicle_model().empty()) {
+    place(trajectory.vehicle_model(), trajectory.T_world_vehicle(time_ns));
   }
 }
 

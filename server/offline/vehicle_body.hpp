@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vehicle's own model along a trajectory.
+// What moves in the world while a vehicle follows its trajectory.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,10 @@
 
 namespace sonard::server {
 
-/// Moves the model of the vehicle, where the trajectory has one, to where the vehicle is at a time.
+/// Moves the bodies that have a way of their own, and the model of the vehicle where the trajectory has one,
+/// to where they are at a time.
 /// @param truth may be null
-void place_vehicle(const VehicleTrajectory& trajectory, std::int64_t time_ns, render::SonarRenderer& renderer,
-                   BodyTruth* truth);
+void place_bodies(const VehicleTrajectory& trajectory, std::int64_t time_ns, render::SonarRenderer& renderer,
+                  BodyTruth* truth);
 
 }  // namespace sonard::server

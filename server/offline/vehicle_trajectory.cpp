@@ -39,6 +39,10 @@ render::Pose VehicleTrajectory::T_world_vehicle(std::int64_t time_ns) const {
   return to_render(trajectory_.at(time_ns).T_world_vehicle);
 }
 
+render::Pose VehicleTrajectory::BodyWay::T_world_body(std::int64_t time_ns) const {
+  return to_render(trajectory.at(time_ns).T_world_vehicle);
+}
+
 std::int64_t VehicleTrajectory::unix_ns(std::int64_t time_ns) const {
   return start_ns() >= unix_ns_of_1980 ? time_ns : unix_ns_of_1980 + time_ns;
 }

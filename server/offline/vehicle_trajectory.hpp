@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/pose.hpp"
@@ -37,6 +38,15 @@ class VehicleTrajectory {
 
   const std::string& vehicle_model() const { return vehicle_model_; }
 
+  /// Where a body of the world is, on the same clock; at rest before the first and after the last point.
+  struct BodyWay {
+    std::string body;
+    pose::Trajectory trajectory;
+    render::Pose T_world_body(std::int64_t time_ns) const;
+  };
+  const std::vector<BodyWay>& bodies() const { return bodies_; }
+  void add(BodyWay way) { bodies_.push_back(std::move(way)); }
+
   std::int64_t start_ns() const { return trajectory_.start_ns(); }
   std::int64_t end_ns() const { return trajectory_.end_ns(); }
   /// At rest before the first and after the last point.
@@ -49,6 +59,7 @@ class VehicleTrajectory {
  private:
   pose::Trajectory trajectory_;
   std::string vehicle_model_;
+  std::vector<BodyWay> bodies_;
 };
 
 }  // namespace sonard::server

@@ -36,6 +36,15 @@ void ImageWriter::write(std::vector<Picture> pictures) {
       ++skipped_;
     }
     queue_.push_back(std::move(pictures));
+    fresh_.clear();
+  }
+  changed_.notify_one();
+}
+
+void ImageWriter::refresh(std::vector<Picture> pictures) {
+  {
+    const std::lock_guard lock(mutex_);
+    fresh_ = std::move(pictures);
   }
   changed_.notify_one();
 }
@@ -54,33 +63,47 @@ void ImageWriter::finish() {
 void ImageWriter::run() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return finishing_ || !queue_.empty(); });
-    if (queue_.empty()) {
+    changed_.wait(lock, [this] { return finishing_ || !queue_.empty() || !fresh_.empty(); });
+    const bool counted = !queue_.empty();
+    if (!counted && fresh_.empty()) {
       return;
     }
-    const std::vector<Picture> pictures = std::move(queue_.front());
-    queue_.pop_front();
+    std::vector<Picture> pictures;
+    if (counted) {
+      pictures = std::move(queue_.front());
+      queue_.pop_front();
+    } else {
+      pictures = std::exchange(fresh_, {});
+    }
     lock.unlock();
     for (const Picture& picture : pictures) {
-      save(picture);
+      written_ += save(picture) && counted ? 1 : 0;
     }
     lock.lock();
   }
 }
 
-void ImageWriter::save(const Picture& picture) {
-  const std::string path = (folder_ / picture.file).string();
+bool ImageWriter::save(const Picture& picture) {
+  const std::filesystem::path path = folder_ / picture.file;
+  const std::filesystem::path part = folder_ / (".part-" + picture.file);
   bool saved = false;
+  std::error_code error;
   try {
-    saved = cv::imwrite(path, picture.draw(), {cv::IMWRITE_PNG_COMPRESSION, 3});
+    saved = cv::imwrite(part.string(), picture.draw(), {cv::IMWRITE_PNG_COMPRESSION, 3});
   } catch (const cv::Exception&) {
     saved = false;  // no encoder, no memory
   }
   if (saved) {
-    ++written_;
-  } else if (error_.empty()) {
-    error_ = "cannot write " + path;
+    std::filesystem::rename(part, path, error);
+    saved = !error;
   }
+  if (!saved) {
+    std::filesystem::remove(part, error);
+    if (error_.empty()) {
+      error_ = "cannot write " + path.string();
+    }
+  }
+  return saved;
 }
 
 }  // namespace sonard::client

@@ -49,6 +49,7 @@ class Viewer {
   void take_ping(gemini::ReceivedPing ping);
   void greet_head();
   void show_progress(TimePoint at);
+  void refresh_picture();
   /// Ends the program when a limit is reached.
   void check_limits(TimePoint at);
   void end();
@@ -77,6 +78,7 @@ class Viewer {
   std::uint64_t pings_at_progress_ = 0;
   PingRate rate_;
   std::optional<gemini::ReceivedPing> last_ping_;  ///< only while its picture may be wanted
+  bool last_ping_shown_ = true;                    ///< its picture is there, or on its way
   PingPictures pictures_;
   std::optional<ImageWriter> writer_;
   std::optional<ExitStatus> failure_;
@@ -149,6 +151,7 @@ void Viewer::advance() {
   }
   if (head_met_ && at >= progress_due_) {
     show_progress(at);
+    refresh_picture();
   }
   check_limits(at);
   if (!ended_) {
@@ -181,11 +184,17 @@ void Viewer::take_ping(gemini::ReceivedPing ping) {
   if (!writer_) {
     return;
   }
-  if (options_.every == 0) {
-    last_ping_ = std::move(ping);
-  } else if (ping.number % options_.every == 0) {
-    const std::string name = fmt::format("{:06}", ping.number);
-    writer_->write(pictures_.of(std::move(ping), name));
+  if (options_.every > 0 && ping.number % options_.every == 0) {
+    writer_->write(pictures_.of(ping, fmt::format("{:06}", ping.number)));
+  }
+  last_ping_ = std::move(ping);
+  last_ping_shown_ = false;
+}
+
+/// For whoever looks at the folder while the program runs.
+void Viewer::refresh_picture() {
+  if (writer_ && last_ping_ && !std::exchange(last_ping_shown_, true)) {
+    writer_->refresh(pictures_.of(*last_ping_, "last"));
   }
 }
 

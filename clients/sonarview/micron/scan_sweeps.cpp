@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "protocol/micron/units.hpp"
@@ -11,6 +13,20 @@ namespace sonard::client {
 
 using micron::units_per_turn;
 using micron::wrapped;
+
+Sweep with_lines_before(Sweep sweep, const std::optional<Sweep>& before) {
+  std::set<int> bearings;
+  for (const micron::ReceivedLine& line : sweep.lines) {
+    bearings.insert(line.head.bearing);
+  }
+  std::vector<micron::ReceivedLine> older;
+  if (before) {
+    std::copy_if(before->lines.begin(), before->lines.end(), std::back_inserter(older),
+                 [&](const micron::ReceivedLine& line) { return bearings.count(line.head.bearing) == 0; });
+  }
+  sweep.lines.insert(sweep.lines.begin(), older.begin(), older.end());
+  return sweep;
+}
 
 ScanSweeps::ScanSweeps(const micron::HeadCommand& parameters)
     : sector_(!parameters.has(micron::control_bits::continuous)),

@@ -55,6 +55,7 @@ class Viewer {
   void take_sweep(const Sweep& sweep);
   void greet_head();
   void show_progress(TimePoint at);
+  void refresh_picture();
   std::string head_text() const;
   /// Ends the program when a limit is reached.
   void check_limits(TimePoint at);
@@ -92,6 +93,7 @@ class Viewer {
 
   SweepPictures pictures_;
   std::optional<ImageWriter> writer_;
+  std::optional<Sweep> last_sweep_;  ///< the last whole one, where pictures are wanted
   std::optional<LineFile> file_;
   std::optional<ExitStatus> failure_;
   bool ended_ = false;
@@ -196,6 +198,7 @@ void Viewer::advance() {
   }
   if (head_met_ && at >= progress_due_) {
     show_progress(at);
+    refresh_picture();
   }
   check_limits(at);
   if (!ended_) {
@@ -231,9 +234,18 @@ void Viewer::take_sweep(const Sweep& sweep) {
     }
     writer_->write(pictures_.of(sweep, names));
     whole_sweep_drawn_ = true;
+    last_sweep_ = sweep;
   }
   if (options_.sweeps > 0 && sweeps_done_ >= options_.sweeps) {
     end();
+  }
+}
+
+/// For whoever looks at the folder during a turn: the lines of this turn, and those of the last one where
+/// this one has not come yet.
+void Viewer::refresh_picture() {
+  if (writer_ && !sweeps_.current().lines.empty()) {
+    writer_->refresh(pictures_.of(with_lines_before(sweeps_.current(), last_sweep_), {"last"}));
   }
 }
 

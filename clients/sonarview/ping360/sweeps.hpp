@@ -16,6 +16,10 @@ struct Sweep360 {
   std::vector<ping360::ReceivedPing> pings;
 };
 
+/// What a screen shows in the middle of a turn: behind the pings of `before` at angles that `sweep` has not
+/// come to, those of `sweep`.
+Sweep360 with_pings_before(Sweep360 sweep, const std::optional<Sweep360>& before);
+
 /// Sorts pings into turns by their angles alone: a turn ends where the head has come round, or turns back.
 class SweepCollector {
  public:

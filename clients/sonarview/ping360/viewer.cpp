@@ -80,6 +80,7 @@ class Viewer {
   std::vector<Picture> pictures_of(const Sweep360& sweep, const std::vector<std::string>& names) const;
   void greet_head();
   void show_progress(TimePoint at);
+  void refresh_picture();
   void check_limits(TimePoint at);
   void give_up(ExitStatus failure, const std::string& message);
   void stop_head(TimePoint at);
@@ -114,6 +115,7 @@ class Viewer {
 
   std::shared_ptr<const picture::SweepImage> image_;
   std::optional<ImageWriter> writer_;
+  std::optional<Sweep360> last_sweep_;  ///< the last whole one, where pictures are wanted
   std::optional<ExitStatus> failure_;
 };
 
@@ -189,6 +191,7 @@ void Viewer::advance() {
   }
   if (head_met_ && at >= progress_due_) {
     show_progress(at);
+    refresh_picture();
   }
   check_limits(at);
   arm_timer();
@@ -236,6 +239,7 @@ void Viewer::take_sweep(const Sweep360& sweep) {
     }
     writer_->write(pictures_of(sweep, names));
     whole_sweep_drawn_ = true;
+    last_sweep_ = sweep;
   }
   if (options_.turns > 0 && sweeps_done_ >= options_.turns) {
     stop_head(now());
@@ -259,6 +263,14 @@ std::vector<Picture> Viewer::pictures_of(const Sweep360& sweep, const std::vecto
                         [shape, lines] { return picture::sweep_polar_image(shape, *lines); }});
   }
   return pictures;
+}
+
+/// For whoever looks at the folder during a turn: the pings of this turn, and those of the last one where
+/// this one has not come yet.
+void Viewer::refresh_picture() {
+  if (writer_ && !stopping_until_ && !sweeps_.current().pings.empty()) {
+    writer_->refresh(pictures_of(with_pings_before(sweeps_.current(), last_sweep_), {"last"}));
+  }
 }
 
 // ---- What is said meanwhile

@@ -11,10 +11,12 @@ import json
 import math
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import uuid
 import zipfile
@@ -139,6 +141,22 @@ class Files(Case):
             self.assertEqual(sums(out), before, "nothing is missing")
         refused = render(*arguments, "--out", out, "--picture-every", "2", check=False)
         self.assertEqual(refused.returncode, 5, "a folder holds the frames of one setting")
+
+    def test_python_of_the_documentation_runs(self):
+        """The blocks of docs/python.md, in the folder that its command fills (of a short way, for time's sake)."""
+        out = self.path("out")
+        with open(DEMO_WAY) as file:
+            short = self.write("way.csv", "".join(file.readlines()[:2]))
+        render(DEMO, "--trajectory", short, "--out", out, "--truth", "--picture-every", "0")
+        with open(os.path.join(SOURCE, "docs", "python.md")) as file:
+            blocks = re.findall("```python\n(.*?)```", file.read(), re.DOTALL)
+        self.assertEqual(len(blocks), 3)
+        said = [subprocess.run([sys.executable, "-W", "error", "-W", "ignore::ResourceWarning", "-c", block], cwd=out,
+                               capture_output=True, text=True, timeout=PATIENCE_S) for block in blocks]
+        self.assertEqual([run.stderr for run in said], ["", "", ""])
+        self.assertRegex(said[0].stdout, r"^strongest at [0-9.]+ m, -?[0-9.]+ degrees to starboard\n$")
+        self.assertRegex(said[1].stdout, r" [1-9][0-9]* bins\n")
+        self.assertEqual(said[2].stdout, "(1,) (1, 3)\n")
 
     def test_log_holds_the_arrays(self):
         """Unix times in the trajectory: those of the log."""
@@ -285,6 +303,53 @@ class Bytes(Case):
         # Everything anew.
         self.one_run(out, way, "--overwrite")
         self.assertEqual(sums(out), sums(self.path("one")))
+
+    def test_says_what_is_there_when_interrupted_and_resumed(self):
+        out = self.path("out")
+        arguments = [self.config(), "--trajectory", self.way(3.0), "--out", out, "--rate", "10", "--compression", "3",
+                     "--picture-every", "0"]
+        program = subprocess.Popen([os.path.join(PROGRAMS, "sonard"), "render", *arguments], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + PATIENCE_S
+        while not os.path.exists(os.path.join(out, "ping_000001.json")) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        program.send_signal(signal.SIGINT)
+        said = program.communicate(timeout=PATIENCE_S)[1]
+        self.assertEqual(program.returncode, -signal.SIGINT)
+        there = len([name for name in os.listdir(out) if name.endswith(".json") and name.startswith("ping")])
+        self.assertIn(f"{out}: interrupted: {there} of 31 frames are there; the same command goes on with the rest\n", said)
+        done = render(*arguments)
+        self.assertIn(f"{out}: {there} of 31 frames are there; {31 - there} to render\n", done.stderr)
+        self.assertEqual(done.stdout, f"{out}: 31 frames\n")
+
+    def test_warns_of_a_rate_beyond_the_head(self):
+        arguments = [self.config(), "--trajectory", self.way(0.02), "--compression", "4", "--picture-every", "0"]
+        fast = render(*arguments, "--out", self.path("fast"), "--rate", "200")
+        self.assertRegex(fast.stderr, r"--rate 200 is beyond head 'bow', which sends [0-9.]+ pings per second at most")
+        usual = render(*arguments, "--out", self.path("usual"), "--rate", "4")
+        self.assertNotIn("beyond", usual.stderr)
+
+    def test_a_body_moves_along_a_file(self):
+        """The sphere 5 m to port goes away: it is in the first ping, and in none when it is 1 km off."""
+        ball = self.write("ball.csv", CSV_HEADER + "0,3,3,0,0,0,0,1\n1,1000,3,0,0,0,0,1\n")
+        out = self.path("out")
+        arguments = [self.config(), "--trajectory", self.way(1.0), "--out", out, "--rate", "1", "--compression", "3", "--truth",
+                     "--picture-every", "0"]
+        name = self.body_name()
+        render(*arguments, "--body", f"{name}={ball}")
+        seen = [numpy.load(os.path.join(out, f"ping_{k:06}_bodies.npy")).any() for k in range(2)]
+        self.assertEqual(seen, [True, False])
+        other = self.path("other")
+        arguments[arguments.index(out)] = other
+        refused = render(*arguments, "--body", f"whale={ball}", check=False)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn(f"--body: 'whale' cannot be moved (expected one of {name})", refused.stderr)
+        self.assertEqual(render(*arguments, "--body", "whale", check=False).returncode, 64)
+
+    @staticmethod
+    def body_name():
+        with open(SPHERE) as file:
+            return re.search('<model name="([^"]+)"', file.read()).group(1)
 
     def test_offline_equals_served(self):
         """The same pose, seed and ping numbers: what a daemon has rendered for a client."""

@@ -50,6 +50,15 @@ micron::ScanSettings wide_steps(bool clockwise = true) {
   return {.step = 200, .clockwise = clockwise};
 }
 
+TEST(ScanSweeps, ThePictureWithinATurnShowsTheNewestLineOfEachBearing) {
+  const Sweep before{0, {line_at(0), line_at(200), line_at(400)}, 0};
+  const Sweep turn{1, {line_at(0), line_at(210)}, 0};
+  const Sweep shown = with_lines_before(turn, before);
+  EXPECT_EQ(shown.number, 1U);
+  EXPECT_THAT(bearings(shown), ElementsAre(200, 400, 0, 210));
+  EXPECT_THAT(bearings(with_lines_before(turn, std::nullopt)), ElementsAre(0, 210));
+}
+
 TEST(ScanSweeps, ASweepEndsBeforeItsFirstBearingComesAgain) {
   Scan scan(wide_steps());
   for (int line = 0; line < 64; ++line) {

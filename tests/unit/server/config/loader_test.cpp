@@ -23,6 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -605,7 +606,72 @@ TEST_F(Loader, points_at_malformed_yaml) {
   EXPECT_THAT(complaints(minimal_config + "water: {ph: 8\n"),
               ElementsAre(AllOf(StartsWith("config.yaml:1"), HasSubstr("(expected valid YAML)"))));
   EXPECT_THAT(complaints("world: [\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
-  EXPECT_THAT(complaints("a: 1\n\tb: 2\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
+}
+
+// Places are counted by hand; columns count from 1.
+TEST_F(Loader, names_tabs_and_wrong_indents) {
+  EXPECT_THAT(
+      complaints("a: 1\n\tb: 2\n"),
+      ElementsAre("config.yaml:2:1: a tab indents this line (expected spaces; YAML allows no tabs there)"));
+  EXPECT_THAT(complaints("world:\n  \tfile: a.sdf\n"),
+              ElementsAre(StartsWith("config.yaml:2:3: a tab indents")));
+  EXPECT_THAT(complaints("world:\n  file: w\n   x: 1\n"),
+              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 spaces"),
+                                HasSubstr("(expected 0 or 2)"))));
+  EXPECT_THAT(complaints("world:\n  file: w\n b: 1\n"),
+              ElementsAre(AllOf(StartsWith("config.yaml:3:2: this line is indented by 1 spaces"),
+                                HasSubstr("(expected 0 or 2)"))));
+  EXPECT_THAT(complaints("heads:\n  - name: f\n   type: x\n"),
+              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 spaces"),
+                                HasSubstr("(expected 0 or 2 or 4)"))));
+}
+
+TEST_F(Loader, names_decimal_commas) {
+  EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m: 20,5\n"),
+              ElementsAre(AllOf(
+                  StartsWith("config.yaml:12:12: water.depth_m: '20,5' has a decimal comma, write 20.5"),
+                  HasSubstr("(expected a number from 0 to 11000, in m)"))));
+  EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {position_m: [1,5, 2,0, 3,1]}}\n"),
+              Contains(AllOf(StartsWith("config.yaml:2:31: poses.initial.position_m: is a list of 6"),
+                             HasSubstr("decimals have a point"))));
+}
+
+TEST_F(Loader, names_ipv6_addresses) {
+  const std::string udp = "world: {file: w}\nposes:\n  udp:\n";
+  EXPECT_THAT(complaints(udp + "    bind: ::1\n"),
+              Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: '::1' is an IPv6 address"),
+                             HasSubstr("127.0.0.1"))));
+  EXPECT_THAT(complaints(udp + "    bind: \"[::1]:14600\"\n"),
+              Contains(StartsWith("config.yaml:4:11: poses.udp.bind: '[::1]:14600' is an IPv6 address")));
+  EXPECT_THAT(complaints(udp + "    bind: [::1]:14600\n"),
+              ElementsAre(StartsWith("config.yaml:4:11: '[::1]:14600' is an IPv6 address")));
+  EXPECT_THAT(complaints(udp + "    bind: [::1]\n"),
+              Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: is a list"), HasSubstr("IPv6"))));
+  EXPECT_THAT(complaints(udp + "    bind: 0.0.0.0:14600\n    allow: [fe80::1/64]\n"),
+              Contains(StartsWith("config.yaml:5:13: poses.udp.allow[0]: 'fe80::1/64' is an IPv6 address")));
+}
+
+TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
+  std::string keys = minimal_config;
+  for (int key = 0; key < 100'000; ++key) {
+    keys += fmt::format("k{}: 1\n", key);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<std::string> lines = complaints(keys);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds{30});
+  ASSERT_EQ(lines.size(), 101U);
+  EXPECT_THAT(lines.back(), HasSubstr("99900 more problems are not shown"));
+
+  const std::string long_word(1'000'000, 'x');
+  for (const std::string& text : {minimal_config + "engine: " + long_word + "\n",
+                                  minimal_config + long_word + ": 1\n" + long_word + ": 1\n",
+                                  minimal_config + "water: {ph: " + long_word + "}\n"}) {
+    for (const std::string& line : complaints(text)) {
+      EXPECT_LT(line.size(), 1000U) << line.substr(0, 200);
+    }
+  }
+  EXPECT_THAT(complaints(std::string(5'000'000, '#')),
+              ElementsAre("config.yaml: is 5000000 bytes long (expected at most 4194304)"));
 }
 
 TEST_F(Loader, wants_one_document_that_is_a_mapping) {

@@ -2,7 +2,9 @@
 // What ships in configs/ loads without a warning, and the two that scripts rely on say what they promise.
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -31,6 +33,35 @@ TEST(ShippedConfigs, load_without_warnings) {
     }
   }
   EXPECT_GE(files, 4);
+}
+
+TEST(ShippedConfigs, tell_editors_their_schema) {
+  for (const auto& entry : std::filesystem::directory_iterator(configs)) {
+    if (entry.path().extension() == ".yaml") {
+      std::string first;
+      std::getline(std::ifstream(entry.path()), first);
+      EXPECT_EQ(first, "# yaml-language-server: $schema=schema/sonard.schema.json") << entry.path();
+    }
+  }
+}
+
+/// Paths of keys that the reference has no sentence for.
+void find_silent(const std::vector<KeyReference>& keys, const std::string& path,
+                 std::vector<std::string>& silent) {
+  for (const KeyReference& key : keys) {
+    if (key.meaning.empty()) {
+      silent.push_back(path + key.name);
+    }
+    find_silent(key.keys, path + key.name + ".", silent);
+  }
+}
+
+TEST(ShippedConfigs, every_key_of_the_schema_has_its_sentence) {
+  for (const HeadKind* kind : head_kinds()) {
+    std::vector<std::string> silent;
+    find_silent(describe_config(*kind), "", silent);
+    EXPECT_THAT(silent, IsEmpty()) << kind->type();
+  }
 }
 
 TEST(ShippedConfigs, trajectories_load) {
@@ -92,6 +123,19 @@ TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
   EXPECT_EQ(head.device.netmask, 0xFFFFFF00U);
   EXPECT_EQ(head.status.mode, StatusDestination::Mode::limited_broadcast);
   EXPECT_THAT(head.allow, ElementsAre(Cidr{0x0A3D1300, 24}));
+}
+
+TEST(ShippedConfigs, two_vehicles_run_side_by_side) {
+  const DaemonConfig a = shipped("two-vehicles-a.yaml");
+  const DaemonConfig b = shipped("two-vehicles-b.yaml");
+  ASSERT_EQ(a.heads.size(), 2U);
+  ASSERT_EQ(b.heads.size(), 1U);
+  EXPECT_NE(a.poses.udp->bind, b.poses.udp->bind);
+  const GeminiConfig& gemini_a = gemini_config(a.heads[0]);
+  const GeminiConfig& gemini_b = gemini_config(b.heads[0]);
+  EXPECT_NE(gemini_a.device.sonar_id, gemini_b.device.sonar_id);
+  EXPECT_NE(gemini_a.bind_address, gemini_b.bind_address);
+  EXPECT_NE(gemini_a.status.hosts, gemini_b.status.hosts);
 }
 
 TEST(ShippedConfigs, paper_uses_the_model_of_the_paper) {

@@ -26,5 +26,11 @@ TEST(ProgressText, SaysNothingOfWhatItCannotKnow) {
   EXPECT_EQ(progress_text({0, 0, 0, seconds(0)}), "0 of 0 frames, 100 %");
 }
 
+TEST(ProgressText, SaysWhatIsThereAtTheStartAndWhenInterrupted) {
+  EXPECT_EQ(found_text(300, 40), "40 of 300 frames are there; 260 to render");
+  EXPECT_EQ(interrupted_text({300, 40, 2, seconds(5)}),
+            "interrupted: 42 of 300 frames are there; the same command goes on with the rest");
+}
+
 }  // namespace
 }  // namespace sonard::server

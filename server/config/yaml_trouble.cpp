@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config/yaml_trouble.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr std::size_t most_quoted = 80;
+
+std::string_view next_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+std::string_view without_comment(std::string_view line) {
+  line = line.substr(0, line.find(" #"));
+  const std::size_t last = line.find_last_not_of(" \t\r");
+  return line.substr(0, last == std::string_view::npos ? 0 : last + 1);
+}
+
+std::size_t indent_of(std::string_view line) {
+  return std::min(line.find_first_not_of(' '), line.size());
+}
+
+/// Columns at which the mappings and lists stand that are open behind the lines so far.
+class Indents {
+ public:
+  void add(std::string_view line) {
+    std::size_t at = indent_of(line);
+    while (!open_.empty() && open_.back() >= at) {
+      open_.pop_back();
+    }
+    open_.push_back(at);
+    for (; line.substr(at).starts_with("- "); open_.push_back(at)) {
+      at = line.find_first_not_of(' ', at + 1);  // what follows a dash stands in a mapping of its own
+    }
+    may_go_deeper_ = line.ends_with(':') || line.ends_with('-') || line.ends_with('|') || line.ends_with('>');
+  }
+  bool allow(std::size_t indent) const {
+    return open_.empty() || (may_go_deeper_ && indent > open_.back()) ||
+           std::find(open_.begin(), open_.end(), indent) != open_.end();
+  }
+  const std::vector<std::size_t>& open() const { return open_; }
+
+ private:
+  std::vector<std::size_t> open_;
+  bool may_go_deeper_ = false;
+};
+
+std::string_view word_with_ipv6(std::string_view line) {
+  while (!line.empty()) {
+    line.remove_prefix(std::min(line.find_first_not_of(" ,"), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(" ,"));
+    if (is_ipv6(word)) {
+      return word;
+    }
+    line.remove_prefix(word.size());
+  }
+  return {};
+}
+
+int column(std::size_t offset) {
+  return static_cast<int>(offset) + 1;
+}
+
+}  // namespace
+
+ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint) {
+  Indents indents;
+  for (int number = 1; number <= at.line && !text.empty(); ++number) {
+    const std::string_view whole = next_line(text);
+    const std::size_t first = std::min(whole.find_first_not_of(" \t"), whole.size());
+    if (const std::size_t tab = whole.find('\t'); tab < first && first < whole.size()) {
+      return {
+          {number, column(tab)}, "", "a tab indents this line (expected spaces; YAML allows no tabs there)"};
+    }
+    const std::string_view line = without_comment(whole);
+    const std::size_t indent = indent_of(line);
+    if (indent == line.size() || line[indent] == '#') {
+      continue;
+    }
+    if (number == at.line) {
+      if (const std::string_view word = word_with_ipv6(line); !word.empty()) {
+        return {{number, column(static_cast<std::size_t>(word.data() - whole.data()))},
+                "",
+                fmt::format("{} is an IPv6 address (expected an IPv4 address; IPv6 is not served)",
+                            in_quotes(word))};
+      }
+      if (!indents.allow(indent)) {
+        return {{number, column(indent)},
+                "",
+                fmt::format(
+                    "this line is indented by {} spaces, as none of those it could belong to (expected {})",
+                    indent, fmt::join(indents.open(), " or "))};
+      }
+    }
+    indents.add(line);
+  }
+  return {at, "", fmt::format("{} (expected valid YAML)", complaint)};
+}
+
+std::string with_decimal_point(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+  const auto digits = [](std::string_view part) {
+    return !part.empty() &&
+           std::all_of(part.begin(), part.end(), [](unsigned char c) { return std::isdigit(c); });
+  };
+  if (comma == std::string_view::npos || comma < sign || !digits(text.substr(sign, comma - sign)) ||
+      !digits(text.substr(comma + 1))) {
+    return {};
+  }
+  return fmt::format("{}.{}", text.substr(0, comma), text.substr(comma + 1));
+}
+
+bool is_ipv6(std::string_view text) {
+  if (text.starts_with('[')) {
+    const std::size_t end = text.find(']');
+    text = end == std::string_view::npos ? std::string_view{} : text.substr(1, end - 1);
+  }
+  text = text.substr(0, text.find('/'));
+  text = text.substr(0, text.find('%'));
+  in6_addr address{};
+  return text.find(':') != std::string_view::npos &&
+         inet_pton(AF_INET6, std::string(text).c_str(), &address) == 1;
+}
+
+std::string in_quotes(std::string_view text) {
+  return text.size() <= most_quoted
+             ? fmt::format("'{}'", text)
+             : fmt::format("'{}...' ({} characters)", text.substr(0, most_quoted), text.size());
+}
+
+}  // namespace sonard::server
