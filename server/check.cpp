@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/check.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -17,6 +18,7 @@
 #include "server/config/overlaps.hpp"
 #include "server/daemon/resolve_mounts.hpp"
 #include "server/devices/device_kind.hpp"
+#include "server/diagnosis/sight.hpp"
 
 namespace sonard::server {
 namespace {
@@ -58,6 +60,8 @@ class Check {
   void check_addresses();
   template <typename Protocol>
   void try_socket(const Endpoint& endpoint, const std::string& key);
+  void list_bodies(const render::World& world, const std::vector<BodyBox>& boxes);
+  void check_start(const render::World& world, const std::vector<BodyBox>& boxes);
 
   const LoadedConfig& loaded_;
   DaemonConfig config_;
@@ -74,6 +78,49 @@ std::string material_names(const render::World& world) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete", of the first bodies.
+void Check::list_bodies(const render::World& world, const std::vector<BodyBox>& boxes) {
+  constexpr std::size_t most = 50;
+  for (std::size_t i = 0; i < std::min(most, world.bodies.size()); ++i) {
+    const render::Body& body = world.bodies[i];
+    const glm::dvec3 size = boxes[i].max_m - boxes[i].min_m;
+    const glm::dvec3 middle = body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m));
+    std::set<std::string> materials;
+    for (const render::BodyPart& part : body.parts) {
+      materials.insert(part.material.name);
+    }
+    if (!body.parts.empty()) {
+      report_.summary.push_back(
+          fmt::format("body     {}: {:.4g} x {:.4g} x {:.4g} m at ({:.4g}, {:.4g}, {:.4g}), {}", body.name,
+                      size.x, size.y, size.z, middle.x, middle.y, middle.z, fmt::join(materials, ", ")));
+    }
+  }
+  if (world.bodies.size() > most) {
+    report_.summary.push_back(fmt::format("         and {} more bodies", world.bodies.size() - most));
+  }
+}
+
+/// What a sonar would see from `poses.initial`. Whether something is in the fan only a ping can tell.
+void Check::check_start(const render::World& world, const std::vector<BodyBox>& boxes) {
+  if (!config_.poses.T_world_vehicle_initial) {
+    return;
+  }
+  const render::Pose& T_world_vehicle = *config_.poses.T_world_vehicle_initial;
+  for (const HeadConfig& head : config_.heads) {
+    const Sight sight{.T_world_vehicle = T_world_vehicle,
+                      .T_world_sonar = T_world_vehicle * head.T_vehicle_sonar,
+                      .range_m = usual_settings(head).range.sampled_range_m(),
+                      .vehicle_model = config_.vehicle_model,
+                      .hides_vehicle = head.hides_vehicle};
+    for (const Finding& finding : look_around(world, boxes, {}, sight)) {
+      const bool may_be_wanted = finding.code == "nothing_in_fan" || finding.code == "inside_body";
+      if (!may_be_wanted) {
+        warning("poses.initial", fmt::format("head '{}': {}", head.name, finding.text));
+      }
+    }
+  }
+}
+
 void Check::check_world() {
   try {
     const render::World world = render::load_world(config_.world_file);
@@ -87,6 +134,8 @@ void Check::check_world() {
     report_.summary.push_back(fmt::format("world    {}: {} bodies, {} triangles, materials: {}", world.name,
                                           world.bodies.size(), world.triangle_count(),
                                           material_names(world)));
+    const std::vector<BodyBox> boxes = boxes_of(world);
+    list_bodies(world, boxes);
     const render::MeshDiagnostics& d = world.diagnostics;
     if (d.degenerate_triangles + d.non_finite_triangles + d.bad_normals + d.bad_texcoords > 0) {
       report_.summary.push_back(
@@ -103,6 +152,7 @@ void Check::check_world() {
     for (const WorldProblem& found : resolve_mounts(config_, world)) {
       problem(found.key, found.message);
     }
+    check_start(world, boxes);
     if (!config_.vehicle_model.empty()) {
       report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.vehicle_model));
     }

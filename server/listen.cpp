@@ -12,6 +12,7 @@
 
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
+#include "server/diagnosis/pose_stream.hpp"
 #include "server/pose/pose_inputs.hpp"
 
 namespace sonard::server {
@@ -72,7 +73,9 @@ std::string likely_cause(const PoseSource& source) {
   return "nothing arrived: " + source.silence_hint();
 }
 
-void print_input(const PoseSource& source, const PoseStatistics& statistics, TimePoint now) {
+void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
+  const PoseSource& source = inputs.source(index);
+  const PoseStatistics& statistics = inputs.statistics(index);
   fmt::print("{}{}{}\n", source.description(), source.received().empty() ? "" : " ", source.received());
   print_names("names   ", source.entities());
   if (statistics.newest()) {
@@ -80,6 +83,9 @@ void print_input(const PoseSource& source, const PoseStatistics& statistics, Tim
     print_newest(*statistics.newest());
   } else {
     fmt::print("  no pose of the vehicle: {}\n", likely_cause(source));
+  }
+  for (const Finding& finding : look_at_stream(inputs, index, now)) {
+    fmt::print("  wrong?   {}\n", finding.text);
   }
   if (const std::string details = source.details(); !details.empty()) {
     fmt::print(" {}\n", details);
@@ -107,7 +113,7 @@ int listen_to_poses(const PoseConfig& poses, std::chrono::nanoseconds duration) 
     io.run_for(duration);
     const TimePoint now = clock.now();
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      print_input(inputs.source(i), inputs.statistics(i), now);
+      print_input(inputs, i, now);
     }
     inputs.stop();
   } catch (const PoseSourceError& error) {

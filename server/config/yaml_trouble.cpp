@@ -99,7 +99,7 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
         return {{number, column(indent)},
                 "",
                 fmt::format(
-                    "this line is indented by {} spaces, as none of those it could belong to (expected {})",
+                    "this line is indented by {} space(s), as none of those it could belong to (expected {})",
                     indent, fmt::join(indents.open(), " or "))};
       }
     }

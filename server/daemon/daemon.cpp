@@ -301,15 +301,19 @@ void Daemon::poses_changed() {
   }
 }
 
-// Every two seconds; each finding is logged once.
+// Every two seconds; a finding is logged when it is new.
 void Daemon::look_at_streams() {
+  std::set<std::string> told;
   for (std::size_t i = 0; i < inputs_->size(); ++i) {
     for (const Finding& finding : look_at_stream(*inputs_, i, clock_.now())) {
-      if (told_.insert(fmt::format("{} {}", i, finding.code)).second) {
+      const std::string what = fmt::format("{} {}", i, finding.code);
+      told.insert(what);
+      if (!told_.contains(what)) {
         spdlog::warn("{}: {}", inputs_->source(i).description(), finding.text);
       }
     }
   }
+  told_ = std::move(told);
   stream_timer_.expires_after(std::chrono::seconds{2});
   stream_timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) {

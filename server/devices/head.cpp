@@ -169,7 +169,7 @@ TransportEvents Head::Impl::transport_events() {
   TransportEvents hooks{.received =
                             [weak](BytesReceived received) {
                               if (const auto self = weak.lock()) {
-                                self->clients.heard(received.from.remote, self->services.clock.now());
+                                self->clients.sent(received.from.remote, self->services.clock.now());
                                 self->happen(std::move(received));
                               }
                             },
@@ -324,7 +324,8 @@ void Head::Impl::note_water(TimePoint now) {
     // In the air no pings are made, whose pictures would tell.
     NewestPing here = newest.value_or(NewestPing{});
     here.T_world_mount = T_world_mount;
-    diagnosis.look(now, services.poses.present(now), here, false);
+    const TimePoint present = services.poses.present(now);
+    diagnosis.look(now, present, here, rendering.bodies_at(present), false);
     step(now, WaterChanged{out});
   }
 }
@@ -369,6 +370,7 @@ bool Head::Impl::render(const PingJob& job) {
   const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);
   if (!T_world_mount) {
     rendering.count_missing_pose();
+    diagnosis.no_pose();
     return false;
   }
   if (recording.on()) {
@@ -399,7 +401,7 @@ bool Head::Impl::render(const PingJob& job) {
         }
         if (self->rendering.take(result)) {
           self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
-                               result.statistics.sees_surface);
+                               self->rendering.bodies_at(pose_time), result.statistics.sees_surface);
           self->happen(PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16)}});
         } else {
           self->happen(PingNotRendered{number});

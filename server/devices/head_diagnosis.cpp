@@ -8,7 +8,6 @@
 #include <spdlog/spdlog.h>
 
 #include "server/devices/device_kind.hpp"
-#include "server/diagnosis/sight.hpp"
 #include "server/pose/pose_history.hpp"
 
 namespace sonard::server {
@@ -20,7 +19,8 @@ constexpr std::chrono::seconds while_blind{1};
 
 }  // namespace
 
-void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping, bool sees_surface) {
+void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
+                         const std::vector<PosedBody>& bodies, bool sees_surface) {
   const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
   const bool as_before = std::exchange(sees_surface_, sees_surface) == sees_surface;
   const auto period = sees_surface ? while_seeing : while_blind;
@@ -29,31 +29,35 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping, 
     return;
   }
   looked_at_ = now;
-  std::vector<Finding> found =
-      look_around(*services_.world, services_.poses.bodies_at(time),
-                  {.T_world_vehicle = vehicle->T_world_vehicle,
-                   .T_world_sonar = T_world_transducer(*ping.T_world_mount, ping.bearing_rad),
-                   .azimuth_rad = ping.azimuth_rad,
-                   .elevation_rad = ping.elevation_rad,
-                   .range_m = ping.range_m,
-                   .sees_surface = sees_surface,
-                   .vehicle_model = services_.vehicle_model,
-                   .hides_vehicle = config_.hides_vehicle});
-  log_what_is_new(found);
-  findings_ = std::move(found);
+  if (boxes_.empty()) {
+    boxes_ = boxes_of(*services_.world);
+  }
+  found(look_around(*services_.world, boxes_, bodies,
+                    {.T_world_vehicle = vehicle->T_world_vehicle,
+                     .T_world_sonar = T_world_transducer(*ping.T_world_mount, ping.bearing_rad),
+                     .range_m = ping.range_m,
+                     .sees_surface = sees_surface,
+                     .vehicle_model = services_.vehicle_model,
+                     .hides_vehicle = config_.hides_vehicle}));
 }
 
-void HeadDiagnosis::log_what_is_new(const std::vector<Finding>& found) const {
-  for (const Finding& finding : found) {
+void HeadDiagnosis::no_pose() {
+  sees_surface_.reset();
+  found({{"no_pose", "No pose of the vehicle has come, or only a stale one: no ping is made."}});
+}
+
+void HeadDiagnosis::found(std::vector<Finding> findings) {
+  for (const Finding& finding : findings) {
     const bool known =
         std::ranges::any_of(findings_, [&](const Finding& before) { return before.code == finding.code; });
     if (!known) {
       spdlog::warn("head={} {}", config_.name, finding.text);
     }
   }
-  if (found.empty() && !findings_.empty()) {
-    spdlog::info("head={} sees something again", config_.name);
+  if (findings.empty() && !findings_.empty()) {
+    spdlog::info("head={} nothing looks wrong any more", config_.name);
   }
+  findings_ = std::move(findings);
 }
 
 }  // namespace sonard::server

@@ -73,6 +73,9 @@ class HeadRendering {
   /// is no pose, or only a stale one that must not be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
 
+  /// Bodies as the poses say, and with them the model of the vehicle, unless it is hidden.
+  std::vector<PosedBody> bodies_at(TimePoint time) const;
+
   /// All poses that a log keeps of a ping transmitted at `transmit_time`.
   std::shared_ptr<const PosesUsed> poses_used(TimePoint transmit_time) const;
 
@@ -90,8 +93,6 @@ class HeadRendering {
 
  private:
   void rest_when_idle(TimePoint now);
-  /// Bodies as the poses say, and with them the model of the vehicle, unless it is hidden.
-  std::vector<PosedBody> bodies_at(TimePoint time) const;
 
   const HeadConfig& config_;
   int stream_;

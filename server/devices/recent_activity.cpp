@@ -5,7 +5,7 @@
 
 namespace sonard::server {
 
-void RecentClients::heard(const Endpoint& from, TimePoint now) {
+void RecentClients::sent(const Endpoint& from, TimePoint now) {
   auto client = std::find_if(clients_.begin(), clients_.end(),
                              [&](const ClientSeen& seen) { return seen.address == from; });
   if (client == clients_.end()) {

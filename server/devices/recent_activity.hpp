@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head did and heard lately, for its status.
+// What a head did lately, and who asked it to, for its status.
 #pragma once
 
 #include <chrono>
@@ -15,9 +15,9 @@ namespace sonard::server {
 /// Who has sent something to a head. Belongs to the I/O thread.
 class RecentClients {
  public:
-  void heard(const Endpoint& from, TimePoint now);
+  void sent(const Endpoint& from, TimePoint now);
   void gone(const Endpoint& who);
-  /// Those that were heard at `from` or later, the newest first.
+  /// Those that sent something at `from` or later, the newest first.
   std::vector<ClientSeen> since(TimePoint from) const;
 
   /// A peer that changes its port with each datagram takes no more memory than this.

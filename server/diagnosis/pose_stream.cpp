@@ -10,7 +10,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uint64_t enough_poses = 20;  // to judge a clock by
+constexpr std::uint64_t enough_poses = 20;  // to tell a clock by
 
 struct Unit {
   std::string_view name;

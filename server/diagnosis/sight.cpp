@@ -18,20 +18,14 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double thousand = 1000.0;
 
-struct Box {
-  glm::dvec3 min_m{std::numeric_limits<double>::infinity()};
-  glm::dvec3 max_m{-std::numeric_limits<double>::infinity()};
+bool contains(const BodyBox& box, const glm::dvec3& p, double margin_m = 0.0) {
+  return glm::all(glm::lessThanEqual(box.min_m - margin_m, p)) &&
+         glm::all(glm::lessThanEqual(p, box.max_m + margin_m));
+}
 
-  void include(const glm::dvec3& p) {
-    min_m = glm::min(min_m, p);
-    max_m = glm::max(max_m, p);
-  }
-  bool contains(const glm::dvec3& p, double margin_m = 0.0) const {
-    return glm::all(glm::lessThanEqual(min_m - margin_m, p)) &&
-           glm::all(glm::lessThanEqual(p, max_m + margin_m));
-  }
-  double distance_m(const glm::dvec3& p) const { return glm::length(p - glm::clamp(p, min_m, max_m)); }
-};
+double distance_m(const BodyBox& box, const glm::dvec3& p) {
+  return glm::length(p - glm::clamp(p, box.min_m, box.max_m));
+}
 
 /// Calls `take` with the corners of each triangle of a body, in the body's frame.
 template <class Take>
@@ -46,11 +40,14 @@ void each_triangle(const render::Body& body, Take take) {
   }
 }
 
-Box box_of(const render::Body& body) {
-  Box box;
+BodyBox box_of(const render::Body& body) {
+  BodyBox box{glm::dvec3(std::numeric_limits<double>::infinity()),
+              glm::dvec3(-std::numeric_limits<double>::infinity())};
   for (const render::BodyPart& part : body.parts) {
     for (const glm::vec3& position : part.mesh->positions) {
-      box.include(part.T_body_part * glm::dvec3(position));
+      const glm::dvec3 p = part.T_body_part * glm::dvec3(position);
+      box.min_m = glm::min(box.min_m, p);
+      box.max_m = glm::max(box.max_m, p);
     }
   }
   return box;
@@ -120,19 +117,21 @@ bool is_inside(const render::Body& body, const glm::dvec3& p_body) {
 struct Neighbour {
   const render::Body* body = nullptr;
   render::Pose T_world_body;
-  Box box;                  ///< in its own frame
+  BodyBox box;              ///< in its own frame
   glm::dvec3 sonar_m{0.0};  ///< likewise
 };
 
 class LookAround {
  public:
-  LookAround(const render::World& world, const std::vector<PosedBody>& moved, const Sight& sight)
+  LookAround(const render::World& world, const std::vector<BodyBox>& boxes,
+             const std::vector<PosedBody>& moved, const Sight& sight)
       : world_(world), sight_(sight) {
-    for (const render::Body& body : world.bodies) {
-      if (body.name == sight.vehicle_model && sight.hides_vehicle) {
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      const render::Body& body = world.bodies[i];
+      if ((body.name == sight.vehicle_model && sight.hides_vehicle) || boxes[i].min_m.x > boxes[i].max_m.x) {
         continue;
       }
-      Neighbour neighbour{&body, body.T_world_body, box_of(body), {}};
+      Neighbour neighbour{&body, body.T_world_body, boxes[i], {}};
       for (const PosedBody& posed : moved) {
         if (posed.name == body.name) {
           neighbour.T_world_body = posed.T_world_body;
@@ -160,7 +159,7 @@ class LookAround {
   bool is_in_the_world(const glm::dvec3& p) const {
     return std::ranges::any_of(neighbours_, [&](const Neighbour& neighbour) {
       const glm::dvec3 p_body = render::inverse(neighbour.T_world_body) * p;
-      return neighbour.box.contains(p_body, sight_.range_m);
+      return contains(neighbour.box, p_body, sight_.range_m);
     });
   }
 
@@ -182,14 +181,16 @@ class LookAround {
                                                                : ""));
   }
 
-  /// A quaternion that comes with w first, read as x, y, z, w.
+  /// A quaternion that comes with w first, read as x, y, z, w: that of a level vehicle leans by 180 degrees
+  /// less its heading. (One that heads due west looks level, and cannot be told.)
   void note_upside_down() {
     const glm::dquat& q = sight_.T_world_vehicle.orientation;
     const auto up_of = [](const glm::dquat& turn) { return (turn * glm::dvec3(0, 0, 1)).z; };
-    if (up_of(q) < 0.0 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.9) {
+    if (up_of(q) < 0.7 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.98) {
       add("quaternion_w_first",
-          "The vehicle lies upside down, and would be upright if its quaternion came with w first: messages "
-          "want x, y, z, w.");
+          "The vehicle lies on its side or upside down, and would be level if its quaternion came with w "
+          "first "
+          "(messages want x, y, z, w).");
     }
   }
 
@@ -200,7 +201,8 @@ class LookAround {
       const bool is_vehicle = body.name == sight_.vehicle_model;
       // One may be inside of a tank or a harbour, and see it.
       const bool holds_a_sonar = sight_.sees_surface && !is_vehicle && glm::length(size) > 5.0;
-      if (!holds_a_sonar && neighbour.box.contains(neighbour.sonar_m) && is_inside(body, neighbour.sonar_m)) {
+      if (!holds_a_sonar && contains(neighbour.box, neighbour.sonar_m) &&
+          is_inside(body, neighbour.sonar_m)) {
         add("inside_body",
             fmt::format("The sonar is inside of the body '{}'{}.", body.name,
                         is_vehicle ? ", its own vehicle (hides_vehicle: true leaves it out)" : ""));
@@ -211,18 +213,19 @@ class LookAround {
   void note_nothing_near() {
     const Neighbour* nearest = nullptr;
     glm::dvec3 point_world{0.0};
-    double distance_m = std::numeric_limits<double>::infinity();
-    std::ranges::sort(neighbours_, {},
-                      [](const Neighbour& neighbour) { return neighbour.box.distance_m(neighbour.sonar_m); });
+    double least_m = std::numeric_limits<double>::infinity();
+    std::ranges::sort(neighbours_, {}, [](const Neighbour& neighbour) {
+      return distance_m(neighbour.box, neighbour.sonar_m);
+    });
     for (const Neighbour& neighbour : neighbours_) {
-      if (neighbour.box.distance_m(neighbour.sonar_m) > distance_m) {
+      if (distance_m(neighbour.box, neighbour.sonar_m) > least_m) {
         break;
       }
       each_triangle(*neighbour.body, [&](const std::array<glm::dvec3, 3>& triangle) {
         const glm::dvec3 point = nearest_on_triangle(neighbour.sonar_m, triangle);
         const double away_m = glm::length(point - neighbour.sonar_m);
-        if (away_m < distance_m) {
-          distance_m = away_m;
+        if (away_m < least_m) {
+          least_m = away_m;
           nearest = &neighbour;
           point_world = neighbour.T_world_body * point;
         }
@@ -230,18 +233,18 @@ class LookAround {
     }
     if (nearest == nullptr) {
       add("empty_world", "The world has no body that could send an echo.");
-    } else if (distance_m > sight_.range_m) {
-      note_far(*nearest, distance_m);
+    } else if (least_m > sight_.range_m) {
+      note_far(*nearest, least_m);
     } else {
-      note_beside(*nearest, distance_m, point_world);
+      note_beside(*nearest, least_m, point_world);
     }
   }
 
-  void note_far(const Neighbour& nearest, double distance_m) {
+  void note_far(const Neighbour& nearest, double away_m) {
     const glm::dvec3& p = sight_.T_world_sonar.position_m;
     const std::string text =
         fmt::format("Nothing is within {:.4g} m; the nearest body, '{}', is {:.4g} m away", sight_.range_m,
-                    nearest.body->name, distance_m);
+                    nearest.body->name, away_m);
     if (is_a_thousand_times_off()) {
       add("millimetres", text +
                              ". A thousandth of the position would be in the world: positions look like "
@@ -253,7 +256,7 @@ class LookAround {
     }
   }
 
-  void note_beside(const Neighbour& nearest, double distance_m, const glm::dvec3& point_world) {
+  void note_beside(const Neighbour& nearest, double away_m, const glm::dvec3& point_world) {
     const glm::dvec3 p = render::inverse(sight_.T_world_sonar) * point_world;
     const double bearing_rad = std::atan2(-p.y, p.x);  // to starboard
     const double elevation_rad = std::atan2(p.z, std::hypot(p.x, p.y));
@@ -261,7 +264,7 @@ class LookAround {
         fmt::format(
             "Nothing is in the fan; the nearest body, '{}', is {:.4g} m away, {:.0f} degrees to {} and "
             "{:.0f} degrees {} the axis of the sonar.",
-            nearest.body->name, distance_m, std::abs(bearing_rad) / degree,
+            nearest.body->name, away_m, std::abs(bearing_rad) / degree,
             bearing_rad < 0 ? "port" : "starboard", std::abs(elevation_rad) / degree,
             elevation_rad < 0 ? "below" : "above"));
   }
@@ -274,9 +277,17 @@ class LookAround {
 
 }  // namespace
 
-std::vector<Finding> look_around(const render::World& world, const std::vector<PosedBody>& moved,
-                                 const Sight& sight) {
-  return LookAround(world, moved, sight).findings();
+std::vector<BodyBox> boxes_of(const render::World& world) {
+  std::vector<BodyBox> boxes;
+  for (const render::Body& body : world.bodies) {
+    boxes.push_back(box_of(body));
+  }
+  return boxes;
+}
+
+std::vector<Finding> look_around(const render::World& world, const std::vector<BodyBox>& boxes,
+                                 const std::vector<PosedBody>& moved, const Sight& sight) {
+  return LookAround(world, boxes, moved, sight).findings();
 }
 
 }  // namespace sonard::server

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "renderer/scene/world.hpp"
 #include "server/diagnosis/finding.hpp"
 #include "server/pose/posed_body.hpp"
@@ -16,18 +18,24 @@ namespace sonard::server {
 struct Sight {
   render::Pose T_world_vehicle;
   render::Pose T_world_sonar;
-  double azimuth_rad = 0.0;    ///< of the whole fan
-  double elevation_rad = 0.0;  ///< likewise
   double range_m = 0.0;
   bool sees_surface = false;    ///< false: its newest ping had no surface in range and fan
   std::string vehicle_model{};  ///< the body that the vehicle is; empty: none
   bool hides_vehicle = false;   ///< whether that is left out of the picture
 };
 
+/// A box around a body, in its own frame; of a body without a mesh it is inside out.
+struct BodyBox {
+  glm::dvec3 min_m, max_m;
+};
+/// In the order of the bodies. Looks at every corner of every mesh.
+std::vector<BodyBox> boxes_of(const render::World& world);
+
 /// What is wrong with it, the likeliest cause first; empty: nothing is. Distances are those to triangles:
 /// a world of a million takes some ten milliseconds, but only where the sonar sees nothing.
+/// @param boxes boxes_of(world)
 /// @param moved where bodies are that are not where the world has them
-std::vector<Finding> look_around(const render::World& world, const std::vector<PosedBody>& moved,
-                                 const Sight& sight);
+std::vector<Finding> look_around(const render::World& world, const std::vector<BodyBox>& boxes,
+                                 const std::vector<PosedBody>& moved, const Sight& sight);
 
 }  // namespace sonard::server

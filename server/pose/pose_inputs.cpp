@@ -64,13 +64,13 @@ void PoseInputs::note_publisher(std::size_t index, TimePoint now) {
   if (!who.starts_with(from)) {
     return;
   }
-  LastHeard& heard = publishers_[index];
-  heard.insert_or_assign(who.substr(from.size()), now);
-  if (heard.size() > most_publishers) {
-    std::erase_if(heard, [now](const auto& publisher) { return now - publisher.second > at_once; });
+  LastPoses& times = publishers_[index];
+  times.insert_or_assign(who.substr(from.size()), now);
+  if (times.size() > most_publishers) {
+    std::erase_if(times, [now](const auto& publisher) { return now - publisher.second > at_once; });
   }
-  if (heard.size() > most_publishers) {
-    heard.erase(heard.begin());
+  if (times.size() > most_publishers) {
+    times.erase(times.begin());
   }
 }
 

@@ -37,7 +37,7 @@ class PoseInputs {
   std::vector<std::string> publishers(std::size_t index, TimePoint now) const;
 
  private:
-  using LastHeard = std::map<std::string, TimePoint>;
+  using LastPoses = std::map<std::string, TimePoint>;
 
   void note_publisher(std::size_t index, TimePoint now);
   void report_every_period();
@@ -47,7 +47,7 @@ class PoseInputs {
   std::chrono::milliseconds report_period_;
   std::vector<std::unique_ptr<PoseStatistics>> statistics_;  // by source
   std::vector<std::unique_ptr<PoseSource>> sources_;
-  std::vector<LastHeard> publishers_;  // by source: when each gave a pose
+  std::vector<LastPoses> publishers_;  // by source: when each gave a pose
   std::vector<bool> told_silent_;      // by source
   bool running_ = false;
   boost::asio::steady_timer report_timer_;

@@ -616,13 +616,13 @@ TEST_F(Loader, names_tabs_and_wrong_indents) {
   EXPECT_THAT(complaints("world:\n  \tfile: a.sdf\n"),
               ElementsAre(StartsWith("config.yaml:2:3: a tab indents")));
   EXPECT_THAT(complaints("world:\n  file: w\n   x: 1\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 spaces"),
+              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 space(s)"),
                                 HasSubstr("(expected 0 or 2)"))));
   EXPECT_THAT(complaints("world:\n  file: w\n b: 1\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:3:2: this line is indented by 1 spaces"),
+              ElementsAre(AllOf(StartsWith("config.yaml:3:2: this line is indented by 1 space(s)"),
                                 HasSubstr("(expected 0 or 2)"))));
   EXPECT_THAT(complaints("heads:\n  - name: f\n   type: x\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 spaces"),
+              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 space(s)"),
                                 HasSubstr("(expected 0 or 2 or 4)"))));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head did and heard lately, by times worked out by hand.
+// What a head did lately, by times worked out by hand.
 #include "server/devices/recent_activity.hpp"
 
 #include <gtest/gtest.h>
@@ -30,9 +30,9 @@ TEST(RecentPings, AreNoneWhenTheyHaveStopped) {
 
 TEST(RecentClients, ComeNewestFirstAndAreForgotten) {
   RecentClients clients;
-  clients.heard({1, 1}, seconds{1});
-  clients.heard({2, 2}, seconds{2});
-  clients.heard({1, 1}, seconds{3});
+  clients.sent({1, 1}, seconds{1});
+  clients.sent({2, 2}, seconds{2});
+  clients.sent({1, 1}, seconds{3});
   const auto all = clients.since(seconds{0});
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].address, (Endpoint{1, 1}));
@@ -45,7 +45,7 @@ TEST(RecentClients, ComeNewestFirstAndAreForgotten) {
 TEST(RecentClients, TakeNoMoreMemoryForAPeerThatChangesItsPort) {
   RecentClients clients;
   for (std::uint16_t port = 1; port <= 1000; ++port) {
-    clients.heard({1, port}, milliseconds{port});
+    clients.sent({1, port}, milliseconds{port});
   }
   const auto all = clients.since(seconds{0});
   ASSERT_EQ(all.size(), RecentClients::most);

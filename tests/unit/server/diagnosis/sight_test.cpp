@@ -2,6 +2,7 @@
 // Why a picture is black, in a world of one cube whose distances are worked out by hand.
 #include "server/diagnosis/sight.hpp"
 
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -32,10 +33,13 @@ render::World pier() {
 Sight at(const glm::dvec3& position_m, const glm::dquat& orientation = {1, 0, 0, 0}) {
   Sight sight;
   sight.T_world_vehicle = sight.T_world_sonar = {position_m, orientation};
-  sight.azimuth_rad = 2.0;
-  sight.elevation_rad = 0.4;
   sight.range_m = 5.0;
   return sight;
+}
+
+std::vector<Finding> look(const render::World& world, const std::vector<PosedBody>& moved,
+                          const Sight& sight) {
+  return look_around(world, boxes_of(world), moved, sight);
 }
 
 std::vector<Finding> only(const std::string& code, const std::string& text) {
@@ -45,18 +49,18 @@ std::vector<Finding> only(const std::string& code, const std::string& text) {
 TEST(LookAround, FindsNothingWrongWhereASurfaceIsSeen) {
   Sight sight = at({7, 0, -20});
   sight.sees_surface = true;
-  EXPECT_TRUE(look_around(pier(), {}, sight).empty());
+  EXPECT_TRUE(look(pier(), {}, sight).empty());
 }
 
 TEST(LookAround, NamesTheNearestBodyAndItsDistance) {
   // From (2, 0, -20) to the face at x = 9.
-  EXPECT_EQ(look_around(pier(), {}, at({2, 0, -20})),
+  EXPECT_EQ(look(pier(), {}, at({2, 0, -20})),
             only("nothing_near", "Nothing is within 5 m; the nearest body, 'pier', is 7 m away."));
 }
 
 TEST(LookAround, TakesBodiesWhereTheyAreNow) {
   // The face at x = 99.
-  EXPECT_EQ(look_around(pier(), {{"pier", {{100, 0, -20}, {1, 0, 0, 0}}}}, at({2, 0, -20})),
+  EXPECT_EQ(look(pier(), {{"pier", {{100, 0, -20}, {1, 0, 0, 0}}}}, at({2, 0, -20})),
             only("nothing_near", "Nothing is within 5 m; the nearest body, 'pier', is 97 m away."));
 }
 
@@ -64,24 +68,24 @@ TEST(LookAround, SaysWhichWayTheNearestBodyIs) {
   // 3 m from the face at x = 9, and the sonar looks to +y, so that it is on the right: starboard.
   const double half = std::numbers::pi / 4;
   EXPECT_EQ(
-      look_around(pier(), {}, at({6, 0, -20}, {std::cos(half), 0, 0, std::sin(half)})),
+      look(pier(), {}, at({6, 0, -20}, {std::cos(half), 0, 0, std::sin(half)})),
       only("nothing_in_fan",
            "Nothing is in the fan; the nearest body, 'pier', is 3 m away, 90 degrees to starboard and 0 "
            "degrees above the axis of the sonar."));
 }
 
 TEST(LookAround, SuspectsThatZIsDown) {
-  EXPECT_EQ(look_around(pier(), {}, at({7, 0, 20})),
+  EXPECT_EQ(look(pier(), {}, at({7, 0, 20})),
             only("above_surface", "The sonar is 20.0 m above the water surface, in the air (is z down?)."));
   render::World no_surface = pier();
   no_surface.water_surface_z_m.reset();
-  const auto found = look_around(no_surface, {}, at({7, 0, 20}));
+  const auto found = look(no_surface, {}, at({7, 0, 20}));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].code, "z_down");
 }
 
 TEST(LookAround, SuspectsMillimetres) {
-  const auto found = look_around(pier(), {}, at({7000, 0, -20000}));
+  const auto found = look(pier(), {}, at({7000, 0, -20000}));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].code, "millimetres");
   EXPECT_NE(found[0].text.find("positions look like millimetres"), std::string::npos);
@@ -91,24 +95,41 @@ TEST(LookAround, SuspectsAQuaternionWithWFirst) {
   // No turn, (w, x, y, z) = (1, 0, 0, 0), sent in this order and read as x, y, z, w: half a turn about x.
   Sight sight = at({7, 0, -20}, {0, 1, 0, 0});
   sight.sees_surface = true;
-  const auto found = look_around(pier(), {}, sight);
+  const auto found = look(pier(), {}, sight);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].code, "quaternion_w_first");
+}
+
+TEST(LookAround, SuspectsItAtOtherHeadingsToo) {
+  // 120 degrees about z is (w, x, y, z) = (1/2, 0, 0, sqrt(3)/2); read as x, y, z, w.
+  Sight sight = at({7, 0, -20}, {std::sqrt(3.0) / 2, 0.5, 0, 0});
+  sight.sees_surface = true;
+  ASSERT_EQ(look(pier(), {}, sight).size(), 1U);
+  EXPECT_EQ(look(pier(), {}, sight)[0].code, "quaternion_w_first");
+}
+
+TEST(LookAround, TakesAVehicleThatLeansForOne) {
+  // Rolled by 60 degrees, then pitched by 20: no order of the numbers makes it level.
+  const glm::dquat roll(std::cos(std::numbers::pi / 6), std::sin(std::numbers::pi / 6), 0, 0);
+  const glm::dquat pitch(std::cos(std::numbers::pi / 18), 0, std::sin(std::numbers::pi / 18), 0);
+  Sight sight = at({7, 0, -20}, pitch * roll);
+  sight.sees_surface = true;
+  EXPECT_TRUE(look(pier(), {}, sight).empty());
 }
 
 TEST(LookAround, SaysThatTheSonarIsInsideOfABody) {
   Sight sight = at({10.2, 0.1, -20.3});
   sight.sees_surface = true;  // the inner side
-  EXPECT_EQ(look_around(pier(), {}, sight), only("inside_body", "The sonar is inside of the body 'pier'."));
+  EXPECT_EQ(look(pier(), {}, sight), only("inside_body", "The sonar is inside of the body 'pier'."));
   sight.vehicle_model = "pier";
-  EXPECT_EQ(look_around(pier(), {}, sight)[0].text,
+  EXPECT_EQ(look(pier(), {}, sight)[0].text,
             "The sonar is inside of the body 'pier', its own vehicle (hides_vehicle: true leaves it out).");
   sight.hides_vehicle = true;
-  EXPECT_TRUE(look_around(pier(), {}, sight).empty());
+  EXPECT_TRUE(look(pier(), {}, sight).empty());
 }
 
 TEST(LookAround, SaysThatAWorldIsEmpty) {
-  EXPECT_EQ(look_around({}, {}, at({0, 0, 0})),
+  EXPECT_EQ(look({}, {}, at({0, 0, 0})),
             only("empty_world", "The world has no body that could send an echo."));
 }
 
