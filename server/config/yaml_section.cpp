@@ -16,7 +16,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::size_t most_problems = 100;      // of one file
+constexpr std::size_t most_problems = 1000;     // of one file: more than there are keys
 constexpr std::size_t longest_known_key = 100;  // of those that are known, thrice
 
 constexpr std::string_view plain_tag = "?";  // what yaml-cpp gives to scalars without quotes

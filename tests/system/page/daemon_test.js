@@ -18,8 +18,8 @@ const READY_MS = 60000;
 
 // What stands where a vehicle must not be taken to be, and what the page says of it.
 const WRONG_POSES = [
-  { name: "in the air", position: [0, 0, 25.6], says: /above the surface/ },
-  { name: "far from everything", position: [60, 0, 0], says: /nearest body 'sphere'/ },
+  { name: "in the air", position: [0, 0, 25.6], says: /above the water surface/ },
+  { name: "far from everything", position: [60, 0, 0], says: /nearest body, 'sphere'/ },
 ];
 
 const CONFIG = `
