@@ -14,10 +14,6 @@ double seconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
-json vector_json(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
 json where_json(const std::optional<render::Pose>& pose) {
   return pose ? placed_json(*pose) : json(nullptr);
 }
@@ -170,6 +166,10 @@ json recording_json(const std::optional<RecordingStatus>& recording) {
 }
 
 }  // namespace
+
+json vector_json(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 json placed_json(const render::Pose& pose) {
   const glm::dquat& q = pose.orientation;

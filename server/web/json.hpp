@@ -10,6 +10,9 @@
 
 namespace sonard::server {
 
+/// [x, y, z]
+nlohmann::json vector_json(const glm::dvec3& v);
+
 /// {"position_m": [x, y, z], "orientation_wxyz": [w, x, y, z]}, in the world (z up).
 nlohmann::json placed_json(const render::Pose& pose);
 

@@ -91,10 +91,6 @@ std::size_t triangles_of(const render::Body& body) {
   return triangles;
 }
 
-json vector_json(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
 /// A picture of triangles by orthographic projection, with a depth for each pixel.
 class Relief {
  public:
