@@ -79,7 +79,7 @@ log::PoseUsed pose_of(std::uint32_t ping) {
 /// @param finished false: still being written, with the last chunk as far as it is
 mcap::Bytes example(bool finished, mcap::Compression compression) {
   mcap::Writer writer{"sonard tests", 1000, compression};
-  mcap::Bytes file;
+  mcap::testing::FileInMemory file;
   const auto add_channel = [&](const google::protobuf::Descriptor& message, std::string_view topic) {
     const auto schema = writer.add_schema(message.full_name(), log::encoding_name, log::schema_data(message));
     return writer.add_channel(schema, topic, log::encoding_name);
@@ -101,7 +101,7 @@ mcap::Bytes example(bool finished, mcap::Compression compression) {
     writer.finish();
     writer.take().apply_to(file);
   }
-  return file;
+  return file.bytes;
 }
 
 /// As a writer that was killed in the middle of its third chunk from the end leaves it, and then made whole.
