@@ -34,6 +34,9 @@ struct PingJob {
   TimePoint transmit_time{};      ///< when the pulse leaves; a device says how far from now it may be
   std::uint64_t transmit_us = 0;  ///< transmit time by the clock of the head
   std::chrono::nanoseconds listening_time{};  ///< until the echo of the last range bin is back
+  /// From this ping to the next where images are there in time: the fastest that the client asks for and the
+  /// head can do.
+  std::chrono::nanoseconds period{};
 
   /// Axis of the beam of a scanning head about the head's vertical: 0 ahead, positive to starboard, in
   /// [-pi, pi]. A multibeam head does not turn: 0.

@@ -122,6 +122,11 @@ std::chrono::nanoseconds Pinger::period_of(const PingPlan& plan) const {
   return std::max(config_.min_ping_period, plan.job.listening_time);
 }
 
+// From a ping that begins now to the next one that is asked for.
+std::chrono::nanoseconds Pinger::wanted_period(const PingPlan& plan) const {
+  return single_ ? period_of(plan) : std::max(plan.interval, period_of(plan));
+}
+
 // In the head's time. With simulated time the grant keeps these rules in that time.
 TimePoint Pinger::earliest_by_rate() const {
   if (config_.waits_for_permission) {
@@ -155,9 +160,7 @@ std::optional<NextPing> Pinger::next_ping() const {
     return std::nullopt;
   }
   const PingPlan& plan = *wanted_plan();
-  const auto interval = single_ ? std::chrono::nanoseconds{0} : plan.interval;
-  return NextPing{*transmit_time - config_.render_lead, std::max(interval, period_of(plan)),
-                  plan.job.listening_time};
+  return NextPing{*transmit_time - config_.render_lead, wanted_period(plan), plan.job.listening_time};
 }
 
 std::optional<TimePoint> Pinger::acquisition_due() const {
@@ -176,6 +179,7 @@ void Pinger::acquire(TimePoint now) {
   if (now - transmit_time > start_slack) {
     transmit_time = now;
   }
+  const std::chrono::nanoseconds period = wanted_period(asked);
   const TimePoint asked_at = single_ ? single_->asked_at : transmit_time;
   if (single_) {
     single_.reset();
@@ -194,6 +198,7 @@ void Pinger::acquire(TimePoint now) {
                              .gain_percent = asked.job.gain_percent};
   earliest_start_ = transmit_time + period_of(plan);
   job_ = asked.job;
+  job_->period = period;
   if (const auto fed = std::exchange(fed_, std::nullopt)) {
     job_->record = fed->record;
     job_->differences = differences(asked, plan, fed->settings);

@@ -85,6 +85,7 @@ class Pinger {
   std::uint64_t clock_us(TimePoint time) const;
   const PingPlan* wanted_plan() const;
   std::chrono::nanoseconds period_of(const PingPlan& plan) const;
+  std::chrono::nanoseconds wanted_period(const PingPlan& plan) const;
   bool sending() const { return transmission_ && !transmission_->finished(); }
   TimePoint earliest_by_rate() const;
   std::optional<TimePoint> next_transmit_time() const;

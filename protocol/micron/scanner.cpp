@@ -123,9 +123,13 @@ std::optional<NextPing> Scanner::next_ping() const {
   if (!possible) {
     return std::nullopt;
   }
+  return NextPing{*possible, wanted_period(), line_timing(*parameters_, config_, 0).listen};
+}
+
+/// From a ping of the sweep to the next.
+nanoseconds Scanner::wanted_period() const {
   const LineTiming timing = line_timing(*parameters_, config_, parameters_->step);
-  return NextPing{*possible, std::max(config_.line_period.value_or(timing.period(config_)), timing.listen),
-                  timing.listen};
+  return std::max(config_.line_period.value_or(timing.period(config_)), timing.listen);
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
@@ -162,6 +166,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
 /// At the bearing of the sweep, with the parameters of the host.
 void Scanner::aim(TimePoint transmit_time) {
   job_ = make_line_job(*parameters_, config_, sweep_.bearing());
+  job_->period = wanted_period();
   const nanoseconds line_after = line_timing(*parameters_, config_, 0).listen + config_.line_overhead;
   Ping ping;
   ping.line = make_line();

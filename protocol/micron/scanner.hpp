@@ -61,6 +61,7 @@ class Scanner {
   bool turning(TimePoint now) const { return motor_.turning(now); }
 
  private:
+  std::chrono::nanoseconds wanted_period() const;
   struct FedPing {
     RecordedPing ping;
     HeadData line;

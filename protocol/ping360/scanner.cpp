@@ -209,6 +209,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
   const auto fed = std::exchange(fed_, std::nullopt);
   PingJob job = fed ? repeat(*fed) : make_job(work_->form, config_);
+  job.period = work_->period;
   Ping ping;
   ping.number = job.number = next_ping_number_++;
   ping.transmit_time = job.transmit_time = ping.send_due = transmit_time;

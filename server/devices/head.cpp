@@ -392,8 +392,13 @@ bool Head::Impl::render(const PingJob& job) {
                       2 * settings.aperture.elevation_limit_rad()};
   // A recorded ping goes to the recording under the number that it has there.
   rendering.submit(
-      {job.record.value_or(job.number), pose_time, job.transmit_us, T_world_sonar, T_world_at_end,
-       std::move(settings)},
+      {.number = job.record.value_or(job.number),
+       .pose_time = pose_time,
+       .transmit_us = job.transmit_us,
+       .period = job.period,
+       .T_world_sonar = T_world_sonar,
+       .T_world_sonar_at_end = T_world_at_end,
+       .settings = std::move(settings)},
       [weak = weak_from_this(), number = job.number, pose_time](RenderResult result) {
         const auto self = weak.lock();
         if (!self) {

@@ -111,7 +111,7 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
   // Where poses bring the time, pings wait for them, and the image is to depend on nothing else; a recording
   // is played as it is.
   if (!ping_times_ && services_.playback == nullptr) {
-    load_.submitted(services_.clock.now());
+    load_.submitted(services_.clock.now(), ping.period);
     ping.settings.sampling.preset = load_.preset();
   }
   job.request = {ping.T_world_sonar, std::move(ping.settings), ping.number, config_.seed,
@@ -126,8 +126,9 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
 
 bool HeadRendering::take(const RenderResult& result) {
   submitted_ = false;
-  if (const std::string news = load_.answered(services_.clock.now()); !news.empty()) {
-    spdlog::info("head={} {}", config_.name, news);
+  if (const auto news = load_.answered(services_.clock.now())) {
+    spdlog::log(news->level == Notice::Level::warning ? spdlog::level::warn : spdlog::level::info,
+                "head={} {}", config_.name, news->text);
   }
   if (result.error.empty()) {
     ++counters_.pings_rendered;

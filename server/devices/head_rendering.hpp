@@ -43,8 +43,9 @@ struct RenderCounters {
 /// One ping of a head for the render thread.
 struct HeadPing {
   std::uint64_t number = 0;
-  TimePoint pose_time{};          ///< of the transmission, as PoseHistory takes it
-  std::uint64_t transmit_us = 0;  ///< of the clock of the head
+  TimePoint pose_time{};              ///< of the transmission, as PoseHistory takes it
+  std::uint64_t transmit_us = 0;      ///< of the clock of the head
+  std::chrono::nanoseconds period{};  ///< PingJob::period
   render::Pose T_world_sonar;
   std::optional<render::Pose> T_world_sonar_at_end;  ///< when the last echo returns; nullopt: not known
   render::SonarSettings settings;

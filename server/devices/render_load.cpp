@@ -2,6 +2,8 @@
 #include "server/devices/render_load.hpp"
 
 #include <cstddef>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,9 +13,10 @@ namespace {
 using Preset = render::Sampling::Preset;
 
 constexpr std::chrono::seconds window_length{2};
-constexpr double too_busy = 0.9;  // share of the time
-constexpr double has_time = 0.6;  // which the slower preset would take up
-constexpr int fewest_pings = 3;   // fewer say nothing of a rate
+constexpr double too_busy = 0.9;     // share of the time
+constexpr double has_time = 0.6;     // which the slower preset would take up
+constexpr double nearly_all = 0.95;  // of the pings asked for
+constexpr int fewest_pings = 3;      // fewer say nothing of a rate
 
 double seconds_of(TimePoint duration) {
   return std::chrono::duration<double>(duration).count();
@@ -45,58 +48,65 @@ std::string name_of(Preset preset) {
 
 RenderLoad::RenderLoad(Preset asked, bool adaptive) : asked_(asked), preset_(asked), adaptive_(adaptive) {}
 
-void RenderLoad::submitted(TimePoint now) {
+void RenderLoad::submitted(TimePoint now, std::chrono::nanoseconds period) {
   submitted_ = now;
   if (!window_) {
     window_ = Window{now};
   }
+  window_->asked += period;
 }
 
-std::string RenderLoad::answered(TimePoint now) {
+std::optional<Notice> RenderLoad::answered(TimePoint now) {
   if (!submitted_ || !window_) {
-    return "";
+    return std::nullopt;
   }
   window_->waited += now - *submitted_;
   window_->pings += 1;
   submitted_.reset();
-  const double length_s = seconds_of(now - window_->began);
   if (now - window_->began < window_length || window_->pings < fewest_pings) {
-    return "";
+    return std::nullopt;
   }
-  const double waited_s = seconds_of(window_->waited);
-  const int pings = window_->pings;
-  window_.reset();
-  return decide(waited_s / length_s, 1e3 * waited_s / pings, pings / length_s);
+  const Window over = *std::exchange(window_, std::nullopt);
+  const double length_s = seconds_of(now - over.began);
+  return decide({.share = seconds_of(over.waited) / length_s,
+                 .mean_ms = 1e3 * seconds_of(over.waited) / over.pings,
+                 .pings_per_s = over.pings / length_s,
+                 .asked_per_s = over.pings / seconds_of(over.asked)});
 }
 
-std::string RenderLoad::decide(double share, double mean_ms, double pings_per_s) {
-  const std::string busy =
-      fmt::format("{:.0f} % of the time goes into rendering, {:.1f} ms a ping, {:.1f} pings a second",
-                  100 * share, mean_ms, pings_per_s);
-  const Preset before = preset_;
-  mean_ms_[static_cast<std::size_t>(before)] = mean_ms;
-  const std::optional<Preset> faster = faster_than(before);
-  if (share > too_busy && adaptive_ && faster) {
-    preset_ = *faster;
-    return fmt::format("{}: sampling goes from {} to {}", busy, name_of(before), name_of(preset_));
+std::optional<Notice> RenderLoad::decide(const Load& load) {
+  const auto changes_to = [&](Preset next) {
+    const Preset before = std::exchange(preset_, next);
+    return Notice{
+        Notice::Level::info,
+        fmt::format("rendering takes {:.0f} % of the time, {:.1f} ms a ping: sampling goes from {} to {}",
+                    100 * load.share, load.mean_ms, name_of(before), name_of(next))};
+  };
+  const std::optional<Preset> faster = faster_than(preset_);
+  mean_ms_[static_cast<std::size_t>(preset_)] = load.mean_ms;
+  if (load.share > too_busy && adaptive_ && faster) {
+    return changes_to(*faster);
   }
-  if (share > too_busy && !told_) {
-    told_ = true;
-    return fmt::format(
-        "{}: a client that asks for more does not get it. Fewer range bins (a shorter range, or more "
-        "compression) cost less, and so do: {}acoustics.fine_beams: 1, acoustics.multipath: off, a GPU",
-        busy, faster ? "sampling.preset: fast, or sampling.adaptive_quality: on; " : "");
+  if (load.share > too_busy && load.pings_per_s < nearly_all * load.asked_per_s &&
+      !std::exchange(told_, true)) {
+    return Notice{
+        Notice::Level::warning,
+        fmt::format(
+            "the renderer is too slow: {:.1f} of {:.1f} pings per second asked for, {:.0f} ms a ping; "
+            "try {}fewer range bins (a shorter range or more compression), acoustics.fine_beams: 1, "
+            "acoustics.multipath: off, or a GPU",
+            load.pings_per_s, load.asked_per_s, load.mean_ms,
+            faster ? "sampling.preset: fast or sampling.adaptive_quality: on, " : "")};
   }
-  if (share < has_time) {
+  if (load.share < has_time) {
     told_ = false;
   }
-  const Preset slower = slower_than(before, asked_);
-  if (slower != before && mean_ms > 0 &&
-      share * mean_ms_[static_cast<std::size_t>(slower)] / mean_ms < has_time) {
-    preset_ = slower;
-    return fmt::format("{}: sampling goes from {} back to {}", busy, name_of(before), name_of(preset_));
+  const Preset slower = slower_than(preset_, asked_);
+  if (slower != preset_ && load.mean_ms > 0 &&
+      load.share * mean_ms_[static_cast<std::size_t>(slower)] / load.mean_ms < has_time) {
+    return changes_to(slower);
   }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace sonard::server

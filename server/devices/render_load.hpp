@@ -5,8 +5,8 @@
 #include <array>
 #include <chrono>
 #include <optional>
-#include <string>
 
+#include "protocol/common/device.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/clock/clock.hpp"
 
@@ -14,8 +14,8 @@ namespace sonard::server {
 
 /// Looks, every two seconds, at the share of the time in which a head waited for an image. A head that waits
 /// nearly always would ping more often if it could: where quality adapts, its preset gives way to the next
-/// faster one, and comes back when there is time for it; else the operator is told once. Belongs to the
-/// thread of its head.
+/// faster one, and comes back when there is time for it; else the operator is warned once that fewer pings
+/// are made than were asked for. Belongs to the thread of its head.
 class RenderLoad {
  public:
   /// @param asked the preset of the configuration, which is never exceeded; Preset::grid has no faster one
@@ -24,20 +24,29 @@ class RenderLoad {
   /// The preset of the next ping.
   render::Sampling::Preset preset() const { return preset_; }
 
-  void submitted(TimePoint now);
+  /// @param period PingJob::period
+  void submitted(TimePoint now, std::chrono::nanoseconds period);
   /// The image is there, or could not be made.
-  /// @return what the operator is to know; empty: nothing new
-  std::string answered(TimePoint now);
+  /// @return what the operator is to know
+  std::optional<Notice> answered(TimePoint now);
   /// It was taken back before it was rendered, and says nothing of the load.
   void withdrawn() { submitted_.reset(); }
 
  private:
   struct Window {
     TimePoint began{}, waited{};
+    std::chrono::nanoseconds asked{};  ///< periods of all pings
     int pings = 0;
   };
+  /// What a window has shown.
+  struct Load {
+    double share = 0.0;  ///< of the time in which the head waited
+    double mean_ms = 0.0;
+    double pings_per_s = 0.0;
+    double asked_per_s = 0.0;
+  };
 
-  std::string decide(double share, double mean_ms, double pings_per_s);
+  std::optional<Notice> decide(const Load& load);
 
   render::Sampling::Preset asked_, preset_;
   bool adaptive_;

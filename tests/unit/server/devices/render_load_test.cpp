@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,10 @@ class Client {
     std::vector<std::string> lines;
     for (const TimePoint end = now_ + duration; now_ < end;) {
       const TimePoint asked = now_;
-      load_.submitted(now_);
+      load_.submitted(now_, interval);
       now_ += milliseconds(taken_by(load_.preset()));
-      if (const std::string line = load_.answered(now_); !line.empty()) {
-        lines.push_back(line);
+      if (const std::optional<Notice> news = load_.answered(now_)) {
+        lines.push_back(news->text);
       }
       now_ = std::max(now_, asked + interval);
     }
@@ -52,8 +53,7 @@ TEST(RenderLoad, SaysOnceWhatToDoWhereAClientAsksForTooMuch) {
   Client client(load);
   const auto lines = client.ask(std::chrono::seconds(20), milliseconds(60), milliseconds_of);
   ASSERT_THAT(lines, ElementsAre(HasSubstr("sampling.preset: fast")));
-  EXPECT_THAT(lines[0],
-              HasSubstr("100 % of the time goes into rendering, 120.0 ms a ping, 8.3 pings a second"));
+  EXPECT_THAT(lines[0], HasSubstr("too slow: 8.3 of 16.7 pings per second asked for, 120 ms a ping"));
   EXPECT_EQ(load.preset(), Preset::normal);
 }
 
@@ -63,6 +63,12 @@ TEST(RenderLoad, NamesNoFasterPresetWhereThereIsNone) {
   const auto lines = client.ask(std::chrono::seconds(20), milliseconds(30), milliseconds_of);
   ASSERT_THAT(lines, ElementsAre(HasSubstr("acoustics.fine_beams: 1")));
   EXPECT_THAT(lines[0], ::testing::Not(HasSubstr("sampling.")));
+}
+
+TEST(RenderLoad, IsSilentWhereTheRateIsReachedJustSo) {
+  RenderLoad load(Preset::fast, false);
+  Client client(load);
+  EXPECT_THAT(client.ask(std::chrono::seconds(20), milliseconds(52), milliseconds_of), IsEmpty());
 }
 
 TEST(RenderLoad, IsSilentWhereThereIsTime) {
@@ -92,7 +98,7 @@ TEST(RenderLoad, DoesNotSwingToAndFro) {
 
 TEST(RenderLoad, AnIdleClientChangesNothing) {
   RenderLoad load(Preset::normal, true);
-  EXPECT_THAT(load.answered(TimePoint(1)), IsEmpty());
+  EXPECT_EQ(load.answered(TimePoint(1)), std::nullopt);
   Client client(load);
   EXPECT_THAT(client.ask(std::chrono::seconds(60), std::chrono::seconds(20), milliseconds_of), IsEmpty());
 }

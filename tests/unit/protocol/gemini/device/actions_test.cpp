@@ -197,6 +197,19 @@ TEST(Jobs, HaveTheTimeOfTheHead) {
   EXPECT_EQ(bench.jobs[0].listening_time, 99'997'789ns) << "9042 lines at 90422 Hz, rounded up";
 }
 
+TEST(Jobs, SayHowSoonTheNextIsAskedFor) {
+  Bench bench;
+  bench.command(ping_of(9042));
+  bench.run_until(1s);
+  bench.command(ping_of(482, RunMode::continuous, 250ms));
+  bench.run_until(2s);
+  bench.command(ping_of(482, RunMode::continuous, 1ms));
+  bench.run_until(3s);
+  EXPECT_EQ(bench.jobs.at(0).period, 99'997'789ns) << "one ping after the other: when its echoes are back";
+  EXPECT_EQ(bench.jobs.at(1).period, 250ms);
+  EXPECT_EQ(bench.jobs.back().period, 33'300us) << "the head's shortest (8.4)";
+}
+
 std::optional<Counter> counter(const Device& device, std::string_view name) {
   const std::vector<Counter> counts = device.counts();
   const auto found = std::ranges::find(counts, name, &Counter::name);

@@ -171,6 +171,7 @@ TEST(Job, is_the_parameters_in_si_units) {
   EXPECT_EQ(job.native_bins, 200);
   EXPECT_EQ(job.compression_log2, 0);
   EXPECT_EQ(job.listening_time, 200 * 66'560ns);
+  EXPECT_GT(job.period, job.listening_time);
   EXPECT_DOUBLE_EQ(job.bin_m(), 104 * 0.48e-3);
   EXPECT_NEAR(job.range_m(), 9.984, 1e-12);
   EXPECT_DOUBLE_EQ(job.gain_db, 32.0);

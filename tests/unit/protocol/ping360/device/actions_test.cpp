@@ -23,6 +23,7 @@ TEST(Ping360Actions, a_job_is_what_the_command_says_in_si_units) {
   EXPECT_DOUBLE_EQ(job.native_bin_m, 888 * 25e-9 * 1500.0 / 2);
   EXPECT_NEAR(job.range_m(), 19.98, 1e-9) << "the example of 2.3";
   EXPECT_EQ(job.listening_time, 1200 * 888 * 25ns);
+  EXPECT_GT(job.period, job.listening_time);
   EXPECT_DOUBLE_EQ(job.bearing_rad, std::numbers::pi / 2) << "to starboard";
   EXPECT_DOUBLE_EQ(job.pulse_s, 40e-6);
   EXPECT_EQ(job.gain_db, 12.0);
