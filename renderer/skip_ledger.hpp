@@ -34,7 +34,6 @@ enum class SkipRule : std::uint8_t {
   many_scatterers,
   ring_down_over,
   no_interference,
-  clear_water,
   separate_beams,
   even_lines,
   perfect_elements,
@@ -117,9 +116,6 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::no_interference, "no_interference",
                   "the ping is not hit, or the line lies outside its burst of interference", "lines", 0,
                   "output codes"},
-    SkipRuleEntry{SkipRule::clear_water, "clear_water",
-                  "volume scattering below -75 dB/m^3, or a range of less than 20 m", "pings", 0.1,
-                  "of the highest output code over a bed"},
     SkipRuleEntry{
         SkipRule::separate_beams, "separate_beams",
         "no beam would receive from other beams, or lose to them, more than 1 % of the strongest echo",

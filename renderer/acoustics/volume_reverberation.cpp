@@ -8,19 +8,9 @@
 
 namespace sonard::render {
 
-namespace {
-constexpr double least_scattering_db = -75.0;
-constexpr double least_range_m = 20.0;
-}  // namespace
-
 bool has_volume_reverberation(const SonarSettings& settings) {
   return settings.model == Model::physical && settings.transmit &&
          decibels_to_power(settings.physical.volume_scattering_db) > 0;
-}
-
-bool is_clear_water(const SonarSettings& settings) {
-  return settings.physical.volume_scattering_db < least_scattering_db ||
-         settings.range.max_range_m() < least_range_m;
 }
 
 void add_volume_reverberation(const std::vector<float>& open_sr, const SonarSettings& settings,

@@ -12,9 +12,6 @@ namespace sonard::render {
 /// True: mode `physical`, and the water scatters at all.
 bool has_volume_reverberation(const SonarSettings& settings);
 
-/// The criterion of SkipRule::clear_water.
-bool is_clear_water(const SonarSettings& settings);
-
 /// Adds to every line what scatters in it, before spreading and absorption: the scattering coefficient times
 /// what of the beam is still open times the length of the line.
 /// @param open_sr BinningResult::open_sr.

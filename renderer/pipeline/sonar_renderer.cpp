@@ -183,8 +183,7 @@ struct SonarRenderer::Impl {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
         settings.model == Model::physical ? loss_for(settings, stream).of_line : no_loss;
-    const bool clear_water = is_clear_water(settings) && skip.on(SkipRule::clear_water);
-    return {motion.T_world_sonar, settings, line_weight, has_volume_reverberation(settings) && !clear_water};
+    return {motion.T_world_sonar, settings, line_weight, has_volume_reverberation(settings)};
   }
 
   /// The echo as it comes to the sonar.
@@ -216,9 +215,6 @@ struct SonarRenderer::Impl {
     if (settings.model == Model::physical) {
       add_water_clutter(settings, motion.T_world_sonar, seed, image);
       add_volume_reverberation(echo.open_sr, settings, image);
-      if (has_volume_reverberation(settings) && echo.open_sr.empty()) {
-        statistics.skipped.add(SkipRule::clear_water);
-      }
       apply_loss(request.line_weight, image);
     }
     statistics.binning_s += watch.lap();

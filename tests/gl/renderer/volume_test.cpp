@@ -36,8 +36,8 @@ Body screen(const glm::dvec3& corner, const glm::dvec3& along, const glm::dvec3&
 double expected_echo(const PingRequest& request, double open_sr, int line) {
   const RangeLines& range = request.settings.range;
   const double range_m = (line + 0.5) * range.step_m;
-  return std::pow(10.0, scattering_db / 10) * open_sr * range.step_m / (range_m * range_m) *
-         std::pow(10.0, -request.settings.physical.absorption_db_per_m * range_m / 5);
+  return std::pow(10.0, request.settings.physical.volume_scattering_db / 10) * open_sr * range.step_m /
+         (range_m * range_m) * std::pow(10.0, -request.settings.physical.absorption_db_per_m * range_m / 5);
 }
 
 /// Solid angle of a beam without an elevation pattern.
@@ -119,6 +119,17 @@ TEST_P(VolumeReverberation, IsNotHiddenInTheBeamsBesideAWall) {
   expect_level(image, beams / 2, 400, expected_echo(request, beam_sr(-10 * degree, 10 * degree), 400));
 }
 
+TEST_P(VolumeReverberation, ActsAtAnyRangeAndStrengthThatIsSet) {
+  SonarRenderer renderer(World{}, options());
+  PingRequest request = turbid_request();
+  request.settings.range.step_m = 10.0 / 600;
+  request.settings.physical.volume_scattering_db = -90.0;
+  const EchoImage& image = renderer.render_echo(request);
+  for (const int line : {50, 200, 590}) {
+    expect_level(image, 3, line, expected_echo(request, beam_sr(-10 * degree, 10 * degree), line));
+  }
+}
+
 TEST_P(VolumeReverberation, IsOffUnlessAskedFor) {
   SonarRenderer renderer(World{}, options());
   PingRequest request = turbid_request();
@@ -126,7 +137,6 @@ TEST_P(VolumeReverberation, IsOffUnlessAskedFor) {
   for (const float intensity : renderer.render_echo(request).intensity) {
     ASSERT_EQ(intensity, 0.0F);
   }
-  EXPECT_EQ(renderer.last_statistics().skipped.of(SkipRule::clear_water), 0u);
   request.settings.physical.volume_scattering_db = scattering_db;
   EXPECT_GT(renderer.render_echo(request).at(3, 300), 0.0F) << "a change of it makes a new echo";
 }
