@@ -24,6 +24,14 @@ struct ConfigProblem {
   std::string message;  ///< "... (expected ...)"
 };
 
+/// What is worth saying but no reason to stop.
+struct ConfigWarning {
+  std::string key;
+  std::string message;
+
+  bool operator==(const ConfigWarning&) const = default;
+};
+
 using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
 
 /// Place of a key, or of the nearest mapping around it that the file gives.

@@ -44,8 +44,7 @@ class HeadKind {
   /// A head with the defaults of this kind.
   virtual HeadConfig make_default() const = 0;
   /// Reads a section of `heads`, but for its type.
-  virtual HeadConfig read(YamlSection& section, const HeadContext& context,
-                          std::vector<ConfigWarning>& warnings) const = 0;
+  virtual HeadConfig read(YamlSection& section, const HeadContext& context) const = 0;
 
   virtual std::uint16_t device_id(const HeadConfig& head) const = 0;  ///< on the wire
   virtual std::vector<PlannedSocket> sockets(const HeadConfig& head) const = 0;

@@ -106,7 +106,8 @@ void read_multipath(YamlSection& section, render::MultipathSettings& multipath) 
                  1000.0);
 }
 
-void read_physical_model(YamlSection& section, double carrier_hz, render::PhysicalModel& model) {
+void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
+                         render::PhysicalModel& model) {
   using Speckle = render::PhysicalModel::Speckle;
   section.choice("speckle", model.speckle,
                  {{"ou", Speckle::ou},
@@ -129,6 +130,11 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                  "noise intensity re the source intensity at 1 m, before TVG");
   section.section("noise_budget", "what `noise_level_db` follows from, instead of that key",
                   [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
+  if (!model.noise) {
+    for (const char* key : {"noise_level_db", "noise_budget", "noise_cell_m", "broadside_stripe_db"}) {
+      section.warn_if_given(key, "`noise` is false");
+    }
+  }
   section.number_or_word("output_noise_db", model.output_noise_db, level_db,
                          {{"off", -std::numeric_limits<double>::infinity()}},
                          "noise that enters behind TVG and gain, re full scale: what is seen in near water");
@@ -142,6 +148,9 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                  "scatterers in a cell at `texture_range_m`, growing with the range: sand 5 to 20, gravel "
                  "and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
   section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0), "see there");
+  if (model.texture_nu == 0.0) {
+    section.warn_if_given("texture_range_m", "`texture_nu` is 0");
+  }
   section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
                          {{"off", -std::numeric_limits<double>::infinity()}},
                          "what a cubic metre of water scatters: -80 clear, -60 turbid or full of bubbles");
@@ -165,6 +174,11 @@ void read_physical_model(YamlSection& section, double carrier_hz, render::Physic
                  "of a scanning head: the noise of its bearings differs by as much, in each sweep alike");
   section.angle("bearing_jitter_deg", model.bearing_jitter_rad, Range::from(0.0, 10.0),
                 "of a scanning head: standard deviation of the bearings at which its sweeps stop");
+  if (!scanning) {
+    for (const char* key : {"noise_by_bearing_db", "bearing_jitter_deg"}) {
+      section.warn_if_given(key, "this head does not scan");
+    }
+  }
   section.section("ring_down", "the transducer's own ringing after the pulse",
                   [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
   section.section("interference", "pings that another sonar or the vehicle disturbs",
@@ -225,22 +239,10 @@ void read_mount(YamlSection& section, HeadConfig& head) {
   }
 }
 
-/// One line for all heads: they share the water, and nearly the frequency.
-void warn_of_extrapolation(std::vector<ConfigWarning>& warnings) {
-  const bool said = std::any_of(warnings.begin(), warnings.end(),
-                                [](const ConfigWarning& warning) { return warning.key == "water"; });
-  if (!said) {
-    warnings.push_back(
-        {"water",
-         "the absorption is computed outside of what its formula was made for, -2 to 30 degrees and 30 to 35 "
-         "ppt: it may be off by more than 10 % (absorption_db_per_km sets it)"});
-  }
-}
-
 }  // namespace
 
-HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span<const HeadKind* const> kinds,
-                     std::vector<ConfigWarning>& warnings) {
+HeadConfig read_head(YamlSection& section, const HeadContext& context,
+                     std::span<const HeadKind* const> kinds) {
   std::vector<std::pair<std::string_view, const HeadKind*>> types;
   std::vector<std::string_view> names;
   for (const HeadKind* kind : kinds) {
@@ -250,7 +252,7 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span
   const HeadKind* kind = kinds.front();  // where the type is wrong the other keys are still read
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
   section.choice("type", kind, types, "device");
-  return kind->read(section, context, warnings);
+  return kind->read(section, context);
 }
 
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head) {
@@ -291,21 +293,27 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
       {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}, {"sinc_two_way", Elevation::sinc_two_way}},
       "sharp vertical edges, the pattern of a line array, or its square, as where transmitting and receiving "
       "share the array's height; the last two are followed to 1.25 beamwidths on either side");
-  section.section("physical", "settings of mode `physical`",
-                  [&](YamlSection& inner) { read_physical_model(inner, carrier_hz, settings.physical); });
+  const bool scanning = settings.aperture.beam_count() == 1;
+  const bool paper = settings.model == render::Model::paper;
+  section.warn_if_given(paper ? "physical" : "paper",
+                        paper ? "this is mode `paper`" : "this is mode `physical`");
+  section.section("physical", "settings of mode `physical`", [&](YamlSection& inner) {
+    read_physical_model(inner, carrier_hz, scanning, settings.physical);
+  });
   section.section("paper", "settings of mode `paper`",
                   [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });
 }
 
-void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,
-                 std::vector<ConfigWarning>& warnings) {
+void apply_water(YamlSection& section, const HeadContext& context, double carrier_hz, HeadConfig& head) {
   const WaterConfig& w = context.water;
   const render::Water water{w.temperature_c, w.salinity_ppt, w.depth_m, w.ph};
   double absorption = context.absorption_db_per_m;
   if (absorption < 0.0) {
     absorption = render::francois_garrison_absorption_db_per_m(carrier_hz, water);
     if (!render::in_absorption_range(carrier_hz, water)) {
-      warn_of_extrapolation(warnings);
+      section.warn_of("water",
+                      "the absorption is computed outside of what its formula was made for, -2 to 30 degrees "
+                      "and 30 to 35 ppt: it may be off by more than 10 % (absorption_db_per_km sets it)");
     }
   }
   head.acoustics.physical.absorption_db_per_m = absorption;

@@ -25,15 +25,9 @@ struct HeadContext {
   bool pings_by_source = false;  ///< by the clock of the source of the poses
 };
 
-/// A problem that is worth saying but no reason to stop.
-struct ConfigWarning {
-  std::string key;
-  std::string message;
-};
-
 /// @param kinds those that a head may be of
-HeadConfig read_head(YamlSection& section, const HeadContext& context, std::span<const HeadKind* const> kinds,
-                     std::vector<ConfigWarning>& warnings);
+HeadConfig read_head(YamlSection& section, const HeadContext& context,
+                     std::span<const HeadKind* const> kinds);
 
 /// Name, mount and dump of any head, and the sampling that it takes from the document.
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head);
@@ -43,8 +37,7 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head);
 /// The width of the one beam of a scanning head.
 void read_single_beam(YamlSection& section, render::Aperture& aperture);
 /// Absorption at the frequency of the head. To be called before the acoustics are read.
-void apply_water(const HeadContext& context, double carrier_hz, HeadConfig& head,
-                 std::vector<ConfigWarning>& warnings);
+void apply_water(YamlSection& section, const HeadContext& context, double carrier_hz, HeadConfig& head);
 
 /// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down), each
 /// with its meaning.

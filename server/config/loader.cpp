@@ -380,8 +380,7 @@ void read_web(YamlSection& section, WebConfig& web) {
                       "other sites whose pages may connect from a browser; the page's own always may");
 }
 
-void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config,
-                   std::vector<ConfigWarning>& warnings) {
+void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config) {
   HeadContext context;
   context.folder = config.file.parent_path();
   root.section("log", "the log", [&](YamlSection& section) { read_log(section, config.log_level); });
@@ -399,6 +398,9 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
       "within the error of the preset ([accuracy.md](accuracy.md))");
   root.section("gpu", "what engine `gpu` runs on",
                [&](YamlSection& section) { read_gpu(section, config.gpu); });
+  if (config.engine == render::EngineKind::cpu) {
+    root.warn_if_given("gpu", "the engine is `cpu`");
+  }
   root.retired("backend", "write `engine: gpu` for raster, `engine: cpu` for ray, `engine: auto` for auto");
   root.retired("gpu_binning", "remove it; engine `gpu` bins on the GPU in any case");
   root.section("skip", "what need not be worked out",
@@ -412,6 +414,9 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   context.pings_by_source = config.poses.clock != PingClock::wall;
   root.section("sampling", "the error that is aimed at", [&](YamlSection& section) {
     read_sampling(section, context.sampling, context.adaptive_quality);
+    if (context.pings_by_source && context.adaptive_quality) {
+      section.warn_if_given("adaptive_quality", "pings keep the time of the poses (`poses.clock`)");
+    }
   });
   root.section(
       "recording", "logs of what the heads say; without it there are none",
@@ -419,9 +424,8 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.section("web", "a page to watch on, and metrics; without it there is none",
                [&](YamlSection& section) { read_web(section, config.web.emplace()); });
   root.require("heads", "a list of sonar heads");
-  root.sections("heads", "the sonars, one or more", [&](YamlSection& section) {
-    config.heads.push_back(read_head(section, context, kinds, warnings));
-  });
+  root.sections("heads", "the sonars, one or more",
+                [&](YamlSection& section) { config.heads.push_back(read_head(section, context, kinds)); });
   if (root.is_list("heads") && config.heads.empty()) {
     root.report("heads", "no head is listed (expected at least one)");
   }
@@ -434,10 +438,9 @@ LoadedConfig load_config(const std::filesystem::path& file, std::span<const Head
   YamlFindings findings;
   LoadedConfig loaded;
   loaded.config.file = file;
-  std::vector<ConfigWarning> warnings;
   {
     YamlSection root(findings, document, "");
-    read_document(root, kinds, loaded.config, warnings);
+    read_document(root, kinds, loaded.config);
   }
   if (findings.problems.empty()) {
     findings.problems = find_overlaps(loaded.config, findings.positions);
@@ -450,7 +453,7 @@ LoadedConfig load_config(const std::filesystem::path& file, std::span<const Head
     throw ConfigError(file, std::move(findings.problems));
   }
   loaded.positions = std::move(findings.positions);
-  for (const ConfigWarning& warning : warnings) {
+  for (const ConfigWarning& warning : findings.warnings) {
     loaded.warnings.push_back(loaded.problem_with(warning.key, warning.message));
   }
   return loaded;
@@ -460,9 +463,8 @@ std::vector<KeyReference> describe_config(const HeadKind& kind) {
   YamlFindings findings;
   findings.describing = true;
   DaemonConfig config;
-  std::vector<ConfigWarning> warnings;
   YamlSection root(findings, YAML::Node(YAML::NodeType::Map), "");
-  read_document(root, std::array{&kind}, config, warnings);
+  read_document(root, std::array{&kind}, config);
   return root.known();
 }
 

@@ -203,6 +203,19 @@ void YamlSection::report(std::string_view key, const std::string& message) {
   problem(entry != nullptr ? position_of(entry->value.Mark()) : at_, path_of(key), message);
 }
 
+void YamlSection::warn_of(std::string path, std::string message) {
+  ConfigWarning warning{std::move(path), std::move(message)};
+  if (!describing() && std::ranges::find(findings_.warnings, warning) == findings_.warnings.end()) {
+    findings_.warnings.push_back(std::move(warning));
+  }
+}
+
+void YamlSection::warn_if_given(std::string_view key, std::string_view why) {
+  if (has(key)) {
+    warn(key, fmt::format("has no effect: {}", why));
+  }
+}
+
 std::string YamlSection::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }

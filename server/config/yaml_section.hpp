@@ -30,6 +30,7 @@ struct YamlFindings {
   std::vector<ConfigProblem> problems;
   std::set<std::string, std::less<>> keys_with_problems;  ///< of these
   std::size_t problems_left_out = 0;                      ///< beyond the most that are worth reading
+  std::vector<ConfigWarning> warnings;                    ///< each once
   KeyPositions positions;                                 ///< of the value of every key that was read
   bool describing = false;  ///< no file is read: every section is entered, for what it knows (KeyReference)
 };
@@ -73,6 +74,12 @@ class YamlSection {
   void require(std::string_view key, std::string_view expected);
   /// Reports a problem with the value of a key that a reader accepted, or with the key's absence.
   void report(std::string_view key, const std::string& message);
+  /// Something about a key that is worth saying but no reason to stop.
+  void warn(std::string_view key, std::string message) { warn_of(path_of(key), std::move(message)); }
+  /// The same of a key of any other section.
+  void warn_of(std::string path, std::string message);
+  /// Warns where a key is given that has no effect here.
+  void warn_if_given(std::string_view key, std::string_view why);
   /// A key of earlier versions: what to do without it, where a file still has it. Both outlive the section.
   void retired(std::string_view key, std::string_view what_to_do) { retired_.emplace_back(key, what_to_do); }
   std::string path_of(std::string_view key) const;

@@ -79,7 +79,7 @@ void read_status_destination(YamlSection& section, const gemini::DeviceConfig& d
   }
 }
 
-void read_network(YamlSection& section, GeminiConfig& config, std::vector<ConfigWarning>& warnings) {
+void read_network(YamlSection& section, GeminiConfig& config) {
   gemini::DeviceConfig& device = config.device;
   section.require("alternate_address", "the address that clients find in the status packets");
   section.parsed(
@@ -106,10 +106,9 @@ void read_network(YamlSection& section, GeminiConfig& config, std::vector<Config
                  "address of the command socket; 0.0.0.0 for all of the machine");
   section.default_is("bind", "the alternate address");
   if (config.bind_address != 0 && config.bind_address != device.alternate_address) {
-    warnings.push_back(
-        {section.path_of("bind"),
-         fmt::format("clients send to the alternate address {}, but only {} is listened on",
-                     address_text(device.alternate_address), address_text(config.bind_address))});
+    section.warn("bind",
+                 fmt::format("clients send to the alternate address {}, but only {} is listened on",
+                             address_text(device.alternate_address), address_text(config.bind_address)));
   }
   section.integer("command_port", config.command_port, 1, 65535,
                   "commands arrive here, replies come from here");
@@ -127,10 +126,9 @@ void read_network(YamlSection& section, GeminiConfig& config, std::vector<Config
   read_allow_list(section, config.bind_address, config.allow, "clients that are served");
   for (const Ipv4 host : config.status.hosts) {
     if (!config.allow.empty() && !allows(config.allow, host)) {
-      warnings.push_back(
-          {section.path_of("status"),
-           fmt::format("{} gets status packets but is not in `allow`: its commands are dropped",
-                       address_text(host))});
+      section.warn("status",
+                   fmt::format("{} gets status packets but is not in `allow`: its commands are dropped",
+                               address_text(host)));
     }
   }
 }
@@ -216,19 +214,18 @@ void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig&
 
 }  // namespace
 
-GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
-                              std::vector<ConfigWarning>& warnings) {
+GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Tritech Gemini 720i ([protocols/gemini.md](protocols/gemini.md)). The x axis of its mount is the "
       "acoustic axis, so the down tilt of the head is part of the mount.");
   GeminiConfig config;
-  apply_water(context, gemini::carrier_hz, head, warnings);
+  apply_water(section, context, gemini::carrier_hz, head);
   config.device.water_sound_speed_mps = context.water_sound_speed_mps;
   config.device.waits_for_permission = context.pings_by_source;
   read_common(section, context, head);
   read_identity(section, config);
   section.require("network", "a mapping with alternate_address and netmask");
-  section.section("network", "addresses", [&](YamlSection& inner) { read_network(inner, config, warnings); });
+  section.section("network", "addresses", [&](YamlSection& inner) { read_network(inner, config); });
   section.section("timing", "rates, time-outs, pacing",
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
   section.section("acoustics", "how its image is formed",

@@ -8,7 +8,6 @@
 namespace sonard::server {
 
 /// @param head has the defaults, and gets what the section says, but for `head.device`
-GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
-                              std::vector<ConfigWarning>& warnings);
+GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head);
 
 }  // namespace sonard::server

@@ -51,10 +51,9 @@ class MicronKind final : public DeviceKind {
     return head;
   }
 
-  HeadConfig read(YamlSection& section, const HeadContext& context,
-                  std::vector<ConfigWarning>& warnings) const override {
+  HeadConfig read(YamlSection& section, const HeadContext& context) const override {
     HeadConfig head = make_default();
-    head.device = std::make_shared<MicronConfig>(read_micron_head(section, context, head, warnings));
+    head.device = std::make_shared<MicronConfig>(read_micron_head(section, context, head));
     return head;
   }
 

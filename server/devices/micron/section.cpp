@@ -91,14 +91,13 @@ void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig&
 
 }  // namespace
 
-MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
-                              std::vector<ConfigWarning>& warnings) {
+MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Tritech Micron DST on its serial line ([protocols/micron.md](protocols/micron.md)). It turns about "
       "the z axis of its mount and looks along x where it says \"ahead\": `rpy_deg` [0, 0, 0] is a head on "
       "top of the vehicle, [0, 90, 0] one that scans the upright plane across it.");
   MicronConfig config;
-  apply_water(context, micron::carrier_hz, head, warnings);
+  apply_water(section, context, micron::carrier_hz, head);
   // What turns its times into ranges; hosts reckon with 1500 m/s (docs/protocols/micron.md 4).
   config.device.waits_for_permission = context.pings_by_source;
   if (context.water_sound_speed_mps > 0.0) {

@@ -33,10 +33,9 @@ class Ping360Kind final : public DeviceKind {
     return head;
   }
 
-  HeadConfig read(YamlSection& section, const HeadContext& context,
-                  std::vector<ConfigWarning>& warnings) const override {
+  HeadConfig read(YamlSection& section, const HeadContext& context) const override {
     HeadConfig head = make_default();
-    head.device = std::make_shared<Ping360Config>(read_ping360_head(section, context, head, warnings));
+    head.device = std::make_shared<Ping360Config>(read_ping360_head(section, context, head));
     return head;
   }
 

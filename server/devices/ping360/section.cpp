@@ -48,8 +48,7 @@ void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
 }
 
 /// Clients that have found the head send to the address that they were told, and know but one port.
-void warn_if_found_in_vain(const YamlSection& section, const Ping360Config& config,
-                           std::vector<ConfigWarning>& warnings) {
+void warn_if_found_in_vain(YamlSection& section, const Ping360Config& config) {
   if (!config.discovery || config.discovery->address == 0) {
     return;
   }
@@ -58,9 +57,9 @@ void warn_if_found_in_vain(const YamlSection& section, const Ping360Config& conf
     return socket.bind.port == told.port && (socket.bind.address == 0 || socket.bind.address == told.address);
   });
   if (!served) {
-    warnings.push_back({section.path_of("discovery") + ".address",
-                        fmt::format("clients that find the head send to {}, where no socket of udp is bound",
-                                    endpoint_text(told))});
+    section.warn("discovery.address",
+                 fmt::format("clients that find the head send to {}, where no socket of udp is bound",
+                             endpoint_text(told)));
   }
 }
 
@@ -132,14 +131,13 @@ void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Confi
 
 }  // namespace
 
-Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
-                                std::vector<ConfigWarning>& warnings) {
+Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Blue Robotics Ping360 on UDP or a serial line ([protocols/ping360.md](protocols/ping360.md)). It "
       "turns "
       "about the z axis of its mount and looks along x at the angle `device.bearing_offset`.");
   Ping360Config config;
-  apply_water(context, carrier_hz, head, warnings);
+  apply_water(section, context, carrier_hz, head);
   config.device.waits_for_permission = context.pings_by_source;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;
@@ -156,7 +154,7 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   }
   section.section("discovery", "answers those who look for heads on the network; without it none is found",
                   [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
-  warn_if_found_in_vain(section, config, warnings);
+  warn_if_found_in_vain(section, config);
   section.section("device", "what it says of itself, and choices in which firmware and clients differ",
                   [&](YamlSection& inner) { read_device(inner, config.device); });
   section.section("timing", "the pace of pings, silence, resets",

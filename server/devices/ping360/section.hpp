@@ -8,7 +8,6 @@
 namespace sonard::server {
 
 /// @param head has the defaults, and gets what the section says, but for `head.device`
-Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head,
-                                std::vector<ConfigWarning>& warnings);
+Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head);
 
 }  // namespace sonard::server

@@ -373,6 +373,22 @@ TEST_F(Loader, warns_of_what_cannot_work_but_may_be_meant) {
               ElementsAre(HasSubstr("10.0.0.1 gets status packets but is not in `allow`")));
 }
 
+TEST_F(Loader, warns_of_keys_that_have_no_effect_here) {
+  const auto warnings = [&](const std::string& text) { return load(minimal_config + text).warnings; };
+  EXPECT_THAT(warnings("engine: cpu\ngpu: {device: 0}\n"),
+              ElementsAre(HasSubstr("gpu: has no effect: the engine is `cpu`")));
+  EXPECT_THAT(warnings("engine: gpu\ngpu: {device: 0}\n"), IsEmpty());
+  const auto acoustics = [&](const std::string& text) { return warnings("    acoustics: " + text + "\n"); };
+  EXPECT_THAT(acoustics("{mode: paper, physical: {noise: false}}"),
+              ElementsAre(HasSubstr("heads[0].acoustics.physical: has no effect: this is mode `paper`")));
+  EXPECT_THAT(acoustics("{paper: {gain: 0.5}}"), ElementsAre(HasSubstr("this is mode `physical`")));
+  EXPECT_THAT(acoustics("{physical: {noise: false, noise_level_db: -60}}"),
+              ElementsAre(HasSubstr("noise_level_db: has no effect: `noise` is false")));
+  EXPECT_THAT(acoustics("{physical: {bearing_jitter_deg: 1}}"),
+              ElementsAre(HasSubstr("bearing_jitter_deg: has no effect: this head does not scan")));
+  EXPECT_THAT(acoustics("{physical: {volume_scattering_db: -80}}"), IsEmpty());
+}
+
 TEST_F(Loader, reads_mavlink) {
   const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
   const auto with = [&](const std::string& mavlink) {
