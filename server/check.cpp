@@ -110,13 +110,12 @@ void Check::check_start(const render::World& world, const std::vector<BodyBox>& 
     const Sight sight{.T_world_vehicle = T_world_vehicle,
                       .T_world_sonar = T_world_vehicle * head.T_vehicle_sonar,
                       .range_m = usual_settings(head).range.sampled_range_m(),
+                      .sees_surface = std::nullopt,
                       .vehicle_model = config_.vehicle_model,
                       .hides_vehicle = head.hides_vehicle};
-    for (const Finding& finding : look_around(world, boxes, {}, sight)) {
-      const bool may_be_wanted = finding.code == "nothing_in_fan" || finding.code == "inside_body";
-      if (!may_be_wanted) {
-        warning("poses.initial", fmt::format("head '{}': {}", head.name, finding.text));
-      }
+    const std::vector<PosedBody> moved{{config_.vehicle_model, T_world_vehicle}};
+    for (const Finding& finding : look_around(world, boxes, moved, sight)) {
+      warning("poses.initial", fmt::format("head '{}': {}", head.name, finding.text));
     }
   }
 }

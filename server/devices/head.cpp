@@ -323,6 +323,9 @@ void Head::Impl::note_water(TimePoint now) {
     out_of_water = out;
     // In the air no pings are made, whose pictures would tell.
     NewestPing here = newest.value_or(NewestPing{});
+    if (!newest) {
+      here.range_m = usual_settings(config).range.sampled_range_m();
+    }
     here.T_world_mount = T_world_mount;
     const TimePoint present = services.poses.present(now);
     diagnosis.look(now, present, here, rendering.bodies_at(present), false);

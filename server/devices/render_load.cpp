@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -75,17 +76,17 @@ std::optional<Notice> RenderLoad::answered(TimePoint now) {
 }
 
 std::optional<Notice> RenderLoad::decide(const Load& load) {
-  const auto changes_to = [&](Preset next) {
+  const auto changes_to = [&](Preset next, std::string_view back) {
     const Preset before = std::exchange(preset_, next);
     return Notice{
         Notice::Level::info,
-        fmt::format("rendering takes {:.0f} % of the time, {:.1f} ms a ping: sampling goes from {} to {}",
-                    100 * load.share, load.mean_ms, name_of(before), name_of(next))};
+        fmt::format("rendering takes {:.0f} % of the time, {:.1f} ms a ping: sampling goes from {} {}to {}",
+                    100 * load.share, load.mean_ms, name_of(before), back, name_of(next))};
   };
   const std::optional<Preset> faster = faster_than(preset_);
   mean_ms_[static_cast<std::size_t>(preset_)] = load.mean_ms;
   if (load.share > too_busy && adaptive_ && faster) {
-    return changes_to(*faster);
+    return changes_to(*faster, "");
   }
   if (load.share > too_busy && load.pings_per_s < nearly_all * load.asked_per_s &&
       !std::exchange(told_, true)) {
@@ -104,7 +105,7 @@ std::optional<Notice> RenderLoad::decide(const Load& load) {
   const Preset slower = slower_than(preset_, asked_);
   if (slower != preset_ && load.mean_ms > 0 &&
       load.share * mean_ms_[static_cast<std::size_t>(slower)] / load.mean_ms < has_time) {
-    return changes_to(slower);
+    return changes_to(slower, "back ");
   }
   return std::nullopt;
 }

@@ -10,7 +10,8 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uint64_t enough_poses = 20;  // to tell a clock by
+constexpr std::uint64_t enough_poses = 20;       // to tell a clock by
+constexpr std::chrono::minutes worth_saying{1};  // of a clock that went back once
 
 struct Unit {
   std::string_view name;
@@ -27,11 +28,12 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
   if (publishers.size() > 1) {
     findings.push_back({"several_publishers", fmt::format("{} publishers send poses at once: {}.",
                                                           publishers.size(), fmt::join(publishers, ", "))});
-  } else if (summary.clock_restarts > 0) {
-    findings.push_back({"clock_backwards",
-                        fmt::format("The clock of the publisher went back {} times: a simulation that was "
-                                    "started anew, or stamps that are not those of one clock.",
-                                    summary.clock_restarts)});
+  } else if (summary.since_restart && *summary.since_restart < worth_saying) {
+    findings.push_back(
+        {"clock_backwards",
+         fmt::format("The publisher's clock runs backwards: it went back {} time{}. A simulation was "
+                     "started anew, or stamps are not those of one clock.",
+                     summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s")});
   }
   if (summary.poses >= enough_poses && summary.time_rate) {
     for (const Unit& unit : units) {

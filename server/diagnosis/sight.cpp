@@ -146,7 +146,7 @@ class LookAround {
     note_surface();
     note_upside_down();
     note_inside();
-    if (findings_.empty() && !sight_.sees_surface) {
+    if (findings_.empty() && !sight_.sees_surface.value_or(false)) {
       note_nothing_near();
     }
     return std::move(findings_);
@@ -200,10 +200,10 @@ class LookAround {
       const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
       const bool is_vehicle = body.name == sight_.vehicle_model;
       // One may be inside of a tank or a harbour, and see it.
-      const bool holds_a_sonar = sight_.sees_surface && !is_vehicle && glm::length(size) > 5.0;
+      const bool holds_a_sonar = sight_.sees_surface.value_or(true) && !is_vehicle && glm::length(size) > 5.0;
       if (!holds_a_sonar && contains(neighbour.box, neighbour.sonar_m) &&
           is_inside(body, neighbour.sonar_m)) {
-        add("inside_body",
+        add(is_vehicle ? "inside_vehicle" : "inside_body",
             fmt::format("The sonar is inside of the body '{}'{}.", body.name,
                         is_vehicle ? ", its own vehicle (hides_vehicle: true leaves it out)" : ""));
       }
@@ -235,7 +235,7 @@ class LookAround {
       add("empty_world", "The world has no body that could send an echo.");
     } else if (least_m > sight_.range_m) {
       note_far(*nearest, least_m);
-    } else {
+    } else if (sight_.sees_surface) {
       note_beside(*nearest, least_m, point_world);
     }
   }

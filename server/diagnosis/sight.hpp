@@ -19,7 +19,8 @@ struct Sight {
   render::Pose T_world_vehicle;
   render::Pose T_world_sonar;
   double range_m = 0.0;
-  bool sees_surface = false;    ///< false: its newest ping had no surface in range and fan
+  /// false: its newest ping had no surface in range and fan; nullopt: there was no ping
+  std::optional<bool> sees_surface = false;
   std::string vehicle_model{};  ///< the body that the vehicle is; empty: none
   bool hides_vehicle = false;   ///< whether that is left out of the picture
 };

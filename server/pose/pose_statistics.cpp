@@ -51,6 +51,7 @@ void PoseStatistics::observe_step(Period& period, const pose::PoseSample& sample
   const std::int64_t step_ns = sample.time_ns - newest_->time_ns;
   if (step_ns < -PoseHistory::reset_threshold.count()) {
     ++period.clock_restarts;
+    period.last_restart = arrival;
     return;
   }
   period.jumps += jumped(*newest_, sample) ? 1 : 0;
@@ -75,6 +76,9 @@ PoseStatistics::Summary PoseStatistics::summary(const Period& period, TimePoint 
   result.gaps = period.gaps;
   result.jumps = period.jumps;
   result.clock_restarts = period.clock_restarts;
+  if (period.last_restart) {
+    result.since_restart = now - *period.last_restart;
+  }
   if (period.begin && now > *period.begin) {
     result.rate_hz = static_cast<double>(period.poses) / seconds(now - *period.begin);
   }

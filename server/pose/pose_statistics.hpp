@@ -31,6 +31,7 @@ class PoseStatistics {
     /// Stamps that went back by more than PoseHistory::reset_threshold: a simulation that was reset, or two
     /// publishers.
     std::uint64_t clock_restarts = 0;
+    std::optional<std::chrono::nanoseconds> since_restart;  ///< the last of them; nullopt: there was none
   };
 
   /// `gap_limit`: PoseConfig::extrapolation_limit.
@@ -56,6 +57,7 @@ class PoseStatistics {
     std::uint64_t gaps = 0;
     std::uint64_t jumps = 0;
     std::uint64_t clock_restarts = 0;
+    std::optional<TimePoint> last_restart;
   };
 
   void observe_step(Period& period, const pose::PoseSample& sample, TimePoint arrival) const;
