@@ -91,6 +91,7 @@ LoadedConfig load_and_log(const CommandLine& arguments) {
                                               ? spdlog_level(loaded.config.log_level)
                                               : spdlog::level::from_str(arguments.log_level);
   spdlog::set_level(level);
+  spdlog::info("sonard " SONARD_VERSION " with {}", arguments.config.string());
   for (const std::string& warning : loaded.warnings) {
     spdlog::warn("{}", warning);
   }
