@@ -88,6 +88,11 @@ class Namespace:
             os.close(there)
             os.close(own)
 
+    def enter(self):
+        """From here on sockets of this thread are made in the namespace, and programs start in it."""
+        with open(f"/run/netns/{self.name}", "rb") as there:
+            _enter(there.fileno())
+
     def remove(self):
         subprocess.run(["ip", "netns", "del", self.name], capture_output=True)
 

@@ -1,30 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a running daemon with two heads, each with a client, and a publisher of poses.
-//   node daemon_test.js PROGRAMS WORLD     on a machine of its own: ports are those of the defaults
-// The target's place follows from WORLD, tests/data/system/sphere_to_port.sdf: a sphere of radius 0.5 m at (3, 2, 0).
+//   node daemon_test.js PROGRAMS DATA     on a machine of its own: ports are those of the defaults
+// DATA is tests/data/system. The target's place follows from sphere_to_port.sdf there: a sphere of radius 0.5 m at
+// (3, 2, 0). Wrong poses, and what is to be said of them in pier_and_hull.sdf, are in wrong_poses.json.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 import { framesAdvance, head, open, readsTarget, savesPng, startBrowser, state, until } from "./browser.js";
 
-const [programs, world] = process.argv.slice(2);
+const [programs, data] = process.argv.slice(2);
 const ADDRESS = "127.0.0.1:8014";
 const RANGE_M = 10;
 const TARGET = { range_m: Math.hypot(3, 2) - 0.5, bearing_deg: (Math.atan2(-2, 3) * 180) / Math.PI };
 const READY_MS = 60000;
 
-// What stands where a vehicle must not be taken to be, and what the page says of it.
-const WRONG_POSES = [
-  { name: "in the air", position: [0, 0, 25.6], says: /above the water surface/ },
-  { name: "far from everything", position: [60, 0, 0], says: /nearest body, 'sphere'/ },
-];
-
-const CONFIG = `
+const config = (world) => `
 engine: cpu
-world: {file: ${world}}
+world: {file: ${path.join(data, world)}}
 poses: {initial: {position_m: [0, 0, 0]}, udp: {bind: 127.0.0.1:14600}}
 web: {bind: ${ADDRESS}}
 heads:
@@ -63,7 +58,8 @@ async function end(child, signal = "SIGKILL") {
   }
 }
 
-async function startDaemon() {
+async function startDaemon(world = "sphere_to_port.sdf") {
+  writeFileSync(path.join(folder, "sonard.yaml"), config(world));
   const daemon = start("sonard", "run", path.join(folder, "sonard.yaml"));
   await until("the daemon to be ready", () => {
     assert.equal(daemon.exitCode, null, `the daemon ended: ${daemon.output}`);
@@ -72,17 +68,18 @@ async function startDaemon() {
   return daemon;
 }
 
-function startClients() {
+function startClients(range_m = RANGE_M) {
   return [
-    start("sonarview", "--range", String(RANGE_M), "--continuous", "100", "--ping-wait", "0", "--surface-address", "127.0.0.1", "--quiet"),
-    start("sonarview", "micron", "--tcp", "127.0.0.1:4001", "--range", String(RANGE_M), "--turns", "0", "--line-wait", "0", "--quiet"),
+    start("sonarview", "--range", String(range_m), "--continuous", "100", "--ping-wait", "0", "--surface-address", "127.0.0.1", "--quiet"),
+    start("sonarview", "micron", "--tcp", "127.0.0.1:4001", "--range", String(range_m), "--turns", "0", "--line-wait", "0", "--quiet"),
   ];
 }
 
 /** A publisher that keeps the vehicle in one place. */
-function publish([x, y, z]) {
+function publish(position_m, orientation_xyzw = [0, 0, 0, 1]) {
   const file = path.join(folder, "pose.csv");
-  writeFileSync(file, `t,x,y,z,qx,qy,qz,qw\n0,${x},${y},${z},0,0,0,1\n600,${x},${y},${z},0,0,0,1\n`);
+  const pose = [...position_m, ...orientation_xyzw].join(",");
+  writeFileSync(file, `t,x,y,z,qx,qy,qz,qw\n0,${pose}\n600,${pose}\n`);
   return start("posecast", file, "--to", "127.0.0.1:14600");
 }
 
@@ -92,7 +89,6 @@ async function openPage() {
 }
 
 before(async () => {
-  writeFileSync(path.join(folder, "sonard.yaml"), CONFIG);
   browser = await startBrowser();
 });
 
@@ -146,13 +142,23 @@ test("a daemon that is killed and started again is regained", async () => {
   await framesAdvance(page, 0);
 });
 
-for (const { name, position, says } of WRONG_POSES) {
-  test(`a vehicle ${name} is said to be there`, async () => {
-    await startDaemon();
-    startClients();
-    publish(position);
-    await openPage();
-    await until("the finding", async () => says.test(await head(page, 0).locator(".findings").textContent()), 60000);
-    assert.ok(await head(page, 0).locator(".findings").isVisible());
-  });
-}
+test("each wrong pose is said to be one", async () => {
+  await startDaemon("pier_and_hull.sdf");
+  startClients(20);
+  await openPage();
+  const findings = head(page, 0).locator(".findings");
+  for (const { name, position_m, orientation_xyzw, says } of JSON.parse(readFileSync(path.join(data, "wrong_poses.json"), "utf-8"))) {
+    const publisher = publish(position_m, orientation_xyzw);
+    await until(`'${name}' to be said`, async () => new RegExp(says).test(await findings.textContent()), 60000);
+    assert.ok(await findings.isVisible());
+    await end(publisher);
+  }
+});
+
+test("two publishers are named", async () => {
+  await startDaemon();
+  publish([0, 0, 0]);
+  publish([0, 0, 0]);
+  await openPage();
+  await until("both publishers", async () => /2 publishers send poses at once/.test(await page.locator("#pose-findings").textContent()), 60000);
+});

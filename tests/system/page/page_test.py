@@ -20,7 +20,7 @@ sys.path.append(os.path.join(HERE, "..", "gemini"))
 from lab import Namespace, need  # noqa: E402
 
 PAGE = os.path.join(SOURCE, "server", "web", "page")
-WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
+DATA = os.path.join(SOURCE, "tests", "data", "system")
 PROGRAMS = None  # folder of the programs under test
 NPM = None  # folder with the scripts and their node_modules
 PATIENCE_S = 380
@@ -46,7 +46,7 @@ class Page(unittest.TestCase):
         self.run_script("mock_test.js", PAGE)
 
     def test_with_a_daemon(self):
-        self.run_script("daemon_test.js", PROGRAMS, WORLD)
+        self.run_script("daemon_test.js", PROGRAMS, DATA)
 
 
 def main():

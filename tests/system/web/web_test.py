@@ -9,7 +9,6 @@ Requests are written byte by byte, and viewers are those of another implementati
 
 import argparse
 import asyncio
-import ctypes
 import http.client
 import json
 import os
@@ -24,7 +23,7 @@ import unittest
 import websockets
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
-from lab import CLONE_NEWNET, Namespace, Program  # noqa: E402
+from lab import Namespace, Program  # noqa: E402
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
@@ -53,18 +52,11 @@ heads:
 """
 
 
-def enter(namespace):
-    """From here on sockets of this process are made in the namespace."""
-    with open(f"/run/netns/{namespace.name}", "rb") as there:
-        if ctypes.CDLL(None, use_errno=True).setns(there.fileno(), CLONE_NEWNET) != 0:
-            raise OSError(ctypes.get_errno(), "setns")
-
-
 class Web(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.namespace = Namespace(f"sonard-web-{os.getpid()}")
-        enter(cls.namespace)
+        cls.namespace.enter()
 
     @classmethod
     def tearDownClass(cls):

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What log, status and `sonard check` say of poses that make a picture black, on a machine of its own.
+
+    diagnosis_test.py --programs DIR --modules DIR [TestCase.test_name ...]
+
+Places and what is to be said of them are in tests/data/system/wrong_poses.json; distances follow from
+pier_and_hull.sdf beside it.
+"""
+
+import argparse
+import contextlib
+import json
+import os
+import re
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import urllib.request
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+sys.path.append(os.path.join(SOURCE, "tests", "system", "gemini"))
+from lab import Namespace, Program  # noqa: E402
+
+DATA = os.path.join(SOURCE, "tests", "data", "system")
+PROGRAMS = None  # folder of the programs under test
+POSE_PB2 = None
+PATIENCE_S = 20
+POSES = ("127.0.0.1", 14600)
+PAGE = "127.0.0.1:8014"
+GOOD = {"position_m": [30, 0, -5]}  # 17 m before the pier
+
+CONFIG = """
+engine: cpu
+world: {{file: {world}{vehicle}}}
+poses: {{{poses}}}
+sampling: {{preset: fast}}
+web: {{bind: "{page}"}}
+heads:
+  - name: bow
+    type: gemini_720i
+    sonar_id: 513
+    network: {{alternate_address: 127.0.0.2, netmask: 255.0.0.0, status: [127.0.0.1]}}
+"""
+
+
+def wrong_poses():
+    with open(os.path.join(DATA, "wrong_poses.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+class Publisher:
+    """Sends the same pose twenty times a second; stamps are those of a clock of its own."""
+
+    def __init__(self, pose, ticks_per_s=1e9):
+        self.pose = pose
+        self.ticks_per_s = ticks_per_s
+        self.back_s = 0.0
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.connect(POSES)
+        self.address = "127.0.0.1:%d" % self._socket.getsockname()[1]
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        while not self._end.wait(0.05):
+            update = POSE_PB2.PoseUpdate(time_ns=round((time.monotonic() - self.back_s) * self.ticks_per_s))
+            at, turn = update.vehicle.position_m, update.vehicle.orientation
+            at.x, at.y, at.z = self.pose["position_m"]
+            turn.x, turn.y, turn.z, turn.w = self.pose.get("orientation_xyzw", [0, 0, 0, 1])
+            with contextlib.suppress(ConnectionRefusedError):  # nobody listens yet
+                self._socket.send(update.SerializeToString())
+
+    def close(self):
+        self._end.set()
+        self._thread.join()
+        self._socket.close()
+
+
+class Diagnosis(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.namespace = Namespace(f"sonard-diagnosis-{os.getpid()}")
+        cls.namespace.enter()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.namespace.remove()
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def config(self, poses="udp: {bind: 127.0.0.1:14600}", vehicle=""):
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(CONFIG.format(world=os.path.join(DATA, "pier_and_hull.sdf"), poses=poses, vehicle=vehicle,
+                                     page=PAGE))
+        return path
+
+    def start(self):
+        """A daemon whose client asks for pings to 20 m."""
+        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", self.config()], "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", PATIENCE_S)
+        client = Program([os.path.join(PROGRAMS, "sonarview"), "--continuous", "100", "--range", "20", "--ping-wait", "0",
+                          "--surface-address", "127.0.0.1"], "sonarview")
+        self.addCleanup(client.kill)
+        return daemon
+
+    def publish(self, pose, **options):
+        publisher = Publisher(pose, **options)
+        self.addCleanup(publisher.close)
+        return publisher
+
+    def status(self):
+        with urllib.request.urlopen(f"http://{PAGE}/api/status", timeout=PATIENCE_S) as answer:
+            return json.load(answer)
+
+    def wait_for_finding(self, findings_of, says):
+        """Until the status has it; what it has is the message where it never comes."""
+        end = time.monotonic() + PATIENCE_S
+        found = []
+        while time.monotonic() < end:
+            found = [finding["text"] for finding in findings_of(self.status())]
+            if any(re.search(says, text) for text in found):
+                return
+            time.sleep(0.1)
+        self.fail(f"the status does not say '{says}' but {found}")
+
+    def check(self, *arguments, expected_exit=0):
+        done = subprocess.run([os.path.join(PROGRAMS, "sonard"), "check", "--no-network", *arguments], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, expected_exit, done.stdout)
+        return done.stdout
+
+    def test_every_wrong_pose_is_named_once_in_the_log_and_in_the_status(self):
+        daemon = self.start()
+        publisher = self.publish(GOOD)
+        for number, pose in enumerate(wrong_poses(), 1):
+            publisher.pose = pose
+            daemon.wait_for_line("warning head=bow .*" + pose["says"], PATIENCE_S)
+            self.wait_for_finding(lambda status: status["heads"][0]["findings"], pose["says"])
+            publisher.pose = GOOD
+            daemon.wait_for_line("head=bow nothing looks wrong any more", PATIENCE_S, count=number)
+        for pose in wrong_poses():
+            said = [line for line in daemon.lines if re.search("warning head=bow .*" + pose["says"], line)]
+            self.assertEqual(len(said), 1, said)
+
+    def test_check_names_every_wrong_start_pose(self):
+        for pose in wrong_poses():
+            if "orientation_xyzw" in pose:
+                continue  # angles say it in the configuration
+            with self.subTest(pose["name"]):
+                # Before a client asks there is no range; the head's own longest is looked at.
+                says = pose["says"].replace("20(\\.\\d+)?", "\\d+(\\.\\d+)?")
+                printed = self.check(self.config("initial: {position_m: %s}" % pose["position_m"]))
+                if "far from" in pose["name"]:
+                    says = "good$"  # to 120 m the pier is in range
+                self.assertRegex(printed, re.compile(says, re.MULTILINE))
+
+    def test_check_tells_of_the_own_hull(self):
+        start = "initial: {position_m: [30, 0, -5]}"
+        printed = self.check(self.config(start, ", vehicle_model: rov"))
+        self.assertIn("inside of the body 'rov', its own vehicle (hides_vehicle: true leaves it out)", printed)
+        with open(self.config(start, ", vehicle_model: rov"), "a", encoding="utf-8") as file:
+            file.write("    hides_vehicle: true\n")
+        self.assertNotIn("inside of", self.check(file.name))
+
+    def test_no_pose_is_said(self):
+        daemon = self.start()
+        daemon.wait_for_line("head=bow No pose of the vehicle has come", PATIENCE_S)
+
+    def inputs_findings(self, status):
+        return status["poses"]["inputs"][0]["findings"]
+
+    def test_two_publishers_are_named(self):
+        daemon = self.start()
+        one, other = self.publish(GOOD), self.publish(GOOD)
+        says = "2 publishers send poses at once: .*127"
+        line = daemon.wait_for_line(says, PATIENCE_S)
+        self.assertIn(one.address, line)
+        self.assertIn(other.address, line)
+        self.wait_for_finding(self.inputs_findings, says)
+        daemon.kill()
+        self.assertRegex(self.check("--listen", "2", self.config()), "wrong\\?   " + says)
+
+    def test_units_of_stamps_are_named(self):
+        for ticks_per_s, unit in ((1e6, "microseconds"), (1e3, "milliseconds"), (1.0, "seconds")):
+            with self.subTest(unit):
+                publisher = self.publish(GOOD, ticks_per_s=ticks_per_s)
+                says = f"Stamps of poses look like {unit}: they are to be in nanoseconds"
+                self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
+                daemon = self.start()
+                daemon.wait_for_line(says, PATIENCE_S)
+                self.wait_for_finding(self.inputs_findings, says)
+                daemon.kill()
+                publisher.close()
+
+    def test_a_clock_that_runs_backwards_is_named(self):
+        daemon = self.start()
+        publisher = self.publish(GOOD)
+        daemon.wait_for_line("[1-9][0-9]* pings|connected", PATIENCE_S)
+        time.sleep(1)
+        publisher.back_s = 100.0
+        says = "The publisher's clock runs backwards: it went back 1 time\\."
+        daemon.wait_for_line(says, PATIENCE_S)
+        self.wait_for_finding(self.inputs_findings, says)
+
+
+def main():
+    global PROGRAMS, POSE_PB2
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--programs", required=True, help="folder of sonard and sonarview")
+    parser.add_argument("--modules", required=True, help="folder with pose_pb2.py")
+    options, rest = parser.parse_known_args()
+    PROGRAMS = os.path.abspath(options.programs)
+    sys.path.insert(0, options.modules)
+    import pose_pb2
+    POSE_PB2 = pose_pb2
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()
