@@ -43,21 +43,14 @@ constexpr std::array<ElementKind, 20> element_kinds{{
     {"state", "state"},
 }};
 
-std::string name_of(const sdf::ElementPtr& element) {
-  return element->HasAttribute("name") ? element->Get<std::string>("name") : std::string();
-}
-
-std::string described(const sdf::ElementPtr& element, const std::string& path) {
-  std::string name = path + name_of(element);
-  if (element->GetName() == "sensor") {
-    name += fmt::format(" ({})", element->Get<std::string>("type"));
-  }
-  return name;
+std::string described(const SdfElement& element, const std::string& path) {
+  const std::string* const type = element.name == "sensor" ? element.attribute("type") : nullptr;
+  return path + element.given_name() + (type == nullptr ? "" : fmt::format(" ({})", *type));
 }
 
 }  // namespace
 
-void LeftOut::add_elements_of(const sdf::ElementPtr& root) {
+void LeftOut::add_elements_of(const SdfElement& root) {
   add_children_of(root, "");
 }
 
@@ -65,20 +58,18 @@ void LeftOut::add_geometry(const std::string& kind, const std::string& path) {
   add(fmt::format("shapes of geometry <{}>", kind), true, path);
 }
 
-void LeftOut::add_children_of(const sdf::ElementPtr& element, const std::string& path) {
-  for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (!child->GetExplicitlySetInFile() || sonar_type(child)) {
+void LeftOut::add_children_of(const SdfElement& element, const std::string& path) {
+  for (const auto& child : element.children) {
+    if (sonar_type(*child)) {
       continue;
     }
-    const auto kind = std::find_if(element_kinds.begin(), element_kinds.end(), [&](const ElementKind& known) {
-      return known.element == child->GetName();
-    });
+    const auto kind = std::ranges::find(element_kinds, child->name, &ElementKind::element);
     if (kind != element_kinds.end()) {
-      add(kind->what, kind->audible, described(child, path));
+      add(kind->what, kind->audible, described(*child, path));
       continue;
     }
-    const bool named = child->GetName() == "model" || child->GetName() == "link";
-    add_children_of(child, named ? path + name_of(child) + "::" : path);
+    const bool named = child->name == "model" || child->name == "link";
+    add_children_of(*child, named ? path + child->given_name() + "::" : path);
   }
 }
 

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include <sdf/Element.hh>
+#include "renderer/scene/sdf_document.hpp"
 
 namespace sonard::render {
 
 class LeftOut {
  public:
   /// Lights, plugins, joints, actors, other sensors, ...: all elements that no part of a world is made of.
-  void add_elements_of(const sdf::ElementPtr& root);
+  void add_elements_of(const SdfElement& root);
   /// A shape of a kind that is not drawn, "polyline".
   void add_geometry(const std::string& kind, const std::string& path);
 
@@ -31,7 +31,7 @@ class LeftOut {
   };
 
   void add(std::string_view what, bool audible, std::string name);
-  void add_children_of(const sdf::ElementPtr& element, const std::string& path);
+  void add_children_of(const SdfElement& element, const std::string& path);
   std::vector<std::string> lines(bool audible) const;
 
   std::vector<Kind> kinds_;  // in the order in which they came

@@ -27,6 +27,7 @@ struct MeshFileRequest {
 struct MeshFilePart {
   std::string material_name;  ///< as the file names it, may be empty
   std::shared_ptr<const TriangleMesh> mesh;
+  glm::dvec3 scale{1.0};  ///< MeshFileRequest::scale
 };
 
 struct MeshFile {

@@ -3,16 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <span>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "renderer/scene/materials.hpp"
-#include "renderer/scene/sdf_parser.hpp"
 
 namespace sonard::render {
 namespace {
@@ -24,153 +20,128 @@ constexpr std::array<std::string_view, 5> material_numbers{
     "reflectance", "lambert_mu_db", "pressure_reflection", "rms_slope", "rms_height_mm"};
 constexpr std::array<std::string_view, 4> material_parents{"visual", "collision", "link", "model"};
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(blank);
-  return first == std::string_view::npos ? std::string_view()
-                                         : text.substr(first, text.find_last_not_of(blank) - first + 1);
+std::optional<double> attribute(const SdfElement& element, const char* key) {
+  const std::string* const given = element.attribute(key);
+  return given == nullptr ? std::nullopt : std::optional(number(*given, key));
 }
 
-double number(const std::string& text, const char* what) {
-  const std::string_view digits = trimmed(text);
-  double value = 0.0;
-  const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || rest != digits.data() + digits.size() || !std::isfinite(value)) {
-    throw WorldError(fmt::format("{} '{}': expected a number", what, text));
-  }
-  return value;
-}
-
-std::string text_of(const sdf::ElementPtr& element) {
-  return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
-}
-
-std::optional<double> attribute(const sdf::ElementPtr& element, const char* key) {
-  if (!element->HasAttribute(key)) {
-    return std::nullopt;
-  }
-  return number(element->GetAttribute(key)->GetAsString(), key);
-}
-
-void check_attributes(const sdf::ElementPtr& element, std::span<const std::string_view> allowed) {
-  for (const auto& given : element->GetAttributes()) {
-    const std::string key = given->GetKey();
-    if (!key.starts_with("xmlns") && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
-      throw WorldError(fmt::format("{}: <{}> has no attribute '{}'; besides its text it may have: {}",
-                                   place_of(element), element->GetName(), key, fmt::join(allowed, ", ")));
+void check_attributes(const SdfElement& element, std::span<const std::string_view> allowed,
+                      WorldProblems& problems) {
+  for (const auto& [key, value] : element.attributes) {
+    if (!key.starts_with("xmlns") && std::ranges::find(allowed, key) == allowed.end()) {
+      problems.push_back(
+          fmt::format("{}: <{}> has no attribute '{}'{}{}", element.place(), element.name, key,
+                      allowed.empty() ? "" : "; besides its text it may have: ", fmt::join(allowed, ", ")));
     }
   }
 }
 
-void check_own_element(const sdf::ElementPtr& element, const std::string& parent) {
-  const std::string& name = element->GetName();
-  if (name == material_element) {
-    if (std::find(material_parents.begin(), material_parents.end(), parent) == material_parents.end()) {
-      throw WorldError(fmt::format("{}: <{}> inside <{}>: it belongs in one of: {}", place_of(element), name,
-                                   parent, fmt::join(material_parents, ", ")));
+void check_own_element(const SdfElement& element, WorldProblems& problems) {
+  const SdfElement& parent = *element.parent;
+  const auto complain = [&](const std::string& message) {
+    problems.push_back(fmt::format("{}: {}", element.place(), message));
+  };
+  if (element.name == material_element) {
+    if (std::ranges::find(material_parents, parent.name) == material_parents.end()) {
+      complain(fmt::format("<{}> inside <{}>: it belongs in one of: {}", element.name, parent.name,
+                           fmt::join(material_parents, ", ")));
     }
-    check_attributes(element, material_numbers);
-  } else if (name == water_surface_element) {
-    if (parent != "world") {
-      throw WorldError(
-          fmt::format("{}: <{}> inside <{}>: it belongs in <world>", place_of(element), name, parent));
+    check_attributes(element, material_numbers, problems);
+  } else if (element.name == water_surface_element) {
+    if (parent.name != "world") {
+      complain(fmt::format("<{}> inside <{}>: it belongs in <world>", element.name, parent.name));
     }
-    check_attributes(element, {});  // the height is its text
+    check_attributes(element, {}, problems);  // the height is its text
   } else {
-    throw WorldError(fmt::format("{}: unknown element <{}>; there are <{}> and <{}>", place_of(element), name,
-                                 material_element, water_surface_element));
+    complain(fmt::format("unknown element <{}>; there are <{}> and <{}>", element.name, material_element,
+                         water_surface_element));
   }
-  if (element->GetNextElement(name)) {
-    throw WorldError(fmt::format("{}: <{}> is given twice in <{}>", place_of(element), name, parent));
+  if (parent.child(element.name) != &element) {
+    complain(fmt::format("<{}> is given twice in <{}>", element.name, parent.name));
   }
 }
 
-void check_own_attributes(const sdf::ElementPtr& element) {
-  for (const auto& given : element->GetAttributes()) {
-    const std::string key = given->GetKey();
+void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
+  for (const auto& [key, value] : element.attributes) {
     if (!key.starts_with("sonard:")) {
       continue;
     }
-    const auto parent = element->GetParent();
-    if (key != sonar_attribute || element->GetName() != "sensor" || !parent || parent->GetName() != "link" ||
-        element->Get<std::string>("type") != "custom") {
-      throw WorldError(
-          fmt::format("{}: attribute '{}' of <{}>: there is only {}, of a <sensor type=\"custom\"> "
-                      "in a <link>",
-                      place_of(element), key, element->GetName(), sonar_attribute));
+    const std::string* const type = element.attribute("type");
+    if (key != sonar_attribute || element.name != "sensor" || element.parent == nullptr ||
+        element.parent->name != "link" || type == nullptr || *type != "custom") {
+      problems.push_back(fmt::format(
+          "{}: attribute '{}' of <{}>: there is only {}, of a <sensor type=\"custom\"> in a <link>",
+          element.place(), key, element.name, sonar_attribute));
     }
   }
 }
 
 }  // namespace
 
-void check_own_elements(const sdf::ElementPtr& root) {
-  check_own_attributes(root);
-  for (auto child = root->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (child->GetName().starts_with("sonard:")) {
-      check_own_element(child, root->GetName());
+void check_own_elements(const SdfElement& root, WorldProblems& problems) {
+  check_own_attributes(root, problems);
+  for (const auto& child : root.children) {
+    if (child->name.starts_with("sonard:")) {
+      check_own_element(*child, problems);
     }
-    check_own_elements(child);
+    check_own_elements(*child, problems);
   }
 }
 
-std::optional<AcousticMaterial> own_material(const sdf::ElementPtr& element,
-                                             std::vector<std::string>& warnings) {
-  const auto given = element->FindElement(material_element);
-  if (!given) {
+std::optional<AcousticMaterial> own_material(const SdfElement& element, std::vector<std::string>& warnings) {
+  const SdfElement* const given = element.child(material_element);
+  if (given == nullptr) {
     return std::nullopt;
   }
-  const MaterialRequest request{text_of(given),
-                                attribute(given, "reflectance"),
-                                attribute(given, "lambert_mu_db"),
-                                attribute(given, "pressure_reflection"),
-                                attribute(given, "rms_slope"),
-                                attribute(given, "rms_height_mm")};
-  if (request.name.empty() &&
-      std::none_of(material_numbers.begin(), material_numbers.end(),
-                   [&](std::string_view key) { return given->HasAttribute(std::string(key)); })) {
+  const MaterialRequest request{given->text,
+                                attribute(*given, "reflectance"),
+                                attribute(*given, "lambert_mu_db"),
+                                attribute(*given, "pressure_reflection"),
+                                attribute(*given, "rms_slope"),
+                                attribute(*given, "rms_height_mm")};
+  if (request.name.empty() && std::ranges::none_of(material_numbers, [&](std::string_view key) {
+        return given->attribute(key) != nullptr;
+      })) {
     throw WorldError(fmt::format("<{}> is empty: expected a name, or one of the attributes {}",
                                  material_element, fmt::join(material_numbers, ", ")));
   }
   std::vector<std::string> remarks;
   AcousticMaterial material = make_acoustic_material(request, remarks);
   for (const std::string& remark : remarks) {
-    warnings.push_back(fmt::format("{}: {}", place_of(given), remark));
+    warnings.push_back(fmt::format("{}: {}", given->place(), remark));
   }
   return material;
 }
 
-std::optional<AcousticMaterial> inherited_material(const sdf::ElementPtr& element,
+std::optional<AcousticMaterial> inherited_material(const SdfElement& element,
                                                    std::vector<std::string>& warnings) {
-  for (auto around = element->GetParent(); around; around = around->GetParent()) {
+  for (const SdfElement* around = element.parent; around != nullptr; around = around->parent) {
     try {
-      if (auto material = own_material(around, warnings)) {
+      if (auto material = own_material(*around, warnings)) {
         return material;
       }
     } catch (const WorldError& error) {
-      throw WorldError(fmt::format("from <{}> at {}: {}", around->GetName(), place_of(around), error.what()));
+      throw WorldError(fmt::format("from <{}> at {}: {}", around->name, around->place(), error.what()));
     }
   }
   return std::nullopt;
 }
 
-std::optional<double> water_surface_z_m(const sdf::ElementPtr& world) {
-  const auto given = world->FindElement(water_surface_element);
-  if (!given) {
+std::optional<double> water_surface_z_m(const SdfElement& world) {
+  const SdfElement* const given = world.child(water_surface_element);
+  if (given == nullptr) {
     return std::nullopt;
   }
   try {
-    return number(text_of(given), water_surface_element);
+    return number(given->text, water_surface_element);
   } catch (const WorldError& error) {
-    throw WorldError(fmt::format("{}: {}", place_of(given), error.what()));
+    throw WorldError(fmt::format("{}: {}", given->place(), error.what()));
   }
 }
 
-std::optional<std::string> sonar_type(const sdf::ElementPtr& element) {
-  if (element->GetName() != "sensor" || !element->HasAttribute(sonar_attribute)) {
-    return std::nullopt;
-  }
-  return element->GetAttribute(sonar_attribute)->GetAsString();
+std::optional<std::string> sonar_type(const SdfElement& element) {
+  const std::string* const type = element.name == "sensor" ? element.attribute(sonar_attribute) : nullptr;
+  return type == nullptr ? std::nullopt : std::optional(*type);
 }
 
 }  // namespace sonard::render

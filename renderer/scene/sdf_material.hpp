@@ -7,32 +7,29 @@
 #include <string>
 #include <vector>
 
-#include <sdf/Element.hh>
-
+#include "renderer/scene/sdf_document.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
 
 /// Refuses elements and attributes of the sonard namespace that are unknown, misplaced or there twice, so
-/// that a typing error does not become a default.
-/// @throws WorldError "file:line: ..."
-void check_own_elements(const sdf::ElementPtr& root);
+/// that a typing error does not become a default. Each goes to `problems`, with its place.
+void check_own_elements(const SdfElement& root, WorldProblems& problems);
 
 /// <sonard:material> directly inside `element`.
 /// @throws WorldError without a place: the caller knows what the element is called
-std::optional<AcousticMaterial> own_material(const sdf::ElementPtr& element,
-                                             std::vector<std::string>& warnings);
+std::optional<AcousticMaterial> own_material(const SdfElement& element, std::vector<std::string>& warnings);
 
 /// <sonard:material> of the nearest link or model around `element`.
 /// @throws WorldError naming that link or model
-std::optional<AcousticMaterial> inherited_material(const sdf::ElementPtr& element,
+std::optional<AcousticMaterial> inherited_material(const SdfElement& element,
                                                    std::vector<std::string>& warnings);
 
 /// <sonard:water_surface_z> of a <world>, metres.
 /// @throws WorldError "file:line: ..."
-std::optional<double> water_surface_z_m(const sdf::ElementPtr& world);
+std::optional<double> water_surface_z_m(const SdfElement& world);
 
 /// sonard:type of a <sensor type="custom">, which names a device; nullopt for any other element.
-std::optional<std::string> sonar_type(const sdf::ElementPtr& element);
+std::optional<std::string> sonar_type(const SdfElement& element);
 
 }  // namespace sonard::render

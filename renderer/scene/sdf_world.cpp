@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <ignition/math/Pose3.hh>
-#include <sdf/Box.hh>
-#include <sdf/Capsule.hh>
-#include <sdf/Collision.hh>
-#include <sdf/Cylinder.hh>
-#include <sdf/Ellipsoid.hh>
-#include <sdf/Geometry.hh>
-#include <sdf/Heightmap.hh>
-#include <sdf/Link.hh>
-#include <sdf/Material.hh>
-#include <sdf/Mesh.hh>
-#include <sdf/Model.hh>
-#include <sdf/Pbr.hh>
-#include <sdf/Plane.hh>
-#include <sdf/Root.hh>
-#include <sdf/SemanticPose.hh>
-#include <sdf/Sensor.hh>
-#include <sdf/Sphere.hh>
-#include <sdf/Visual.hh>
-#include <sdf/World.hh>
 
 #include "renderer/scene/image_file.hpp"
 #include "renderer/scene/left_out.hpp"
@@ -37,8 +19,10 @@
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/mesh_file.hpp"
 #include "renderer/scene/primitives.hpp"
+#include "renderer/scene/sdf_document.hpp"
+#include "renderer/scene/sdf_elements.hpp"
+#include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/sdf_material.hpp"
-#include "renderer/scene/sdf_parser.hpp"
 #include "renderer/scene/terrain.hpp"
 #include "renderer/scene/uri_resolver.hpp"
 #include "renderer/scene/world.hpp"
@@ -48,37 +32,58 @@ namespace {
 
 namespace fs = std::filesystem;
 
-glm::dvec3 vec(const ignition::math::Vector3d& v) {
-  return {v.X(), v.Y(), v.Z()};
-}
-
-Pose pose_of(const ignition::math::Pose3d& pose) {
-  return {vec(pose.Pos()),
-          glm::normalize(glm::dquat(pose.Rot().W(), pose.Rot().X(), pose.Rot().Y(), pose.Rot().Z()))};
-}
-
 /// A visual, or a collision that stands in for one.
 struct Shape {
   std::string path;  ///< "model::link::visual"
-  sdf::ElementPtr element;
-  const sdf::Geometry* geometry = nullptr;
-  const sdf::Material* material = nullptr;
-  std::optional<double> laser_retro;
+  const SdfElement& element;
+  const SdfElement* geometry = nullptr;  ///< <box>, <mesh>, ...
   Pose T_body_shape;
 };
 
-bool has_visual(const sdf::Model& model) {
-  for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
-    if (model.LinkByIndex(i)->VisualCount() > 0) {
-      return true;
-    }
+bool has_visual(const SdfElement& model) {
+  return std::ranges::any_of(model.children, [](const auto& child) {
+    return (child->name == "link" && child->child("visual") != nullptr) ||
+           (child->name == "model" && has_visual(*child));
+  });
+}
+
+glm::dvec3 vec3_of(const SdfElement& parent, std::string_view name, const glm::dvec3& otherwise) {
+  const std::vector<double> n = numbers_of(parent.child(name), {otherwise.x, otherwise.y, otherwise.z});
+  return {n[0], n[1], n[2]};
+}
+
+double number_of(const SdfElement& parent, std::string_view name, double otherwise) {
+  return numbers_of(parent.child(name), {otherwise}).front();
+}
+
+std::string text_of(const SdfElement& parent, std::string_view name) {
+  const SdfElement* const child = parent.child(name);
+  return child == nullptr ? std::string() : child->text;
+}
+
+/// The triangles of a shape that needs no file, with the sizes that SDF takes where none is given; nullopt:
+/// it is none.
+std::optional<TriangleMesh> primitive_of(const SdfElement& geometry) {
+  if (geometry.name == "box") {
+    return make_box(vec3_of(geometry, "size", {1, 1, 1}));
   }
-  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
-    if (has_visual(*model.ModelByIndex(i))) {
-      return true;
-    }
+  if (geometry.name == "sphere") {
+    return make_sphere(number_of(geometry, "radius", 1));
   }
-  return false;
+  if (geometry.name == "ellipsoid") {
+    return make_ellipsoid(vec3_of(geometry, "radii", {1, 1, 1}));
+  }
+  if (geometry.name == "cylinder") {
+    return make_cylinder(number_of(geometry, "radius", 1), number_of(geometry, "length", 1));
+  }
+  if (geometry.name == "capsule") {
+    return make_capsule(number_of(geometry, "radius", 0.5), number_of(geometry, "length", 1));
+  }
+  if (geometry.name == "plane") {
+    const std::vector<double> size = numbers_of(geometry.child("size"), {1, 1});
+    return make_plane({size[0], size[1]}, vec3_of(geometry, "normal", {0, 0, 1}));
+  }
+  return std::nullopt;
 }
 
 class WorldBuilder {
@@ -87,190 +92,208 @@ class WorldBuilder {
       : file_(file), resolver_(file, model_folders) {}
 
   World build() {
-    const sdf::Root root = parse_sdf(file_, resolver_, world_.warnings);
-    check_own_elements(root.Element());
-    if (const sdf::World* world = root.WorldByIndex(0)) {
-      world_.name = world->Name();
-      world_.water_surface_z_m = water_surface_z_m(world->Element());
-      for (std::uint64_t i = 0; i < world->ModelCount(); ++i) {
-        add_body(*world->ModelByIndex(i));
-      }
-    } else {
-      world_.name = root.Model()->Name();
-      add_body(*root.Model());
+    const std::unique_ptr<SdfElement> sdf = read_sdf(file_, resolver_, world_.warnings, problems_);
+    check_own_elements(*sdf, problems_);
+    for (std::string& line : unknown_elements(*sdf)) {
+      world_.warnings.push_back(std::move(line));
     }
-    if (world_.triangle_count() == 0) {
-      throw WorldError(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
+    add_bodies(world_or_model(*sdf));
+    if (problems_.empty() && world_.triangle_count() == 0) {
+      complain(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
+    }
+    if (!problems_.empty()) {
+      throw WorldError(std::move(problems_));
     }
     drop_repeated_warnings();
-    tell_what_is_left_out(root.Element());
+    tell_what_is_left_out(*sdf);
     return std::move(world_);
   }
 
  private:
+  /// @throws WorldError
+  const SdfElement& world_or_model(const SdfElement& sdf) const {
+    const auto worlds =
+        std::ranges::count(sdf.children, "world", [](const auto& child) { return child->name; });
+    const SdfElement* const only = worlds > 0 ? sdf.child("world") : sdf.child("model");
+    if (worlds > 1 || only == nullptr) {
+      std::vector<std::string> lines = problems_;
+      lines.push_back(
+          fmt::format("{}: {} worlds and no model: expected one world or one model", file_.string(), worlds));
+      throw WorldError(std::move(lines));
+    }
+    return *only;
+  }
+
+  void add_bodies(const SdfElement& top) {
+    world_.name = top.given_name();
+    if (top.name == "model") {
+      add_body(top);
+      return;
+    }
+    attempt([&] { world_.water_surface_z_m = water_surface_z_m(top); });
+    for (const auto& child : top.children) {
+      if (child->name == "model") {
+        add_body(*child);
+      }
+    }
+  }
+
   /// A material that a model hands down is looked at once per visual.
   void drop_repeated_warnings() {
     std::set<std::string> seen;
     std::erase_if(world_.warnings, [&](const std::string& line) { return !seen.insert(line).second; });
   }
 
-  void tell_what_is_left_out(const sdf::ElementPtr& root) {
-    left_out_.add_elements_of(root);
+  void tell_what_is_left_out(const SdfElement& sdf) {
+    left_out_.add_elements_of(sdf);
     world_.left_out = left_out_.silent();
     for (const std::string& line : left_out_.audible()) {
       world_.warnings.push_back(fmt::format("{}: left out: {}", file_.string(), line));
     }
   }
 
-  [[noreturn]] static void fail(const sdf::ElementPtr& element, const std::string& path,
-                                const std::string& message) {
-    throw WorldError(fmt::format("{}: {}: {}", place_of(element), path, message));
+  void complain(std::string line) {
+    if (complaints_.insert(line).second) {
+      problems_.push_back(std::move(line));
+    }
   }
 
-  /// Pose in the parent frame, or in the frame named by `relative_to`.
-  static Pose resolve(const sdf::SemanticPose& semantic, const std::string& relative_to,
-                      const sdf::ElementPtr& element, const std::string& path) {
-    ignition::math::Pose3d pose;
-    const sdf::Errors errors = semantic.Resolve(pose, relative_to);
-    if (!errors.empty()) {
-      fail(element, path, errors.front().Message());
+  /// What `work` throws is told of with the rest; it leaves out only itself.
+  template <class Work>
+  void attempt(const Work& work) {
+    try {
+      work();
+    } catch (const WorldError& error) {
+      complain(error.what());
     }
-    return pose_of(pose);
   }
 
-  void add_body(const sdf::Model& model) {
-    if (world_.find_body(model.Name()) != nullptr) {
-      fail(model.Element(), model.Name(), "another model has this name");
+  /// The same, with place and path before what has none.
+  template <class Work>
+  void attempt(const SdfElement& element, const std::string& path, const Work& work) {
+    try {
+      work();
+    } catch (const WorldError& error) {
+      complain(fmt::format("{}: {}: {}", element.place(), path, error.what()));
     }
-    Body body{model.Name(), resolve(model.SemanticPose(), "", model.Element(), model.Name()), {}};
+  }
+
+  /// Its name; a problem where it has none, or that of another.
+  std::string name_of(const SdfElement& element, const std::string& path, std::set<std::string>& taken) {
+    const std::string name = element.given_name();
+    if (name.empty()) {
+      complain(fmt::format("{}: {}a {} without a name", element.place(), path.empty() ? "" : path + ": ",
+                           element.name));
+    } else if (!taken.insert(name).second) {
+      complain(fmt::format("{}: another {} is called '{}'", element.place(),
+                           path.empty() ? "model" : "part of " + path, name));
+    }
+    return name;
+  }
+
+  void add_body(const SdfElement& model) {
+    Body body{name_of(model, "", body_names_), {}, {}};
+    attempt([&] { body.T_world_body = frames_.T_scope(model); });
     const bool visible = has_visual(model);
     if (!visible) {
       world_.warnings.push_back(fmt::format("{}: {}: the model has no visual: its collision shapes are used",
-                                            place_of(model.Element()), model.Name()));
+                                            model.place(), body.name));
     }
-    add_model(body, model, Pose{}, model.Name(), visible);
+    add_model(body, model, Pose{}, body.name, visible);
     world_.bodies.push_back(std::move(body));
   }
 
-  void add_model(Body& body, const sdf::Model& model, const Pose& T_body_model, const std::string& path,
+  void add_model(Body& body, const SdfElement& model, const Pose& T_body_model, const std::string& path,
                  bool visible) {
-    for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
-      const sdf::Link& link = *model.LinkByIndex(i);
-      const std::string link_path = path + "::" + link.Name();
-      if (visible) {
-        add_visuals(body, link, T_body_model, link_path);
-      } else {
-        add_collisions(body, link, T_body_model, link_path);
+    std::set<std::string> names;
+    bool has_part = false;
+    for (const auto& child : model.children) {
+      if (child->name != "link" && child->name != "model") {
+        continue;
       }
-      add_sonars(body, link, T_body_model, link_path);
-    }
-    for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
-      const sdf::Model& nested = *model.ModelByIndex(i);
-      const std::string nested_path = path + "::" + nested.Name();
-      const Pose T_model_nested = resolve(nested.SemanticPose(), "", nested.Element(), nested_path);
-      add_model(body, nested, T_body_model * T_model_nested, nested_path, visible);
-    }
-  }
-
-  void add_visuals(Body& body, const sdf::Link& link, const Pose& T_body_model,
-                   const std::string& link_path) {
-    for (std::uint64_t i = 0; i < link.VisualCount(); ++i) {
-      const sdf::Visual& visual = *link.VisualByIndex(i);
-      Shape shape{
-          link_path + "::" + visual.Name(), visual.Element(), visual.Geom(), visual.Material(), {}, {}};
-      if (visual.HasLaserRetro()) {
-        shape.laser_retro = visual.LaserRetro();
+      has_part = true;
+      const std::string child_path = path + "::" + name_of(*child, path, names);
+      if (child->name == "model") {
+        attempt(
+            [&] { add_model(body, *child, T_body_model * frames_.T_scope(*child), child_path, visible); });
+        continue;
       }
-      shape.T_body_shape =
-          T_body_model * resolve(visual.SemanticPose(), "__model__", shape.element, shape.path);
-      add_shape(body, shape);
+      add_shapes(body, *child, visible ? "visual" : "collision", T_body_model, child_path);
+      add_sonars(body, *child, T_body_model, child_path);
+    }
+    if (!has_part) {
+      complain(fmt::format("{}: {}: the model has no link", model.place(), path));
     }
   }
 
-  void add_collisions(Body& body, const sdf::Link& link, const Pose& T_body_model,
-                      const std::string& link_path) {
-    for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
-      const sdf::Collision& collision = *link.CollisionByIndex(i);
-      Shape shape{
-          link_path + "::" + collision.Name(), collision.Element(), collision.Geom(), nullptr, {}, {}};
-      shape.T_body_shape =
-          T_body_model * resolve(collision.SemanticPose(), "__model__", shape.element, shape.path);
-      add_shape(body, shape);
-    }
-  }
-
-  void add_sonars(const Body& body, const sdf::Link& link, const Pose& T_body_model,
-                  const std::string& link_path) {
-    for (std::uint64_t i = 0; i < link.SensorCount(); ++i) {
-      const sdf::Sensor& sensor = *link.SensorByIndex(i);
-      if (const auto type = sonar_type(sensor.Element())) {
-        const std::string path = link_path + "::" + sensor.Name();
-        const Pose T_model_sonar = resolve(sensor.SemanticPose(), "__model__", sensor.Element(), path);
-        world_.sonars.push_back({path, *type, body.name, T_body_model * T_model_sonar});
+  void add_shapes(Body& body, const SdfElement& link, std::string_view kind, const Pose& T_body_model,
+                  const std::string& path) {
+    for (const auto& child : link.children) {
+      if (child->name == kind) {
+        attempt([&] {
+          Shape shape{path + "::" + child->given_name(), *child, nullptr,
+                      T_body_model * frames_.T_model(*child)};
+          attempt(*child, shape.path, [&] { add_shape(body, shape); });
+        });
       }
     }
   }
 
-  void add_shape(Body& body, const Shape& shape) {
-    if (shape.geometry == nullptr) {
-      fail(shape.element, shape.path, "there is no geometry");
+  void add_sonars(const Body& body, const SdfElement& link, const Pose& T_body_model,
+                  const std::string& path) {
+    for (const auto& child : link.children) {
+      if (const auto type = sonar_type(*child)) {
+        attempt([&] {
+          world_.sonars.push_back(
+              {path + "::" + child->given_name(), *type, body.name, T_body_model * frames_.T_model(*child)});
+        });
+      }
     }
-    if (const std::string kind = unsupported_geometry(*shape.geometry); !kind.empty()) {
+  }
+
+  /// @throws WorldError without a place
+  void add_shape(Body& body, Shape& shape) {
+    const SdfElement* const geometry = shape.element.child("geometry");
+    if (geometry == nullptr || geometry->children.empty()) {
+      throw WorldError("there is no geometry");
+    }
+    shape.geometry = geometry->children.front().get();
+    const std::string& kind = shape.geometry->name;
+    if (kind == "empty") {
+      return;
+    }
+    const auto normal_map = normal_map_of(shape);
+    if (kind == "heightmap") {
+      add_heightmap_shape(body, shape, normal_map);
+      return;
+    }
+    const auto parts = meshes_of(*shape.geometry, normal_map != nullptr);
+    if (!parts) {
       left_out_.add_geometry(kind, shape.path);
       return;
     }
-    try {
-      const auto normal_map = normal_map_of(shape);
-      if (shape.geometry->Type() == sdf::GeometryType::HEIGHTMAP) {
-        add_heightmap_shape(body, shape, normal_map);
-        return;
-      }
-      for (const MeshFilePart& part : meshes_of(shape, normal_map != nullptr)) {
-        body.parts.push_back(
-            {part.mesh, shape.T_body_shape, material_of(shape, part.material_name), normal_map});
-      }
-    } catch (const WorldError& error) {
-      fail(shape.element, shape.path, error.what());
+    for (const MeshFilePart& part : *parts) {
+      body.parts.push_back(
+          {part.mesh, shape.T_body_shape, material_of(shape, part.material_name), normal_map, part.scale});
     }
   }
 
-  /// The name of a geometry that libsdformat knows and we do not; empty for all others.
-  static std::string unsupported_geometry(const sdf::Geometry& geometry) {
-    const auto element = geometry.Type() == sdf::GeometryType::EMPTY ? geometry.Element() : nullptr;
-    const auto kind = element ? element->GetFirstElement() : nullptr;
-    return kind && kind->GetName() != "empty" ? kind->GetName() : std::string();
-  }
-
-  /// The geometry as one or more meshes (a file has one per material).
-  std::vector<MeshFilePart> meshes_of(const Shape& shape, bool tangents) {
-    const sdf::Geometry& geometry = *shape.geometry;
-    switch (geometry.Type()) {
-      case sdf::GeometryType::BOX:
-        return single(make_box(vec(geometry.BoxShape()->Size())), tangents);
-      case sdf::GeometryType::SPHERE:
-        return single(make_sphere(geometry.SphereShape()->Radius()), tangents);
-      case sdf::GeometryType::ELLIPSOID:
-        return single(make_ellipsoid(vec(geometry.EllipsoidShape()->Radii())), tangents);
-      case sdf::GeometryType::CYLINDER:
-        return single(make_cylinder(geometry.CylinderShape()->Radius(), geometry.CylinderShape()->Length()),
-                      tangents);
-      case sdf::GeometryType::CAPSULE:
-        return single(make_capsule(geometry.CapsuleShape()->Radius(), geometry.CapsuleShape()->Length()),
-                      tangents);
-      case sdf::GeometryType::PLANE: {
-        const auto size = geometry.PlaneShape()->Size();
-        return single(make_plane({size.X(), size.Y()}, vec(geometry.PlaneShape()->Normal())), tangents);
-      }
-      case sdf::GeometryType::MESH:
-        return mesh_file(*geometry.MeshShape(), tangents);
-      case sdf::GeometryType::HEIGHTMAP:  // add_heightmap_shape()
-      case sdf::GeometryType::EMPTY:
-        break;
+  /// The geometry as one or more meshes (a file has one per material); nullopt: it is none that is drawn.
+  /// Equal shapes share a mesh.
+  std::optional<std::vector<MeshFilePart>> meshes_of(const SdfElement& geometry, bool tangents) {
+    if (geometry.name == "mesh") {
+      return mesh_file(geometry, tangents);
     }
-    if (const auto element = geometry.Element(); !element || !element->GetFirstElement()) {
-      throw WorldError("there is no geometry");
+    std::string key = geometry.name + (tangents ? " with tangents" : "");
+    for (const auto& child : geometry.children) {
+      key += fmt::format(" {} {}", child->name, child->text);
     }
-    return {};
+    if (const auto known = primitives_.find(key); known != primitives_.end()) {
+      return known->second;
+    }
+    auto mesh = primitive_of(geometry);
+    return mesh ? std::optional(primitives_.emplace(key, single(std::move(*mesh), tangents)).first->second)
+                : std::nullopt;
   }
 
   std::vector<MeshFilePart> single(TriangleMesh mesh, bool tangents) {
@@ -284,26 +307,35 @@ class WorldBuilder {
     return {{"", std::make_shared<const TriangleMesh>(std::move(mesh))}};
   }
 
+  /// The file that a <uri> names.
+  fs::path file_of(const SdfElement& geometry) const {
+    return resolver_.resolve(text_of(geometry, "uri"), geometry.folder());
+  }
+
   /// Its `pos` becomes part of the pose, which is in double precision: it may hold UTM coordinates.
   void add_heightmap_shape(Body& body, const Shape& shape, std::shared_ptr<const NormalMap> normal_map) {
-    const sdf::Heightmap& map = *shape.geometry->HeightmapShape();
-    const fs::path file = resolver_.resolve(map.Uri(), fs::path(map.FilePath()).parent_path());
-    const Pose T_shape_map{vec(map.Position()), {1, 0, 0, 0}};
-    add_heightmap(load_grey_image(file), vec(map.Size()),
+    const Pose T_shape_map{vec3_of(*shape.geometry, "pos", {0, 0, 0}), {1, 0, 0, 0}};
+    add_heightmap(load_grey_image(file_of(*shape.geometry)), vec3_of(*shape.geometry, "size", {1, 1, 1}),
                   {nullptr, shape.T_body_shape * T_shape_map, material_of(shape, ""), std::move(normal_map)},
                   world_, world_.bodies.size(), body.parts);
   }
 
-  /// Each file is read once for all its uses with the same scale.
-  std::vector<MeshFilePart> mesh_file(const sdf::Mesh& mesh, bool tangents) {
-    const MeshFileRequest request{resolver_.resolve(mesh.Uri(), fs::path(mesh.FilePath()).parent_path()),
-                                  mesh.Submesh(), mesh.CenterSubmesh(), vec(mesh.Scale()), tangents};
+  /// Each file is read once for all its uses with the same scale, and complained of once.
+  std::vector<MeshFilePart> mesh_file(const SdfElement& mesh, bool tangents) {
+    const SdfElement* const submesh = mesh.child("submesh");
+    const std::string centre = submesh == nullptr ? "" : text_of(*submesh, "center");
+    const MeshFileRequest request{file_of(mesh), submesh == nullptr ? "" : text_of(*submesh, "name"),
+                                  centre == "true" || centre == "1", vec3_of(mesh, "scale", {1, 1, 1}),
+                                  tangents};
     for (const auto& [known, parts] : mesh_files_) {
       if (known == request) {
         return parts;
       }
     }
     MeshFile loaded = load_mesh_file(request);
+    for (MeshFilePart& part : loaded.parts) {
+      part.scale = request.scale;
+    }
     world_.diagnostics += loaded.diagnostics;
     world_.warnings.insert(world_.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     mesh_files_.emplace_back(request, loaded.parts);
@@ -321,31 +353,31 @@ class WorldBuilder {
     if (auto inherited = inherited_material(shape.element, world_.warnings)) {
       return *inherited;
     }
-    if (shape.laser_retro) {
+    if (shape.element.name == "visual" && shape.element.child("laser_retro") != nullptr) {
       std::vector<std::string> remarks;
-      AcousticMaterial material = material_of_laser_retro(*shape.laser_retro, remarks);
+      AcousticMaterial material =
+          material_of_laser_retro(number_of(shape.element, "laser_retro", 0), remarks);
       for (const std::string& remark : remarks) {
-        world_.warnings.push_back(fmt::format("{}: {}: {}", place_of(shape.element), shape.path, remark));
+        world_.warnings.push_back(fmt::format("{}: {}: {}", shape.element.place(), shape.path, remark));
       }
       return material;
     }
     if (!mesh_material.empty()) {
       world_.warnings.push_back(
           fmt::format("{}: {}: mesh material '{}' is no acoustic material: 'default' is used",
-                      place_of(shape.element), shape.path, mesh_material));
+                      shape.element.place(), shape.path, mesh_material));
     }
     return {};
   }
 
   std::shared_ptr<const NormalMap> normal_map_of(const Shape& shape) {
-    if (shape.material == nullptr) {
-      return nullptr;
-    }
-    const std::string uri = normal_map_uri(*shape.material);
+    const SdfElement* const material =
+        shape.element.name == "visual" ? shape.element.child("material") : nullptr;
+    const std::string uri = material == nullptr ? "" : normal_map_uri(*material);
     if (uri.empty()) {
       return nullptr;
     }
-    const fs::path file = resolver_.resolve(uri, fs::path(shape.element->FilePath()).parent_path());
+    const fs::path file = resolver_.resolve(uri, shape.element.folder());
     auto& known = normal_maps_[file];
     if (!known) {
       known = std::make_shared<const NormalMap>(load_normal_map(file));
@@ -353,21 +385,26 @@ class WorldBuilder {
     return known;
   }
 
-  static std::string normal_map_uri(const sdf::Material& material) {
-    bool in_object_space = material.Shader() == sdf::ShaderType::NORMAL_MAP_OBJECTSPACE;
-    std::string uri = in_object_space || material.Shader() == sdf::ShaderType::NORMAL_MAP_TANGENTSPACE
-                          ? material.NormalMap()
-                          : std::string();
-    for (const auto type : {sdf::PbrWorkflowType::METAL, sdf::PbrWorkflowType::SPECULAR}) {
-      const sdf::PbrWorkflow* workflow =
-          material.PbrMaterial() != nullptr ? material.PbrMaterial()->Workflow(type) : nullptr;
-      if (workflow != nullptr && !workflow->NormalMap().empty()) {
-        uri = workflow->NormalMap();
-        in_object_space =
-            workflow->Element()->FindElement("normal_map")->Get<std::string>("type") == "object";
+  static std::string normal_map_uri(const SdfElement& material) {
+    const SdfElement* const shader = material.child("shader");
+    const std::string* const type = shader == nullptr ? nullptr : shader->attribute("type");
+    bool in_object_space = type != nullptr && *type == "normal_map_object_space";
+    std::string uri = in_object_space || (type != nullptr && *type == "normal_map_tangent_space")
+                          ? text_of(*shader, "normal_map")
+                          : "";
+    const SdfElement* const pbr = material.child("pbr");
+    for (const char* workflow : {"metal", "specular"}) {
+      const SdfElement* const named = pbr == nullptr ? nullptr : pbr->child(workflow);
+      const SdfElement* const map = named == nullptr ? nullptr : named->child("normal_map");
+      if (map != nullptr && !map->text.empty()) {
+        uri = map->text;
+        const std::string* const space = map->attribute("type");
+        in_object_space = space != nullptr && *space == "object";
         break;
       }
     }
+    // A shader without a map of its own names "__default__" where a program wrote the file.
+    uri = uri == "__default__" ? "" : uri;
     if (!uri.empty() && in_object_space) {
       throw WorldError("object-space normal maps are not supported: use one in tangent space");
     }
@@ -378,6 +415,10 @@ class WorldBuilder {
   UriResolver resolver_;
   World world_;
   LeftOut left_out_;
+  SdfFrames frames_;
+  WorldProblems problems_;
+  std::set<std::string> complaints_, body_names_;
+  std::map<std::string, std::vector<MeshFilePart>> primitives_;
   std::vector<std::pair<MeshFileRequest, std::vector<MeshFilePart>>> mesh_files_;
   std::map<fs::path, std::shared_ptr<const NormalMap>> normal_maps_;
 };

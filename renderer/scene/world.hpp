@@ -69,6 +69,7 @@ struct BodyPart {
   Pose T_body_part;
   AcousticMaterial material;
   std::shared_ptr<const NormalMap> normal_map;  ///< null when the surface is smooth
+  glm::dvec3 scale{1.0};                        ///< by which the mesh of a file was multiplied, for people
 };
 
 /// The new mesh of a part. Parts are counted through all bodies in the order of the world.
@@ -137,6 +138,11 @@ void replace_meshes(World& world, std::span<const PartMesh> changes);
 /// Thrown by everything that loads a world. what() is one line: "file:line: message" as far as known.
 struct WorldError : std::runtime_error {
   using std::runtime_error::runtime_error;
+  /// @param lines at least one
+  explicit WorldError(std::vector<std::string> lines)
+      : std::runtime_error(lines.front()), more(lines.begin() + 1, lines.end()) {}
+
+  std::vector<std::string> more{};  ///< what else is wrong, in the same form
 };
 
 /// Folders of the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and
@@ -147,8 +153,8 @@ std::vector<std::filesystem::path> model_folders_from_environment();
 /// Relative URIs are resolved against the folder of the file that names them; `model://NAME` is looked for in
 /// the folder of the world, in `models` there and beside it, then in `model_folders`. Nothing is fetched from
 /// a network. Mesh files are read in forked child processes: call this before other threads are started.
-/// @throws WorldError naming file, line and element for a missing mesh, zero triangles, an unknown material,
-/// ...
+/// @throws WorldError naming file, line and element for each missing mesh, unknown material, ...; of no
+/// triangles
 World load_world(const std::filesystem::path& sdf_file,
                  const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment());
 

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene/sdf_document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "renderer/scene/world.hpp"
+
+namespace sonard::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Ten thousand models of a hundred elements; they take some 300 MB for as long as the world is read.
+constexpr std::size_t most_elements = 1'000'000;
+constexpr std::uintmax_t most_bytes = 256U << 20U;  // of one file
+
+/// "1.10" comes after "1.9": major and minor apart.
+std::pair<int, int> version_of(std::string_view text) {
+  std::pair<int, int> version{0, 0};
+  const std::size_t dot = text.find('.');
+  std::from_chars(text.data(), text.data() + std::min(dot, text.size()), version.first);
+  if (dot != std::string_view::npos) {
+    std::from_chars(text.data() + dot + 1, text.data() + text.size(), version.second);
+  }
+  return version;
+}
+
+/// A new child that stands where `from` does.
+SdfElement& add_child(SdfElement& parent, std::string name, const SdfElement& from) {
+  parent.children.push_back(std::make_unique<SdfElement>());
+  SdfElement& child = *parent.children.back();
+  child.name = std::move(name);
+  child.file = from.file;
+  child.line = from.line;
+  child.parent = &parent;
+  return child;
+}
+
+/// The same with what `from` says, without its children.
+void add_copy(SdfElement& parent, const SdfElement& from) {
+  SdfElement& child = add_child(parent, from.name, from);
+  child.text = from.text;
+  child.attributes = from.attributes;
+}
+
+/// Reads each file once, and copies it as often as it is included.
+class SdfReader {
+ public:
+  SdfReader(UriResolver& resolver, std::vector<std::string>& warnings, WorldProblems& problems)
+      : resolver_(resolver), warnings_(warnings), problems_(problems) {}
+
+  std::unique_ptr<SdfElement> read(const fs::path& world_file) {
+    const Document& document = open(world_file);
+    around_.push_back(world_file);
+    return copy(*document.root, document.file, nullptr);
+  }
+
+ private:
+  struct Document {
+    std::unique_ptr<tinyxml2::XMLDocument> xml;
+    const tinyxml2::XMLElement* root = nullptr;
+    std::shared_ptr<const fs::path> file;
+  };
+
+  const Document& open(const fs::path& file);
+  void check_version(const Document& document);
+  std::unique_ptr<SdfElement> copy(const tinyxml2::XMLElement& from,
+                                   const std::shared_ptr<const fs::path>& file, const SdfElement* parent);
+  void include(const SdfElement& include, SdfElement& into);
+  fs::path included_file(const SdfElement& include);
+  static void override_with(const SdfElement& include, SdfElement& model);
+  static void merge(SdfElement& model, SdfElement& into);
+
+  UriResolver& resolver_;
+  std::vector<std::string>& warnings_;
+  WorldProblems& problems_;
+  std::map<fs::path, Document> documents_;
+  std::vector<fs::path> around_;  ///< files that are being copied, from the world's to the innermost
+  std::size_t elements_ = 0;
+};
+
+const SdfReader::Document& SdfReader::open(const fs::path& file) {
+  if (const auto known = documents_.find(file); known != documents_.end()) {
+    return known->second;
+  }
+  std::error_code ignored;
+  if (fs::file_size(file, ignored) > most_bytes) {
+    throw WorldError(fmt::format("{}: more than {} MiB are not read", file.string(), most_bytes >> 20U));
+  }
+  Document document{std::make_unique<tinyxml2::XMLDocument>(), nullptr,
+                    std::make_shared<const fs::path>(file)};
+  if (document.xml->LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
+    std::string_view name = document.xml->ErrorName();
+    name.remove_prefix(name.starts_with("XML_") ? 4 : 0);
+    throw WorldError(fmt::format("{}:{}: not well-formed XML ({})", file.string(),
+                                 std::max(1, document.xml->ErrorLineNum()), name));
+  }
+  document.root = document.xml->RootElement();
+  const std::string_view root = document.root->Name();
+  if (root != "sdf") {
+    throw WorldError(fmt::format("{}:{}: <{}> is no SDF (expected <sdf version=\"1.9\">){}", file.string(),
+                                 document.root->GetLineNum(), root,
+                                 root == "robot" ? "; `gz sdf -p` makes SDF of a URDF" : ""));
+  }
+  check_version(document);
+  return documents_.emplace(file, std::move(document)).first->second;
+}
+
+void SdfReader::check_version(const Document& document) {
+  const char* const given = document.root->Attribute("version");
+  const auto place = [&] {
+    return fmt::format("{}:{}", document.file->string(), document.root->GetLineNum());
+  };
+  if (given == nullptr) {
+    warnings_.push_back(fmt::format("{}: <sdf> has no version: it is read as 1.12", place()));
+  } else if (version_of(given) < std::pair{1, 3}) {
+    throw WorldError(fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12)", place(), given));
+  } else if (version_of(given) > std::pair{1, 12}) {
+    warnings_.push_back(
+        fmt::format("{}: SDF version {} is read as 1.12, the newest that is known", place(), given));
+  }
+}
+
+std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
+                                            const std::shared_ptr<const fs::path>& file,
+                                            const SdfElement* parent) {
+  if (++elements_ > most_elements) {
+    throw WorldError(fmt::format("{}: more than {} elements with all that is included: do includes multiply?",
+                                 around_.front().string(), most_elements));
+  }
+  auto element = std::make_unique<SdfElement>();
+  element->name = from.Name();
+  element->parent = parent;
+  element->file = file;
+  element->line = from.GetLineNum();
+  for (const auto* given = from.FirstAttribute(); given != nullptr; given = given->Next()) {
+    element->attributes.emplace_back(given->Name(), given->Value());
+  }
+  const bool may_include = element->name == "world" || element->name == "model" || element->name == "sdf";
+  for (const auto* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
+    if (const auto* text = node->ToText()) {
+      element->text += text->Value();
+    } else if (const auto* child = node->ToElement()) {
+      auto made = copy(*child, file, element.get());
+      if (may_include && made->name == "include") {
+        include(*made, *element);
+      } else {
+        element->children.push_back(std::move(made));
+      }
+    }
+  }
+  element->text = trimmed(element->text);
+  return element;
+}
+
+/// The newest file that a model's manifest names, or its model.sdf.
+fs::path model_file_in(const fs::path& folder) {
+  tinyxml2::XMLDocument manifest;
+  fs::path newest = folder / "model.sdf";
+  if (manifest.LoadFile((folder / "model.config").c_str()) != tinyxml2::XML_SUCCESS ||
+      manifest.RootElement() == nullptr) {
+    return newest;
+  }
+  std::pair<int, int> newest_version{-1, 0};
+  const auto* sdf = manifest.RootElement()->FirstChildElement("sdf");
+  for (; sdf != nullptr; sdf = sdf->NextSiblingElement("sdf")) {
+    const char* const version = sdf->Attribute("version");
+    const std::pair<int, int> its = version_of(version == nullptr ? "" : version);
+    if (sdf->GetText() != nullptr && its > newest_version) {
+      newest_version = its;
+      newest = folder / trimmed(sdf->GetText());
+    }
+  }
+  return newest;
+}
+
+/// @throws WorldError without a place
+fs::path SdfReader::included_file(const SdfElement& include) {
+  const SdfElement* const uri = include.child("uri");
+  const fs::path found = resolver_.resolve(uri == nullptr ? "" : uri->text, include.folder());
+  fs::path file = fs::is_directory(found) ? model_file_in(found) : found;
+  std::error_code error;
+  const fs::path canonical = fs::canonical(file, error);
+  if (error || !fs::is_regular_file(canonical)) {
+    throw WorldError(fmt::format("'{}': there is no file {}", uri->text, file.string()));
+  }
+  resolver_.add_model_folder(canonical.parent_path().parent_path());
+  if (const auto same = std::ranges::find(around_, canonical); same != around_.end()) {
+    std::vector<std::string> way;
+    for (auto step = same; step != around_.end(); ++step) {
+      way.push_back(step->filename().string());
+    }
+    throw WorldError(fmt::format("'{}' includes itself: {} -> {}", uri->text, fmt::join(way, " -> "),
+                                 canonical.filename().string()));
+  }
+  return canonical;
+}
+
+/// The first element that is worth including; null where there is none.
+const tinyxml2::XMLElement* content_of(const tinyxml2::XMLElement& sdf) {
+  for (const auto* child = sdf.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    const std::string_view name = child->Name();
+    if (name == "model" || name == "world" || name == "actor" || name == "light") {
+      return child;
+    }
+  }
+  return nullptr;
+}
+
+void SdfReader::include(const SdfElement& include, SdfElement& into) {
+  try {
+    const fs::path file = included_file(include);
+    const Document& document = open(file);
+    const auto* const from = content_of(*document.root);
+    if (from == nullptr) {
+      throw WorldError(fmt::format("{} has no model", file.string()));
+    }
+    around_.push_back(file);
+    auto included = copy(*from, document.file, &into);
+    around_.pop_back();
+    override_with(include, *included);
+    const std::string* const merges = include.attribute("merge");
+    if (included->name == "world" || (merges != nullptr && (*merges == "true" || *merges == "1"))) {
+      merge(*included, into);
+    } else {
+      into.children.push_back(std::move(included));
+    }
+  } catch (const WorldError& error) {
+    if (elements_ > most_elements) {
+      throw;
+    }
+    problems_.push_back(fmt::format("{}: include {}", include.place(), error.what()));
+  }
+}
+
+/// What an include says of the model takes the place of what the model says itself.
+void SdfReader::override_with(const SdfElement& include, SdfElement& model) {
+  if (const SdfElement* const name = include.child("name")) {
+    model.set_attribute("name", name->text);
+  }
+  if (const SdfElement* const frame = include.child("placement_frame")) {
+    model.set_attribute("placement_frame", frame->text);
+  }
+  for (const auto& child : include.children) {
+    const bool replaces = child->name == "pose";
+    if (!replaces && child->name != "plugin" && !child->name.starts_with("sonard:")) {
+      continue;
+    }
+    if (replaces) {
+      std::erase_if(model.children, [](const auto& known) { return known->name == "pose"; });
+    }
+    add_copy(model, *child);
+  }
+}
+
+/// What had its place by its model's frame has it by another.
+void place_by(const std::string& frame, SdfElement& part) {
+  if (part.child("pose") == nullptr) {
+    add_child(part, "pose", part);
+  }
+  SdfElement& pose = *part.child("pose");
+  const std::string* const relative = pose.attribute("relative_to");
+  const std::string* const attached = part.attribute("attached_to");
+  const bool by_default = relative == nullptr || relative->empty();
+  const bool to_another = part.name == "joint" || (attached != nullptr && !attached->empty());
+  if ((by_default && !to_another) || (!by_default && *relative == "__model__")) {
+    pose.set_attribute("relative_to", frame);
+  }
+  if (attached != nullptr && *attached == "__model__") {
+    part.set_attribute("attached_to", frame);
+  }
+}
+
+/// The parts of a model become parts of the one around it, and keep their places by a frame that stands for
+/// it (SDF 1.9, <include merge="true">). Parts of a world become parts of the world around it.
+void SdfReader::merge(SdfElement& model, SdfElement& into) {
+  const std::string frame = "_merged__" + model.given_name() + "__model__";
+  const SdfElement* const material = model.child("sonard:material");
+  if (model.attribute("placement_frame") != nullptr) {
+    throw WorldError(fmt::format("of '{}': a placement_frame and merge=\"true\" are not read together",
+                                 model.given_name()));
+  }
+  if (model.name == "model") {
+    SdfElement& stands_for_it = add_child(into, "frame", model);
+    stands_for_it.set_attribute("name", frame);
+    if (const SdfElement* const pose = model.child("pose")) {
+      add_copy(stands_for_it, *pose);
+    }
+  }
+  for (auto& part : model.children) {
+    if (part->name == "pose" || part->name == "static" || part.get() == material) {
+      continue;
+    }
+    if (material != nullptr && part->name == "link" && part->child(material->name) == nullptr) {
+      add_copy(*part, *material);
+    }
+    part->parent = &into;
+    const bool has_place =
+        part->name == "link" || part->name == "frame" || part->name == "model" || part->name == "joint";
+    if (model.name == "model" && has_place) {
+      place_by(frame, *part);
+    }
+    into.children.push_back(std::move(part));
+  }
+}
+
+}  // namespace
+
+const std::string* SdfElement::attribute(std::string_view key) const {
+  const auto given = std::ranges::find(attributes, key, &std::pair<std::string, std::string>::first);
+  return given == attributes.end() ? nullptr : &given->second;
+}
+
+void SdfElement::set_attribute(std::string_view key, std::string value) {
+  std::erase_if(attributes, [&](const auto& given) { return given.first == key; });
+  attributes.emplace_back(key, std::move(value));
+}
+
+const SdfElement* SdfElement::child(std::string_view child_name) const {
+  const auto found =
+      std::ranges::find(children, child_name, [](const auto& one) -> std::string_view { return one->name; });
+  return found == children.end() ? nullptr : found->get();
+}
+
+SdfElement* SdfElement::child(std::string_view child_name) {
+  return const_cast<SdfElement*>(std::as_const(*this).child(child_name));
+}
+
+std::string SdfElement::given_name() const {
+  const std::string* const given = attribute("name");
+  return given == nullptr ? std::string() : *given;
+}
+
+std::string SdfElement::place() const {
+  return fmt::format("{}:{}", file->string(), line);
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+double number(std::string_view text, std::string_view what) {
+  std::string_view digits = trimmed(text);
+  digits.remove_prefix(digits.starts_with('+') ? 1 : 0);
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || rest != digits.data() + digits.size()) {
+    throw WorldError(fmt::format("{} '{}': expected a number", what, text));
+  }
+  if (!std::isfinite(value)) {
+    throw WorldError(fmt::format("{} '{}': expected a finite number", what, text));
+  }
+  return value;
+}
+
+std::vector<double> numbers_of(const SdfElement* element, const std::vector<double>& otherwise) {
+  if (element == nullptr) {
+    return otherwise;
+  }
+  std::vector<double> numbers;
+  std::string_view rest = element->text;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find_first_of(" \t\r\n"), rest.size());
+    numbers.push_back(number(rest.substr(0, end), element->name));
+    rest = trimmed(rest.substr(end));
+  }
+  if (numbers.size() != otherwise.size()) {
+    throw WorldError(fmt::format("{} '{}': expected {} number{}", element->name, element->text,
+                                 otherwise.size(), otherwise.size() == 1 ? "" : "s"));
+  }
+  return numbers;
+}
+
+std::unique_ptr<SdfElement> read_sdf(const fs::path& world_file, UriResolver& resolver,
+                                     std::vector<std::string>& warnings, WorldProblems& problems) {
+  return SdfReader(resolver, warnings, problems).read(world_file);
+}
+
+}  // namespace sonard::render

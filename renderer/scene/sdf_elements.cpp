@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene/sdf_elements.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace sonard::render {
+namespace {
+
+using Names = std::set<std::string_view>;
+
+/// Children of the elements that are read, by the specification (sdformat.org/spec) from 1.3 to 1.12. What
+/// stands in others is not looked at.
+const std::map<std::string_view, Names>& known_children() {
+  static const std::map<std::string_view, Names> children{
+      {"sdf", {"world", "model", "actor", "light", "include"}},
+      {"world", {"audio",      "wind",
+                 "gravity",    "magnetic_field",
+                 "atmosphere", "gui",
+                 "physics",    "scene",
+                 "light",      "model",
+                 "actor",      "plugin",
+                 "road",       "spherical_coordinates",
+                 "state",      "population",
+                 "include",    "frame",
+                 "joint",      "particle_emitter"}},
+      {"model",
+       {"static", "self_collide", "allow_auto_disable", "include", "model", "enable_wind", "frame", "pose",
+        "link", "joint", "plugin", "gripper"}},
+      {"link",
+       {"gravity", "enable_wind", "self_collide", "kinematic", "must_be_base_link", "velocity_decay", "frame",
+        "pose", "inertial", "collision", "visual", "sensor", "projector", "audio_sink", "audio_source",
+        "battery", "light", "particle_emitter"}},
+      {"visual",
+       {"cast_shadows", "laser_retro", "transparency", "visibility_flags", "meta", "frame", "pose",
+        "material", "geometry", "plugin"}},
+      {"collision",
+       {"laser_retro", "max_contacts", "frame", "pose", "geometry", "surface", "density",
+        "auto_inertia_params"}},
+      {"geometry",
+       {"empty", "box", "capsule", "cone", "cylinder", "ellipsoid", "heightmap", "image", "mesh", "plane",
+        "polyline", "sphere"}},
+      {"box", {"size"}},
+      {"capsule", {"radius", "length"}},
+      {"cylinder", {"radius", "length"}},
+      {"ellipsoid", {"radii"}},
+      {"heightmap", {"uri", "size", "pos", "texture", "blend", "use_terrain_paging", "sampling"}},
+      {"mesh", {"uri", "submesh", "scale", "convex_decomposition"}},
+      {"submesh", {"name", "center"}},
+      {"plane", {"normal", "size"}},
+      {"sphere", {"radius"}},
+  };
+  return children;
+}
+
+struct Unknown {
+  std::string place;  ///< of the first
+  std::size_t count = 0;
+};
+using UnknownByKind = std::map<std::pair<std::string, std::string>, Unknown>;  ///< parent, name
+
+void find_unknown(const SdfElement& element, UnknownByKind& found) {
+  const auto known = known_children().find(element.name);
+  if (known == known_children().end()) {
+    return;
+  }
+  for (const auto& child : element.children) {
+    if (child->name.find(':') != std::string::npos) {
+      continue;
+    }
+    if (known->second.contains(child->name)) {
+      find_unknown(*child, found);
+    } else if (Unknown& kind = found[{element.name, child->name}]; kind.count++ == 0) {
+      kind.place = child->place();
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> unknown_elements(const SdfElement& sdf) {
+  UnknownByKind found;
+  find_unknown(sdf, found);
+  std::vector<std::string> lines;
+  for (const auto& [kind, unknown] : found) {
+    lines.push_back(fmt::format("{}: <{}> in <{}> is not known: it is left out{}", unknown.place, kind.second,
+                                kind.first,
+                                unknown.count > 1 ? fmt::format(" ({} times in all)", unknown.count) : ""));
+  }
+  return lines;
+}
+
+}  // namespace sonard::render
