@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/check.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -14,16 +19,22 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
+#include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
+#include "server/clock/clock.hpp"
 #include "server/config/overlaps.hpp"
+#include "server/daemon/daemon.hpp"
 #include "server/daemon/resolve_mounts.hpp"
 #include "server/devices/device_kind.hpp"
 #include "server/diagnosis/sight.hpp"
+#include "server/net/udp_endpoint.hpp"
 
 namespace sonard::server {
 namespace {
 
 namespace asio = boost::asio;
+
+constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes: a Gemini writes some 5 MB a second
 
 class Check {
  public:
@@ -62,20 +73,49 @@ class Check {
   void try_socket(const Endpoint& endpoint, const std::string& key);
   void list_bodies(const render::World& world, const std::vector<BodyBox>& boxes);
   void check_start(const render::World& world, const std::vector<BodyBox>& boxes);
+  bool try_ping(render::SonarRenderer& renderer, std::size_t head, std::size_t triangles);
+  void try_folder(const std::filesystem::path& folder, const std::string& key);
+  void try_connecting(std::size_t head);
 
   const LoadedConfig& loaded_;
   DaemonConfig config_;
   CheckReport report_;
 };
 
+std::set<std::string> material_names(const render::Body& body) {
+  std::set<std::string> names;
+  for (const render::BodyPart& part : body.parts) {
+    names.insert(part.material.name);
+  }
+  return names;
+}
+
 std::string material_names(const render::World& world) {
   std::set<std::string> names;
   for (const render::Body& body : world.bodies) {
-    for (const render::BodyPart& part : body.parts) {
-      names.insert(part.material.name);
-    }
+    names.merge(material_names(body));
   }
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// ", scale 0.001" where a mesh of the body was scaled.
+std::string scale_text(const render::Body& body) {
+  for (const render::BodyPart& part : body.parts) {
+    const glm::dvec3& s = part.scale;
+    if (s != glm::dvec3(1.0)) {
+      return s.x == s.y && s.y == s.z ? fmt::format(", scale {:.4g}", s.x)
+                                      : fmt::format(", scale {:.4g} {:.4g} {:.4g}", s.x, s.y, s.z);
+    }
+  }
+  return "";
+}
+
+/// What the extent of a mesh says of its unit; "" where nothing is odd. A metre is the unit of SDF.
+std::string unit_hint(double longest_m) {
+  if (longest_m > 2000.0) {
+    return "is its mesh in millimetres? <scale>0.001 0.001 0.001</scale> makes metres of them";
+  }
+  return longest_m < 0.005 ? "is its mesh scaled twice?" : "";
 }
 
 /// "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete", of the first bodies.
@@ -85,14 +125,19 @@ void Check::list_bodies(const render::World& world, const std::vector<BodyBox>& 
     const render::Body& body = world.bodies[i];
     const glm::dvec3 size = boxes[i].max_m - boxes[i].min_m;
     const glm::dvec3 middle = body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m));
-    std::set<std::string> materials;
-    for (const render::BodyPart& part : body.parts) {
-      materials.insert(part.material.name);
+    if (body.parts.empty()) {
+      continue;
     }
-    if (!body.parts.empty()) {
-      report_.summary.push_back(
-          fmt::format("body     {}: {:.4g} x {:.4g} x {:.4g} m at ({:.4g}, {:.4g}, {:.4g}), {}", body.name,
-                      size.x, size.y, size.z, middle.x, middle.y, middle.z, fmt::join(materials, ", ")));
+    report_.summary.push_back(
+        fmt::format("body     {}: {:.4g} x {:.4g} x {:.4g} m at ({:.4g}, {:.4g}, {:.4g}), {}{}", body.name,
+                    size.x, size.y, size.z, middle.x, middle.y, middle.z,
+                    fmt::join(material_names(body), ", "), scale_text(body)));
+    const bool is_terrain = std::ranges::any_of(
+        world.terrains, [&](const render::TerrainParts& terrain) { return terrain.body == i; });
+    if (const std::string hint = unit_hint(std::max({size.x, size.y, size.z}));
+        !hint.empty() && !is_terrain) {
+      warning("world.file", fmt::format("body '{}' is {:.4g} x {:.4g} x {:.4g} m: {}", body.name, size.x,
+                                        size.y, size.z, hint));
     }
   }
   if (world.bodies.size() > most) {
@@ -100,17 +145,50 @@ void Check::list_bodies(const render::World& world, const std::vector<BodyBox>& 
   }
 }
 
-/// What a sonar would see from `poses.initial`. Whether something is in the fan only a ping can tell.
+/// Renders one on the CPU, and says what it takes here.
+/// @return whether it shows a surface
+bool Check::try_ping(render::SonarRenderer& renderer, std::size_t head, std::size_t triangles) {
+  constexpr double slow_ms = 60.0;
+  constexpr std::size_t many_triangles = 1'000'000;
+  const render::PingRequest ping = usual_ping(config_.heads[head], *config_.poses.T_world_vehicle_initial);
+  const int stream = static_cast<int>(head);
+  renderer.render_ping(ping, stream);  // the first one builds what the next ones use
+  const TimePoint begin = SteadyClock().now();
+  render::PingRequest next = ping;
+  next.T_world_sonar.position_m.x += 1e-3;  // a world that stands still is not looked at again
+  renderer.render_ping(next, stream);
+  const double ms = std::chrono::duration<double, std::milli>(SteadyClock().now() - begin).count();
+  const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.2g} ms on this machine's CPU",
+                                       ping.settings.range.sampled_range_m(), ms);
+  const std::string& name = config_.heads[head].name;
+  report_.summary.push_back(fmt::format("cost     {}: {}", name, cost));
+  if (ms > slow_ms && triangles > many_triangles) {
+    warning("world.file",
+            fmt::format("head '{}': {}, with {} triangles in the world: a heightmap for the ground "
+                        "(docs/worlds.md) or coarser meshes make it faster",
+                        name, cost, triangles));
+  }
+  return renderer.last_statistics().sees_surface;
+}
+
+/// What a sonar would see from `poses.initial`, by a ping of each head.
 void Check::check_start(const render::World& world, const std::vector<BodyBox>& boxes) {
   if (!config_.poses.T_world_vehicle_initial) {
     return;
   }
   const render::Pose& T_world_vehicle = *config_.poses.T_world_vehicle_initial;
-  for (const HeadConfig& head : config_.heads) {
+  render::RendererOptions options = renderer_options(config_);
+  options.engine = render::EngineKind::cpu;
+  render::SonarRenderer renderer(world, options);
+  if (!config_.vehicle_model.empty()) {
+    renderer.set_body_pose(config_.vehicle_model, T_world_vehicle);
+  }
+  for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+    const HeadConfig& head = config_.heads[i];
     const Sight sight{.T_world_vehicle = T_world_vehicle,
                       .T_world_sonar = T_world_vehicle * head.T_vehicle_sonar,
                       .range_m = usual_settings(head).range.sampled_range_m(),
-                      .sees_surface = std::nullopt,
+                      .sees_surface = try_ping(renderer, i, world.triangle_count()),
                       .vehicle_model = config_.vehicle_model,
                       .hides_vehicle = head.hides_vehicle};
     const std::vector<PosedBody> moved{{config_.vehicle_model, T_world_vehicle}};
@@ -151,12 +229,19 @@ void Check::check_world() {
     for (const WorldProblem& found : resolve_mounts(config_, world)) {
       problem(found.key, found.message);
     }
-    check_start(world, boxes);
+    try {
+      check_start(world, boxes);
+    } catch (const render::RequestError&) {
+      // The sampling, of which check_head() tells.
+    }
     if (!config_.vehicle_model.empty()) {
       report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.vehicle_model));
     }
   } catch (const render::WorldError& error) {
     problem("world.file", error.what());
+    for (const std::string& line : error.more) {
+      problem("world.file", line);
+    }
   }
 }
 
@@ -165,14 +250,41 @@ void Check::check_recording() {
     return;
   }
   const RecordingConfig& recording = *config_.recording;
-  std::error_code error;
-  if (std::filesystem::exists(recording.directory, error) &&
-      !std::filesystem::is_directory(recording.directory, error)) {
-    problem("recording.directory", fmt::format("{} is no folder", recording.directory.string()));
-  }
+  try_folder(recording.directory, "recording.directory");
   report_.summary.push_back(fmt::format("records  into {}:{}{}{}", recording.directory.string(),
                                         recording.glf ? " glf" : "", recording.mcap ? " mcap" : "",
                                         recording.pcapng ? " pcapng" : ""));
+}
+
+/// Writes into the folder, or into the nearest one above it that there is, and leaves nothing behind.
+void Check::try_folder(const std::filesystem::path& folder, const std::string& key) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path there = fs::absolute(folder);
+  while (!fs::exists(there, error) && there.has_relative_path()) {
+    there = there.parent_path();
+  }
+  if (!fs::is_directory(there, error)) {
+    problem(key, fmt::format("{} is not a folder (expected one, or nothing yet)", there.string()));
+    return;
+  }
+  std::string name = (there / ".sonard-check-XXXXXX").string();
+  const int file = mkstemp(name.data());
+  const bool written = file >= 0 && ::write(file, "x", 1) == 1;
+  const int why = errno;
+  if (file >= 0) {
+    ::close(file);
+    fs::remove(name, error);
+  }
+  if (!written) {
+    problem(key, fmt::format("nothing can be written into {}: {}", there.string(),
+                             std::generic_category().message(why)));
+    return;
+  }
+  const fs::space_info space = fs::space(there, error);
+  if (!error && space.available < least_space) {
+    warning(key, fmt::format("only {} MB are free in {}", space.available / 1'000'000, there.string()));
+  }
 }
 
 void Check::check_poses() {
@@ -230,16 +342,23 @@ void Check::check_head(std::size_t index) {
     problem("sampling", fmt::format("head '{}': {}", head.name, error.what()));
   }
   if (head.dump_directory) {
-    std::error_code ignored;
-    const std::filesystem::path& folder = *head.dump_directory;
-    if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored)) {
-      problem(fmt::format("heads[{}].dump.directory", index),
-              fmt::format("{} is not a folder (expected one, or nothing yet)", folder.string()));
-    }
+    try_folder(*head.dump_directory, fmt::format("heads[{}].dump.directory", index));
+  }
+}
+
+/// As the daemon does it: sockets, pseudo terminals and their links.
+void Check::try_connecting(std::size_t head) {
+  try {
+    asio::io_context io;
+    const SteadyClock clock;
+    kind_of(config_.heads[head]).connect(config_.heads[head], io, clock);
+  } catch (const SocketError& error) {
+    problem(fmt::format("heads[{}].{}", head, kind_of(config_.heads[head]).socket_key()), error.what());
   }
 }
 
 void Check::check_addresses() {
+  const std::size_t problems_before = report_.problems.size();
   for (const PlannedSocket& socket : planned_sockets(config_)) {
     if (socket.transport == PlannedSocket::Transport::udp) {
       try_socket<asio::ip::udp>(socket.endpoint, socket.key);
@@ -248,6 +367,9 @@ void Check::check_addresses() {
     }
   }
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+    if (report_.problems.size() == problems_before) {
+      try_connecting(i);
+    }
     for (const ConfigWarning& found : config_.heads[i].kind->network_warnings(config_.heads[i])) {
       warning(fmt::format("heads[{}].{}", i, found.key), found.message);
     }

@@ -84,6 +84,14 @@ void print_error(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
+/// All that a StartError says, with the places of its key.
+void print_start_error(const LoadedConfig& loaded, const StartError& error) {
+  print_error(loaded.problem_with(error.key, error.what()));
+  for (const std::string& line : error.more) {
+    print_error(loaded.problem_with(error.key, line));
+  }
+}
+
 /// Loads CONFIG, and logs as it says from then on.
 LoadedConfig load_and_log(const CommandLine& arguments) {
   LoadedConfig loaded = load_config(arguments.config, head_kinds());
@@ -103,7 +111,7 @@ int run(const CommandLine& arguments) {
   try {
     return run_daemon(loaded.config);
   } catch (const StartError& error) {
-    print_error(loaded.problem_with(error.key, error.what()));
+    print_start_error(loaded, error);
     return error.exit_code;
   }
 }
@@ -119,7 +127,11 @@ int replay(const CommandLine& arguments) {
     return replay(arguments.log, arguments.config.empty() ? std::nullopt : std::optional(loaded.config),
                   arguments.timing);
   } catch (const StartError& error) {
-    print_error(arguments.config.empty() ? error.what() : loaded.problem_with(error.key, error.what()));
+    if (arguments.config.empty()) {
+      print_error(error.what());
+    } else {
+      print_start_error(loaded, error);
+    }
     return error.exit_code;
   }
 }
@@ -158,7 +170,7 @@ int render_offline(const OfflineArguments& arguments) {
   try {
     return render_trajectory(loaded, arguments.options());
   } catch (const StartError& error) {
-    print_error(loaded.problem_with(error.key, error.what()));
+    print_start_error(loaded, error);
     return error.exit_code;
   }
 }

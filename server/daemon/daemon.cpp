@@ -447,7 +447,7 @@ render::World load_world_of(DaemonConfig& config) {
     }
     return world;
   } catch (const render::WorldError& error) {
-    throw StartError("world.file", exit_config, error.what());
+    throw StartError("world.file", exit_config, error.what(), error.more);
   }
 }
 

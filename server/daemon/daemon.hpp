@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "renderer/renderer_options.hpp"
 #include "renderer/scene/world.hpp"
@@ -18,11 +19,13 @@ class Playback;
 /// The value of a configuration key turned out to be unusable when it was used: world missing, address taken.
 /// what() is one line.
 struct StartError : std::runtime_error {
-  StartError(std::string config_key, int code, const std::string& what)
-      : std::runtime_error(what), key(std::move(config_key)), exit_code(code) {}
+  StartError(std::string config_key, int code, const std::string& what,
+             std::vector<std::string> what_else = {})
+      : std::runtime_error(what), key(std::move(config_key)), exit_code(code), more(std::move(what_else)) {}
 
-  std::string key;  ///< "heads[0].network.bind"
-  int exit_code;    ///< of server/daemon/exit_codes.hpp
+  std::string key;                ///< "heads[0].network.bind"
+  int exit_code;                  ///< of server/daemon/exit_codes.hpp
+  std::vector<std::string> more;  ///< what else is wrong with the same key
 };
 
 /// The world of a configuration, which takes from it what it leaves to its world (resolve_mounts()). Logs

@@ -230,6 +230,111 @@ TEST(Check, can_leave_addresses_alone) {
   EXPECT_EQ(result.err, "");
 }
 
+/// A configuration and its world, in a folder of their own.
+class CheckedWorld : public testing::Test {
+ protected:
+  ~CheckedWorld() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  /// @param models of the world
+  ProcessResult check(const std::string& models, const std::string& more = "") const {
+    write("world.sdf",
+          "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\">\n" + models + "</world></sdf>");
+    // Half of what a world that includes itself once took.
+    return run_process(
+        {"prlimit", "--as=2500000000", SONARD_PROGRAM, "check", "--no-network",
+         write("sonard.yaml", "world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\n" + more +
+                                  "heads:\n  - name: bow\n    type: gemini_720i\n    sonar_id: 513\n"
+                                  "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n")});
+  }
+  static std::string model(const std::string& name, const std::string& geometry) {
+    return "<model name=\"" + name +
+           "\"><pose>5 0 0 0 0 0</pose><link name=\"l\"><visual name=\"v\"><geometry>" + geometry +
+           "</geometry></visual></link></model>\n";
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("checked_world_" + std::to_string(getpid()));
+};
+
+TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
+  write("roof.obj", "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n");
+  const ProcessResult result =
+      check(model("roof", "<mesh><uri>roof.obj</uri><scale>0.001 0.001 0.001</scale></mesh>") +
+            model("hall", "<mesh><uri>roof.obj</uri><scale>3 3 3</scale></mesh>"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("body     roof: 1 x 1 x 0 m at (5.5, 0.5, 0), default, scale 0.001\n"));
+  EXPECT_THAT(result.out,
+              testing::ContainsRegex("cost     bow: a ping to [0-9]+ m takes about [0-9.e+]+ ms"));
+  EXPECT_THAT(result.err, HasSubstr("body 'hall' is 3000 x 3000 x 0 m: is its mesh in millimetres?"));
+}
+
+TEST_F(CheckedWorld, is_told_of_with_all_that_is_wrong) {
+  const ProcessResult result = check(model("a", "<mesh><uri>gone.obj</uri></mesh>") +
+                                     model("b", "<sphere><radius>x</radius></sphere>") +
+                                     "<include><uri>model://nowhere</uri></include>\n");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(lines_of(result.err),
+              testing::UnorderedElementsAre(HasSubstr("world.sdf:2: a::l::v: 'gone.obj' not found"),
+                                            HasSubstr("world.sdf:3: b::l::v: radius 'x'"),
+                                            HasSubstr("world.sdf:4: include 'model://nowhere' not found")));
+  EXPECT_THAT(result.out, HasSubstr("3 problems"));
+}
+
+TEST_F(CheckedWorld, that_includes_itself_ends_at_once_and_in_little_memory) {
+  write("a.sdf", "<sdf version=\"1.9\"><model name=\"a\"><include><uri>b.sdf</uri></include></model></sdf>");
+  write("b.sdf", "<sdf version=\"1.9\"><model name=\"b\"><include><uri>a.sdf</uri></include></model></sdf>");
+  const ProcessResult result =
+      check("<include><uri>world.sdf</uri></include><include><uri>a.sdf</uri></include>");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("'world.sdf' includes itself: world.sdf -> world.sdf"),
+                                HasSubstr("'a.sdf' includes itself: a.sdf -> b.sdf -> a.sdf")));
+}
+
+TEST_F(CheckedWorld, whose_includes_multiply_ends_at_once_and_in_little_memory) {
+  for (int level = 1; level <= 9; ++level) {
+    std::string text = "<sdf version=\"1.9\"><model name=\"m\">";
+    for (int i = 0; i < 12; ++i) {
+      text += "<include><name>i" + std::to_string(i) + "</name><uri>m" + std::to_string(level + 1) +
+              ".sdf</uri></include>";
+    }
+    write("m" + std::to_string(level) + ".sdf", text + "</model></sdf>");
+  }
+  write("m10.sdf", "<sdf version=\"1.9\">" + model("m", "<sphere/>") + "</sdf>");
+  const ProcessResult result = check("<include><uri>m1.sdf</uri></include>");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("more than 1000000 elements with all that is included"));
+}
+
+TEST_F(CheckedWorld, tries_where_it_will_write) {
+  const std::string world = model("a", "<sphere/>");
+  EXPECT_THAT(check(world, "recording: {directory: /proc/logs, mcap: true}\n").err,
+              HasSubstr("recording.directory: nothing can be written into /proc: "));
+  EXPECT_THAT(check(world, "recording: {directory: " + write("file", "") + "/logs, mcap: true}\n").err,
+              HasSubstr("file is not a folder (expected one, or nothing yet)"));
+  EXPECT_EQ(check(world, "recording: {directory: new/logs, mcap: true}\n").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "nothing is left behind";
+}
+
+TEST_F(CheckedWorld, tries_a_pseudo_terminal) {
+  write("world.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + model("a", "<sphere/>") + "</world></sdf>");
+  const auto check_link = [&](const std::string& link) {
+    return run_process({SONARD_PROGRAM, "check",
+                        write("micron.yaml",
+                              "world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\n"
+                              "heads:\n  - name: stern\n    type: micron\n    serial: {pty: [{link: " +
+                                  link + "}]}\n")});
+  };
+  EXPECT_THAT(check_link("/nowhere/tty").err, HasSubstr("heads[0].serial"));
+  const std::string good = (folder_ / "tty").string();
+  EXPECT_EQ(check_link(good).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::is_symlink(good)) << "nothing is left behind";
+}
+
 TEST(CommandLine, has_its_own_exit_code_for_wrong_use) {
   EXPECT_EQ(run_process({SONARD_PROGRAM}).exit_code, 64);
   EXPECT_EQ(run_process({SONARD_PROGRAM, "check"}).exit_code, 64);
