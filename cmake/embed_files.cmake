@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DOUT=FILE -DFOLDER=FOLDER -DFILES=A;B -P embed_files.cmake: writes find_asset() of server/web/assets.hpp with
 # these files of the folder.
-set(types ".html=text/html" ".css=text/css" ".js=text/javascript" ".svg=image/svg+xml")
+set(types ".html=text/html" ".css=text/css" ".js=text/javascript" ".svg=image/svg+xml" ".json=application/json")
 set(arrays "")
 set(table "")
 set(number 0)

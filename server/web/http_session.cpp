@@ -6,9 +6,11 @@
 #include <utility>
 
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/http/rfc7230.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "server/web/foxglove_session.hpp"
 #include "server/web/live_session.hpp"
 
 namespace sonard::server {
@@ -21,6 +23,12 @@ namespace {
 constexpr std::uint32_t most_header_bytes = 8192;
 constexpr std::uint64_t most_body_bytes = 4096;
 constexpr std::chrono::seconds patience{30};  // for a request to come, and for an answer to go
+
+/// Whether a client that asks for a WebSocket would speak this on it.
+bool offers(const HttpRequest& request, std::string_view protocol) {
+  http::token_list offered{request[http::field::sec_websocket_protocol]};
+  return offered.exists(beast::string_view(protocol.data(), protocol.size()));
+}
 
 }  // namespace
 
@@ -49,19 +57,26 @@ void HttpSession::on_read(beast::error_code error) {
     return;
   }
   HttpRequest request = parser_->release();
-  if (beast::websocket::is_upgrade(request) && !site_.refusal(request) && request.target() == "/api/live") {
-    upgrade(std::move(request));
-    return;
+  if (beast::websocket::is_upgrade(request) && !site_.refusal(request)) {
+    if (offers(request, FoxgloveSession::protocol)) {
+      upgrade<FoxgloveSession>(std::move(request));
+      return;
+    }
+    if (request.target() == "/api/live") {
+      upgrade<LiveSession>(std::move(request));
+      return;
+    }
   }
   stream_.expires_never();  // the answer may take a while, and is not theirs to make
   site_.answer(request, peer_,
                [self = shared_from_this()](HttpResponse response) { self->send(std::move(response)); });
 }
 
+template <class Session>
 void HttpSession::upgrade(HttpRequest request) {
   stream_.expires_never();
   counted_ = false;
-  const auto session = std::make_shared<LiveSession>(site_, std::move(stream_));
+  const auto session = std::make_shared<Session>(site_, std::move(stream_));
   site_.add(session);
   session->start(std::move(request));
 }

@@ -31,6 +31,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void read();
   void on_read(boost::beast::error_code error);
+  template <class Session>
   void upgrade(HttpRequest request);
   void send(HttpResponse response);
   void close();

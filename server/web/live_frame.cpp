@@ -2,24 +2,14 @@
 #include "server/web/live_frame.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
 
 #include "server/web/json.hpp"
+#include "server/web/little_endian.hpp"
 
 namespace sonard::server {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "floats are written as they lie in memory");
-
-template <class Number>
-void append(std::string& out, Number number) {
-  char bytes[sizeof(Number)];
-  std::memcpy(bytes, &number, sizeof(Number));
-  out.append(bytes, sizeof(Number));
-}
 
 /// How many rows become one, so that no more than `most` are left.
 int rows_in_one(int rows, int most) {
@@ -77,11 +67,11 @@ std::string live_frame(std::span<const std::shared_ptr<const ShownPing>> pings, 
   header.resize((header.size() + 3) / 4 * 4, ' ');
 
   std::string out;
-  append(out, static_cast<std::uint32_t>(header.size()));
+  append_number(out, static_cast<std::uint32_t>(header.size()));
   out += header;
   for (const std::shared_ptr<const ShownPing>& ping : pings) {
     for (const double bearing_rad : ping->record.bearings_rad) {
-      append(out, static_cast<float>(bearing_rad));
+      append_number(out, static_cast<float>(bearing_rad));
     }
   }
   for (const std::shared_ptr<const ShownPing>& ping : pings) {

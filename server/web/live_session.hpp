@@ -2,32 +2,24 @@
 // A WebSocket that shows pings and status to one viewer, as fast as that viewer asks for them.
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/websocket/stream.hpp>
 
-#include "server/web/site.hpp"
+#include "server/web/web_socket.hpp"
 
 namespace sonard::server {
 
 /// Belongs to the thread of the page. A viewer gets one ping, or one status, for each time it asked: one that
 /// is hidden or slow asks for nothing, and costs nothing. docs/page.md lists the messages.
-///
-/// It lives as long as one of its operations is under way; `site` outlives it.
-class LiveSession final : public Viewer, public std::enable_shared_from_this<LiveSession> {
+class LiveSession final : public WebSocket {
  public:
   LiveSession(Site& site, boost::beast::tcp_stream stream);
-  ~LiveSession() override;
 
-  /// Answers the request that asks for a WebSocket.
-  void start(HttpRequest request);
   void show(const std::shared_ptr<const ShownPing>& ping) override;
   void close() override;
 
@@ -40,28 +32,17 @@ class LiveSession final : public Viewer, public std::enable_shared_from_this<Liv
     /// Lines of a scanning head since the last answer, all of one size.
     std::vector<std::shared_ptr<const ShownPing>> lines;
   };
-  struct Message {
-    std::shared_ptr<const std::string> bytes;
-    bool binary = false;
-  };
 
-  void read();
-  void take(const std::string& text);
+  void take(const std::string& text) override;
   void keep_line(Wanted& wanted, const std::shared_ptr<const ShownPing>& ping) const;
   bool is_due(const Wanted& wanted) const;
   void send_status();
-  void send(Message message);
-  void write();
   void send_error(const std::string& text);
 
-  Site& site_;
-  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
-  boost::beast::flat_buffer buffer_;
   std::map<std::size_t, Wanted> wanted_;  ///< by head
   bool status_asked_ = false;
   TimePoint status_sent_{};
   boost::asio::steady_timer status_timer_;
-  std::deque<Message> queue_;  ///< the first is being written
 };
 
 }  // namespace sonard::server

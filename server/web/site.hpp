@@ -60,6 +60,8 @@ class Site {
   void answer(const HttpRequest& request, const Endpoint& peer, std::function<void(HttpResponse)> send);
   /// Why a request is not served, whatever it asks for; nullopt: it is.
   std::optional<std::string> refusal(const HttpRequest& request) const;
+  /// The status, no older than a quarter of a second.
+  void with_status(std::function<void(const DaemonStatus&)> take);
   /// Text of the status as JSON, no older than a quarter of a second.
   void with_status_text(std::function<void(std::shared_ptr<const std::string>)> take);
 
@@ -85,7 +87,6 @@ class Site {
   static constexpr std::size_t most_heads = 64;
 
  private:
-  void with_status(std::function<void(const DaemonStatus&)> take);
   void took_status(DaemonStatus status);
   std::chrono::duration<double> uptime() const { return now() - started_; }
   HttpResponse change_recording(const HttpRequest& request, const Endpoint& peer);

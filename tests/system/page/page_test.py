@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The daemon's page in a browser, each case on a machine of its own (a network namespace).
+"""The daemon's page in a browser, and its data in Foxglove's client, each case on a machine of its own (a network
+namespace).
 
     page_test.py --programs DIR --npm DIR [TestCase.test_name ...]
 
-What is looked at is in mock_test.js and daemon_test.js, for a browser is driven in JavaScript.
+What is looked at is in mock_test.js, daemon_test.js and foxglove_test.js, for a browser is driven in JavaScript.
 """
 
 import argparse
@@ -29,7 +30,6 @@ PATIENCE_S = 380
 class Page(unittest.TestCase):
     def run_script(self, script, *arguments):
         """Runs a script of node's test runner; its report is the message where it fails."""
-        need("chromium")
         namespace = Namespace(f"sonard-page-{os.getpid()}")
         self.addCleanup(namespace.remove)
         process = subprocess.Popen(namespace.command("node", script, *arguments), cwd=NPM, stdout=subprocess.PIPE,
@@ -43,10 +43,15 @@ class Page(unittest.TestCase):
         self.assertEqual(process.returncode, 0, report)
 
     def test_alone(self):
+        need("chromium")
         self.run_script("mock_test.js", PAGE)
 
     def test_with_a_daemon(self):
+        need("chromium")
         self.run_script("daemon_test.js", PROGRAMS, DATA)
+
+    def test_with_foxglove(self):
+        self.run_script("foxglove_test.js", PROGRAMS, DATA)
 
 
 def main():

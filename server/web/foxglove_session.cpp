@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/web/foxglove_session.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+
+#include "server/web/assets.hpp"
+#include "server/web/json.hpp"
+#include "server/web/little_endian.hpp"
+
+namespace sonard::server {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr std::size_t most_request_bytes = 65'536;
+constexpr std::chrono::seconds status_each{1};
+
+json object_schema(json properties) {
+  return {{"type", "object"}, {"properties", std::move(properties)}};
+}
+
+/// foxglove.CompressedImage and foxglove.FrameTransform, as
+/// docs.foxglove.dev/docs/visualization/message-schemas gives their fields.
+json timestamp_schema() {
+  return object_schema({{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}});
+}
+
+json image_schema() {
+  return object_schema({{"timestamp", timestamp_schema()},
+                        {"frame_id", {{"type", "string"}}},
+                        {"data", {{"type", "string"}, {"contentEncoding", "base64"}}},
+                        {"format", {{"type", "string"}}}});
+}
+
+json numbers_schema(std::string_view names) {
+  json properties;
+  for (const char name : names) {
+    properties[std::string(1, name)] = {{"type", "number"}};
+  }
+  return object_schema(std::move(properties));
+}
+
+json transform_schema() {
+  return object_schema({{"timestamp", timestamp_schema()},
+                        {"parent_frame_id", {{"type", "string"}}},
+                        {"child_frame_id", {{"type", "string"}}},
+                        {"translation", numbers_schema("xyz")},
+                        {"rotation", numbers_schema("xyzw")}});
+}
+
+std::string status_schema() {
+  const Asset* const schema = find_asset("/status.schema.json");
+  return schema == nullptr ? "{}" : std::string(schema->bytes);
+}
+
+json timestamp_json(std::chrono::nanoseconds since_epoch) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since_epoch);
+  return {{"sec", seconds.count()}, {"nsec", (since_epoch - seconds).count()}};
+}
+
+json transform_json(const render::Pose& T_world_head, const std::string& head, json timestamp) {
+  const glm::dvec3& p = T_world_head.position_m;
+  const glm::dquat& q = T_world_head.orientation;
+  return {{"timestamp", std::move(timestamp)},
+          {"parent_frame_id", "world"},
+          {"child_frame_id", head},
+          {"translation", {{"x", p.x}, {"y", p.y}, {"z", p.z}}},
+          {"rotation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
+}
+
+std::string base64(const std::string& bytes) {
+  using namespace boost::archive::iterators;
+  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
+  std::string text(Digits(bytes.begin()), Digits(bytes.end()));
+  return text.append((4 - text.size() % 4) % 4, '=');
+}
+
+}  // namespace
+
+FoxgloveSession::FoxgloveSession(Site& site, boost::beast::tcp_stream stream)
+    : WebSocket(site, std::move(stream), std::string(protocol), most_request_bytes), timer_(executor()) {}
+
+void FoxgloveSession::close() {
+  timer_.cancel();
+  WebSocket::close();
+}
+
+void FoxgloveSession::opened() {
+  send_text(text_of({{"op", "serverInfo"},
+                     {"name", "sonard"},
+                     {"capabilities", json::array()},
+                     {"metadata", {{"world", site().sources().identity.world}}},
+                     {"sessionId", std::to_string(site().now().count())}}));
+  site().with_status([weak = weak<FoxgloveSession>()](const DaemonStatus& status) {
+    if (const auto self = weak.lock()) {
+      self->advertise(status);
+      self->every_second();
+    }
+  });
+}
+
+void FoxgloveSession::advertise(const DaemonStatus& status) {
+  json list = json::array();
+  const auto add = [&](const Channel& channel, const std::string& topic, std::string_view schema_name,
+                       const std::string& schema) {
+    const auto id = static_cast<std::uint32_t>(channels_.size() + 1);
+    channels_.emplace(id, channel);
+    list.push_back({{"id", id},
+                    {"topic", topic},
+                    {"encoding", "json"},
+                    {"schemaName", schema_name},
+                    {"schemaEncoding", "jsonschema"},
+                    {"schema", schema}});
+  };
+  for (const HeadStatus& head : status.heads) {
+    const std::size_t place = heads_.size();
+    heads_.push_back(head.name);
+    add({place, Kind::image}, fmt::format("/{}/image", head.name), "foxglove.CompressedImage",
+        text_of(image_schema()));
+    add({place, Kind::transform}, fmt::format("/{}/transform", head.name), "foxglove.FrameTransform",
+        text_of(transform_schema()));
+  }
+  add({0, Kind::status}, "/status", "sonard.Status", status_schema());
+  send_text(text_of({{"op", "advertise"}, {"channels", std::move(list)}}));
+}
+
+// ---- What the other side asks for
+
+void FoxgloveSession::take(const std::string& text) {
+  const json message = json::parse(text, nullptr, false);
+  const std::string op = message.is_object() && message.contains("op") && message["op"].is_string()
+                             ? message["op"].get<std::string>()
+                             : "";
+  try {
+    if (op == "subscribe") {
+      for (const json& wish : message.at("subscriptions")) {
+        const auto channel = channels_.find(wish.at("channelId").get<std::uint32_t>());
+        if (channel == channels_.end()) {
+          complain(fmt::format("There is no channel {}.", wish["channelId"].dump()));
+        } else {
+          subscriptions_[channel->second] = wish.at("id").get<std::uint32_t>();
+          shown_.erase(channel->second.head);
+        }
+      }
+    } else if (op == "unsubscribe") {
+      for (const json& id : message.at("subscriptionIds")) {
+        std::erase_if(subscriptions_,
+                      [&](const auto& known) { return known.second == id.get<std::uint32_t>(); });
+      }
+    } else {
+      complain("Expected {\"op\": \"subscribe\"} or {\"op\": \"unsubscribe\"}: nothing else is served here.");
+    }
+  } catch (const json::exception& error) {
+    complain(fmt::format("This message cannot be read: {}", error.what()));
+  }
+}
+
+void FoxgloveSession::complain(const std::string& what) {
+  send_text(text_of({{"op", "status"}, {"level", 2}, {"message", what}}));
+}
+
+// ---- What it gets
+
+/// Keeps the pings of heads coming whose channels are subscribed to, and sends the status.
+void FoxgloveSession::every_second() {
+  for (const auto& [channel, id] : subscriptions_) {
+    if (channel.kind != Kind::status) {
+      site().want(channel.head);
+    } else if (has_room()) {
+      site().with_status_text(
+          [weak = weak<FoxgloveSession>()](const std::shared_ptr<const std::string>& text) {
+            if (const auto self = weak.lock()) {
+              self->send_on({0, Kind::status}, *text);
+            }
+          });
+    }
+  }
+  timer_.expires_after(status_each);
+  timer_.async_wait([weak = weak<FoxgloveSession>()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (self && !error) {
+      self->every_second();
+    }
+  });
+}
+
+void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
+  const auto head = static_cast<std::size_t>(ping->head);
+  if (head >= heads_.size()) {
+    return;  // before the channels were made known
+  }
+  const json timestamp = timestamp_json(ping->time + unix_time_offset());
+  if (subscriptions_.contains({head, Kind::transform}) && ping->T_world_mount && has_room()) {
+    send_on({head, Kind::transform}, text_of(transform_json(*ping->T_world_mount, heads_[head], timestamp)));
+  }
+  if (!subscriptions_.contains({head, Kind::image})) {
+    pictures_.erase(head);
+    return;
+  }
+  PingPicture& picture = pictures_[head];
+  if (ping->record.settings.beams == 1) {
+    picture.keep(*ping);
+  }
+  const auto last = shown_.find(head);
+  if (!has_room() || (last != shown_.end() && site().now() - last->second < 2 * site().interval())) {
+    return;
+  }
+  if (const std::string png = picture.png(*ping); !png.empty()) {
+    send_on({head, Kind::image}, text_of({{"timestamp", timestamp},
+                                          {"frame_id", heads_[head]},
+                                          {"data", base64(png)},
+                                          {"format", "png"}}));
+  }
+  shown_[head] = site().now();
+}
+
+/// Message data: the opcode 1, the subscription, the time, and the message.
+void FoxgloveSession::send_on(const Channel& channel, std::string_view json_text) {
+  const auto subscription = subscriptions_.find(channel);
+  if (subscription == subscriptions_.end()) {
+    return;
+  }
+  std::string bytes(1, '\1');
+  append_number(bytes, subscription->second);
+  append_number(bytes, static_cast<std::uint64_t>((site().now() + unix_time_offset()).count()));
+  bytes += json_text;
+  send({std::make_shared<const std::string>(std::move(bytes)), true});
+}
+
+}  // namespace sonard::server

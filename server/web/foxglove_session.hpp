@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pings, places and the status for Foxglove and its kin: the protocol "foxglove.websocket.v1"
+// (github.com/foxglove/ws-protocol, docs/spec.md), with messages in JSON.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/web/ping_picture.hpp"
+#include "server/web/web_socket.hpp"
+
+namespace sonard::server {
+
+/// Channels of each head: "/NAME/image" (foxglove.CompressedImage, PNG) and "/NAME/transform"
+/// (foxglove.FrameTransform, "world" to NAME); for all "/status". A channel without a subscriber costs
+/// nothing; one who reads too slowly misses messages.
+class FoxgloveSession final : public WebSocket {
+ public:
+  static constexpr std::string_view protocol = "foxglove.websocket.v1";
+
+  FoxgloveSession(Site& site, boost::beast::tcp_stream stream);
+
+  void show(const std::shared_ptr<const ShownPing>& ping) override;
+  void close() override;
+
+ private:
+  enum class Kind : std::uint8_t { image, transform, status };
+  struct Channel {
+    std::size_t head = 0;  ///< its place in the configuration; of status: 0
+    Kind kind = Kind::status;
+
+    auto operator<=>(const Channel&) const = default;
+  };
+
+  void opened() override;
+  void take(const std::string& text) override;
+  void advertise(const DaemonStatus& status);
+  void every_second();
+  void send_on(const Channel& channel, std::string_view json_text);
+  void complain(const std::string& what);
+
+  std::map<std::uint32_t, Channel> channels_;       ///< by id
+  std::map<Channel, std::uint32_t> subscriptions_;  ///< ids that the other side chose
+  std::vector<std::string> heads_;                  ///< their names
+  std::map<std::size_t, PingPicture> pictures_;     ///< by head
+  std::map<std::size_t, TimePoint> shown_;          ///< by head, when an image last went
+  boost::asio::steady_timer timer_;
+};
+
+}  // namespace sonard::server
