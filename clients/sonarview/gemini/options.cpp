@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace sonard::client {
@@ -36,8 +37,11 @@ void GeminiArguments::declare_link(CLI::App& app) {
   app.add_option("--head", head_address_,
                  "Address of the head, port 52901; default: the alternate address in its status")
       ->group("Link");
-  app.add_option("--sonar-id", options_.topside.sonar_id,
-                 "The head to talk to; 0: the first that sends a status")
+  app.add_option(
+         "--sonar-id", options_.sonar_ids,
+         "The head to talk to, or several (513,514), each with a folder of its own in --out; 0: the first "
+         "that sends a status")
+      ->delimiter(',')
       ->capture_default_str()
       ->group("Link");
   app.add_option("--wait", status_wait_s_, "Seconds to wait for the first status")
@@ -132,8 +136,14 @@ GeminiOptions GeminiArguments::options() const {
   if (!head_address_.empty()) {
     options.topside.head_address = address_of("--head", head_address_);
   }
-  if (options.topside.sonar_id == 1) {
-    throw CLI::ValidationError("--sonar-id", "1 is reserved for production");
+  std::set<std::uint16_t> ids;
+  for (const std::uint16_t id : options.sonar_ids) {
+    if (id == 1) {
+      throw CLI::ValidationError("--sonar-id", "1 is reserved for production");
+    }
+    if (!ids.insert(id).second || (id == 0 && options.sonar_ids.size() > 1)) {
+      throw CLI::ValidationError("--sonar-id", "several heads need an ID each, none of them 0");
+    }
   }
   options.settings.sixteen_bit = bits_ == 16;
   if (interval_ms_ > 0.0) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/ping_settings.hpp"
@@ -18,9 +19,10 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  Ipv4 topside_address = 0x7F000001;  ///< commands leave from here
-  Ipv4 bind_address = 0;              ///< reports arrive here; 0: on all addresses
-  gemini::TopsideConfig topside;
+  Ipv4 topside_address = 0x7F000001;        ///< commands leave from here
+  Ipv4 bind_address = 0;                    ///< reports arrive here; 0: on all addresses
+  gemini::TopsideConfig topside;            ///< for each head with its ID in the place of sonar_id
+  std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to talk to; 0: the first whose status arrives
   gemini::PingSettings settings;
 
   std::uint64_t pings = 0;                 ///< 0: without limit

@@ -18,15 +18,16 @@ std::uint32_t samples_crc32(const gemini::PingSamples& samples) {
   return crc.checksum();
 }
 
-std::string ping_line(const gemini::ReceivedPing& ping) {
+std::string ping_line(const gemini::ReceivedPing& ping, std::uint16_t sonar_id) {
   const double took_ms =
       std::chrono::duration<double, std::milli>(ping.finished - ping.first_datagram).count();
   return fmt::format(
       "ping number={} id={} transmit_us={} lines={} beams={} lines_lost={} lines_repaired={} retries={} "
       "took_ms={:.1f} "
-      "crc32={:08x}",
+      "crc32={:08x} sonar_id={}",
       ping.number, ping.head.ping_id & 0xFF, ping.head.transmit_time_us, ping.lines, ping.head.beams,
-      ping.lines_lost, ping.lines_repaired, ping.retries.total(), took_ms, samples_crc32(ping.samples));
+      ping.lines_lost, ping.lines_repaired, ping.retries.total(), took_ms, samples_crc32(ping.samples),
+      sonar_id);
 }
 
 void PingRate::add(TimePoint finished) {
@@ -48,13 +49,14 @@ std::string summary_line(const gemini::LinkStatistics& statistics, const Program
       "retries_tail={} "
       "configs_sent={} configs_repeated={} datagrams={} datagrams_bad={} dropped_rx={} dropped_tx={} "
       "kernel_drops={} "
-      "reboots={} images_written={} images_skipped={}",
+      "reboots={} images_written={} images_skipped={} sonar_id={}",
       statistics.pings_complete, statistics.pings_incomplete, statistics.pings_missed,
       statistics.pings_unrequested, statistics.pings_abandoned, statistics.lines_missing,
       statistics.lines_repaired, counters.rate_hz, statistics.retries.total(), statistics.retries.head,
       statistics.retries.lines, statistics.retries.tail, statistics.configs_sent, statistics.configs_repeated,
       statistics.datagrams, statistics.bad_datagrams, counters.dropped_rx, counters.dropped_tx,
-      counters.kernel_drops, statistics.reboots, counters.images_written, counters.images_skipped);
+      counters.kernel_drops, statistics.reboots, counters.images_written, counters.images_skipped,
+      counters.sonar_id);
 }
 
 }  // namespace sonard::client

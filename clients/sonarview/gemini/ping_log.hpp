@@ -16,8 +16,8 @@ namespace sonard::client {
 std::uint32_t samples_crc32(const gemini::PingSamples& samples);
 
 /// "ping number=0 id=7 transmit_us=... lines=... beams=... lines_lost=... lines_repaired=... retries=...
-/// crc32=...".
-std::string ping_line(const gemini::ReceivedPing& ping);
+/// crc32=... sonar_id=...".
+std::string ping_line(const gemini::ReceivedPing& ping, std::uint16_t sonar_id);
 
 /// Pings per second, from the end of the first to the end of the newest.
 class PingRate {
@@ -32,8 +32,9 @@ class PingRate {
   TimePoint last_{};
 };
 
-/// Counters of the program beside those of the topside.
+/// What the program says of a head beside the counters of its topside.
 struct ProgramCounters {
+  std::uint16_t sonar_id = 0;
   double rate_hz = 0.0;
   std::uint64_t dropped_rx = 0;    ///< lost on purpose
   std::uint64_t dropped_tx = 0;    ///< lost on purpose

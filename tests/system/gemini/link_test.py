@@ -16,6 +16,7 @@ import signal
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
@@ -240,6 +241,19 @@ class Topsides(LinkTest):
             self.check_pings(viewer, 60, name)
         self.assertFalse(set(self.rendered("bow").values()) & set(self.rendered("stern").values()),
                          "two heads with different seeds made the same image")
+        self.end_daemon(daemon)
+
+    def test_two_heads_at_once_for_one_topside(self):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config(),
+                                   self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
+        out = os.path.join(self.folder.name, "pictures")
+        viewer = self.start_viewer(lab, "--sonar-id", "513,514", "--pings", "30", "--out", out)
+        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
+        for sonar_id, name in (("513", "bow"), ("514", "stern")):
+            its_lines = [line for line in viewer.lines if line.endswith(f"sonar_id={sonar_id}")]
+            self.check_pings(types.SimpleNamespace(lines=its_lines, tail=viewer.tail), 30, name)
+            self.assertTrue(os.path.exists(os.path.join(out, sonar_id, "fan-last.png")))
         self.end_daemon(daemon)
 
     def test_daemon_ends_within_a_second_while_it_pings(self):

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clients/sonarview/gemini/watched_head.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/address_v4.hpp>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "clients/sonarview/gemini/sockets.hpp"
+#include "protocol/common/endpoint.hpp"
+
+namespace sonard::client {
+namespace {
+
+using boost::system::error_code;
+
+constexpr std::chrono::nanoseconds progress_period = std::chrono::seconds{1};
+
+gemini::TopsideConfig topside_of(const GeminiOptions& options, std::uint16_t sonar_id) {
+  gemini::TopsideConfig config = options.topside;
+  config.sonar_id = sonar_id;
+  return config;
+}
+
+}  // namespace
+
+WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number,
+                         boost::asio::ip::udp::socket& commands)
+    : options_(options),
+      sonar_id_(options.sonar_ids[number]),
+      says_(options.sonar_ids.size() > 1 ? fmt::format("sonarview: {}: ", sonar_id_) : "sonarview: "),
+      commands_(commands),
+      topside_(topside_of(options, sonar_id_)),
+      drop_rx_(options.drop_rx, options.seed, 2 * number),
+      drop_tx_(options.drop_tx, options.seed, 2 * number + 1),
+      pictures_({.radius_px = options.radius_px}, options.settings.sound_speed_mps) {
+  if (!options_.out.empty()) {
+    writer_.emplace(options.sonar_ids.size() > 1 ? options_.out / fmt::format("{}", sonar_id_)
+                                                 : options_.out);
+  }
+}
+
+void WatchedHead::start(TimePoint at) {
+  started_ = at;
+  topside_.start(at, make_ping_config(options_.settings), options_.pings);
+}
+
+void WatchedHead::on_datagram(TimePoint at, std::span<const std::uint8_t> datagram) {
+  if (!ended_ && !drop_rx_.drop()) {
+    topside_.on_datagram(at, datagram);
+  }
+}
+
+void WatchedHead::advance(TimePoint at) {
+  if (ended_) {
+    return;
+  }
+  topside_.advance(at);
+  send_commands();
+  for (auto& ping : topside_.take_pings()) {
+    take_ping(std::move(ping));
+  }
+  if (topside_.head() && !head_met_) {
+    head_met_ = last_ping_at_ = at;
+    progress_due_ = at + progress_period;
+    greet_head();
+  }
+  if (head_met_ && at >= progress_due_) {
+    show_progress(at);
+    refresh_picture();
+  }
+  check_limits(at);
+}
+
+void WatchedHead::send_commands() {
+  for (const auto& datagram : topside_.take_outgoing()) {
+    if (drop_tx_.drop()) {
+      continue;
+    }
+    error_code error;
+    commands_.send_to(boost::asio::buffer(datagram.bytes),
+                      {boost::asio::ip::address_v4(datagram.to), gemini::head_port}, 0, error);
+    if (error && !std::exchange(send_failed_, true)) {
+      fmt::print(stderr, "{}cannot send to {}:{}: {}\n", says_, address_text(datagram.to), gemini::head_port,
+                 error.message());
+    }
+  }
+}
+
+void WatchedHead::take_ping(gemini::ReceivedPing ping) {
+  last_ping_at_ = ping.finished;
+  rate_.add(ping.finished);
+  if (options_.log_pings) {
+    fmt::print("{}\n", ping_line(ping, topside_.head()->status.sonar_id));
+    std::fflush(stdout);
+  }
+  if (!writer_) {
+    return;
+  }
+  if (options_.every > 0 && ping.number % options_.every == 0) {
+    writer_->write(pictures_.of(ping, fmt::format("{:06}", ping.number)));
+  }
+  last_ping_ = std::move(ping);
+  last_ping_shown_ = false;
+}
+
+/// For whoever looks at the folder while the program runs.
+void WatchedHead::refresh_picture() {
+  if (writer_ && last_ping_ && !std::exchange(last_ping_shown_, true)) {
+    writer_->refresh(pictures_.of(*last_ping_, "last"));
+  }
+}
+
+void WatchedHead::greet_head() {
+  const auto& head = *topside_.head();
+  const gemini::Status& status = head.status;
+  if (!options_.quiet) {
+    fmt::print(stderr, "{}head {} at {}, netmask {}, firmware {:#06x}\n", says_, status.sonar_id,
+               address_text(head.address), address_text(status.subnet_mask), status.firmware_version);
+  }
+  const auto own_mask = interface_netmask(options_.topside_address);
+  const bool same_network = ((head.address ^ options_.topside_address) & status.subnet_mask) == 0;
+  if (!same_network || (own_mask && *own_mask != status.subnet_mask)) {
+    fmt::print(stderr,
+               "{}warning: {} with netmask {} and {} with netmask {} are not on one network; the "
+               "vendor's later "
+               "libraries would send nothing\n",
+               says_, address_text(head.address), address_text(status.subnet_mask),
+               address_text(options_.topside_address), own_mask ? address_text(*own_mask) : "unknown");
+  }
+}
+
+void WatchedHead::show_progress(TimePoint at) {
+  progress_due_ = at + progress_period;
+  const auto& statistics = topside_.statistics();
+  const std::uint64_t pings = statistics.pings_complete + statistics.pings_incomplete;
+  if (!options_.quiet) {
+    fmt::print(stderr, "{}{} pings, {} in the last second; {} lines repaired, {} missing\n", says_, pings,
+               pings - pings_at_progress_, statistics.lines_repaired, statistics.lines_missing);
+  }
+  pings_at_progress_ = pings;
+}
+
+void WatchedHead::check_limits(TimePoint at) {
+  const bool out_of_time = head_met_ && options_.duration.count() > 0 && at - *head_met_ >= options_.duration;
+  if (topside_.finished() || out_of_time) {
+    end();
+  } else if (!head_met_ && at - started_ >= options_.status_wait) {
+    fail(ExitStatus::no_head,
+         fmt::format(
+             "no status{} on port {} within {:.1f} s: is sonard running, does it send its status to this "
+             "address or broadcast it on this network, and does a firewall let UDP in?",
+             sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::topside_port,
+             std::chrono::duration<double>(options_.status_wait).count()));
+  } else if (head_met_ && options_.ping_wait.count() > 0 && at - last_ping_at_ >= options_.ping_wait) {
+    fail(
+        ExitStatus::incomplete,
+        fmt::format(
+            "status comes, but no ping for {:.1f} s: can the head be reached at {}:{} from {}, and does it "
+            "have a pose?",
+            std::chrono::duration<double>(options_.ping_wait).count(), address_text(topside_.head()->address),
+            gemini::head_port, address_text(options_.topside_address)));
+  }
+}
+
+void WatchedHead::fail(ExitStatus status, const std::string& why) {
+  fmt::print(stderr, "{}{}\n", says_, why);
+  failure_ = status;
+  end();
+}
+
+void WatchedHead::end() {
+  if (!std::exchange(ended_, true)) {
+    topside_.stop();
+    send_commands();
+  }
+}
+
+TimePoint WatchedHead::next_wake(TimePoint at) const {
+  TimePoint wake = topside_.next_deadline().value_or(TimePoint::max());
+  if (!head_met_) {
+    return std::min(wake, started_ + options_.status_wait);
+  }
+  wake = std::min(wake, progress_due_);
+  if (options_.duration.count() > 0) {
+    wake = std::min(wake, *head_met_ + options_.duration);
+  }
+  if (options_.ping_wait.count() > 0) {
+    wake = std::min(wake, last_ping_at_ + options_.ping_wait);
+  }
+  return std::max(wake, at);
+}
+
+ExitStatus WatchedHead::sum_up(std::uint64_t kernel_drops) {
+  ProgramCounters counters;
+  if (writer_) {
+    if (last_ping_) {
+      writer_->write(pictures_.of(std::move(*last_ping_), "last"));
+    }
+    writer_->finish();
+    counters.images_written = writer_->written();
+    counters.images_skipped = writer_->skipped();
+    if (!writer_->error().empty()) {
+      fmt::print(stderr, "{}{}\n", says_, writer_->error());
+      failure_ = failure_.value_or(ExitStatus::system);
+    }
+  }
+  counters.sonar_id = topside_.head() ? topside_.head()->status.sonar_id : sonar_id_;
+  counters.rate_hz = rate_.hz();
+  counters.dropped_rx = drop_rx_.dropped();
+  counters.dropped_tx = drop_tx_.dropped();
+  counters.kernel_drops = kernel_drops;
+  const auto& statistics = topside_.statistics();
+  fmt::print("{}\n", summary_line(statistics, counters));
+  std::fflush(stdout);
+  const bool all_complete = statistics.pings_complete > 0 && statistics.pings_incomplete == 0;
+  return failure_.value_or(all_complete ? ExitStatus::ok : ExitStatus::incomplete);
+}
+
+}  // namespace sonard::client
