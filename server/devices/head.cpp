@@ -207,6 +207,7 @@ HeadStatus Head::Impl::status() const {
           .kind = std::string(kind.type()),
           .scanning = kind.scanning(),
           .serves = connected->transport().descriptions(),
+          .link_faults = connected->transport().faults(),
           .clients = clients.since(now - std::chrono::minutes{1}),
           .counts = counts(),
           .pings_per_s = recent_pings.per_s(now),

@@ -41,6 +41,7 @@ struct HeadStatus {
   std::string kind;  ///< as in the configuration
   bool scanning = false;
   std::vector<std::string> serves;  ///< Transport::descriptions()
+  std::string link_faults;          ///< Transport::faults()
   std::vector<ClientSeen> clients;  ///< of the last minute
   HeadCounts counts;
   double pings_per_s = 0.0;  ///< over the last five seconds

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace sonard::server {
 namespace {
 
@@ -20,6 +22,30 @@ std::uint64_t next_random(std::uint64_t& state) {
 }
 
 }  // namespace
+
+std::string faults_text(const LinkConfig& link) {
+  std::vector<std::string> ways;
+  for (const auto& [way, faults] :
+       {std::pair{"to clients", link.to_client}, std::pair{"from clients", link.from_client}}) {
+    std::vector<std::string> parts;
+    for (const auto& [share, what] : {std::pair{faults.loss, "lost"}, std::pair{faults.duplicate, "twice"},
+                                      std::pair{faults.reorder, "out of order"}}) {
+      if (share > 0) {
+        parts.push_back(fmt::format("{:.3g} % {}", 100 * share, what));
+      }
+    }
+    const auto ms = [](std::chrono::nanoseconds time) { return 1e-6 * static_cast<double>(time.count()); };
+    if (faults.delay.count() + faults.jitter.count() > 0) {
+      parts.push_back(fmt::format(
+          "{:.3g} ms{} later", ms(faults.delay),
+          faults.jitter.count() > 0 ? fmt::format(" to {:.3g} ms", ms(faults.delay + faults.jitter)) : ""));
+    }
+    if (!parts.empty()) {
+      ways.push_back(fmt::format("{}: {}", way, fmt::join(parts, ", ")));
+    }
+  }
+  return fmt::format("{}", fmt::join(ways, "; "));
+}
 
 FaultyLink::FaultyLink(const LinkFaults& faults, std::uint64_t seed) : faults_(faults), random_state_(seed) {}
 

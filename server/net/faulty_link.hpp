@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/clock/clock.hpp"
@@ -34,6 +35,9 @@ struct LinkConfig {
   LinkFaults from_client;
   std::uint64_t seed = 1;
 };
+
+/// "to clients: 5 % lost, 20 ms later; from clients: 1 % twice"; empty where nothing is put on any datagram.
+std::string faults_text(const LinkConfig& link);
 
 /// What the link has done so far; numbers only grow.
 struct FaultyLinkCounters {

@@ -56,6 +56,15 @@ std::vector<std::string> SeveralTransports::descriptions() const {
   return all;
 }
 
+std::string SeveralTransports::faults() const {
+  for (const std::unique_ptr<Transport>& transport : transports_) {
+    if (std::string faults = transport->faults(); !faults.empty()) {
+      return faults;  // one section of the configuration for all
+    }
+  }
+  return "";
+}
+
 std::vector<Counter> SeveralTransports::counts() const {
   std::vector<Counter> sums;
   for (const std::unique_ptr<Transport>& transport : transports_) {

@@ -22,6 +22,7 @@ class SeveralTransports final : public Transport {
   void send(std::vector<Outgoing> messages) override;
   bool blocked() const override;
   std::vector<std::string> descriptions() const override;
+  std::string faults() const override;
   /// Sums, over the channels, of what has one name.
   std::vector<Counter> counts() const override;
 

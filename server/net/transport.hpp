@@ -42,6 +42,8 @@ class Transport {
 
   /// One for each way by which clients come, for the log: "tcp 127.0.0.1:4001".
   virtual std::vector<std::string> descriptions() const = 0;
+  /// The faults that are put on what passes, for people: "to clients: 5 % lost"; empty: there are none.
+  virtual std::string faults() const { return ""; }
   virtual std::vector<Counter> counts() const = 0;
 };
 

@@ -204,6 +204,10 @@ std::vector<std::string> UdpTransport::descriptions() const {
   return {"udp " + endpoint_text(local_endpoint())};
 }
 
+std::string UdpTransport::faults() const {
+  return faults_text(impl_->config.link);
+}
+
 std::vector<Counter> UdpTransport::counts() const {
   const UdpEndpointCounters& socket = impl_->socket->counters();
   std::vector<Counter> counts{{"sent", socket.sent},

@@ -36,6 +36,7 @@ class UdpTransport final : public Transport {
   void send(std::vector<Outgoing> messages) override;
   bool blocked() const override;
   std::vector<std::string> descriptions() const override;
+  std::string faults() const override;
   std::vector<Counter> counts() const override;
 
   /// Where messages to everybody go, and the address of ours that they come from; 0: the kernel chooses.

@@ -90,6 +90,7 @@ json head_json(const HeadStatus& status, TimePoint at) {
             {"kind", status.kind},
             {"scanning", status.scanning},
             {"serves", status.serves},
+            {"link_faults", status.link_faults},
             {"clients", clients_json(status, at)},
             {"pings", status.counts.pings.sent},
             {"pings_per_s", status.pings_per_s},

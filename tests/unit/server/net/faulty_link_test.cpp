@@ -136,5 +136,13 @@ TEST(FaultyLink, HeldBackDatagramLeavesWhenNoneFollows) {
   EXPECT_EQ(numbers_of(link.take_due(milliseconds{10})), (std::vector{1}));
 }
 
+TEST(LinkConfig, IsToldToPeople) {
+  EXPECT_EQ(faults_text({}), "");
+  EXPECT_EQ(
+      faults_text({.to_client = {.loss = 0.05, .delay = milliseconds{20}},
+                   .from_client = {.duplicate = 0.01, .reorder = 0.005, .jitter = milliseconds{3}}}),
+      "to clients: 5 % lost, 20 ms later; from clients: 1 % twice, 0.5 % out of order, 0 ms to 3 ms later");
+}
+
 }  // namespace
 }  // namespace sonard::server
