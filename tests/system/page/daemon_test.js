@@ -77,7 +77,7 @@ function startClients(range_m = RANGE_M) {
 
 /** A publisher that keeps the vehicle in one place. */
 function publish(position_m, orientation_xyzw = [0, 0, 0, 1]) {
-  const file = path.join(folder, "pose.csv");
+  const file = path.join(folder, `pose-${running.length}.csv`); // of its own: another publisher may still be reading its
   const pose = [...position_m, ...orientation_xyzw].join(",");
   writeFileSync(file, `t,x,y,z,qx,qy,qz,qw\n0,${pose}\n600,${pose}\n`);
   return start("posecast", file, "--to", "127.0.0.1:14600");
