@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include "renderer/errors.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/simd.hpp"
 #include "renderer/sonar_settings.hpp"
+#include "renderer/spatial_index/embree.hpp"
 
 namespace sonard::render {
 
@@ -28,14 +28,13 @@ struct Release {
 template <class T>
 using Handle = std::unique_ptr<std::remove_pointer_t<T>, Release>;
 
-using IntersectPacket = void (*)(const RayPacket&, RTCScene, RTCIntersectContext&, float max_depth, RayHits&);
+using IntersectPacket = void (*)(const RayPacket&, RTCScene, embree::Query&, float max_depth, RayHits&);
 
 /// Traces a packet as packet_size / N packets of Embree's type `RayHit` for N rays. Inlined, so that it
 /// becomes part of each version of its caller.
-template <class RayHit, int N, void (*intersect)(const int*, RTCScene, RTCIntersectContext*, RayHit*)>
-[[gnu::always_inline]] inline void intersect_by(const RayPacket& rays, RTCScene scene,
-                                                RTCIntersectContext& context, float max_depth,
-                                                RayHits& hits) {
+template <class RayHit, int N>
+[[gnu::always_inline]] inline void intersect_by(const RayPacket& rays, RTCScene scene, embree::Query& by,
+                                                float max_depth, RayHits& hits) {
   alignas(64) std::array<int, N> valid;
   valid.fill(-1);
   for (std::size_t first = 0; first < packet_size; first += N) {
@@ -55,7 +54,7 @@ template <class RayHit, int N, void (*intersect)(const int*, RTCScene, RTCInters
       query.hit.u[i] = query.hit.v[i] = 0.0F;
       query.hit.primID[i] = 0;
     }
-    intersect(valid.data(), scene, &context, &query);
+    embree::intersect(valid.data(), scene, by, query);
     std::copy_n(query.ray.tfar, N, hits.depth.begin() + first);
     std::copy_n(query.hit.Ng_x, N, hits.normal_x.begin() + first);
     std::copy_n(query.hit.Ng_y, N, hits.normal_y.begin() + first);
@@ -67,19 +66,19 @@ template <class RayHit, int N, void (*intersect)(const int*, RTCScene, RTCInters
   }
 }
 
-SONARD_SIMD_CLONES void intersect_by_16(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context,
+SONARD_SIMD_CLONES void intersect_by_16(const RayPacket& rays, RTCScene scene, embree::Query& by,
                                         float max_depth, RayHits& hits) {
-  intersect_by<RTCRayHit16, 16, &rtcIntersect16>(rays, scene, context, max_depth, hits);
+  intersect_by<RTCRayHit16, 16>(rays, scene, by, max_depth, hits);
 }
 
-SONARD_SIMD_CLONES void intersect_by_8(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context,
+SONARD_SIMD_CLONES void intersect_by_8(const RayPacket& rays, RTCScene scene, embree::Query& by,
                                        float max_depth, RayHits& hits) {
-  intersect_by<RTCRayHit8, 8, &rtcIntersect8>(rays, scene, context, max_depth, hits);
+  intersect_by<RTCRayHit8, 8>(rays, scene, by, max_depth, hits);
 }
 
-void intersect_by_4(const RayPacket& rays, RTCScene scene, RTCIntersectContext& context, float max_depth,
+void intersect_by_4(const RayPacket& rays, RTCScene scene, embree::Query& by, float max_depth,
                     RayHits& hits) {
-  intersect_by<RTCRayHit4, 4, &rtcIntersect4>(rays, scene, context, max_depth, hits);
+  intersect_by<RTCRayHit4, 4>(rays, scene, by, max_depth, hits);
 }
 
 RTCRay ray_of(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m) {
@@ -245,14 +244,14 @@ struct SpatialIndex::Impl {
                                triangles.indices.data(), 0, 3 * sizeof(std::uint32_t),
                                triangles.triangle_count());
     rtcCommitGeometry(geometry.get());
-    rtcSetSceneFlags(mesh.scene.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneFlags(mesh.scene.get(), embree::filter_of_query);
     rtcAttachGeometry(mesh.scene.get(), geometry.get());
     rtcCommitScene(mesh.scene.get());
   }
 
   void add_instances() {
     scene.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneFlags(scene.get(), embree::filter_of_query);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       rtcAttachGeometryByID(scene.get(), parts[i].instance.get(), static_cast<unsigned>(i));
     }
@@ -326,11 +325,9 @@ void SpatialIndex::place(const glm::dvec3& sonar_position_m) {
 }
 
 void SpatialIndex::trace(const RayPacket& rays, float max_depth, bool back_faces, RayHits& hits) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  context.filter = back_faces ? nullptr : &pass_back_faces;
-  impl_->intersect(rays, impl_->scene.get(), context, max_depth, hits);
+  embree::Query query;
+  query.coherent(back_faces ? nullptr : &pass_back_faces);
+  impl_->intersect(rays, impl_->scene.get(), query, max_depth, hits);
 }
 
 void SpatialIndex::trace(const RayPacket& rays, float farthest_m,
@@ -349,12 +346,10 @@ void SpatialIndex::trace(const RayPacket& rays, float farthest_m,
 
 bool SpatialIndex::trace_one(const glm::vec3& origin_m, const glm::vec3& direction, float farthest_m,
                              SurfaceHit& hit) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRayHit query{};
   query.ray = ray_of(origin_m, direction, farthest_m);
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->scene.get(), &context, &query);
+  embree::intersect(impl_->scene.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
     return false;
   }
@@ -367,10 +362,8 @@ bool SpatialIndex::trace_one(const glm::vec3& origin_m, const glm::vec3& directi
 }
 
 bool SpatialIndex::is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay ray = ray_of(origin_m, direction, distance_m);
-  rtcOccluded1(impl_->scene.get(), &context, &ray);
+  embree::occluded(impl_->scene.get(), ray);
   return ray.tfar >= 0;  // minus infinity where something was met
 }
 
