@@ -59,6 +59,27 @@ void check_binary_stl(const std::filesystem::path& file) {
   }
 }
 
+/// The plugin reads "nan" and "inf" in a text file as 0.
+void check_text_ply(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  bool is_text = false;
+  bool in_header = true;
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (in_header) {
+      is_text = is_text || line.starts_with("format ascii");
+      in_header = !line.starts_with("end_header");
+      if (!in_header && !is_text) {
+        return;
+      }
+    } else if (line.find_first_of("nNiI") != std::string::npos) {
+      throw WorldError(fmt::format("line {}: '{}' is not made of finite numbers", number,
+                                   line.substr(0, std::min<std::size_t>(line.find_first_of("\r\n"), 60))));
+    }
+  }
+}
+
 /// The PLY plugin invents smooth normals, over sharp edges too, when the file has none.
 bool ply_has_normals(const std::filesystem::path& file) {
   const std::string head = head_of(file, 16384);
@@ -181,6 +202,8 @@ MeshFile load_checked(const MeshFileRequest& request) {
   const std::string extension = lower_extension(request.file);
   if (extension == "stl") {
     check_binary_stl(request.file);
+  } else if (extension == "ply") {
+    check_text_ply(request.file);
   }
   const double unit_m = extension == "dae" ? collada_unit_m(request.file) : 1.0;
   RawMesh raw = read_raw(request, loaded.warnings);

@@ -152,6 +152,18 @@ TEST(MeshFile, KeepsTheNormalsOfTheFile) {
   EXPECT_NEAR(glm::distance(ply.parts[0].mesh->normals[0], glm::vec3(0.6F, 0, 0.8F)), 0.0, 1e-6);
 }
 
+TEST(MeshFile, RefusesATextPlyWithoutNumbers) {
+  const test::TempFolder folder;
+  for (const std::string vertex : {"nan nan nan", "0 inf 0", "-Infinity 0 0"}) {
+    const std::string error = error_of(request_for(folder.write(
+        "bad.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n" +
+            vertex + "\n3 0 1 2\n")));
+    EXPECT_THAT(error, HasSubstr("bad.ply: line 12: '" + vertex + "' is not made of finite numbers"));
+  }
+}
+
 TEST(MeshFile, ScalesAndMirrors) {
   MeshFileRequest request = request_for(data / "tetrahedron.obj");
   request.scale = {2.0, 1.0, -0.5};
