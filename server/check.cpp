@@ -200,7 +200,7 @@ void Check::check_start(const render::World& world, const std::vector<BodyBox>& 
 
 void Check::check_world() {
   try {
-    const render::World world = render::load_world(config_.world_file);
+    const render::World world = read_world(config_);
     for (const std::string& line : world.warnings) {
       warning("world.file", line);
     }

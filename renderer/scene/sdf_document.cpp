@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -55,8 +56,9 @@ void add_copy(SdfElement& parent, const SdfElement& from) {
 /// Reads each file once, and copies it as often as it is included.
 class SdfReader {
  public:
-  SdfReader(UriResolver& resolver, std::vector<std::string>& warnings, WorldProblems& problems)
-      : resolver_(resolver), warnings_(warnings), problems_(problems) {}
+  SdfReader(UriResolver& resolver, MissingFiles missing, std::vector<std::string>& warnings,
+            WorldProblems& problems)
+      : resolver_(resolver), missing_(missing), warnings_(warnings), problems_(problems) {}
 
   std::unique_ptr<SdfElement> read(const fs::path& world_file) {
     const Document& document = open(world_file);
@@ -81,6 +83,7 @@ class SdfReader {
   static void merge(SdfElement& model, SdfElement& into);
 
   UriResolver& resolver_;
+  const MissingFiles missing_;
   std::vector<std::string>& warnings_;
   WorldProblems& problems_;
   std::map<fs::path, Document> documents_;
@@ -194,6 +197,9 @@ fs::path SdfReader::included_file(const SdfElement& include) {
     throw WorldError(fmt::format("'{}': there is no file {}", uri->text, file.string()));
   }
   resolver_.add_model_folder(canonical.parent_path().parent_path());
+  if (const auto fuel = parse_fuel_uri(uri->text)) {
+    resolver_.name_model(fuel->name, canonical.parent_path());
+  }
   if (const auto same = std::ranges::find(around_, canonical); same != around_.end()) {
     std::vector<std::string> way;
     for (auto step = same; step != around_.end(); ++step) {
@@ -234,6 +240,9 @@ void SdfReader::include(const SdfElement& include, SdfElement& into) {
     } else {
       into.children.push_back(std::move(included));
     }
+  } catch (const MissingFile& error) {
+    (missing_ == MissingFiles::skip ? warnings_ : problems_)
+        .push_back(fmt::format("{}: include {}", include.place(), error.what()));
   } catch (const WorldError& error) {
     if (elements_ > most_elements) {
       throw;
@@ -383,9 +392,9 @@ std::vector<double> numbers_of(const SdfElement* element, const std::vector<doub
   return numbers;
 }
 
-std::unique_ptr<SdfElement> read_sdf(const fs::path& world_file, UriResolver& resolver,
+std::unique_ptr<SdfElement> read_sdf(const fs::path& world_file, UriResolver& resolver, MissingFiles missing,
                                      std::vector<std::string>& warnings, WorldProblems& problems) {
-  return SdfReader(resolver, warnings, problems).read(world_file);
+  return SdfReader(resolver, missing, warnings, problems).read(world_file);
 }
 
 }  // namespace sonard::render

@@ -54,10 +54,12 @@ std::vector<double> numbers_of(const SdfElement* element, const std::vector<doub
 using WorldProblems = std::vector<std::string>;
 
 /// Reads `world_file` (absolute) and all it includes. Folders of included models are added to `resolver`. An
-/// include that cannot be read, or that leads back to a file around it, is left out and goes to `problems`.
+/// include that cannot be read, or that leads back to a file around it, is left out and goes to `problems`;
+/// one whose file is not there to `warnings`, if it may be.
 /// @return the element <sdf>
 /// @throws WorldError where nothing can be read: no XML, no <sdf>, more than a million elements
 std::unique_ptr<SdfElement> read_sdf(const std::filesystem::path& world_file, UriResolver& resolver,
-                                     std::vector<std::string>& warnings, WorldProblems& problems);
+                                     MissingFiles missing, std::vector<std::string>& warnings,
+                                     WorldProblems& problems);
 
 }  // namespace sonard::render

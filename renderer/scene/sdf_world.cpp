@@ -88,11 +88,11 @@ std::optional<TriangleMesh> primitive_of(const SdfElement& geometry) {
 
 class WorldBuilder {
  public:
-  WorldBuilder(const fs::path& file, const std::vector<fs::path>& model_folders)
-      : file_(file), resolver_(file, model_folders) {}
+  WorldBuilder(const fs::path& file, const std::vector<fs::path>& model_folders, MissingFiles missing)
+      : file_(file), resolver_(file, model_folders), missing_(missing) {}
 
   World build() {
-    const std::unique_ptr<SdfElement> sdf = read_sdf(file_, resolver_, world_.warnings, problems_);
+    const std::unique_ptr<SdfElement> sdf = read_sdf(file_, resolver_, missing_, world_.warnings, problems_);
     check_own_elements(*sdf, problems_);
     for (std::string& line : unknown_elements(*sdf)) {
       world_.warnings.push_back(std::move(line));
@@ -173,6 +173,13 @@ class WorldBuilder {
   void attempt(const SdfElement& element, const std::string& path, const Work& work) {
     try {
       work();
+    } catch (const MissingFile& error) {
+      std::string line = fmt::format("{}: {}: {}", element.place(), path, error.what());
+      if (missing_ == MissingFiles::skip) {
+        world_.warnings.push_back(std::move(line));
+      } else {
+        complain(std::move(line));
+      }
     } catch (const WorldError& error) {
       complain(fmt::format("{}: {}: {}", element.place(), path, error.what()));
     }
@@ -413,6 +420,7 @@ class WorldBuilder {
 
   fs::path file_;
   UriResolver resolver_;
+  const MissingFiles missing_;
   World world_;
   LeftOut left_out_;
   SdfFrames frames_;
@@ -425,13 +433,13 @@ class WorldBuilder {
 
 }  // namespace
 
-World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_folders) {
+World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_folders, MissingFiles missing) {
   std::error_code error;
   const fs::path file = fs::canonical(sdf_file, error);
   if (error || !fs::is_regular_file(file, error)) {
     throw WorldError(fmt::format("{}: world file not found", sdf_file.string()));
   }
-  return WorldBuilder(file, model_folders).build();
+  return WorldBuilder(file, model_folders, missing).build();
 }
 
 }  // namespace sonard::render

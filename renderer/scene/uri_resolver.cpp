@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -68,6 +69,25 @@ void UriResolver::add_model_folder(const fs::path& folder) {
   }
 }
 
+void UriResolver::name_model(const std::string& name, const fs::path& folder) {
+  named_[lower_case(name)] = folder;
+}
+
+fs::path UriResolver::resolve_model(const std::string& uri, std::string_view rest) const {
+  const std::size_t end = std::min(rest.find('/'), rest.size());
+  if (const auto named = named_.find(lower_case(rest.substr(0, end))); named != named_.end()) {
+    if (const auto found = existing(named->second / rest.substr(std::min(end + 1, rest.size())))) {
+      return *found;
+    }
+  }
+  for (const fs::path& folder : model_folders_) {
+    if (const auto found = existing(folder / rest)) {
+      return *found;
+    }
+  }
+  throw MissingFile(fmt::format("'{}' not found; looked in {}", uri, list(model_folders_)));
+}
+
 fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_folder) const {
   if (uri.empty() || uri == "__default__") {
     throw WorldError("the URI is missing");
@@ -76,15 +96,13 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
   const std::string scheme = colon == std::string::npos ? "" : uri.substr(0, colon);
   const std::string rest = colon == std::string::npos ? uri : uri.substr(colon + 3);
   if (scheme == "model" || scheme == "package") {
-    for (const fs::path& folder : model_folders_) {
-      if (const auto found = existing(folder / rest)) {
-        return *found;
-      }
-    }
-    throw WorldError(fmt::format("'{}' not found; looked in {}", uri, list(model_folders_)));
+    return resolve_model(uri, rest);
+  }
+  if (const auto fuel = parse_fuel_uri(uri)) {
+    return resolve_in_fuel_cache(uri, *fuel);
   }
   if (!scheme.empty() && scheme != "file") {
-    throw WorldError(
+    throw MissingFile(
         fmt::format("'{}': nothing is fetched from a network; download it and use model:// or a path "
                     "(GZ_SIM_RESOURCE_PATH names "
                     "folders of models)",
@@ -94,7 +112,7 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
   if (const auto found = existing(path)) {
     return *found;
   }
-  throw WorldError(fmt::format("'{}' not found; looked for {}", uri, path.lexically_normal().string()));
+  throw MissingFile(fmt::format("'{}' not found; looked for {}", uri, path.lexically_normal().string()));
 }
 
 }  // namespace sonard::render

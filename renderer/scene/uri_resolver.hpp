@@ -3,10 +3,19 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "renderer/scene/world.hpp"
+
 namespace sonard::render {
+
+/// A file that a world names is not there.
+struct MissingFile : WorldError {
+  using WorldError::WorldError;
+};
 
 /// Where the files that a world names are looked for. Never touches a network.
 class UriResolver {
@@ -19,14 +28,22 @@ class UriResolver {
   /// A folder that holds models, found while loading: `model://` is looked for there too.
   void add_model_folder(const std::filesystem::path& folder);
 
-  /// @param uri `model://NAME/REST`, `package://NAME/REST`, `file://PATH`, an absolute path, or a path
-  /// relative to `naming_folder`, the folder of the file that names it.
+  /// `model://NAME/...` is looked for in this folder of a model, before all others.
+  void name_model(const std::string& name, const std::filesystem::path& folder);
+
+  /// @param uri `model://NAME/REST`, `package://NAME/REST`, `file://PATH`, an absolute path, a path relative
+  /// to `naming_folder`, the folder of the file that names it, or a model of Fuel
+  /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), which is looked for in Gazebo's local
+  /// cache.
   /// @return an existing file or folder, canonical.
-  /// @throws WorldError saying where it was looked for, or that the scheme needs a network.
+  /// @throws MissingFile saying where it was looked for; WorldError for a URI that is none
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
  private:
+  std::filesystem::path resolve_model(const std::string& uri, std::string_view rest) const;
+
   std::vector<std::filesystem::path> model_folders_;
+  std::map<std::string, std::filesystem::path, std::less<>> named_;  ///< in lower case
 };
 
 }  // namespace sonard::render

@@ -145,17 +145,25 @@ struct WorldError : std::runtime_error {
   std::vector<std::string> more{};  ///< what else is wrong, in the same form
 };
 
+/// What becomes of an include, or a mesh, whose file is not there.
+enum class MissingFiles {
+  error,
+  skip  ///< the world is loaded without it, and World::warnings names it
+};
+
 /// Folders of the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and
 /// SDF_PATH (colon separated), in this order.
 std::vector<std::filesystem::path> model_folders_from_environment();
 
 /// Loads an SDF 1.x world file (or a file with a single model) and all it includes; see docs/worlds.md.
 /// Relative URIs are resolved against the folder of the file that names them; `model://NAME` is looked for in
-/// the folder of the world, in `models` there and beside it, then in `model_folders`. Nothing is fetched from
-/// a network. Mesh files are read in forked child processes: call this before other threads are started.
+/// the folder of the world, in `models` there and beside it, then in `model_folders`; a model of Fuel is
+/// looked for in Gazebo's local cache. Nothing is fetched from a network. Mesh files are read in forked child
+/// processes: call this before other threads are started.
 /// @throws WorldError naming file, line and element for each missing mesh, unknown material, ...; of no
 /// triangles
 World load_world(const std::filesystem::path& sdf_file,
-                 const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment());
+                 const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment(),
+                 MissingFiles missing = MissingFiles::error);
 
 }  // namespace sonard::render

@@ -189,6 +189,7 @@ struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
+  bool skips_missing_files = false;  ///< of the world
   /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries
   /// the sonars that heads are mounted from (resolve_mounts() fills it in).
   std::string vehicle_model;

@@ -73,6 +73,10 @@ void read_log(YamlSection& section, LogLevel& level) {
 void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
   section.require("file", "an SDF world");
   section.path("file", config.world_file, folder, "SDF world ([worlds.md](worlds.md))");
+  section.choice(
+      "missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
+      "what becomes of an include, or a mesh, whose file is not there: the daemon does not start, or it does "
+      "without, and warns");
   section.text("vehicle_model", config.vehicle_model,
                "model of the world that is the vehicle itself: it moves as the vehicle does, whatever the "
                "pose stream says of a body of this name. Its frame is the vehicle's");

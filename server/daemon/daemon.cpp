@@ -428,9 +428,15 @@ void Daemon::end(int exit_code) {
 
 }  // namespace
 
+render::World read_world(const DaemonConfig& config) {
+  return render::load_world(
+      config.world_file, render::model_folders_from_environment(),
+      config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error);
+}
+
 render::World load_world_of(DaemonConfig& config) {
   try {
-    render::World world = render::load_world(config.world_file);
+    render::World world = read_world(config);
     for (const std::string& warning : world.warnings) {
       spdlog::warn("{}", warning);
     }

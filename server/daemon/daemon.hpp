@@ -28,7 +28,10 @@ struct StartError : std::runtime_error {
   std::vector<std::string> more;  ///< what else is wrong with the same key
 };
 
-/// The world of a configuration, which takes from it what it leaves to its world (resolve_mounts()). Logs
+/// The world of a configuration. @throws render::WorldError
+render::World read_world(const DaemonConfig& config);
+
+/// The same for a configuration which takes from it what it leaves to its world (resolve_mounts()). Logs
 /// what is odd about it, and what is left out.
 /// @throws StartError
 render::World load_world_of(DaemonConfig& config);

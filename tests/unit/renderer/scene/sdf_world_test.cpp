@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -214,6 +215,50 @@ TEST(SdfWorld, MergesWhatIsIncludedSo) {
   expect_near(parts[2].T_body_part.position_m, {1.5, 0, 2});
   EXPECT_EQ(parts[0].material.name, "default");
   EXPECT_EQ(parts[2].material.name, "steel");
+}
+
+// As `gz fuel download` leaves it: owner and name in lower case, a folder for each version.
+TEST(SdfWorld, FindsModelsOfFuelInTheLocalCache) {
+  const test::TempFolder folder;
+  const auto model = [](const std::string& shape) {
+    return "<sdf version=\"1.7\"><model name=\"rock\"><link name=\"l\"><visual name=\"v\">" + shape +
+           "</visual></link></model></sdf>";
+  };
+  const std::string cache = "cache/fuel.gazebosim.org/openrobotics/models/big rock/";
+  folder.write(cache + "9/model.sdf", model(ball));
+  folder.write(cache + "10/meshes/rock.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write(cache + "10/model.sdf",
+               model(geometry("<mesh><uri>model://Big Rock/meshes/rock.obj</uri></mesh>")));
+  setenv("GZ_FUEL_CACHE_PATH", (folder.path() / "cache").c_str(), 1);
+  const auto triangles = [&](const std::string& uri) {
+    return load_world(folder.write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\"><include><uri>" + uri +
+                                                "</uri></include></world></sdf>"),
+                      {})
+        .triangle_count();
+  };
+  EXPECT_EQ(triangles("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Big%20Rock"), 1U)
+      << "the newest, and its own mesh";
+  EXPECT_EQ(triangles("https://fuel.ignitionrobotics.org/1.0/openrobotics/models/Big Rock/tip"), 1U);
+  EXPECT_GT(triangles("fuel://fuel.gazebosim.org/OpenRobotics/models/Big%20Rock/9/files/model.sdf"), 1U);
+  EXPECT_THROW(triangles("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Big%20Rock/3"), WorldError);
+  unsetenv("GZ_FUEL_CACHE_PATH");
+}
+
+TEST(SdfWorld, GoesOnWithoutWhatIsMissingIfItMay) {
+  const test::TempFolder folder;
+  const auto file = folder.write(
+      "w.sdf",
+      world_of(visual("v", ball) + visual("gone", geometry("<mesh><uri>gone.obj</uri></mesh>"))) + "");
+  EXPECT_THROW(load_world(file, {}), WorldError);
+  const World world = load_world(file, {}, MissingFiles::skip);
+  EXPECT_EQ(world.bodies.at(0).parts.size(), 1U);
+  EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("m::l::gone: 'gone.obj' not found")));
+  const auto including = folder.write("i.sdf",
+                                      "<sdf version=\"1.9\"><world "
+                                      "name=\"w\"><include><uri>w.sdf</uri></include><include><uri>model://"
+                                      "gone</uri></include></world></sdf>");
+  EXPECT_THAT(load_world(including, {}, MissingFiles::skip).warnings,
+              testing::Contains(HasSubstr("i.sdf:1: include 'model://gone' not found")));
 }
 
 TEST(SdfWorld, TakesTheMaterialOfAnInclude) {

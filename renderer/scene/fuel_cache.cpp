@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene/fuel_cache.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "renderer/scene/uri_resolver.hpp"
+
+namespace sonard::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One server under two names; caches have either.
+constexpr std::array<std::string_view, 2> hosts{"fuel.gazebosim.org", "fuel.ignitionrobotics.org"};
+
+std::string unescaped(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned code = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
+      plain += static_cast<char>(code);
+      i += 2;
+    } else {
+      plain += text[i];
+    }
+  }
+  return plain;
+}
+
+std::vector<std::string> segments_of(std::string_view path) {
+  std::vector<std::string> segments;
+  while (!path.empty()) {
+    const std::size_t end = std::min(path.find('/'), path.size());
+    if (end > 0) {
+      segments.push_back(unescaped(path.substr(0, end)));
+    }
+    path.remove_prefix(std::min(end + 1, path.size()));
+  }
+  return segments;
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+std::vector<fs::path> cache_folders() {
+  std::vector<fs::path> folders;
+  const auto add = [&](const char* variable, const char* below) {
+    if (const char* value =
+            std::getenv(variable)) {  // NOLINT(concurrency-mt-unsafe): at start-up, nothing sets it
+      folders.push_back(fs::path(value) / below);
+    }
+  };
+  add("GZ_FUEL_CACHE_PATH", "");
+  add("IGN_FUEL_CACHE_PATH", "");
+  add("HOME", ".gz/fuel");
+  add("HOME", ".ignition/fuel");
+  return folders;
+}
+
+/// The folder of the highest number; nullopt where there is none.
+std::optional<fs::path> newest_version(const fs::path& model) {
+  std::optional<fs::path> newest;
+  int highest = -1;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(model, error)) {
+    const std::string name = entry.path().filename().string();
+    int version = -1;
+    std::from_chars(name.data(), name.data() + name.size(), version);
+    if (is_number(name) && version > highest) {
+      highest = version;
+      newest = entry.path();
+    }
+  }
+  return newest;
+}
+
+}  // namespace
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+std::optional<FuelUri> parse_fuel_uri(std::string_view uri) {
+  for (const std::string_view scheme : {"https://", "http://", "fuel://"}) {
+    if (!uri.starts_with(scheme)) {
+      continue;
+    }
+    std::vector<std::string> parts = segments_of(uri.substr(scheme.size()));
+    if (parts.empty() || std::ranges::find(hosts, parts[0]) == hosts.end()) {
+      return std::nullopt;
+    }
+    parts.erase(parts.begin());
+    if (!parts.empty() && parts[0].find('.') != std::string::npos) {
+      parts.erase(parts.begin());  // the version of Fuel's interface
+    }
+    if (parts.size() < 3 || parts[1] != "models") {
+      return std::nullopt;
+    }
+    FuelUri fuel{lower_case(parts[0]), lower_case(parts[2]), "", ""};
+    std::size_t next = 3;
+    if (next < parts.size() && (is_number(parts[next]) || parts[next] == "tip")) {
+      fuel.version = parts[next++];
+    }
+    next += next < parts.size() && parts[next] == "files" ? 1 : 0;
+    for (; next < parts.size(); ++next) {
+      fuel.rest += (fuel.rest.empty() ? "" : "/") + parts[next];
+    }
+    return fuel;
+  }
+  return std::nullopt;
+}
+
+fs::path resolve_in_fuel_cache(const std::string& uri, const FuelUri& fuel) {
+  std::vector<std::string> looked_in;
+  for (const fs::path& cache : cache_folders()) {
+    looked_in.push_back(cache.string());
+    for (const std::string_view host : hosts) {
+      const fs::path model = cache / host / fuel.owner / "models" / fuel.name;
+      const auto version =
+          is_number(fuel.version) ? std::optional(model / fuel.version) : newest_version(model);
+      std::error_code error;
+      if (fs::path found = version ? fs::canonical(*version / fuel.rest, error) : fs::path();
+          version && !error) {
+        return found;
+      }
+    }
+  }
+  throw MissingFile(
+      fmt::format("'{}' is not in the local cache of Fuel; looked in {}. Nothing is fetched here: "
+                  "`gz fuel download -u {}` does, or `world: {{missing: skip}}` goes on without",
+                  uri, fmt::join(looked_in, ", "), uri));
+}
+
+}  // namespace sonard::render
