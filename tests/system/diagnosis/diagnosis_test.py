@@ -16,7 +16,6 @@ import re
 import socket
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -24,7 +23,7 @@ import urllib.request
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path.append(os.path.join(SOURCE, "tests", "system", "gemini"))
-from lab import Namespace, Program  # noqa: E402
+from lab import OwnMachine, Program  # noqa: E402
 
 DATA = os.path.join(SOURCE, "tests", "data", "system")
 PROGRAMS = None  # folder of the programs under test
@@ -82,20 +81,7 @@ class Publisher:
         self._socket.close()
 
 
-class Diagnosis(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.namespace = Namespace(f"sonard-diagnosis-{os.getpid()}")
-        cls.namespace.enter()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.namespace.remove()
-
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
+class Diagnosis(OwnMachine):
     def config(self, poses="udp: {bind: 127.0.0.1:14600}", vehicle=""):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:

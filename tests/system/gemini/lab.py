@@ -12,8 +12,10 @@ import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import threading
 import time
+import unittest
 
 HEAD_ADDRESS = "10.61.19.200"
 TOPSIDE_ADDRESS = "10.61.19.10"
@@ -100,6 +102,23 @@ class Namespace:
 def _enter(namespace_fd):
     if _libc.setns(namespace_fd, CLONE_NEWNET) != 0:
         raise OSError(ctypes.get_errno(), "setns")
+
+
+class OwnMachine(unittest.TestCase):
+    """Tests whose process, and the programs that it starts, are on a machine of their own, with a folder for each."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.namespace = Namespace(f"sonard-{cls.__name__.lower()}-{os.getpid()}")
+        cls.namespace.enter()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.namespace.remove()
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
 
 
 class Lab:

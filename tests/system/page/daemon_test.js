@@ -4,12 +4,12 @@
 // DATA is tests/data/system. The target's place follows from sphere_to_port.sdf there: a sphere of radius 0.5 m at
 // (3, 2, 0). Wrong poses, and what is to be said of them in pier_and_hull.sdf, are in wrong_poses.json.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 import { framesAdvance, head, open, readsTarget, savesPng, startBrowser, state, until } from "./browser.js";
+import { startProgram } from "./programs.js";
 
 const [programs, data] = process.argv.slice(2);
 const ADDRESS = "127.0.0.1:8014";
@@ -38,16 +38,7 @@ let running = [];
 let browser;
 let page;
 
-/** Starts a program; `output` collects what it says. */
-function start(name, ...options) {
-  const child = spawn(path.join(programs, name), options, { stdio: ["ignore", "pipe", "pipe"] });
-  child.output = "";
-  for (const stream of [child.stdout, child.stderr]) {
-    stream.setEncoding("utf-8").on("data", (text) => (child.output = (child.output + text).slice(-20000)));
-  }
-  running.push(child);
-  return child;
-}
+const start = (name, ...options) => startProgram(path.join(programs, name), options, running);
 
 async function end(child, signal = "SIGKILL") {
   running = running.filter((one) => one !== child);

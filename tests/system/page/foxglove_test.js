@@ -3,7 +3,6 @@
 // the schema that the daemon serves.
 //   node foxglove_test.js PROGRAMS DATA     on a machine of its own: ports are those of the defaults
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -13,6 +12,7 @@ import protocol from "@foxglove/ws-protocol";
 import Ajv2020 from "ajv/dist/2020.js";
 import { PNG } from "pngjs";
 import { WebSocket } from "ws";
+import { startProgram } from "./programs.js";
 
 const { CompressedImage, FrameTransform } = schemas;
 const { FoxgloveClient } = protocol;
@@ -45,15 +45,7 @@ const running = [];
 // Tuples of Foxglove's schemas are those of an older draft.
 const ajv = new Ajv2020({ strict: false, validateFormats: false });
 
-function start(name, ...options) {
-  const child = spawn(path.join(programs, name), options, { stdio: ["ignore", "pipe", "pipe"] });
-  child.output = "";
-  for (const stream of [child.stdout, child.stderr]) {
-    stream.setEncoding("utf-8").on("data", (text) => (child.output = (child.output + text).slice(-20000)));
-  }
-  running.push(child);
-  return child;
-}
+const start = (name, ...options) => startProgram(path.join(programs, name), options, running);
 
 /** Waits for what `take` returns, when it is something. */
 async function until(what, take) {

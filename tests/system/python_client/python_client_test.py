@@ -15,7 +15,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 import zlib
 
@@ -23,7 +22,7 @@ import numpy
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path[:0] = [os.path.join(SOURCE, "tests", "system", "gemini"), os.path.join(SOURCE, "clients", "python")]
-from lab import Namespace, Program  # noqa: E402
+from lab import OwnMachine, Program  # noqa: E402
 from sonard_client import Gemini, NoHead, NoPing  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
@@ -44,30 +43,18 @@ heads:
 """
 
 
-class PythonClient(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.namespace = Namespace(f"sonard-python-{os.getpid()}")
-        cls.namespace.enter()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.namespace.remove()
-
+class PythonClient(OwnMachine):
     def start(self, link="", position=(0, 0, 0)):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        path = os.path.join(self.folder, "sonard.yaml")
+        path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=WORLD, folder=self.folder, position=list(position), link=link))
+            file.write(CONFIG.format(world=WORLD, folder=self.folder.name, position=list(position), link=link))
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", START_S)
 
     def expect_rendered(self, ping):
         """As the renderer handed it over, bit by bit."""
-        with open(os.path.join(self.folder, "bow.csv"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder.name, "bow.csv"), encoding="utf-8") as file:
             rendered = {int(row["transmit_us"]): row["crc32"] for row in csv.DictReader(file)}
         samples = ping.samples if ping.samples.dtype == numpy.uint8 else ping.samples.astype(">u2")
         self.assertEqual(ping.missing, 0)
@@ -86,16 +73,16 @@ class PythonClient(unittest.TestCase):
     def test_readme_in_a_virtual_environment(self):
         self.start()
         # Building leaves files beside the source.
-        shutil.copytree(os.path.join(SOURCE, "clients", "python"), os.path.join(self.folder, "source"))
-        venv = os.path.join(self.folder, "venv")
+        shutil.copytree(os.path.join(SOURCE, "clients", "python"), os.path.join(self.folder.name, "source"))
+        venv = os.path.join(self.folder.name, "venv")
         for command in ([sys.executable, "-m", "venv", "--system-site-packages", venv],
                         [venv + "/bin/pip", "install", "--quiet", "--no-index", "--no-build-isolation", "--no-deps",
-                         os.path.join(self.folder, "source")]):
+                         os.path.join(self.folder.name, "source")]):
             done = subprocess.run(command, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         with open(os.path.join(SOURCE, "clients", "python", "README.md"), encoding="utf-8") as file:
             example = file.read().split("```python\n")[1].split("```")[0]
-        done = subprocess.run([venv + "/bin/python", "-c", example], cwd=self.folder, capture_output=True, text=True)
+        done = subprocess.run([venv + "/bin/python", "-c", example], cwd=self.folder.name, capture_output=True, text=True)
         self.assertRegex(done.stdout, r"^\(2411, 256\) 19\.99\d* \[ 1\.04\d* -1\.04\d*\]$", done.stderr)
 
     def test_forms_of_samples(self):
@@ -125,7 +112,7 @@ class PythonClient(unittest.TestCase):
 
     def test_no_pose_no_ping(self):
         self.start()
-        path = os.path.join(self.folder, "sonard.yaml")
+        path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, encoding="utf-8") as file:
             text = file.read().replace("poses: {initial: {position_m: [0, 0, 0]}}", "poses: {udp: {bind: 127.0.0.1:14600}}") \
                 .replace("127.0.0.2", "127.0.0.5").replace("513", "514")

@@ -17,14 +17,13 @@ import re
 import socket
 import struct
 import sys
-import tempfile
 import time
 import unittest
 
 import websockets
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
-from lab import Namespace, Program  # noqa: E402
+from lab import OwnMachine, Program  # noqa: E402
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
@@ -53,20 +52,7 @@ heads:
 """
 
 
-class Web(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.namespace = Namespace(f"sonard-web-{os.getpid()}")
-        cls.namespace.enter()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.namespace.remove()
-
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
+class Web(OwnMachine):
     def start(self, more=""):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
