@@ -241,13 +241,17 @@ void SdfReader::include(const SdfElement& include, SdfElement& into) {
       into.children.push_back(std::move(included));
     }
   } catch (const MissingFile& error) {
-    (missing_ == MissingFiles::skip ? warnings_ : problems_)
-        .push_back(fmt::format("{}: include {}", include.place(), error.what()));
+    std::string line = fmt::format("{}: include {}", include.place(), error.what());
+    if (missing_ == MissingFiles::skip) {
+      warnings_.push_back(std::move(line));
+    } else {
+      problems_.add(std::move(line));
+    }
   } catch (const WorldError& error) {
     if (elements_ > most_elements) {
       throw;
     }
-    problems_.push_back(fmt::format("{}: include {}", include.place(), error.what()));
+    problems_.add(fmt::format("{}: include {}", include.place(), error.what()));
   }
 }
 
@@ -390,6 +394,13 @@ std::vector<double> numbers_of(const SdfElement* element, const std::vector<doub
                                  otherwise.size(), otherwise.size() == 1 ? "" : "s"));
   }
   return numbers;
+}
+
+void WorldProblems::add(std::string line) {
+  constexpr std::size_t most = 1000;
+  if (lines_.size() <= most && known_.insert(line).second) {
+    lines_.push_back(lines_.size() < most ? std::move(line) : "more problems are not shown");
+  }
 }
 
 std::unique_ptr<SdfElement> read_sdf(const fs::path& world_file, UriResolver& resolver, MissingFiles missing,

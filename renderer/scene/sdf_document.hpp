@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -50,8 +51,18 @@ double number(std::string_view text, std::string_view what);
 /// @throws WorldError "radius 'one': expected a number", without a place
 std::vector<double> numbers_of(const SdfElement* element, const std::vector<double>& otherwise);
 
-/// Complaints about a world, each with its place, to be told of together.
-using WorldProblems = std::vector<std::string>;
+/// Complaints about a world, each once and with its place, to be told of together; of more than a thousand
+/// the first.
+class WorldProblems {
+ public:
+  void add(std::string line);
+  bool empty() const { return lines_.empty(); }
+  const std::vector<std::string>& lines() const { return lines_; }
+
+ private:
+  std::vector<std::string> lines_;
+  std::set<std::string> known_;
+};
 
 /// Reads `world_file` (absolute) and all it includes. Folders of included models are added to `resolver`. An
 /// include that cannot be read, or that leads back to a file around it, is left out and goes to `problems`;

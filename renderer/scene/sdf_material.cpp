@@ -29,7 +29,7 @@ void check_attributes(const SdfElement& element, std::span<const std::string_vie
                       WorldProblems& problems) {
   for (const auto& [key, value] : element.attributes) {
     if (!key.starts_with("xmlns") && std::ranges::find(allowed, key) == allowed.end()) {
-      problems.push_back(
+      problems.add(
           fmt::format("{}: <{}> has no attribute '{}'{}{}", element.place(), element.name, key,
                       allowed.empty() ? "" : "; besides its text it may have: ", fmt::join(allowed, ", ")));
     }
@@ -39,7 +39,7 @@ void check_attributes(const SdfElement& element, std::span<const std::string_vie
 void check_own_element(const SdfElement& element, WorldProblems& problems) {
   const SdfElement& parent = *element.parent;
   const auto complain = [&](const std::string& message) {
-    problems.push_back(fmt::format("{}: {}", element.place(), message));
+    problems.add(fmt::format("{}: {}", element.place(), message));
   };
   if (element.name == material_element) {
     if (std::ranges::find(material_parents, parent.name) == material_parents.end()) {
@@ -69,7 +69,7 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
     const std::string* const type = element.attribute("type");
     if (key != sonar_attribute || element.name != "sensor" || element.parent == nullptr ||
         element.parent->name != "link" || type == nullptr || *type != "custom") {
-      problems.push_back(fmt::format(
+      problems.add(fmt::format(
           "{}: attribute '{}' of <{}>: there is only {}, of a <sensor type=\"custom\"> in a <link>",
           element.place(), key, element.name, sonar_attribute));
     }

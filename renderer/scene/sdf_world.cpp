@@ -99,10 +99,10 @@ class WorldBuilder {
     }
     add_bodies(world_or_model(*sdf));
     if (problems_.empty() && world_.triangle_count() == 0) {
-      complain(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
+      problems_.add(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
     }
     if (!problems_.empty()) {
-      throw WorldError(std::move(problems_));
+      throw WorldError(problems_.lines());
     }
     drop_repeated_warnings();
     tell_what_is_left_out(*sdf);
@@ -116,7 +116,7 @@ class WorldBuilder {
         std::ranges::count(sdf.children, "world", [](const auto& child) { return child->name; });
     const SdfElement* const only = worlds > 0 ? sdf.child("world") : sdf.child("model");
     if (worlds > 1 || only == nullptr) {
-      std::vector<std::string> lines = problems_;
+      std::vector<std::string> lines = problems_.lines();
       lines.push_back(
           fmt::format("{}: {} worlds and no model: expected one world or one model", file_.string(), worlds));
       throw WorldError(std::move(lines));
@@ -152,19 +152,13 @@ class WorldBuilder {
     }
   }
 
-  void complain(std::string line) {
-    if (complaints_.insert(line).second) {
-      problems_.push_back(std::move(line));
-    }
-  }
-
   /// What `work` throws is told of with the rest; it leaves out only itself.
   template <class Work>
   void attempt(const Work& work) {
     try {
       work();
     } catch (const WorldError& error) {
-      complain(error.what());
+      problems_.add(error.what());
     }
   }
 
@@ -178,10 +172,10 @@ class WorldBuilder {
       if (missing_ == MissingFiles::skip) {
         world_.warnings.push_back(std::move(line));
       } else {
-        complain(std::move(line));
+        problems_.add(std::move(line));
       }
     } catch (const WorldError& error) {
-      complain(fmt::format("{}: {}: {}", element.place(), path, error.what()));
+      problems_.add(fmt::format("{}: {}: {}", element.place(), path, error.what()));
     }
   }
 
@@ -189,11 +183,11 @@ class WorldBuilder {
   std::string name_of(const SdfElement& element, const std::string& path, std::set<std::string>& taken) {
     const std::string name = element.given_name();
     if (name.empty()) {
-      complain(fmt::format("{}: {}a {} without a name", element.place(), path.empty() ? "" : path + ": ",
-                           element.name));
+      problems_.add(fmt::format("{}: {}a {} without a name", element.place(), path.empty() ? "" : path + ": ",
+                                element.name));
     } else if (!taken.insert(name).second) {
-      complain(fmt::format("{}: another {} is called '{}'", element.place(),
-                           path.empty() ? "model" : "part of " + path, name));
+      problems_.add(fmt::format("{}: another {} is called '{}'", element.place(),
+                                path.empty() ? "model" : "part of " + path, name));
     }
     return name;
   }
@@ -229,7 +223,7 @@ class WorldBuilder {
       add_sonars(body, *child, T_body_model, child_path);
     }
     if (!has_part) {
-      complain(fmt::format("{}: {}: the model has no link", model.place(), path));
+      problems_.add(fmt::format("{}: {}: the model has no link", model.place(), path));
     }
   }
 
@@ -425,7 +419,7 @@ class WorldBuilder {
   LeftOut left_out_;
   SdfFrames frames_;
   WorldProblems problems_;
-  std::set<std::string> complaints_, body_names_;
+  std::set<std::string> body_names_;
   std::map<std::string, std::vector<MeshFilePart>> primitives_;
   std::vector<std::pair<MeshFileRequest, std::vector<MeshFilePart>>> mesh_files_;
   std::map<fs::path, std::shared_ptr<const NormalMap>> normal_maps_;

@@ -197,6 +197,18 @@ TEST(BadWorldFile, IsToldOfWhole) {
                                             HasSubstr("w.sdf:8: include 'model://gone' not found")));
 }
 
+TEST(BadWorldFile, IsToldOfInBounds) {
+  const test::TempFolder folder;
+  std::string models;
+  for (int i = 0; i < 3000; ++i) {
+    models += "<include><uri>model://gone" + std::to_string(i) + "</uri></include>\n";
+  }
+  const auto lines = all_errors(
+      folder.write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + models + "</world></sdf>"));
+  ASSERT_EQ(lines.size(), 1001U);
+  EXPECT_EQ(lines.back(), "more problems are not shown");
+}
+
 TEST(BadWorldFile, IncludesItself) {
   const test::TempFolder folder;
   const auto including = [&](const std::string& name, const std::string& other) {
