@@ -2,6 +2,9 @@
 #include "server/web/foxglove_session.hpp"
 
 #include <chrono>
+#include <exception>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -81,6 +84,14 @@ std::string base64(const std::string& bytes) {
   return text.append((4 - text.size() % 4) % 4, '=');
 }
 
+/// @throws std::invalid_argument for what is no whole number of 32 bits
+std::uint32_t id_of(const json& value) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::invalid_argument(text_of(value) + " is no ID");
+  }
+  return value.get<std::uint32_t>();
+}
+
 }  // namespace
 
 FoxgloveSession::FoxgloveSession(Site& site, boost::beast::tcp_stream stream)
@@ -140,23 +151,22 @@ void FoxgloveSession::take(const std::string& text) {
   try {
     if (op == "subscribe") {
       for (const json& wish : message.at("subscriptions")) {
-        const auto channel = channels_.find(wish.at("channelId").get<std::uint32_t>());
+        const auto channel = channels_.find(id_of(wish.at("channelId")));
         if (channel == channels_.end()) {
-          complain(fmt::format("There is no channel {}.", wish["channelId"].dump()));
+          complain(fmt::format("There is no channel {}.", text_of(wish["channelId"])));
         } else {
-          subscriptions_[channel->second] = wish.at("id").get<std::uint32_t>();
+          subscriptions_[channel->second] = id_of(wish.at("id"));
           shown_.erase(channel->second.head);
         }
       }
     } else if (op == "unsubscribe") {
       for (const json& id : message.at("subscriptionIds")) {
-        std::erase_if(subscriptions_,
-                      [&](const auto& known) { return known.second == id.get<std::uint32_t>(); });
+        std::erase_if(subscriptions_, [&](const auto& known) { return known.second == id_of(id); });
       }
     } else {
       complain("Expected {\"op\": \"subscribe\"} or {\"op\": \"unsubscribe\"}: nothing else is served here.");
     }
-  } catch (const json::exception& error) {
+  } catch (const std::exception& error) {
     complain(fmt::format("This message cannot be read: {}", error.what()));
   }
 }

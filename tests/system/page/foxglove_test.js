@@ -167,7 +167,7 @@ test("messages end with the subscription", async () => {
 test("nonsense is answered, and harms nobody", async () => {
   const { socket, seen, subscribe, first } = await connect();
   for (const text of ["", "{", "[]", '{"op":7}', '{"op":"subscribe"}', '{"op":"subscribe","subscriptions":[{"id":"a"}]}',
-    '{"op":"subscribe","subscriptions":[{"id":1,"channelId":99}]}', '{"op":"unsubscribe","subscriptionIds":[-1]}', '{"op":"advertise"}']) {
+    '{"op":"subscribe","subscriptions":[{"id":1,"channelId":99}]}', '{"op":"subscribe","subscriptions":[{"id":1e300,"channelId":-1}]}', '{"op":"unsubscribe","subscriptionIds":[-1]}', '{"op":"advertise"}']) {
     socket.send(text);
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
