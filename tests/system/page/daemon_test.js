@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a running daemon with two heads, each with a client, and a publisher of poses.
-//   node daemon_test.js PROGRAMS DATA     on a machine of its own: ports are those of the defaults
+//   node daemon_test.js PROGRAMS DATA SCHEMA     on a machine of its own: ports are those of the defaults
 // DATA is tests/data/system. The target's place follows from sphere_to_port.sdf there: a sphere of radius 0.5 m at
-// (3, 2, 0). Wrong poses, and what is to be said of them in pier_and_hull.sdf, are in wrong_poses.json.
+// (3, 2, 0). Wrong poses, and what is to be said of them in pier_and_hull.sdf, are in wrong_poses.json. SCHEMA is
+// pose.proto.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 import { framesAdvance, head, open, readsTarget, savesPng, startBrowser, state, until } from "./browser.js";
+import { PosePublisher } from "./pose_publisher.js";
 import { startProgram } from "./programs.js";
 
-const [programs, data] = process.argv.slice(2);
+const [programs, data, schema] = process.argv.slice(2);
 const ADDRESS = "127.0.0.1:8014";
 const RANGE_M = 10;
 const TARGET = { range_m: Math.hypot(3, 2) - 0.5, bearing_deg: (Math.atan2(-2, 3) * 180) / Math.PI };
 const READY_MS = 60000;
 
-const config = (world) => `
+const config = ({ world = "sphere_to_port.sdf", vehicle_model, initial_m = [0, 0, 0] }) => `
 engine: cpu
-world: {file: ${path.join(data, world)}}
-poses: {initial: {position_m: [0, 0, 0]}, udp: {bind: 127.0.0.1:14600}}
+world: {file: ${path.join(data, world)}${vehicle_model ? `, vehicle_model: ${vehicle_model}` : ""}}
+poses: {${initial_m ? `initial: {position_m: [${initial_m}]}, ` : ""}udp: {bind: 127.0.0.1:14600}}
 web: {bind: ${ADDRESS}}
 heads:
   - name: bow
@@ -35,6 +37,7 @@ heads:
 
 const folder = mkdtempSync(path.join(tmpdir(), "sonard-page-"));
 let running = [];
+let publishers = [];
 let browser;
 let page;
 
@@ -49,8 +52,8 @@ async function end(child, signal = "SIGKILL") {
   }
 }
 
-async function startDaemon(world = "sphere_to_port.sdf") {
-  writeFileSync(path.join(folder, "sonard.yaml"), config(world));
+async function startDaemon(options = {}) {
+  writeFileSync(path.join(folder, "sonard.yaml"), config(options));
   const daemon = start("sonard", "run", path.join(folder, "sonard.yaml"));
   await until("the daemon to be ready", () => {
     assert.equal(daemon.exitCode, null, `the daemon ended: ${daemon.output}`);
@@ -74,6 +77,13 @@ function publish(position_m, orientation_xyzw = [0, 0, 0, 1]) {
   return start("posecast", file, "--to", "127.0.0.1:14600");
 }
 
+/** A publisher in one place whose stamps are those of a clock of its own. */
+function publishBy(ticks_per_s) {
+  const publisher = new PosePublisher(schema, 14600, [0, 0, 0], ticks_per_s);
+  publishers.push(publisher);
+  return publisher;
+}
+
 async function openPage() {
   page = await open(browser, ADDRESS);
   await state(page, "live");
@@ -87,6 +97,8 @@ afterEach(async () => {
   const complaints = page?.complaints ?? [];
   await page?.close();
   page = null;
+  publishers.forEach((publisher) => publisher.close());
+  publishers = [];
   await Promise.all(running.map((child) => end(child)));
   assert.deepEqual(complaints, []);
 });
@@ -134,16 +146,35 @@ test("a daemon that is killed and started again is regained", async () => {
 });
 
 test("each wrong pose is said to be one", async () => {
-  await startDaemon("pier_and_hull.sdf");
+  await startDaemon({ world: "pier_and_hull.sdf" });
   startClients(20);
   await openPage();
   const findings = head(page, 0).locator(".findings");
-  for (const { name, position_m, orientation_xyzw, says } of JSON.parse(readFileSync(path.join(data, "wrong_poses.json"), "utf-8"))) {
-    const publisher = publish(position_m, orientation_xyzw);
-    await until(`'${name}' to be said`, async () => new RegExp(says).test(await findings.textContent()), 60000);
-    assert.ok(await findings.isVisible());
+  for (const pose of JSON.parse(readFileSync(path.join(data, "wrong_poses.json"), "utf-8"))) {
+    const publisher = publish(pose.position_m, pose.orientation_xyzw);
+    await says(findings, new RegExp(pose.says));
     await end(publisher);
   }
+});
+
+/** Waits until the findings of a head, or those of the poses, say something, and can be seen. */
+async function says(findings, text) {
+  await until(`'${text}' to be said`, async () => text.test(await findings.textContent()), 60000);
+  assert.ok(await findings.isVisible());
+}
+
+test("the vehicle's own hull around a head is named", async () => {
+  await startDaemon({ world: "pier_and_hull.sdf", vehicle_model: "rov", initial_m: [30, 0, -5] });
+  startClients(20);
+  await openPage();
+  await says(head(page, 0).locator(".findings"), /inside of the body 'rov', its own vehicle \(hides_vehicle: true/);
+});
+
+test("a pose that never came is missed", async () => {
+  await startDaemon({ initial_m: null });
+  startClients();
+  await openPage();
+  await says(head(page, 0).locator(".findings"), /No pose of the vehicle has come/);
 });
 
 test("two publishers are named", async () => {
@@ -151,5 +182,27 @@ test("two publishers are named", async () => {
   publish([0, 0, 0]);
   publish([0, 0, 0]);
   await openPage();
-  await until("both publishers", async () => /2 publishers send poses at once/.test(await page.locator("#pose-findings").textContent()), 60000);
+  await says(page.locator("#pose-findings"), /2 publishers send poses at once/);
+});
+
+test("stamps in another unit are named", async () => {
+  for (const [ticks_per_s, unit] of [[1e6, "microseconds"], [1e3, "milliseconds"], [1, "seconds"]]) {
+    const daemon = await startDaemon();
+    const publisher = publishBy(ticks_per_s);
+    await openPage();
+    await says(page.locator("#pose-findings"), new RegExp(`Stamps of poses look like ${unit}`));
+    await page.close();
+    publishers = [];
+    publisher.close();
+    await end(daemon);
+  }
+});
+
+test("a clock that runs backwards is named", async () => {
+  await startDaemon();
+  const publisher = publishBy(1e9);
+  await openPage();
+  await until("the publisher", async () => /127\.0\.0\.1:\d+/.test(await page.locator("#pose-body td[data-label=Publisher]").first().textContent()));
+  publisher.back_s = 100;
+  await says(page.locator("#pose-findings"), /clock runs backwards: it went back 1 time/);
 });

@@ -22,6 +22,7 @@ from lab import Namespace, need  # noqa: E402
 
 PAGE = os.path.join(SOURCE, "server", "web", "page")
 DATA = os.path.join(SOURCE, "tests", "data", "system")
+POSE_SCHEMA = os.path.join(SOURCE, "protocol", "pose", "pose.proto")
 PROGRAMS = None  # folder of the programs under test
 NPM = None  # folder with the scripts and their node_modules
 PATIENCE_S = 380
@@ -48,7 +49,7 @@ class Page(unittest.TestCase):
 
     def test_with_a_daemon(self):
         need("chromium")
-        self.run_script("daemon_test.js", PROGRAMS, DATA)
+        self.run_script("daemon_test.js", PROGRAMS, DATA, POSE_SCHEMA)
 
     def test_with_foxglove(self):
         self.run_script("foxglove_test.js", PROGRAMS, DATA)
