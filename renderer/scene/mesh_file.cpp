@@ -18,6 +18,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "renderer/scene/assimp_mesh_reader.hpp"
 #include "renderer/scene/isolated.hpp"
 #include "renderer/scene/local_file.hpp"
 #include "renderer/scene/mesh.hpp"
@@ -26,8 +27,8 @@
 namespace sonard::render {
 namespace {
 
-constexpr std::array<std::string_view, 8> extensions{"obj",  "stl",  "ply", "dae",
-                                                     "osgt", "osgb", "ive", "3ds"};
+constexpr std::array<std::string_view, 11> extensions{"obj", "stl",  "ply",  "dae", "glb", "gltf",
+                                                      "fbx", "osgt", "osgb", "ive", "3ds"};
 constexpr std::size_t many_triangles = 2'000'000;
 constexpr std::size_t max_triangles = 50'000'000;
 /// Beyond this a float coordinate is coarser than 4 mm: half a range cell of a high-frequency sonar.
@@ -120,9 +121,14 @@ double collada_unit_m(const std::filesystem::path& file) {
   return metres;
 }
 
+bool is_for_assimp(std::string_view extension) {
+  return extension == "glb" || extension == "gltf" || extension == "fbx";
+}
+
 RawMesh read_raw(const MeshFileRequest& request, std::vector<std::string>& warnings) {
-  const IsolatedResult result = run_isolated(
-      [&] { return to_bytes(read_with_osg(request.file, request.submesh)); }, reading_limit_s(request.file));
+  const auto read = is_for_assimp(lower_extension(request.file)) ? read_with_assimp : read_with_osg;
+  const IsolatedResult result = run_isolated([&] { return to_bytes(read(request.file, request.submesh)); },
+                                             reading_limit_s(request.file));
   // The one remark of a plugin that costs an acoustic material: a name that no material library defines.
   static const std::regex lost_material(R"(unable to find material '([^']+)')");
   for (std::sregex_iterator it(result.log.begin(), result.log.end(), lost_material), end; it != end; ++it) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/osg_mesh_reader.hpp"
 
-#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
+#include <glm/gtc/type_ptr.hpp>
 #include <osg/Array>
 #include <osg/Geometry>
 #include <osg/Material>
@@ -12,8 +13,6 @@
 #include <osg/TriangleIndexFunctor>
 #include <osgDB/Callbacks>
 #include <osgDB/Registry>
-
-#include "renderer/scene/blob.hpp"
 
 namespace sonard::render {
 namespace {
@@ -148,63 +147,23 @@ class TriangleCollector : public osg::NodeVisitor {
     return state->getName().empty() ? inherited : state->getName();
   }
 
-  RawPart& part_for(const std::string& material, bool normals, bool texcoords) {
-    for (RawPart& part : mesh_.parts) {
-      if (part.material_name == material && part.normals.empty() != normals &&
-          part.texcoords.empty() != texcoords) {
-        return part;
-      }
-    }
-    mesh_.parts.emplace_back().material_name = material;
-    return mesh_.parts.back();
-  }
-
   void add(osg::Geometry& geometry) {
-    const std::vector<glm::dvec3> positions = elements<glm::dvec3>(geometry.getVertexArray());
-    std::vector<glm::vec3> normals = elements<glm::vec3>(geometry.getNormalArray());
-    std::vector<glm::vec2> texcoords = elements<glm::vec2>(geometry.getTexCoordArray(0));
-    if (normals.size() != positions.size()) {
-      normals.clear();
+    RawPart triangles;
+    triangles.material_name = material_of(geometry.getStateSet(), material_);
+    triangles.positions = elements<glm::dvec3>(geometry.getVertexArray());
+    triangles.normals = elements<glm::vec3>(geometry.getNormalArray());
+    triangles.texcoords = elements<glm::vec2>(geometry.getTexCoordArray(0));
+    if (triangles.normals.size() != triangles.positions.size()) {
+      triangles.normals.clear();
     }
-    if (texcoords.size() != positions.size()) {
-      texcoords.clear();
+    if (triangles.texcoords.size() != triangles.positions.size()) {
+      triangles.texcoords.clear();
     }
-    osg::TriangleIndexFunctor<IndexCollector> triangles;
-    geometry.accept(triangles);
-    if (positions.empty() || triangles.indices.empty()) {
-      return;
-    }
-    RawPart& part =
-        part_for(material_of(geometry.getStateSet(), material_), !normals.empty(), !texcoords.empty());
-    append(part, positions, normals, texcoords, triangles.indices);
-  }
-
-  void append(RawPart& part, const std::vector<glm::dvec3>& positions, const std::vector<glm::vec3>& normals,
-              const std::vector<glm::vec2>& texcoords, const std::vector<std::uint32_t>& indices) const {
-    const auto base = static_cast<std::uint32_t>(part.positions.size());
-    for (const glm::dvec3& p : positions) {
-      const osg::Vec3d moved = osg::Vec3d(p.x, p.y, p.z) * matrix_;
-      part.positions.emplace_back(moved.x(), moved.y(), moved.z());
-    }
-    const osg::Matrixd inverse = osg::Matrixd::inverse(matrix_);
-    for (const glm::vec3& n : normals) {
-      const osg::Vec3d turned = osg::Matrixd::transform3x3(
-          inverse, osg::Vec3d(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)));
-      part.normals.emplace_back(turned.x(), turned.y(), turned.z());
-    }
-    part.texcoords.insert(part.texcoords.end(), texcoords.begin(), texcoords.end());
-    const bool mirrored = determinant(matrix_) < 0.0;
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      part.indices.insert(part.indices.end(), {base + indices[i], base + indices[mirrored ? i + 2 : i + 1],
-                                               base + indices[mirrored ? i + 1 : i + 2]});
-    }
-  }
-
-  static double determinant(const osg::Matrixd& m) {
-    const osg::Vec3d a(m(0, 0), m(0, 1), m(0, 2));
-    const osg::Vec3d b(m(1, 0), m(1, 1), m(1, 2));
-    const osg::Vec3d c(m(2, 0), m(2, 1), m(2, 2));
-    return (a ^ b) * c;
+    osg::TriangleIndexFunctor<IndexCollector> collector;
+    geometry.accept(collector);
+    triangles.indices = std::move(collector.indices);
+    // Rows of osg's matrix, which are multiplied from the left, are columns of glm's.
+    mesh_.add(triangles, glm::make_mat4(matrix_.ptr()));
   }
 
   RawMesh& mesh_;
@@ -235,42 +194,6 @@ RawMesh read_with_osg(const std::filesystem::path& file, const std::string& subm
   RawMesh mesh;
   TriangleCollector collector(mesh, submesh);
   node->accept(collector);
-  return mesh;
-}
-
-std::string to_bytes(const RawMesh& mesh) {
-  BlobWriter writer;
-  writer.put(static_cast<std::uint64_t>(mesh.parts.size()));
-  for (const RawPart& part : mesh.parts) {
-    writer.put(part.material_name);
-    writer.put(part.positions);
-    writer.put(part.normals);
-    writer.put(part.texcoords);
-    writer.put(part.indices);
-  }
-  writer.put(static_cast<std::uint64_t>(mesh.names.size()));
-  for (const std::string& name : mesh.names) {
-    writer.put(name);
-  }
-  return writer.take();
-}
-
-RawMesh raw_mesh_of(const std::string& bytes) {
-  BlobReader reader(bytes);
-  RawMesh mesh;
-  const std::uint64_t parts = reader.get_number();
-  for (std::uint64_t i = 0; i < parts; ++i) {
-    RawPart& part = mesh.parts.emplace_back();
-    part.material_name = reader.get_string();
-    part.positions = reader.get_vector<glm::dvec3>();
-    part.normals = reader.get_vector<glm::vec3>();
-    part.texcoords = reader.get_vector<glm::vec2>();
-    part.indices = reader.get_vector<std::uint32_t>();
-  }
-  const std::uint64_t names = reader.get_number();
-  for (std::uint64_t i = 0; i < names; ++i) {
-    mesh.names.push_back(reader.get_string());
-  }
   return mesh;
 }
 

@@ -249,7 +249,7 @@ TEST(MeshFile, RefusesWhatItShould) {
               HasSubstr("/nowhere/hull.obj: mesh file not found"));
   EXPECT_THAT(error_of(request_for("hull.obj")), HasSubstr("not found"));
   EXPECT_THAT(error_of(request_for("http://127.0.0.1:9/hull.obj")), HasSubstr("network"));
-  EXPECT_THAT(error_of(request_for(folder.write("hull.fbx", "x"))),
+  EXPECT_THAT(error_of(request_for(folder.write("hull.blend", "x"))),
               HasSubstr("supported: obj, stl, ply, dae"));
   EXPECT_THAT(error_of(request_for(folder.write("cube.obj.2.scale", "x"))), HasSubstr("supported:"));
   EXPECT_THAT(error_of(request_for(folder.path())), HasSubstr("not a file"));
