@@ -9,7 +9,8 @@ namespace sonard::render {
 
 RawMesh read_with_assimp(const std::filesystem::path&, const std::string&) {
   throw std::runtime_error(
-      "this program was built without Assimp, which reads this format: install libassimp-dev and build again, "
+      "this program was built without Assimp, which reads this format: install libassimp-dev and build "
+      "again, "
       "or export the mesh as OBJ, STL, PLY or DAE");
 }
 
@@ -22,10 +23,10 @@ RawMesh read_with_assimp(const std::filesystem::path&, const std::string&) {
 #include <system_error>
 
 #include <assimp/DefaultIOSystem.h>
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 
 #include "renderer/scene/local_file.hpp"
 
@@ -46,7 +47,8 @@ class OneFolderOnly : public Assimp::DefaultIOSystem {
  private:
   bool is_inside(const char* name) const {
     std::error_code error;
-    const std::filesystem::path path = std::filesystem::weakly_canonical(name, error).lexically_relative(folder_);
+    const std::filesystem::path path =
+        std::filesystem::weakly_canonical(name, error).lexically_relative(folder_);
     return !error && !path.empty() && *path.begin() != "..";
   }
 

@@ -202,6 +202,18 @@ TriangleMesh make_cylinder(double radius_m, double length_m) {
   return mesh;
 }
 
+TriangleMesh make_cone(double radius_m, double length_m) {
+  require_size(radius_m, "radius");
+  require_size(length_m, "length");
+  const int n = segments_around(radius_m);
+  const double half = 0.5 * length_m;
+  const glm::dvec2 normal = glm::normalize(glm::dvec2(length_m, radius_m));
+  TriangleMesh mesh;
+  add_revolution(mesh, {{radius_m, -half, normal, 0.0}, {0.0, half, normal, 1.0}}, n);
+  add_disc(mesh, radius_m, -half, n);
+  return mesh;
+}
+
 TriangleMesh make_capsule(double radius_m, double length_m) {
   require_size(radius_m, "radius");
   require_size(length_m, "length");

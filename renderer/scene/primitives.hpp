@@ -19,6 +19,8 @@ TriangleMesh make_sphere(double radius_m);
 TriangleMesh make_ellipsoid(const glm::dvec3& radii_m);
 /// Axis z, with caps.
 TriangleMesh make_cylinder(double radius_m, double length_m);
+/// Axis z, the tip up, with a cap; the origin is half way up.
+TriangleMesh make_cone(double radius_m, double length_m);
 /// Axis z; `length_m` is that of the cylindrical part, as in SDF.
 TriangleMesh make_capsule(double radius_m, double length_m);
 /// A rectangle through the origin; seen along `normal` (any length above 0) from its tip. The sides turn with

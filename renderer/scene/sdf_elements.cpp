@@ -47,6 +47,7 @@ const std::map<std::string_view, Names>& known_children() {
         "polyline", "sphere"}},
       {"box", {"size"}},
       {"capsule", {"radius", "length"}},
+      {"cone", {"radius", "length"}},
       {"cylinder", {"radius", "length"}},
       {"ellipsoid", {"radii"}},
       {"heightmap", {"uri", "size", "pos", "texture", "blend", "use_terrain_paging", "sampling"}},

@@ -76,6 +76,9 @@ std::optional<TriangleMesh> primitive_of(const SdfElement& geometry) {
   if (geometry.name == "cylinder") {
     return make_cylinder(number_of(geometry, "radius", 1), number_of(geometry, "length", 1));
   }
+  if (geometry.name == "cone") {
+    return make_cone(number_of(geometry, "radius", 1), number_of(geometry, "length", 1));
+  }
   if (geometry.name == "capsule") {
     return make_capsule(number_of(geometry, "radius", 0.5), number_of(geometry, "length", 1));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files that Assimp reads, written here to the byte by the formats' own rules (glTF 2.0 specification 2.0.1,
-// sections 3 and 4; ASCII FBX 7.3): the tetrahedron (0 0 0) (1 0 0) (0 2 0) (0 0 3) of volume 1.
+// Mesh files that Assimp reads, written here to the byte by the formats' own rules (glTF 2.0
+// specification 2.0.1, sections 3 and 4; ASCII FBX 7.3): the tetrahedron (0 0 0) (1 0 0) (0 2 0) (0 0 3) of
+// volume 1.
 #include <cstdint>
 #include <cstring>
 
@@ -31,7 +32,8 @@ std::string buffer() {
 
 /// @param buffer_uri `"uri": "NAME", ` or nothing, as in a GLB.
 std::string json(const std::string& buffer_uri, const std::string& node = R"("name": "hull", "mesh": 0)") {
-  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{)" + node + R"(}],
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{)" + node +
+         R"(}],
  "materials": [{"name": "concrete"}],
  "meshes": [{"name": "shell", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
  "buffers": [{)" +
@@ -49,7 +51,8 @@ std::string glb(std::string text) {
          "JSON" + text + bytes_of<std::uint32_t>({size(binary.size())}) + std::string("BIN\0", 4) + binary;
 }
 
-/// In units of `unit_cm` centimetres with y up, as the format has it by default: x to the right, z to the front.
+/// In units of `unit_cm` centimetres with y up, as the format has it by default: x to the right, z to the
+/// front.
 std::string fbx(double unit_cm) {
   return fmt::format(R"(; FBX 7.3.0 project file
 FBXHeaderExtension:  {{
@@ -141,7 +144,9 @@ void expect_tetrahedron(const MeshFile& file, const glm::dvec3& at_m = glm::dvec
 class GltfAndFbx : public testing::Test {
  protected:
 #ifndef SONARD_HAS_ASSIMP
-  void SetUp() override { GTEST_SKIP() << "built without Assimp"; }
+  void SetUp() override {
+    GTEST_SKIP() << "built without Assimp";
+  }
 #endif
   test::TempFolder folder_;
 };
@@ -169,7 +174,8 @@ TEST_F(GltfAndFbx, FindsASubmeshByTheNameOfItsNodeOrMesh) {
   const std::filesystem::path file = folder_.write("hull.glb", glb(json("")));
   expect_tetrahedron(load(file, "hull"));
   expect_tetrahedron(load(file, "shell"));
-  EXPECT_THAT(error_of(file, "mast"), HasSubstr("no submesh 'mast' with triangles; names in the file: hull, shell"));
+  EXPECT_THAT(error_of(file, "mast"),
+              HasSubstr("no submesh 'mast' with triangles; names in the file: hull, shell"));
 }
 
 TEST_F(GltfAndFbx, TakesUnitAndAxesOfAnFbx) {

@@ -113,6 +113,23 @@ TEST(Cylinder, OfFiveMetresIsFineEnough) {
   EXPECT_LT(5.0 * (1.0 - std::cos(pi / n)), 0.002);
 }
 
+TEST(Cone, HasItsTipUpAndNormalsAcrossItsSide) {
+  const TriangleMesh mesh = make_cone(0.5, 2.0);
+  expect_sound(mesh);
+  EXPECT_NEAR(volume_m3(mesh), pi * 0.25 * 2.0 / 3.0, 0.003);
+  EXPECT_NEAR(area_m2(mesh), pi * 0.25 + pi * 0.5 * std::hypot(0.5, 2.0), 0.02);
+  EXPECT_EQ(bounds(mesh).low, glm::dvec3(-0.5, -0.5, -1.0));
+  EXPECT_EQ(bounds(mesh).high, glm::dvec3(0.5, 0.5, 1.0));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const glm::vec3& n = mesh.normals[i];
+    if (n.z >= 0.0F) {  // the side: a step down it goes 0.5 out and 2 down
+      EXPECT_NEAR(0.5F * std::hypot(n.x, n.y) - 2.0F * n.z, 0.0F, 1e-6F);
+    } else {
+      EXPECT_EQ(n, glm::vec3(0.0F, 0.0F, -1.0F));
+    }
+  }
+}
+
 TEST(Capsule, IsACylinderBetweenHalfSpheres) {
   const TriangleMesh mesh = make_capsule(0.5, 2.0);
   expect_sound(mesh);
