@@ -124,7 +124,9 @@ void Check::list_bodies(const render::World& world, const std::vector<BodyBox>& 
   for (std::size_t i = 0; i < std::min(most, world.bodies.size()); ++i) {
     const render::Body& body = world.bodies[i];
     const glm::dvec3 size = boxes[i].max_m - boxes[i].min_m;
-    const glm::dvec3 middle = body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m));
+    // To the micrometre: turned bodies are off by the last digit, which reads as 2e-16.
+    const glm::dvec3 middle =
+        1e-6 * glm::round(1e6 * (body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m))));
     if (body.parts.empty()) {
       continue;
     }
@@ -158,8 +160,8 @@ bool Check::try_ping(render::SonarRenderer& renderer, std::size_t head, std::siz
   next.T_world_sonar.position_m.x += 1e-3;  // a world that stands still is not looked at again
   renderer.render_ping(next, stream);
   const double ms = std::chrono::duration<double, std::milli>(SteadyClock().now() - begin).count();
-  const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.2g} ms on this machine's CPU",
-                                       ping.settings.range.sampled_range_m(), ms);
+  const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.{}f} ms on this machine's CPU",
+                                       ping.settings.range.sampled_range_m(), ms, ms < 10.0 ? 1 : 0);
   const std::string& name = config_.heads[head].name;
   report_.summary.push_back(fmt::format("cost     {}: {}", name, cost));
   if (ms > slow_ms && triangles > many_triangles) {

@@ -70,7 +70,8 @@ int selftest(const render::RendererOptions& options) {
         fmt::print("gpu      {}\n", error.what());
       }
       fmt::print(
-          "auto     {}, in a fan of 256 x 1000 before that wall; `sonard run` measures in its own world\n",
+          "auto     {}. Timed before that wall, with 256 beams of 1000 range lines; `sonard run` measures in "
+          "its own world\n",
           describe(render::time_engines(options)));
     }
   } catch (const render::RendererError&) {
