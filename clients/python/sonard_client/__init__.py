@@ -8,7 +8,9 @@
     print(ping.samples.shape, ping.ranges_m[-1], ping.bearings_rad[[0, -1]])
 """
 
-from .gemini import Gemini, NoHead, NoPing
-from .ping import Ping
+from .gemini import Gemini
+from .mcap_log import LoggedPing, read_log
+from .micron import Micron
+from .ping import NoHead, NoPing, Ping
 
-__all__ = ["Gemini", "NoHead", "NoPing", "Ping"]
+__all__ = ["Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Ping", "read_log"]

@@ -13,7 +13,7 @@ from typing import Iterator, Optional
 
 import numpy as np
 
-from .ping import Ping
+from .ping import Array, NoHead, NoPing, Ping
 
 REPORT_PORT, COMMAND_PORT = 52900, 52901  # 1.1
 LINE_RATE_HZ = 90422.0  # 6.7
@@ -21,14 +21,6 @@ STATUS, PING_HEAD, PING_LINE, PING_TAIL = 0x40, 0x41, 0x42, 0x43
 _BUFFER_BYTES = 16 << 20  # several pings; the kernel gives what it may
 _KEEP_ALIVE_S = 1.0  # the head forgets a topside after 3 s (1.5)
 _RETRIES = 6
-
-
-class NoHead(TimeoutError):
-    """No status came."""
-
-
-class NoPing(TimeoutError):
-    """A ping did not come, or not whole."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +68,7 @@ class _Arriving:
                 gaps.append((line, 1))
         return gaps
 
-    def samples(self) -> np.ndarray:
+    def samples(self) -> Array:
         eight_bit = bool(self.ext_mode & 4)
         rows = np.zeros((self.count, self.beams), np.uint8 if eight_bit else np.uint16)
         for line, data in self.lines.items():
@@ -92,7 +84,7 @@ class _Arriving:
         return rows
 
 
-def _run_length_decoded(data: bytes, beams: int) -> np.ndarray:
+def _run_length_decoded(data: bytes, beams: int) -> Array:
     """6.8."""
     row = np.zeros(beams, np.uint8)
     beam = at = 0
@@ -107,9 +99,10 @@ def _run_length_decoded(data: bytes, beams: int) -> np.ndarray:
     return row
 
 
-def bearings_rad(beams: int) -> np.ndarray:
+def bearings_rad(beams: int) -> Array:
     """Evenly spaced in the sine over 120 degrees (6.5); positive to port."""
-    return -np.arcsin((2 * np.arange(beams) + 1 - beams) / beams * math.sin(math.radians(60)))
+    bearings: Array = -np.arcsin((2 * np.arange(beams) + 1 - beams) / beams * math.sin(math.radians(60)))
+    return bearings
 
 
 def _ping_config(sonar_id: int, range_m: float, gain_percent: float, sound_speed_mps: float, compression: int,

@@ -2,23 +2,35 @@
 """One ping, whichever sonar it is of."""
 
 from dataclasses import dataclass
+from typing import Any, Optional
 
-import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[Any]
+
+
+class NoHead(TimeoutError):
+    """No head is there, or it does not answer."""
+
+
+class NoPing(TimeoutError):
+    """A ping did not come, or not whole."""
 
 
 @dataclass(frozen=True)
 class Ping:
     """What a sonar has sent of one ping.
 
-    samples       (bins, beams), uint8 or uint16: row after row from near to far, beams from port to starboard
+    samples       (bins, beams), uint8 or uint16: row after row from near to far; of a multibeam head beams from port to
+                  starboard, of a scanning head one for each line, in the order in which they came
     ranges_m      (bins,): the middle of each row, from the speed of sound that was asked for
-    bearings_rad  (beams,): 0 ahead, positive to port as in REP-103, so from positive to negative
-    transmit_us   when it was sent, by the clock of the head since its start
+    bearings_rad  (beams,): of each beam: 0 ahead, positive to port as in REP-103
+    transmit_us   when it was sent, by the clock of the head since its start; None of a head that does not say it
     missing       rows that never came, which are 0
     """
 
-    samples: np.ndarray
-    ranges_m: np.ndarray
-    bearings_rad: np.ndarray
-    transmit_us: int
+    samples: Array
+    ranges_m: Array
+    bearings_rad: Array
+    transmit_us: Optional[int]
     missing: int = 0

@@ -10,6 +10,7 @@ Pings are compared by CRC-32 with what the renderer handed over, and by range an
 
 import argparse
 import csv
+import glob
 import math
 import os
 import shutil
@@ -23,7 +24,8 @@ import numpy
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path[:0] = [os.path.join(SOURCE, "tests", "system", "gemini"), os.path.join(SOURCE, "clients", "python")]
 from lab import OwnMachine, Program  # noqa: E402
-from sonard_client import Gemini, NoHead, NoPing  # noqa: E402
+from sonard_client import Gemini, Micron, NoHead, NoPing, read_log  # noqa: E402
+from sonard_client import micron  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
@@ -51,6 +53,7 @@ class PythonClient(OwnMachine):
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", START_S)
+        return daemon
 
     def expect_rendered(self, ping):
         """As the renderer handed it over, bit by bit."""
@@ -103,6 +106,27 @@ class PythonClient(OwnMachine):
             for _ in range(20):
                 self.expect_rendered(next(pings))
 
+    def test_logs_have_what_the_client_received(self):
+        daemon = self.start("    mount: {position_m: [0.5, 0, 0]}\nrecording: {directory: logs}")
+        with Gemini() as sonar:
+            pings = [sonar.ping(range_m=6) for _ in range(3)]
+        log, = glob.glob(os.path.join(self.folder.name, "logs", "*.mcap"))
+        self.assertGreaterEqual(len(list(read_log(log))), 2, "of a log that is being written")
+        daemon.terminate(START_S)
+        logged = list(read_log(log))
+        self.assertEqual(len(logged), 3)
+        for ping, kept in zip(pings, logged):
+            numpy.testing.assert_array_equal(ping.samples, kept.samples)
+            numpy.testing.assert_allclose(ping.ranges_m, kept.ranges_m, atol=1e-6)
+            numpy.testing.assert_allclose(ping.bearings_rad, kept.bearings_rad, atol=1e-6)
+            self.assertEqual(kept.head, "bow")
+            self.assertEqual(list(kept.sonar_position_m), [0.5, 0, 0])
+            self.assertEqual(list(kept.sonar_quaternion_xyzw), [0, 0, 0, 1])
+        self.assertAlmostEqual((logged[2].time_ns - logged[0].time_ns) / 1e3,
+                               pings[2].transmit_us - pings[0].transmit_us, delta=1000)
+        with self.assertRaisesRegex(ValueError, "is no MCAP file"):
+            next(read_log(os.path.join(self.folder.name, "sonard.yaml")))
+
     def test_a_head_that_is_silent(self):
         with self.assertRaisesRegex(NoHead, "is the head on"):
             Gemini(patience_s=0.5)
@@ -123,6 +147,89 @@ class PythonClient(OwnMachine):
         daemon.wait_for_line("sonard ready", START_S)
         with Gemini(sonar_id=514) as sonar, self.assertRaisesRegex(NoPing, "does the head have a pose"):
             sonar.ping()
+
+
+MICRON_CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+heads:
+  - name: bow
+    type: micron
+    dump: {{directory: {folder}}}
+    serial: {{tcp: [{{bind: 127.0.0.1:4001}}]}}
+    device: {{duplex: {duplex}}}
+"""
+
+
+class MicronBytes(unittest.TestCase):
+    """Against frames that public drivers sent and read (tests/data/micron/notes.md)."""
+
+    def fixture(self, name):
+        with open(os.path.join(SOURCE, "tests", "data", "micron", name + ".hex"), encoding="utf-8") as file:
+            return bytes.fromhex(file.read())
+
+    def test_commands_are_those_of_public_drivers(self):
+        self.assertEqual(micron._frame(micron._SEND_VERSION), self.fixture("send_version"))
+        self.assertEqual(micron._frame(micron._SEND_USER_BLOCKS), self.fixture("send_bb_user"))
+        self.assertEqual(micron._frame(micron._SEND_DATA, b"\0\0\0\0"), self.fixture("send_data"))
+
+    def test_parameters_lie_where_a_public_driver_has_them(self):
+        theirs = self.fixture("head_command_ros")
+        step, interval, bins = theirs[50], int.from_bytes(theirs[51:53], "little"), int.from_bytes(theirs[53:55], "little")
+
+
+        def bearing(at):
+            return math.tau * (3200 - int.from_bytes(theirs[at:at + 2], "little")) / 6400
+
+        ours = micron._frame(micron._HEAD_COMMAND, Micron._parameters(interval, bins, step * 360 / 6400, 50, 10,
+                                                                  (bearing(37), bearing(39))))
+        self.assertEqual(len(ours), len(theirs))
+        self.assertEqual(ours[:14], theirs[:14])
+        self.assertEqual(ours[37:41], theirs[37:41], "limits")
+        self.assertEqual(ours[49:55], theirs[49:55], "motor time, step, interval, bins")
+
+    def test_frames_are_found_in_a_noisy_stream(self):
+        frame = self.fixture("head_data")
+        stream = bytearray(b"\x40\x40junk" + frame + b"\x0a@0008" + frame[:20])
+        self.assertEqual(list(micron._frames(stream)), [frame])
+        stream += frame[20:]
+        self.assertEqual(list(micron._frames(stream)), [frame])
+
+
+class MicronClient(OwnMachine):
+    def start(self, duplex="full"):
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(MICRON_CONFIG.format(world=WORLD, folder=self.folder.name, duplex=duplex))
+        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", START_S)
+
+    def test_a_turn_sees_the_sphere(self):
+        self.start()
+        with Micron() as sonar:
+            turn = sonar.turn(range_m=6, bins=300)
+        self.assertEqual(turn.samples.shape, (300, 200))
+        self.assertAlmostEqual(turn.ranges_m[-1], 6, delta=0.1)
+        steps = numpy.diff(turn.bearings_rad) % (2 * math.pi)
+        self.assertLess(abs(steps - (2 * math.pi - math.radians(1.8))).max(), 1e-9, "clockwise, all round")
+        row, line = numpy.unravel_index(turn.samples.argmax(), turn.samples.shape)
+        self.assertAlmostEqual(turn.ranges_m[row], math.hypot(3, 2) - 0.5, delta=0.1)
+        self.assertAlmostEqual(turn.bearings_rad[line], math.atan2(2, 3), delta=math.radians(9))
+
+    def test_a_sector_in_half_duplex(self):
+        self.start("half")
+        with Micron() as sonar:
+            lines = sonar.lines(range_m=6, bins=200, sector_rad=(math.radians(60), 0.0))
+            bearings = [math.degrees(next(lines).bearings_rad[0]) for _ in range(80)]
+        self.assertLess(max(bearings), 60.1)
+        self.assertGreater(min(bearings), -0.1)
+        self.assertGreater(max(bearings) - min(bearings), 59)
+
+    def test_a_head_that_is_not_there(self):
+        with self.assertRaisesRegex(NoHead, "127.0.0.1:4001 cannot be connected to"):
+            Micron()
 
 
 def main():
