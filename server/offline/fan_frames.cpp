@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <utility>
@@ -130,10 +131,12 @@ std::string FanFrames::sidecar(int frame, const render::PingRequest& request) co
     json["picture"] = picture_name(name(frame));
   }
   json["samples"] = samples_json(name(frame), job_.sixteen_bit, {"line", job_.bins()}, {"beam", beams});
+  std::vector<double> to_port_rad;  // as in REP-103; devices count to starboard
+  std::ranges::transform(bearings_rad_, std::back_inserter(to_port_rad), std::negate<>{});
   json["geometry"] = {{"line_step_m", job_.bin_m()},
                       {"range_m", job_.bin_m() * job_.bins()},
                       {"sound_speed_mps", job_.sound_speed_mps},
-                      {"bearings_rad", bearings_rad_}};
+                      {"bearings_rad", to_port_rad}};
   json["settings"] = settings_json();
   json["T_world_vehicle"] = pose_json(trajectory_.T_world_vehicle(times_.at(frame)));
   json["T_world_sonar"] = pose_json(request.T_world_sonar);

@@ -249,6 +249,7 @@ std::string RenderRun::manifest() const {
             {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
             {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
             {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
+            {"bearings", "positive to port"},  // they were to starboard once: not to be mixed in one folder
             {"engine", render::name_of(renderer_.engine())},
             {"head", config_.heads[head_].name},
             {"settings", frames_->settings_json()},

@@ -123,7 +123,7 @@ std::string SweepFrames::sidecar(int frame) const {
   Json vehicle = Json::array();
   Json transducer = Json::array();
   for (int line = first; line < end; ++line) {
-    bearings_rad.push_back(survey_->job(line).bearing_rad);
+    bearings_rad.push_back(-survey_->job(line).bearing_rad);  // to port, as in REP-103
     stamps_s.push_back(static_cast<double>(times_.at(line)) / 1e9);
     vehicle.push_back(pose_json(trajectory_.T_world_vehicle(times_.at(line))));
     transducer.push_back(pose_json(request(line).T_world_sonar));

@@ -154,7 +154,7 @@ class Files(Case):
         said = [subprocess.run([sys.executable, "-W", "error", "-W", "ignore::ResourceWarning", "-c", block], cwd=out,
                                capture_output=True, text=True, timeout=PATIENCE_S) for block in blocks]
         self.assertEqual([run.stderr for run in said], ["", "", ""])
-        self.assertRegex(said[0].stdout, r"^strongest at [0-9.]+ m, -?[0-9.]+ degrees to starboard\n$")
+        self.assertRegex(said[0].stdout, r"^strongest at [0-9.]+ m, -?[0-9.]+ degrees to port\n$")
         self.assertRegex(said[1].stdout, r" [1-9][0-9]* bins\n")
         self.assertEqual(said[2].stdout, "(1,) (1, 3)\n")
 
@@ -176,7 +176,7 @@ class Files(Case):
             self.assertAlmostEqual(image.header.unix_s, start + k / 4, places=6)
             self.assertEqual(image.transmit_time_s, image.header.time_s)
             sidecar = self.sidecar(out, f"ping_{k:06}")
-            self.assertEqual(list(image.bearings_rad), [-b for b in sidecar["geometry"]["bearings_rad"]])
+            self.assertEqual(list(image.bearings_rad), sidecar["geometry"]["bearings_rad"])
             self.assertAlmostEqual(image.max_range_m, sidecar["geometry"]["range_m"], delta=0.01)
 
     def test_target_to_port_is_on_the_port_side(self):
@@ -188,7 +188,7 @@ class Files(Case):
         geometry = self.sidecar(out, "ping_000000")["geometry"]
         bearing = geometry["bearings_rad"][beam]
         range_m = (line + 0.5) * geometry["line_step_m"]
-        self.assertAlmostEqual(math.degrees(bearing), -33.7, delta=4.0)
+        self.assertAlmostEqual(math.degrees(bearing), 33.7, delta=4.0)
         self.assertTrue(math.sqrt(13) - 0.55 < range_m < math.sqrt(13), range_m)
         image = glf_reader.read(os.path.join(out, "log_1980-01-01-000000.glf")).images[0]
         self.assertGreater(image.bearings_rad[beam], 0.0)
@@ -208,7 +208,7 @@ class Files(Case):
         self.assertLess(max(r for r, _ in seen), math.sqrt(13 - 0.25) + 0.1)  # the rim, where rays graze; the back is at 4.1 m
         half_rad = math.asin(0.5 / math.sqrt(13)) + 0.02
         for _, bearing in seen:
-            self.assertLess(abs(bearing + math.atan2(2, 3)), half_rad)
+            self.assertLess(abs(bearing - math.atan2(2, 3)), half_rad)
 
     def test_vehicle_of_the_world_moves_along_unless_hidden(self):
         # 1.1 m ahead of the sonar is the guard of the vehicle, and 1.1 m it stays while the vehicle moves.
@@ -240,12 +240,12 @@ class Files(Case):
         self.assertEqual(samples.shape, (200, 51))
         sidecar = self.sidecar(out, "scan_000000")
         bearings = sidecar["geometry"]["bearings_rad"]
-        self.assertAlmostEqual(bearings[0], -math.pi / 4)
-        self.assertAlmostEqual(bearings[-1], math.pi / 4)
+        self.assertAlmostEqual(bearings[0], math.pi / 4)
+        self.assertAlmostEqual(bearings[-1], -math.pi / 4)
         # From 1.2 m on the head no longer hears itself: the brightest is the sphere.
         first = int(1.2 / sidecar["geometry"]["line_step_m"])
         brightest = samples[first:].argmax() % samples.shape[1]
-        self.assertAlmostEqual(math.degrees(bearings[brightest]), -33.7, delta=6.0)
+        self.assertAlmostEqual(math.degrees(bearings[brightest]), 33.7, delta=6.0)
         last = self.sidecar(out, "scan_000005")
         self.assertAlmostEqual(last["T_world_vehicle"][-1]["position_m"][0], 0.5 * last["stamps_s"][-1])
 

@@ -176,7 +176,7 @@ class Recording(HeadCase):
         for angle, range_m in WALLS_M.items():
             line = lines[angle // 10]
             bearing = sidecar["geometry"]["bearings_rad"][angle // 10]
-            self.assertAlmostEqual(math.remainder(bearing - angle * math.pi / 200, 2 * math.pi), 0.0, places=9)
+            self.assertAlmostEqual(math.remainder(bearing + angle * math.pi / 200, 2 * math.pi), 0.0, places=9)
             quiet_to = int((range_m - pulse_m) / step_m) - 1
             first = next(i for i in range(int(1.0 / step_m), len(line)) if line[i] > 50)
             self.assertGreaterEqual(first, quiet_to, f"angle {angle}")
