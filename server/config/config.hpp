@@ -168,6 +168,7 @@ struct RecordingConfig {
   bool glf = true;                  ///< of heads whose users know it (HeadKind)
   bool mcap = true;
   bool mcap_wire_bytes = true;  ///< whether it has the bytes of both directions
+  bool mcap_foxglove = false;   ///< whether it has pictures, places and echoes for Foxglove
   bool mcap_zstd = false;       ///< whether its chunks are compressed, when they are full
   bool pcapng = true;
   std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< a file of this size or more ends all files

@@ -341,6 +341,9 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
   section.boolean("mcap", recording.mcap, "one MCAP file: images, poses, and the bytes of both directions");
   section.boolean("mcap_wire_bytes", recording.mcap_wire_bytes,
                   "whether these bytes are in it; a capture has them too, and images and replay do without");
+  section.boolean("mcap_foxglove", recording.mcap_foxglove,
+                  "whether each ping is in it as Foxglove shows it, too: a picture, the place of the sonar, "
+                  "and echoes as points. It takes the time to draw a picture for each ping");
   section.choice("mcap_compression", recording.mcap_zstd, {{"none", false}, {"zstd", true}},
                  "of each mebibyte or second of it, when that is full: `zstd` takes some processor time for "
                  "a smaller file");

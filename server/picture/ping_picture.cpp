@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/web/ping_picture.hpp"
+#include "server/picture/ping_picture.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -19,10 +19,10 @@ bool make_a_fan(const std::vector<double>& bearings_rad) {
          bearings_rad.front() > -quarter_turn_rad && bearings_rad.back() < quarter_turn_rad;
 }
 
-std::string encoded(const cv::Mat& picture) {
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
-  return {png.begin(), png.end()};
+std::string encoded(const cv::Mat& picture, const std::string& extension) {
+  std::vector<std::uint8_t> file;
+  cv::imencode(extension, picture, file, {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_JPEG_QUALITY, 80});
+  return {file.begin(), file.end()};
 }
 
 /// The commonest distance between neighbours.
@@ -37,36 +37,36 @@ int step_of(const std::map<int, picture::SweepLine>& lines) {
 
 }  // namespace
 
-void PingPicture::keep(const ShownPing& line) {
-  const RecordedSettings& settings = line.record.settings;
+void PingPicture::keep(const PingRecord& line) {
+  const RecordedSettings& settings = line.settings;
   if (settings.bins != bins_ || settings.bin_m != bin_m_) {
     lines_.clear();
     bins_ = settings.bins;
     bin_m_ = settings.bin_m;
   }
-  const int bearing = picture::turn_bearing(line.record.bearings_rad.front());
-  lines_[bearing] = {bearing, line.record.samples};
+  const int bearing = picture::turn_bearing(line.bearings_rad.front());
+  lines_[bearing] = {bearing, line.samples};
 }
 
-std::string PingPicture::png(const ShownPing& ping) {
-  const RecordedSettings& settings = ping.record.settings;
+std::string PingPicture::draw(const PingRecord& ping, const std::string& extension) {
+  const RecordedSettings& settings = ping.settings;
   if (settings.beams == 1) {
     std::vector<picture::SweepLine> lines;
     for (const auto& [bearing, line] : lines_) {
       lines.push_back(line);
     }
     const picture::SweepShape shape{.step = step_of(lines_), .bins = bins_, .bin_m = bin_m_};
-    return encoded(picture::SweepImage(shape, style).draw(lines, ""));
+    return encoded(picture::SweepImage(shape, style).draw(lines, ""), extension);
   }
-  const picture::FanShape shape{ping.record.bearings_rad, settings.bins, settings.bin_m};
+  const picture::FanShape shape{ping.bearings_rad, settings.bins, settings.bin_m};
   if (!make_a_fan(shape.bearings_rad)) {
     return "";
   }
   if (!fan_ || fan_->geometry().shape() != shape) {
     fan_.emplace(shape, style);
   }
-  auto& samples = const_cast<std::vector<std::uint8_t>&>(ping.record.samples);  // cv::Mat reads them only
-  return encoded(fan_->draw(cv::Mat(settings.bins, settings.beams, CV_8UC1, samples.data()), ""));
+  auto& samples = const_cast<std::vector<std::uint8_t>&>(ping.samples);  // cv::Mat reads them only
+  return encoded(fan_->draw(cv::Mat(settings.bins, settings.beams, CV_8UC1, samples.data()), ""), extension);
 }
 
 }  // namespace sonard::server

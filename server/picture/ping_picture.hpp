@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "protocol/common/ping_record.hpp"
 #include "renderer/picture/fan_image.hpp"
 #include "renderer/picture/sweep_image.hpp"
-#include "server/devices/ping_viewer.hpp"
 
 namespace sonard::server {
 
@@ -17,10 +17,11 @@ namespace sonard::server {
 class PingPicture {
  public:
   /// A line of a scanning head, for later pictures. Lines of another size begin anew.
-  void keep(const ShownPing& line);
-  /// PNG of a fan, or of all lines that were kept, 400 pixels from the apex to the full range; "" where beams
-  /// make no fan.
-  std::string png(const ShownPing& ping);
+  void keep(const PingRecord& line);
+  /// A fan, or all lines that were kept, 400 pixels from the apex to the full range, as a picture file; ""
+  /// where beams make no fan.
+  /// @param extension ".png" or ".jpg"
+  std::string draw(const PingRecord& ping, const std::string& extension);
 
  private:
   std::optional<picture::FanImage> fan_;

@@ -7,6 +7,7 @@
 
 #include "protocol/log/log_messages.hpp"
 #include "protocol/pose/pose_message.hpp"
+#include "server/recording/foxglove_messages.hpp"
 #include "server/recording/log_names.hpp"
 
 namespace sonard::server {
@@ -99,7 +100,31 @@ void McapLog::add(int head, TimePoint time, const PingSent& sent) {
   } else {
     add_message(topic + "/line", time, transmit_ns, line_message(sent, head_of(head), transmit_ns));
   }
+  if (setting().config.mcap_foxglove) {
+    add_for_foxglove(head, time, sent);
+  }
   image_waits_ = true;
+}
+
+void McapLog::add_for_foxglove(int head, TimePoint time, const PingSent& sent) {
+  const std::int64_t transmit_ns = setting().unix_ns(sent.ping.transmit_time);
+  const std::string& name = head_of(head).name;
+  const std::string topic = "/" + name;
+  add_message(topic + "/transform", time, transmit_ns,
+              foxglove_transform(sent.poses->T_world_sonar, name, transmit_ns));
+  add_message(topic + "/echoes", time, transmit_ns, foxglove_echoes(sent.ping, name, transmit_ns));
+  PingPicture& picture = pictures_[head];
+  if (sent.ping.settings.beams == 1) {
+    picture.keep(sent.ping);
+    const auto [drawn, is_first] = drawn_at_.try_emplace(head, time);
+    if (!is_first && time - drawn->second < sweep_picture_interval) {
+      return;
+    }
+    drawn->second = time;
+  }
+  if (std::string jpeg = picture.draw(sent.ping, ".jpg"); !jpeg.empty()) {
+    add_message(topic + "/picture", time, transmit_ns, foxglove_image(std::move(jpeg), name, transmit_ns));
+  }
 }
 
 void McapLog::add(int, TimePoint time, const PingPosed& pose) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "protocol/mcap/writer.hpp"
+#include "server/picture/ping_picture.hpp"
 #include "server/recording/log.hpp"
 
 namespace sonard::server {
@@ -19,6 +20,8 @@ class McapLog final : public Log {
   static constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
   static constexpr std::chrono::seconds longest_chunk{1};
   static constexpr std::chrono::milliseconds longest_wait{200};
+  /// A scanning head is drawn this often at most, since each of its lines changes but one of its picture.
+  static constexpr std::chrono::seconds sweep_picture_interval{1};
 
   explicit McapLog(const LogSetting& setting);
 
@@ -33,6 +36,8 @@ class McapLog final : public Log {
   void add(int, TimePoint, const StatusSent&) {}  // is among the bytes
   void add(int, TimePoint, const StreamEnded&) {}
 
+  /// The same ping as Foxglove shows it.
+  void add_for_foxglove(int head, TimePoint time, const PingSent& ping);
   template <class Message>
   void add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns, const Message& message);
   template <class Message>
@@ -43,6 +48,8 @@ class McapLog final : public Log {
   mcap::Writer writer_;
   std::map<std::string, std::uint16_t> schemas_;   ///< by name
   std::map<std::string, std::uint16_t> channels_;  ///< by topic
+  std::map<int, PingPicture> pictures_;            ///< by head
+  std::map<int, TimePoint> drawn_at_;              ///< when a turn of a scanning head was drawn last
   bool image_waits_ = false;
   TimePoint flushed_at_{};
   TimePoint chunk_begun_at_{};

@@ -215,13 +215,13 @@ void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
   }
   PingPicture& picture = pictures_[head];
   if (ping->record.settings.beams == 1) {
-    picture.keep(*ping);
+    picture.keep(ping->record);
   }
   const auto last = shown_.find(head);
   if (!has_room() || (last != shown_.end() && site().now() - last->second < 2 * site().interval())) {
     return;
   }
-  if (const std::string png = picture.png(*ping); !png.empty()) {
+  if (const std::string png = picture.draw(ping->record, ".png"); !png.empty()) {
     send_on({head, Kind::image}, text_of({{"timestamp", timestamp},
                                           {"frame_id", heads_[head]},
                                           {"data", base64(png)},

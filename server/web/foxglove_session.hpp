@@ -13,7 +13,7 @@
 
 #include <boost/asio/steady_timer.hpp>
 
-#include "server/web/ping_picture.hpp"
+#include "server/picture/ping_picture.hpp"
 #include "server/web/web_socket.hpp"
 
 namespace sonard::server {

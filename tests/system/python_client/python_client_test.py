@@ -16,6 +16,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 import zlib
 
@@ -111,7 +112,10 @@ class PythonClient(OwnMachine):
         with Gemini() as sonar:
             pings = [sonar.ping(range_m=6) for _ in range(3)]
         log, = glob.glob(os.path.join(self.folder.name, "logs", "*.mcap"))
-        self.assertGreaterEqual(len(list(read_log(log))), 2, "of a log that is being written")
+        end = time.monotonic() + START_S
+        while len(list(read_log(log))) < 2:  # of a log that is being written
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.1)
         daemon.terminate(START_S)
         logged = list(read_log(log))
         self.assertEqual(len(logged), 3)
