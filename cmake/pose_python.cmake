@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 # The message module of poses for Python, which publishers import: ours, those of tests, and whoever has sonard installed.
-find_package(Protobuf REQUIRED)
-include(GNUInstallDirs)
 
 set(SONARD_POSE_PYTHON ${PROJECT_BINARY_DIR}/share/sonard/python)
 add_custom_command(

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # protocol/ as a package of libraries: `cmake --install BUILD --component protocol --prefix PREFIX`.
 include(CMakePackageConfigHelpers)
-include(GNUInstallDirs)
 
 # sonard_protocol_package(ROOMS...): each room's library is sonard::protocol_ROOM of the CMake package sonard-protocol,
 # and sonard-protocol-ROOM of pkg-config. What it needs is read from what its target links.
@@ -36,7 +35,7 @@ function(sonard_protocol_package)
         if(link STREQUAL "ZLIB::ZLIB")
           list(APPEND needed_targets ${link})
           list(APPEND needed_packages zlib)
-        elseif(link STREQUAL "zstd::libzstd_shared")
+        elseif(link STREQUAL "PkgConfig::ZSTD")
           list(APPEND needed_targets ${link})
           list(APPEND needed_packages libzstd)
         elseif(link STREQUAL "fmt::fmt")

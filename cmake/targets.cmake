@@ -44,7 +44,6 @@ endfunction()
 # libraries of the files that it imports. It compiles under its own rules, so it stays apart and its header is a
 # SYSTEM one.
 function(sonard_proto_library name proto)
-  find_package(Protobuf REQUIRED)
   set(generated ${PROJECT_BINARY_DIR}/generated)
   add_custom_command(
     OUTPUT ${generated}/${proto}.pb.cc ${generated}/${proto}.pb.h

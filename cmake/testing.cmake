@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # How every test of this project is registered. A label (unit, gl, system, deep, logs, simulators) is a part of ./test; the target
 # LABEL_tests builds all that the tests of one label start.
-find_package(GTest REQUIRED)
 include(GoogleTest)
 
 foreach(label unit gl system deep logs simulators)

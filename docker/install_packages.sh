@@ -6,22 +6,45 @@ set -euo pipefail
 list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
 
 # What is installed under its own name, or provided by a package of another: where node is not Debian's it brings npm.
-provided=$(dpkg-query -W -f '${db:Status-Status},${Provides}\n' | sed -n 's/^installed,//p' | tr ',' '\n' | sed 's/^ *//; s/ .*//')
+installed=$(dpkg-query -W -f '${db:Status-Status},${Package},${Provides}\n' | sed -n 's/^installed,//p' | tr ',' '\n' |
+  sed 's/^ *//; s/ .*//' | sort -u)
+
+# The lines of which no name is installed.
 missing=()
 for section in "$@"; do
   grep -qx "\[$section\]" "$list" || { echo "$list has no section [$section]" >&2; exit 64; }
-  while read -r package; do
-    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
-      grep -qx "$package" <<<"$provided" || missing+=("$package")
+  while read -r line; do
+    grep -qxF -f <(tr '|' '\n' <<<"${line#optional }" | tr -d ' ') <<<"$installed" || missing+=("$line")
   done < <(awk -v want="[$section]" '/^\[/ { inside = ($0 == want); next } inside && NF && !/^#/' "$list")
 done
 ((${#missing[@]})) || exit 0
 
 as_root=()
 if ((EUID != 0)); then
-  command -v sudo >/dev/null || { echo "Not root and no sudo. Please install: ${missing[*]}" >&2; exit 1; }
+  command -v sudo >/dev/null || { printf 'Not root and no sudo. Please install:\n'; printf '  %s\n' "${missing[@]}"; exit 1; } >&2
   as_root=(sudo)
 fi
-echo "Installing ${#missing[@]} packages with apt: ${missing[*]}"
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+
+# The first name of each line that this release has.
+choose() {
+  local line name
+  chosen=() left_out=()
+  for line in "${missing[@]}"; do
+    for name in $(tr '|' ' ' <<<"${line#optional }"); do
+      if apt-cache show --no-all-versions "$name" >/dev/null 2>&1; then
+        chosen+=("$name")
+        continue 2
+      fi
+    done
+    [[ $line == optional\ * ]] || left_out+=("$line")
+  done
+}
+
+choose
+if ((${#chosen[@]} + ${#left_out[@]})); then  # else only what this release does not have anyway
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+  choose
+  ((${#left_out[@]} == 0)) || { echo "This release has no package of these names: ${left_out[*]} ($list)" >&2; exit 1; }
+  echo "Installing ${#chosen[@]} packages with apt: ${chosen[*]}"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
+fi

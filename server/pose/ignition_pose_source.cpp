@@ -1,27 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that includes the headers of Ignition, which take seconds to compile.
+// The one file that includes the headers of Gazebo's transport, which take seconds to compile.
 #include "server/pose/ignition_pose_source.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <ignition/msgs/pose.pb.h>
-#include <ignition/msgs/pose_v.pb.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <bit>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
-#include <ignition/transport/Node.hh>
 #include <mutex>
 #include <utility>
 
 #include "server/pose/entity_poses.hpp"
+#ifdef SONARD_GAZEBO_GZ
+#include <gz/msgs/pose.pb.h>
+#include <gz/msgs/pose_v.pb.h>
+
+#include <gz/transport/Node.hh>
+#else
+#include <ignition/msgs/pose.pb.h>
+#include <ignition/msgs/pose_v.pb.h>
+
+#include <ignition/transport/Node.hh>
+#endif
 
 namespace sonard::server {
 namespace {
 
 namespace asio = boost::asio;
+#ifdef SONARD_GAZEBO_GZ
+namespace gazebo = gz;
+#else
+namespace gazebo = ignition;  // its name until the release Fortress
+#endif
 
 struct Message {
   std::string type;
@@ -29,7 +42,7 @@ struct Message {
   TimePoint arrival;
 };
 
-std::optional<std::int64_t> stamp_ns(const ignition::msgs::Header& header) {
+std::optional<std::int64_t> stamp_ns(const gazebo::msgs::Header& header) {
   if (!header.has_stamp()) {
     return std::nullopt;
   }
@@ -38,7 +51,7 @@ std::optional<std::int64_t> stamp_ns(const ignition::msgs::Header& header) {
   return seconds * 1'000'000'000 + header.stamp().nsec();
 }
 
-pose::NamedTransform entity(const ignition::msgs::Pose& pose) {
+pose::NamedTransform entity(const gazebo::msgs::Pose& pose) {
   const auto& p = pose.position();
   const auto& q = pose.orientation();
   return {pose.name(), {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}}};
@@ -48,18 +61,18 @@ Result<EntityPoses, std::string> parse(const Message& message) {
   const std::string_view name = std::string_view(message.type).substr(message.type.rfind('.') + 1);
   EntityPoses poses;
   if (name == "Pose_V") {
-    ignition::msgs::Pose_V list;
+    gazebo::msgs::Pose_V list;
     if (!list.ParseFromString(message.bytes)) {
       return fmt::format("its bytes are no {}", message.type);
     }
     poses.time_ns = stamp_ns(list.header());
-    for (const ignition::msgs::Pose& pose : list.pose()) {
+    for (const gazebo::msgs::Pose& pose : list.pose()) {
       poses.entities.push_back(entity(pose));
     }
     return poses;
   }
   if (name == "Pose") {
-    ignition::msgs::Pose pose;
+    gazebo::msgs::Pose pose;
     if (!pose.ParseFromString(message.bytes)) {
       return fmt::format("its bytes are no {}", message.type);
     }
@@ -162,8 +175,8 @@ void IgnitionPoseSource::Impl::complain(std::uint64_t count, const std::string& 
 // Ends with the source and on its thread, never on that of the transport: there its destructor would wait for
 // itself.
 struct IgnitionPoseSource::Subscription {
-  explicit Subscription(const ignition::transport::NodeOptions& options) : node(options) {}
-  ignition::transport::Node node;
+  explicit Subscription(const gazebo::transport::NodeOptions& options) : node(options) {}
+  gazebo::transport::Node node;
 };
 
 IgnitionPoseSource::IgnitionPoseSource(asio::io_context& io, IgnitionPoseInput input, const Clock& clock,
@@ -176,13 +189,13 @@ IgnitionPoseSource::~IgnitionPoseSource() {
 
 void IgnitionPoseSource::start() {
   const IgnitionPoseInput& input = impl_->input;
-  ignition::transport::NodeOptions options;
+  gazebo::transport::NodeOptions options;
   if (!input.partition.empty() && !options.SetPartition(input.partition)) {
     throw PoseSourceError(fmt::format("ignition: '{}' is no partition", input.partition));
   }
   subscription_ = std::make_unique<Subscription>(options);
   const auto receive = [impl = impl_](const char* data, std::size_t size,
-                                      const ignition::transport::MessageInfo& info) {
+                                      const gazebo::transport::MessageInfo& info) {
     impl->on_message(data, size, info.Type());
   };
   if (!subscription_->node.SubscribeRaw(input.topic, receive)) {

@@ -24,10 +24,10 @@ std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_conte
     sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink_of_next()));
   }
   if (config.ignition) {
-#ifdef SONARD_HAS_IGNITION
+#ifdef SONARD_HAS_GAZEBO
     sources.push_back(std::make_unique<IgnitionPoseSource>(io, *config.ignition, clock, sink_of_next()));
 #else
-    throw PoseSourceError("this sonard was built without Ignition Transport");
+    throw PoseSourceError("this sonard was built without Gazebo Transport");
 #endif
   }
   if (config.trajectory) {

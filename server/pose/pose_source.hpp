@@ -73,7 +73,7 @@ class PoseSource {
 /// One source per input that is configured; `sink_of_next` is asked for the sink of each. `clock` and `io`
 /// outlive them.
 /// @throws pose::TrajectoryError when the trajectory cannot be used; PoseSourceError when this program was
-/// built without Ignition Transport, and the configuration asks for it
+/// built without Gazebo Transport, and the configuration asks for it
 std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
                                                            const PoseConfig& config, const Clock& clock,
                                                            const std::function<PoseSink()>& sink_of_next,

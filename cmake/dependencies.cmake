@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every library that the project uses, found here once for all folders. docker/packages.txt has the packages, and
+# docs/platforms.md says what was built with which versions.
+
+# ---- needed -----------------------------------------------------------------------------------------------------
+include(GNUInstallDirs)
+find_package(Boost 1.74 REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(glm REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
+find_package(OpenSceneGraph REQUIRED COMPONENTS osgDB osgUtil)
+find_package(PkgConfig REQUIRED)
+find_package(Protobuf REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(Threads REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(ZLIB REQUIRED)
+# These have no CMake package on Ubuntu 22.04.
+pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+
+# Versions 3 and 4 differ in how rays are asked for; renderer/spatial_index knows both.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 REQUIRED)
+endif()
+
+# Debian keeps OpenCVConfig.cmake in libopencv-dev, which drags in the whole desktop; a few libraries are enough.
+find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+foreach(part core imgproc imgcodecs features2d)
+  find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
+  add_library(opencv_${part} UNKNOWN IMPORTED)
+  set_target_properties(opencv_${part} PROPERTIES
+    IMPORTED_LOCATION ${OPENCV_${part}_LIBRARY}
+    INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+endforeach()
+
+# ---- optional: the daemon says the same when it is asked for what is missing --------------------------------------
+find_package(assimp QUIET)
+if(NOT assimp_FOUND)
+  message(STATUS "Without Assimp (libassimp-dev): meshes of .glb, .gltf and .fbx are refused")
+endif()
+
+# Gazebo's transport, newest first: numbers of transport and messages of one release. Until Fortress its headers and
+# namespaces were called ignition.
+foreach(release "gz;15;12" "gz;14;11" "gz;13;10" "gz;12;9" "ignition;11;8")
+  list(GET release 0 name)
+  list(GET release 1 transport)
+  list(GET release 2 messages)
+  find_package(${name}-transport${transport} QUIET)
+  find_package(${name}-msgs${messages} QUIET)
+  if(${name}-transport${transport}_FOUND AND ${name}-msgs${messages}_FOUND)
+    add_library(sonard_gazebo INTERFACE)
+    string(TOUPPER SONARD_GAZEBO_${name} definition)
+    target_compile_definitions(sonard_gazebo INTERFACE ${definition})
+    target_link_libraries(sonard_gazebo INTERFACE
+      ${name}-transport${transport}::${name}-transport${transport} ${name}-msgs${messages}::${name}-msgs${messages})
+    break()
+  endif()
+endforeach()
+if(NOT TARGET sonard_gazebo)
+  message(STATUS "Without Gazebo Transport (libignition-transport-dev and libignition-msgs-dev, or libgz-): "
+                 "poses.ignition is refused; sonard takes poses in every other way")
+endif()
+
+if(SONARD_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(sdformat12 QUIET)
+  if(NOT sdformat12_FOUND)
+    message(STATUS "Without libsdformat 12 (libsdformat-dev): our reader of SDF is not compared with Gazebo's")
+  endif()
+endif()
