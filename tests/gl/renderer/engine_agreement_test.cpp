@@ -216,7 +216,7 @@ TEST_F(EngineAgreement, EnginesNameThemselves) {
   EXPECT_EQ(gpu.engine_description().rfind("gpu, ", 0), 0U) << gpu.engine_description();
   const SonarRenderer cpu(World{}, {EngineKind::cpu, 0});
   EXPECT_EQ(cpu.engine(), EngineKind::cpu);
-  EXPECT_EQ(cpu.engine_description().rfind("cpu, Embree 3.", 0), 0U) << cpu.engine_description();
+  EXPECT_EQ(cpu.engine_description().rfind("cpu, Embree ", 0), 0U) << cpu.engine_description();
 }
 
 }  // namespace

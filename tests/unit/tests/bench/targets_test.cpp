@@ -75,7 +75,7 @@ TEST(SamplesNeeded, IsUnknownWithoutACurveThatFalls) {
   EXPECT_FALSE(samples_needed({{1e3, 0.1}, {1e4, 0.2}}, 0.01));
 }
 
-const TargetRow& row_named(const std::vector<TargetRow>& rows, const std::string& what) {
+const TargetRow& row_named(const std::vector<TargetRow>& rows, std::string_view what) {
   return *std::find_if(rows.begin(), rows.end(), [&](const TargetRow& row) { return row.what == what; });
 }
 
