@@ -39,7 +39,7 @@ class Package(unittest.TestCase):
         (self.folder / "first").rename(self.prefix)
 
     def configure(self, source, *options):
-        run(CMAKE, "-S", source, "-B", self.folder / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+        run(CMAKE, "-G", "Ninja", "-S", source, "-B", self.folder / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
             f"-DCMAKE_CXX_COMPILER={COMPILER}", *options)
 
     def pkg_config(self, *arguments):
