@@ -18,6 +18,7 @@ find_package(Threads REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(ZLIB REQUIRED)
 # These have no CMake package on Ubuntu 22.04.
+pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 
@@ -41,6 +42,12 @@ endforeach()
 find_package(assimp QUIET)
 if(NOT assimp_FOUND)
   message(STATUS "Without Assimp (libassimp-dev): meshes of .glb, .gltf and .fbx are refused")
+endif()
+
+pkg_check_modules(GEOGRAPHICLIB QUIET IMPORTED_TARGET geographiclib)
+if(NOT GEOGRAPHICLIB_FOUND)
+  message(STATUS "Without GeographicLib (libgeographiclib-dev): world.origin, maps at their place on Earth and "
+                 "GLOBAL_POSITION_INT are refused")
 endif()
 
 # Gazebo's transport, newest first: numbers of transport and messages of one release. Until Fortress its headers and

@@ -14,6 +14,7 @@ enum class MessageId : std::uint32_t {
   attitude = 30,
   attitude_quaternion = 31,
   local_position_ned = 32,
+  global_position_int = 33,
   odometry = 331,
 };
 
@@ -23,11 +24,12 @@ struct MessageKind {
   std::size_t base_size;  ///< payload without extension fields: as long as version 1 sends it
 };
 
-inline constexpr std::array<MessageKind, 5> message_kinds{{
+inline constexpr std::array<MessageKind, 6> message_kinds{{
     {MessageId::heartbeat, 50, 9},
     {MessageId::attitude, 39, 28},
     {MessageId::attitude_quaternion, 246, 32},
     {MessageId::local_position_ned, 185, 28},
+    {MessageId::global_position_int, 104, 28},
     {MessageId::odometry, 91, 230},
 }};
 

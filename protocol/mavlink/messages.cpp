@@ -51,6 +51,20 @@ struct Layout<LocalPositionNed> : WholeLayout<28> {
 };
 
 template <>
+struct Layout<GlobalPositionInt> : WholeLayout<28> {
+  using G = GlobalPositionInt;
+  static constexpr std::tuple fields{Field{0, "time_boot_ms", &G::time_boot_ms},
+                                     Field{4, "lat", &G::lat},
+                                     Field{8, "lon", &G::lon},
+                                     Field{12, "alt", &G::alt},
+                                     Spare<4>{16},  // relative_alt
+                                     Field{20, "vx", &G::vx},
+                                     Field{22, "vy", &G::vy},
+                                     Field{24, "vz", &G::vz},
+                                     Spare<2>{26}};  // hdg
+};
+
+template <>
 struct Layout<Odometry> : WholeLayout<230> {
   using O = Odometry;
   static constexpr std::tuple fields{Field{0, "time_usec", &O::time_usec},
@@ -95,6 +109,8 @@ Result<Message, WireError> decode(const Frame& frame) {
       return read<AttitudeQuaternion, MessageId::attitude_quaternion>(frame);
     case MessageId::local_position_ned:
       return read<LocalPositionNed, MessageId::local_position_ned>(frame);
+    case MessageId::global_position_int:
+      return read<GlobalPositionInt, MessageId::global_position_int>(frame);
     case MessageId::odometry:
       return read<Odometry, MessageId::odometry>(frame);
     case MessageId::heartbeat:

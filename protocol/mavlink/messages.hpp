@@ -63,6 +63,19 @@ struct LocalPositionNed {
   bool operator==(const LocalPositionNed&) const = default;
 };
 
+/// GLOBAL_POSITION_INT (33), without relative_alt and hdg, which the attitude says better.
+struct GlobalPositionInt {
+  std::uint32_t time_boot_ms = 0;
+  std::int32_t lat = 0;  ///< 1e-7 degrees
+  std::int32_t lon = 0;  ///< 1e-7 degrees
+  std::int32_t alt = 0;  ///< above mean sea level, millimetres
+  std::int16_t vx = 0;   ///< north, cm/s
+  std::int16_t vy = 0;   ///< east, cm/s
+  std::int16_t vz = 0;   ///< down, cm/s
+
+  bool operator==(const GlobalPositionInt&) const = default;
+};
+
 /// ODOMETRY (331), without its covariances and extensions. `q` (w, x, y, z) takes coordinates in the vehicle
 /// to `frame_id`; velocities are in the axes of `child_frame_id`, turn rates about those of the vehicle. What
 /// is not known is NaN.
@@ -85,7 +98,8 @@ struct Odometry {
 };
 
 /// monostate: a message that says nothing about a pose.
-using Message = std::variant<std::monostate, Attitude, AttitudeQuaternion, LocalPositionNed, Odometry>;
+using Message =
+    std::variant<std::monostate, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt, Odometry>;
 
 /// Decodes a frame from FrameReader. Zeros that version 2 cut off are put back; bytes beyond the fields
 /// that are read (extensions) are ignored. An error only for a frame of version 1 that is shorter than its

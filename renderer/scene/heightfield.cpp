@@ -22,10 +22,8 @@ class Grid {
   }
 
   double height_m(int x, int y) const {
-    const int column = std::clamp(x, 0, image_.width_px - 1);
-    const int row = std::clamp(y, 0, image_.height_px - 1);
-    return image_.value[static_cast<std::size_t>(row) * static_cast<std::size_t>(image_.width_px) +
-                        static_cast<std::size_t>(column)] *
+    return image_.value[static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width_px) +
+                        static_cast<std::size_t>(x)] *
            z_per_value_m_;
   }
 
@@ -33,15 +31,21 @@ class Grid {
     return corner_m_ + glm::dvec3(x * step_x_m_, y * step_y_m_, height_m(x, y));
   }
 
-  /// Central differences, one-sided at the rim.
+  /// Central differences, one-sided at the rim and at holes.
   glm::dvec3 normal(int x, int y) const {
-    const double span_x = (x > 0 && x < image_.width_px - 1 ? 2.0 : 1.0) * step_x_m_;
-    const double span_y = (y > 0 && y < image_.height_px - 1 ? 2.0 : 1.0) * step_y_m_;
-    return glm::normalize(glm::dvec3((height_m(x - 1, y) - height_m(x + 1, y)) / span_x,
-                                     (height_m(x, y - 1) - height_m(x, y + 1)) / span_y, 1.0));
+    const int west = is_known(x - 1, y) ? x - 1 : x, east = is_known(x + 1, y) ? x + 1 : x;
+    const int south = is_known(x, y - 1) ? y - 1 : y, north = is_known(x, y + 1) ? y + 1 : y;
+    const double span_x = std::max(1, east - west) * step_x_m_,
+                 span_y = std::max(1, north - south) * step_y_m_;
+    return glm::normalize(glm::dvec3((height_m(west, y) - height_m(east, y)) / span_x,
+                                     (height_m(x, south) - height_m(x, north)) / span_y, 1.0));
   }
 
  private:
+  bool is_known(int x, int y) const {
+    return x >= 0 && y >= 0 && x < image_.width_px && y < image_.height_px && !image_.is_hole(x, y);
+  }
+
   const GreyImage& image_;
   glm::dvec3 corner_m_;
   double step_x_m_;
@@ -77,11 +81,18 @@ TriangleMesh make_heightfield(const GreyImage& image, const glm::dvec3& size_m, 
   }
   const auto width = static_cast<std::uint32_t>(image.width_px);
   const auto height = static_cast<std::uint32_t>(image.height_px);
+  const auto is_hole = [&](std::uint32_t pixel) { return !image.hole.empty() && image.hole[pixel]; };
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (!is_hole(a) && !is_hole(b) && !is_hole(c)) {
+      mesh.indices.insert(mesh.indices.end(), {a, b, c});
+    }
+  };
   for (std::uint32_t y = 0; y + 1 < height; ++y) {
     for (std::uint32_t x = 0; x + 1 < width; ++x) {
       const std::uint32_t a = y * width + x;
       const std::uint32_t d = a + width;
-      mesh.indices.insert(mesh.indices.end(), {a, a + 1, d + 1, a, d + 1, d});
+      add(a, a + 1, d + 1);
+      add(a, d + 1, d);
     }
   }
   return mesh;

@@ -84,8 +84,8 @@ std::string decode(const std::filesystem::path& file) {
   return packed(image->s(), image->t(), channels, value);
 }
 
-/// Elevations as 16 bit from the lowest to the highest. GDAL knows what sample formats of TIFF mean; the
-/// reader of pictures takes signed numbers for unsigned ones. Runs inside run_isolated().
+/// A height for each pixel, row by row from the bottom; NaN: none. GDAL knows what sample formats of TIFF
+/// mean; the reader of pictures takes signed numbers for unsigned ones. Runs inside run_isolated().
 std::string decode_elevations(const std::filesystem::path& file) {
   const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
   osgDB::ReaderWriter::ReadResult result =
@@ -99,51 +99,93 @@ std::string decode_elevations(const std::filesystem::path& file) {
     throw std::runtime_error(
         fmt::format("{} x {} pixels is more than {} a side", width, height, max_side_px));
   }
-  const osg::FloatArray& elevation_m = *field->getFloatArray();
-  const auto all_finite =
-      std::all_of(elevation_m.begin(), elevation_m.end(), [](float h) { return std::isfinite(h); });
-  if (!all_finite) {
-    throw std::runtime_error("there are elevations that are not finite");
-  }
-  const auto [low, high] = std::minmax_element(elevation_m.begin(), elevation_m.end());
-  const double span_m = std::max(1e-9, static_cast<double>(*high) - static_cast<double>(*low));
-  std::vector<std::uint16_t> value;
-  value.reserve(elevation_m.size());
-  for (const float h : elevation_m) {
-    value.push_back(static_cast<std::uint16_t>(
-        std::lround(65535 * (static_cast<double>(h) - static_cast<double>(*low)) / span_m)));
-  }
-  return packed(width, height, 1, value);
+  const GeoTiffTags tags = read_geotiff_tags(file);
+  const auto no_data = static_cast<float>(tags.no_data.value_or(NAN));
+  std::vector<float> elevation_m(field->getFloatArray()->begin(), field->getFloatArray()->end());
+  std::ranges::replace(elevation_m, no_data, NAN);
+  BlobWriter writer;
+  writer.put(static_cast<std::uint64_t>(width));
+  writer.put(static_cast<std::uint64_t>(height));
+  writer.put(elevation_m);
+  writer.put(
+      std::vector<Georeference>(tags.georeference ? 1 : 0, tags.georeference.value_or(Georeference())));
+  writer.put(tags.problem);
+  return writer.take();
 }
 
-Pixels load_pixels(const std::filesystem::path& file, std::string (*decoder)(const std::filesystem::path&)) {
+/// What `decoder` makes of the file, with `unpack` to take it apart.
+template <typename Unpack>
+auto read_isolated(const std::filesystem::path& file, std::string (*decoder)(const std::filesystem::path&),
+                   const Unpack& unpack) {
   require_local_file(file, extensions, "image");
   try {
     const IsolatedResult result = run_isolated([&] { return decoder(file); }, reading_limit_s(file));
     BlobReader reader(result.bytes);
+    return unpack(reader);
+  } catch (const std::runtime_error& error) {
+    throw WorldError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+void check_size(int width_px, int height_px, std::size_t values, int channels) {
+  if (width_px < 1 || height_px < 1 || channels < 1 ||
+      values != static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) *
+                    static_cast<std::size_t>(channels)) {
+    throw std::runtime_error("the reader returned a damaged result");
+  }
+}
+
+Pixels load_pixels(const std::filesystem::path& file) {
+  return read_isolated(file, decode, [](BlobReader& reader) {
     Pixels pixels;
     pixels.width_px = static_cast<int>(reader.get_number());
     pixels.height_px = static_cast<int>(reader.get_number());
     pixels.channels = static_cast<int>(reader.get_number());
     pixels.value = reader.get_vector<std::uint16_t>();
-    if (pixels.width_px < 1 || pixels.height_px < 1 || pixels.channels < 1 ||
-        pixels.value.size() != static_cast<std::size_t>(pixels.width_px) *
-                                   static_cast<std::size_t>(pixels.height_px) *
-                                   static_cast<std::size_t>(pixels.channels)) {
-      throw std::runtime_error("the reader returned a damaged result");
-    }
+    check_size(pixels.width_px, pixels.height_px, pixels.value.size(), pixels.channels);
     return pixels;
-  } catch (const std::runtime_error& error) {
-    throw WorldError(fmt::format("{}: {}", file.string(), error.what()));
+  });
+}
+
+/// Elevations as 16 bit, and what is not known.
+void set_elevations(ElevationMap& map, const std::vector<float>& elevation_m) {
+  float low = INFINITY, high = -INFINITY;
+  for (const float h : elevation_m) {
+    if (std::isinf(h)) {
+      throw std::runtime_error("there are elevations that are not finite");
+    }
+    if (std::isnan(h)) {
+      ++map.holes_px;
+    } else {
+      low = std::min(low, h);
+      high = std::max(high, h);
+    }
+  }
+  if (map.holes_px == elevation_m.size()) {
+    throw std::runtime_error("no pixel has an elevation");
+  }
+  map.lowest_m = static_cast<double>(low);
+  map.highest_m = static_cast<double>(high);
+  const double span_m = std::max(1e-9, map.highest_m - map.lowest_m);
+  map.picture.value.reserve(elevation_m.size());
+  for (const float h : elevation_m) {
+    map.picture.value.push_back(std::isnan(h)
+                                    ? 0
+                                    : static_cast<std::uint16_t>(std::lround(
+                                          65535 * (static_cast<double>(h) - map.lowest_m) / span_m)));
+  }
+  if (map.holes_px > 0) {
+    map.picture.hole.reserve(elevation_m.size());
+    for (const float h : elevation_m) {
+      map.picture.hole.push_back(std::isnan(h));
+    }
   }
 }
 
 }  // namespace
 
 GreyImage load_grey_image(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
-  const bool elevations = extension == "tif" || extension == "tiff";
-  const Pixels pixels = load_pixels(file, elevations ? decode_elevations : decode);
+  const Pixels pixels = load_pixels(file);
   GreyImage image{pixels.width_px, pixels.height_px, {}};
   const auto step = static_cast<std::size_t>(pixels.channels);
   image.value.reserve(pixels.value.size() / step);
@@ -153,8 +195,29 @@ GreyImage load_grey_image(const std::filesystem::path& file) {
   return image;
 }
 
+bool is_elevation_map(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == "tif" || extension == "tiff";
+}
+
+ElevationMap load_elevation_map(const std::filesystem::path& file) {
+  return read_isolated(file, decode_elevations, [](BlobReader& reader) {
+    ElevationMap map;
+    map.picture.width_px = static_cast<int>(reader.get_number());
+    map.picture.height_px = static_cast<int>(reader.get_number());
+    const auto elevation_m = reader.get_vector<float>();
+    check_size(map.picture.width_px, map.picture.height_px, elevation_m.size(), 1);
+    set_elevations(map, elevation_m);
+    if (const auto known = reader.get_vector<Georeference>(); !known.empty()) {
+      map.georeference = known.front();
+    }
+    map.no_georeference_because = reader.get_string();
+    return map;
+  });
+}
+
 NormalMap load_normal_map(const std::filesystem::path& file) {
-  const Pixels pixels = load_pixels(file, decode);
+  const Pixels pixels = load_pixels(file);
   if (pixels.channels < 3) {
     throw WorldError(
         fmt::format("{}: a normal map needs 3 channels, this image has {}", file.string(), pixels.channels));

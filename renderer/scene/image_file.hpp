@@ -2,10 +2,14 @@
 // Images of worlds: height maps and normal maps. Local PNG, JPEG, TIFF, BMP, TGA or PNM files, through osgDB.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "renderer/scene/geotiff.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -15,12 +19,32 @@ struct GreyImage {
   int width_px = 0;
   int height_px = 0;
   std::vector<std::uint16_t> value;  ///< 0 to 65535; 8-bit files are spread over the whole range
+  std::vector<bool> hole{};          ///< where nothing is known; empty: there are none
+
+  bool is_hole(int x, int y) const {
+    return !hole.empty() && hole[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) +
+                                 static_cast<std::size_t>(x)];
+  }
 };
 
-/// The first channel of an 8 or 16-bit image; of a TIFF, also a GeoTIFF of any sample format, the elevations
-/// from the lowest, 0, to the highest, 65535.
+/// A map of elevations: a TIFF of any sample format that GDAL knows.
+struct ElevationMap {
+  GreyImage picture;  ///< the lowest elevation is 0, the highest 65535
+  double lowest_m = 0.0;
+  double highest_m = 0.0;
+  std::size_t holes_px = 0;
+  std::optional<Georeference> georeference;
+  std::string no_georeference_because;
+};
+
+/// The first channel of an 8 or 16-bit image.
 /// @throws WorldError naming the file when it is missing, damaged or of another kind.
 GreyImage load_grey_image(const std::filesystem::path& file);
+
+bool is_elevation_map(const std::filesystem::path& file);
+
+/// @throws WorldError naming the file
+ElevationMap load_elevation_map(const std::filesystem::path& file);
 
 /// A tangent-space normal map from an 8 or 16-bit RGB image.
 /// @throws WorldError naming the file.

@@ -20,7 +20,7 @@ struct ElementKind {
 };
 
 // Elements of the SDF specification. What stands inside one of these is not looked at.
-constexpr std::array<ElementKind, 20> element_kinds{{
+constexpr std::array<ElementKind, 19> element_kinds{{
     {"actor", "actors", true},
     {"road", "roads", true},
     {"population", "populations", true},
@@ -39,7 +39,6 @@ constexpr std::array<ElementKind, 20> element_kinds{{
     {"wind", "wind"},
     {"atmosphere", "atmosphere"},
     {"magnetic_field", "magnetic field"},
-    {"spherical_coordinates", "spherical coordinates"},
     {"state", "state"},
 }};
 

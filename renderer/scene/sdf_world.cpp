@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 
 #include "renderer/scene/image_file.hpp"
 #include "renderer/scene/left_out.hpp"
+#include "renderer/scene/map_placement.hpp"
 #include "renderer/scene/materials.hpp"
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/mesh_file.hpp"
@@ -89,10 +91,36 @@ std::optional<TriangleMesh> primitive_of(const SdfElement& geometry) {
   return std::nullopt;
 }
 
+/// Of <spherical_coordinates>; nullopt, with a warning, where it means nothing that is known here.
+std::optional<GeographicOrigin> origin_of(const SdfElement& place, std::vector<std::string>& warnings) {
+  const auto ignored = [&](const std::string& why) {
+    warnings.push_back(fmt::format("{}: <spherical_coordinates> is not used: {}", place.place(), why));
+    return std::nullopt;
+  };
+  if (const std::string model = text_of(place, "surface_model"); !model.empty() && model != "EARTH_WGS84") {
+    return ignored(fmt::format("surface_model {} (expected EARTH_WGS84)", model));
+  }
+  if (const std::string axes = text_of(place, "world_frame_orientation"); !axes.empty() && axes != "ENU") {
+    return ignored(fmt::format("world_frame_orientation {} (expected ENU)", axes));
+  }
+  if (const double heading_deg = number_of(place, "heading_deg", 0); heading_deg != 0.0) {
+    return ignored(fmt::format("heading_deg {} (expected 0)", heading_deg));
+  }
+  const GeographicOrigin origin{number_of(place, "latitude_deg", 0), number_of(place, "longitude_deg", 0),
+                                number_of(place, "elevation", 0)};
+  if (std::abs(origin.latitude_deg) > 90.0 || std::abs(origin.longitude_deg) > 180.0) {
+    return ignored(fmt::format("{}, {} is no place on Earth", origin.latitude_deg, origin.longitude_deg));
+  }
+  return origin;
+}
+
 class WorldBuilder {
  public:
-  WorldBuilder(const fs::path& file, const std::vector<fs::path>& model_folders, MissingFiles missing)
-      : file_(file), resolver_(file, model_folders), missing_(missing) {}
+  WorldBuilder(const fs::path& file, const std::vector<fs::path>& model_folders, MissingFiles missing,
+               const std::optional<GeographicOrigin>& origin)
+      : file_(file), resolver_(file, model_folders), missing_(missing) {
+    world_.origin = origin;
+  }
 
   World build() {
     const std::unique_ptr<SdfElement> sdf = read_sdf(file_, resolver_, missing_, world_.warnings, problems_);
@@ -134,6 +162,10 @@ class WorldBuilder {
       return;
     }
     attempt([&] { world_.water_surface_z_m = water_surface_z_m(top); });
+    if (const SdfElement* const place = top.child("spherical_coordinates");
+        place != nullptr && !world_.origin) {
+      attempt([&] { world_.origin = origin_of(*place, world_.warnings); });
+    }
     for (const auto& child : top.children) {
       if (child->name == "model") {
         add_body(*child);
@@ -316,12 +348,39 @@ class WorldBuilder {
     return resolver_.resolve(text_of(geometry, "uri"), geometry.folder());
   }
 
-  /// Its `pos` becomes part of the pose, which is in double precision: it may hold UTM coordinates.
+  /// Its `pos` becomes part of the pose, which is in double precision: it may hold UTM coordinates. A map of
+  /// elevations without a `size` lies where its georeference says, moved by the poses.
   void add_heightmap_shape(Body& body, const Shape& shape, std::shared_ptr<const NormalMap> normal_map) {
-    const Pose T_shape_map{vec3_of(*shape.geometry, "pos", {0, 0, 0}), {1, 0, 0, 0}};
-    add_heightmap(load_grey_image(file_of(*shape.geometry)), vec3_of(*shape.geometry, "size", {1, 1, 1}),
+    const fs::path file = file_of(*shape.geometry);
+    Pose T_shape_map{vec3_of(*shape.geometry, "pos", {0, 0, 0}), {1, 0, 0, 0}};
+    glm::dvec3 size_m = vec3_of(*shape.geometry, "size", {1, 1, 1});
+    GreyImage picture;
+    if (is_elevation_map(file)) {
+      ElevationMap map = load_elevation_map(file);
+      if (shape.geometry->child("size") == nullptr) {
+        const MapPlacement placement = placement_of(map, file);
+        T_shape_map = T_shape_map * placement.T_world_map;
+        size_m = placement.size_m;
+      }
+      picture = std::move(map.picture);
+    } else {
+      picture = load_grey_image(file);
+    }
+    add_heightmap(std::move(picture), size_m,
                   {nullptr, shape.T_body_shape * T_shape_map, material_of(shape, ""), std::move(normal_map)},
                   world_, world_.bodies.size(), body.parts);
+  }
+
+  /// In a world without a place on Earth, its middle is the origin, at altitude 0.
+  MapPlacement placement_of(const ElevationMap& map, const fs::path& file) {
+    if (!map.georeference) {
+      throw WorldError(fmt::format("{}: {}; give the <size> of the heightmap to place it by hand",
+                                   file.string(), map.no_georeference_because));
+    }
+    const MapPlacement placement =
+        place_map(map, GeographicFrame(world_.origin ? *world_.origin : middle_of(map)));
+    world_.maps.push_back(fmt::format("{}: {}", file.filename().string(), describe(map, placement)));
+    return placement;
   }
 
   /// Each file is read once for all its uses with the same scale, and complained of once.
@@ -430,13 +489,14 @@ class WorldBuilder {
 
 }  // namespace
 
-World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_folders, MissingFiles missing) {
+World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_folders, MissingFiles missing,
+                 const std::optional<GeographicOrigin>& origin) {
   std::error_code error;
   const fs::path file = fs::canonical(sdf_file, error);
   if (error || !fs::is_regular_file(file, error)) {
     throw WorldError(fmt::format("{}: world file not found", sdf_file.string()));
   }
-  return WorldBuilder(file, model_folders, missing).build();
+  return WorldBuilder(file, model_folders, missing, origin).build();
 }
 
 }  // namespace sonard::render

@@ -56,10 +56,14 @@ glm::vec3 Terrain::position(int x, int y) const {
 /// The normal of the mean slope over a step to either side, to one at the rim of the map: detail that a
 /// coarse level leaves out does not turn it.
 glm::vec3 Terrain::normal(int x, int y, int step_px) const {
-  const int west = std::max(x - step_px, 0), east = std::min(x + step_px, picture_.width_px - 1);
-  const int south = std::max(y - step_px, 0), north = std::min(y + step_px, picture_.height_px - 1);
-  const double rise_x = (height_m(west, y) - height_m(east, y)) / ((east - west) * step_x_m_);
-  const double rise_y = (height_m(x, south) - height_m(x, north)) / ((north - south) * step_y_m_);
+  int west = std::max(x - step_px, 0), east = std::min(x + step_px, picture_.width_px - 1);
+  int south = std::max(y - step_px, 0), north = std::min(y + step_px, picture_.height_px - 1);
+  west = picture_.is_hole(west, y) ? x : west;
+  east = picture_.is_hole(east, y) ? x : east;
+  south = picture_.is_hole(x, south) ? y : south;
+  north = picture_.is_hole(x, north) ? y : north;
+  const double rise_x = (height_m(west, y) - height_m(east, y)) / (std::max(1, east - west) * step_x_m_);
+  const double rise_y = (height_m(x, south) - height_m(x, north)) / (std::max(1, north - south) * step_y_m_);
   const glm::vec3 n(glm::normalize(glm::dvec3(rise_x, rise_y, 1.0)));
   return n;
 }
@@ -75,7 +79,8 @@ std::vector<int> Terrain::stops(int tile, int pixels, int level) {
 }
 
 /// Largest vertical distance between the pixels and the two triangles over them. Triangles of finer levels
-/// lie within those of coarser ones, so that it is largest at a pixel.
+/// lie within those of coarser ones, so that it is largest at a pixel. A hole makes it so large that no
+/// coarser level is ever fine enough.
 double Terrain::error_of_cell_m(int west, int east, int south, int north) const {
   const double a = height_m(west, south), b = height_m(east, south);
   const double c = height_m(west, north), d = height_m(east, north);
@@ -83,6 +88,9 @@ double Terrain::error_of_cell_m(int west, int east, int south, int north) const 
   for (int y = south; y <= north; ++y) {
     const double v = static_cast<double>(y - south) / (north - south);
     for (int x = west; x <= east; ++x) {
+      if (picture_.is_hole(x, y)) {
+        return 1e9;
+      }
       const double u = static_cast<double>(x - west) / (east - west);
       const double flat_m = u > v ? a + u * (b - a) + v * (d - b) : a + v * (c - a) + u * (d - c);
       error_m = std::max(error_m, std::abs(height_m(x, y) - flat_m));
@@ -150,8 +158,11 @@ TriangleMesh Terrain::mesh(std::size_t tile, const TileDetail& detail) const {
                                         : j;
     return static_cast<std::uint32_t>(y * xs.size() + x);
   };
+  const auto is_hole = [&](std::uint32_t v) {
+    return picture_.is_hole(xs[v % xs.size()], ys[v / xs.size()]);
+  };
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    if (a != b && b != c && c != a) {
+    if (a != b && b != c && c != a && !is_hole(a) && !is_hole(b) && !is_hole(c)) {
       mesh.indices.insert(mesh.indices.end(), {a, b, c});
     }
   };

@@ -18,6 +18,7 @@
 #include <glm/vec4.hpp>
 
 #include "renderer/pose.hpp"
+#include "renderer/scene/geographic_frame.hpp"
 
 namespace sonard::render {
 
@@ -114,7 +115,10 @@ struct MeshDiagnostics {
 
 struct World {
   std::string name;
-  std::vector<Body> bodies;  ///< names are unique
+  /// Where its frame is on Earth, as far as the file or the caller said.
+  std::optional<GeographicOrigin> origin;
+  std::vector<std::string> maps;  ///< what each georeferenced map is, a line each
+  std::vector<Body> bodies;       ///< names are unique
   std::vector<TerrainParts> terrains;
   /// Height of the water surface in the world frame; a sonar above it is out of the water.
   std::optional<double> water_surface_z_m;
@@ -159,11 +163,13 @@ std::vector<std::filesystem::path> model_folders_from_environment();
 /// Relative URIs are resolved against the folder of the file that names them; `model://NAME` is looked for in
 /// the folder of the world, in `models` there and beside it, then in `model_folders`; a model of Fuel is
 /// looked for in Gazebo's local cache. Nothing is fetched from a network. Mesh files are read in forked child
-/// processes: call this before other threads are started.
+/// processes: call this before other threads are started. `origin` takes the place of the file's
+/// <spherical_coordinates>.
 /// @throws WorldError naming file, line and element for each missing mesh, unknown material, ...; of no
 /// triangles
 World load_world(const std::filesystem::path& sdf_file,
                  const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment(),
-                 MissingFiles missing = MissingFiles::error);
+                 MissingFiles missing = MissingFiles::error,
+                 const std::optional<GeographicOrigin>& origin = std::nullopt);
 
 }  // namespace sonard::render

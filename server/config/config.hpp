@@ -16,6 +16,7 @@
 #include "protocol/pose/pose_codec.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/renderer_options.hpp"
+#include "renderer/scene/geographic_frame.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/net/addresses.hpp"
@@ -56,6 +57,7 @@ enum class MavlinkMessages {
   automatic,       ///< ODOMETRY where it comes, else the others
   odometry,        ///< ODOMETRY
   local_position,  ///< LOCAL_POSITION_NED with ATTITUDE or ATTITUDE_QUATERNION
+  global_position  ///< GLOBAL_POSITION_INT with the same
 };
 
 /// A UDP socket that listens to a MAVLink vehicle (docs/simulators/ardusub.md).
@@ -66,6 +68,8 @@ struct MavlinkPoseInput {
   std::uint8_t component_id = 1;  ///< the part of it that is believed, 1..255; 1: the autopilot
   MavlinkMessages messages = MavlinkMessages::automatic;
   render::Pose T_world_local;  ///< where the origin of its positions is, in axes east, north, up
+  /// Where the world is on Earth, for global_position (resolve_mounts() fills it in).
+  std::optional<render::GeographicOrigin> world_origin;
 };
 
 /// A trajectory file played in real time from the start of the daemon.
@@ -191,6 +195,8 @@ struct DaemonConfig {
   LogLevel log_level = LogLevel::info;
   std::filesystem::path world_file;  ///< SDF
   bool skips_missing_files = false;  ///< of the world
+  /// Where the world is on Earth, in the place of what its file says.
+  std::optional<render::GeographicOrigin> origin;
   /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries
   /// the sonars that heads are mounted from (resolve_mounts() fills it in).
   std::string vehicle_model;

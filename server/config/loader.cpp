@@ -81,6 +81,21 @@ void read_world(YamlSection& section, const std::filesystem::path& folder, Daemo
                "model of the world that is the vehicle itself: it moves as the vehicle does, whatever the "
                "pose stream says of a body of this name. Its frame is the vehicle's");
   section.default_is("vehicle_model", "the model with the sonars of `mount.from_world`; without any, none");
+  section.section("origin",
+                  "where the world's (0, 0, 0) is on Earth, in the place of `<spherical_coordinates>` in the "
+                  "file: maps and "
+                  "GLOBAL_POSITION_INT need it ([worlds.md](worlds.md#where-on-earth))",
+                  [&](YamlSection& inner) {
+                    render::GeographicOrigin& origin = config.origin.emplace();
+                    inner.require("latitude_deg", "degrees, WGS 84, north is positive");
+                    inner.require("longitude_deg", "degrees, WGS 84, east is positive");
+                    inner.number("latitude_deg", origin.latitude_deg, Range::from(-90.0, 90.0),
+                                 "WGS 84, north is positive");
+                    inner.number("longitude_deg", origin.longitude_deg, Range::from(-180.0, 180.0),
+                                 "WGS 84, east is positive");
+                    inner.number("altitude_m", origin.altitude_m, Range::from(-12'000.0, 9'000.0),
+                                 "of z = 0 above mean sea level, metres");
+                  });
 }
 
 render::Water properties(const WaterConfig& water) {
@@ -139,8 +154,10 @@ void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
       "messages", mavlink.messages,
       {{"auto", MavlinkMessages::automatic},
        {"odometry", MavlinkMessages::odometry},
-       {"local_position", MavlinkMessages::local_position}},
-      "ODOMETRY, or LOCAL_POSITION_NED with the attitude of its time; `auto`: the first where it comes");
+       {"local_position", MavlinkMessages::local_position},
+       {"global_position", MavlinkMessages::global_position}},
+      "ODOMETRY, or LOCAL_POSITION_NED with the attitude of its time; `auto`: the first where it comes. "
+      "GLOBAL_POSITION_INT with the attitude is for worlds with an `origin`");
   section.section("origin", "where the vehicle's own origin is in the world", [&](YamlSection& inner) {
     read_pose(inner, mavlink.T_world_local,
               "what the vehicle calls (0, 0, 0), in the world (x east, y north, z up), metres",

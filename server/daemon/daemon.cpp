@@ -431,7 +431,7 @@ void Daemon::end(int exit_code) {
 render::World read_world(const DaemonConfig& config) {
   return render::load_world(
       config.world_file, render::model_folders_from_environment(),
-      config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error);
+      config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error, config.origin);
 }
 
 render::World load_world_of(DaemonConfig& config) {
@@ -444,6 +444,14 @@ render::World load_world_of(DaemonConfig& config) {
       throw StartError(
           "world.file", exit_config,
           config.world_file.string() + ": the world has no triangles (expected a surface that echoes)");
+    }
+    if (world.origin) {
+      spdlog::info("world {}: (0, 0, 0) is at latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",
+                   world.name, world.origin->latitude_deg, world.origin->longitude_deg,
+                   world.origin->altitude_m);
+    }
+    for (const std::string& line : world.maps) {
+      spdlog::info("world {}: map {}", world.name, line);
     }
     for (const std::string& line : world.left_out) {
       spdlog::info("world {}: left out: {}", world.name, line);

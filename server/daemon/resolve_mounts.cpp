@@ -48,6 +48,7 @@ class MountResolver {
       }
     }
     name_entity();
+    place_mavlink();
     return std::move(problems_);
   }
 
@@ -100,6 +101,19 @@ class MountResolver {
           "from_world says which model carries the sonars)");
     }
     config_.poses.ignition->vehicle = {config_.vehicle_model, {}};
+  }
+
+  void place_mavlink() {
+    if (!config_.poses.mavlink) {
+      return;
+    }
+    config_.poses.mavlink->world_origin = world_.origin;
+    if (config_.poses.mavlink->messages == MavlinkMessages::global_position && !world_.origin) {
+      problem("poses.mavlink.messages",
+              "global_position needs to know where the world is on Earth (world.origin, or "
+              "<spherical_coordinates> "
+              "in its file)");
+    }
   }
 
   DaemonConfig& config_;

@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <bitset>
+#include <string_view>
 #include <utility>
 
 #include "protocol/mavlink/frames.hpp"
@@ -20,7 +21,8 @@ namespace {
 /// Frames of the vehicle, by what they are good for.
 struct Received {
   std::uint64_t odometry = 0;
-  std::uint64_t position = 0;
+  std::uint64_t local_position = 0;
+  std::uint64_t global_position = 0;
   std::uint64_t attitude = 0;
   std::uint64_t other = 0;
 };
@@ -30,9 +32,40 @@ std::uint64_t& counter_of(const mavlink::Message& message, Received& received) {
     return received.odometry;
   }
   if (std::holds_alternative<mavlink::LocalPositionNed>(message)) {
-    return received.position;
+    return received.local_position;
+  }
+  if (std::holds_alternative<mavlink::GlobalPositionInt>(message)) {
+    return received.global_position;
   }
   return std::holds_alternative<std::monostate>(message) ? received.other : received.attitude;
+}
+
+std::string_view name_of(MavlinkMessages messages) {
+  switch (messages) {
+    case MavlinkMessages::automatic:
+      return "auto";
+    case MavlinkMessages::odometry:
+      return "odometry";
+    case MavlinkMessages::local_position:
+      return "local_position";
+    case MavlinkMessages::global_position:
+      break;
+  }
+  return "global_position";
+}
+
+std::string_view expected_of(MavlinkMessages messages) {
+  switch (messages) {
+    case MavlinkMessages::automatic:
+      return "ODOMETRY, or LOCAL_POSITION_NED and an attitude";
+    case MavlinkMessages::odometry:
+      return "ODOMETRY";
+    case MavlinkMessages::local_position:
+      return "LOCAL_POSITION_NED and an attitude";
+    case MavlinkMessages::global_position:
+      break;
+  }
+  return "GLOBAL_POSITION_INT and an attitude";
 }
 
 }  // namespace
@@ -129,10 +162,12 @@ void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
   }
   missing_said = true;
   spdlog::warn(
-      "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, ATTITUDE or "
-      "ATTITUDE_QUATERNION {}, others {} (expected the first, or the second and the third)",
-      listener.description(), input.system_id, patience.count(), received.odometry, received.position,
-      received.attitude, received.other);
+      "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, GLOBAL_POSITION_INT {}, "
+      "ATTITUDE "
+      "or ATTITUDE_QUATERNION {}, others {} (poses.mavlink.messages is {}: expected {})",
+      listener.description(), input.system_id, patience.count(), received.odometry, received.local_position,
+      received.global_position, received.attitude, received.other, name_of(input.messages),
+      expected_of(input.messages));
 }
 
 void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
@@ -196,7 +231,9 @@ std::string MavlinkPoseSource::received() const {
 
 std::string MavlinkPoseSource::silence_hint() const {
   const Received& received = impl_->received;
-  if (received.odometry + received.position + received.attitude + received.other > 0) {
+  if (received.odometry + received.local_position + received.global_position + received.attitude +
+          received.other >
+      0) {
     return "messages of the vehicle arrive, but none says where it is: ask it for positions and attitudes "
            "(docs/simulators/ardusub.md)";
   }

@@ -55,7 +55,11 @@ std::int64_t boot_ns(std::uint32_t time_boot_ms) {
 }  // namespace
 
 MavlinkPoses::MavlinkPoses(const MavlinkPoseInput& input)
-    : wanted_(input.messages), T_world_local_(to_pose(input.T_world_local)) {}
+    : wanted_(input.messages), T_world_local_(to_pose(input.T_world_local)) {
+  if (wanted_ == MavlinkMessages::global_position) {
+    earth_.emplace(input.world_origin.value());
+  }
+}
 
 std::optional<pose::PoseSample> MavlinkPoses::take(const mavlink::Message& message, TimePoint arrival) {
   return std::visit([&](const auto& content) { return take_message(content, arrival); }, message);
@@ -84,7 +88,7 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Attitu
 }
 
 std::optional<pose::PoseSample> MavlinkPoses::add(std::int64_t time_ns, Heading heading, TimePoint arrival) {
-  if (!pair_is_wanted(arrival)) {
+  if (!attitude_is_wanted(arrival)) {
     ++counters_.not_wanted;
     return std::nullopt;
   }
@@ -115,12 +119,35 @@ std::optional<pose::PoseSample> MavlinkPoses::add(std::int64_t time_ns, Heading 
 
 std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::LocalPositionNed& position,
                                                            TimePoint arrival) {
-  if (!pair_is_wanted(arrival)) {
+  if (!local_position_is_wanted(arrival)) {
     ++counters_.not_wanted;
     return std::nullopt;
   }
-  const Place place{boot_ns(position.time_boot_ms), vec3(position.x, position.y, position.z),
-                    vec3(position.vx, position.vy, position.vz)};
+  return add(Place{boot_ns(position.time_boot_ms), T_world_local_, vec3(position.x, position.y, position.z),
+                   vec3(position.vx, position.vy, position.vz)},
+             arrival);
+}
+
+std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::GlobalPositionInt& position,
+                                                           TimePoint arrival) {
+  if (!earth_) {
+    ++counters_.not_wanted;
+    return std::nullopt;
+  }
+  const double latitude_deg = 1e-7 * position.lat, longitude_deg = 1e-7 * position.lon;
+  if (std::abs(latitude_deg) > 90.0 || std::abs(longitude_deg) > 180.0) {
+    complain(++counters_.bad_value, "GLOBAL_POSITION_INT: no place on Earth");
+    return std::nullopt;
+  }
+  const render::Pose T_world_place = earth_->T_world_place(latitude_deg, longitude_deg, 1e-3 * position.alt);
+  return add(Place{boot_ns(position.time_boot_ms),
+                   to_pose(T_world_place),
+                   {},
+                   {0.01 * position.vx, 0.01 * position.vy, 0.01 * position.vz}},
+             arrival);
+}
+
+std::optional<pose::PoseSample> MavlinkPoses::add(const Place& place, TimePoint arrival) {
   if (observe(boot_clock_, place.time_ns, arrival)) {
     headings_.clear();
     waiting_.reset();
@@ -136,15 +163,15 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::LocalP
 std::optional<pose::PoseSample> MavlinkPoses::joined(const Place& place,
                                                      const std::optional<Heading>& heading) {
   if (!heading) {
-    complain(++counters_.without_attitude, "LOCAL_POSITION_NED without an attitude of its time");
+    complain(++counters_.without_attitude, "a position without an attitude of its time");
     return std::nullopt;
   }
   std::optional<pose::Velocity> twist_frd;
   if (is_speed(place.velocity_ned_mps)) {
     twist_frd = {rotate(conjugate(heading->q_ned_frd), place.velocity_ned_mps), heading->rates_frd_radps};
   }
-  return sample(place.time_ns + boot_clock_.offset_ns.value(), {place.position_ned_m, heading->q_ned_frd},
-                twist_frd);
+  return sample(place.time_ns + boot_clock_.offset_ns.value(), place.T_world_local,
+                {place.position_ned_m, heading->q_ned_frd}, twist_frd);
 }
 
 std::optional<MavlinkPoses::Heading> MavlinkPoses::between(std::int64_t time_ns) const {
@@ -182,9 +209,14 @@ std::optional<MavlinkPoses::Heading> MavlinkPoses::nearest(std::int64_t time_ns)
       heading.rates_frd_radps};
 }
 
-bool MavlinkPoses::pair_is_wanted(TimePoint arrival) const {
+bool MavlinkPoses::attitude_is_wanted(TimePoint arrival) const {
+  return earth_ || local_position_is_wanted(arrival);
+}
+
+bool MavlinkPoses::local_position_is_wanted(TimePoint arrival) const {
   switch (wanted_) {
     case MavlinkMessages::odometry:
+    case MavlinkMessages::global_position:
       return false;
     case MavlinkMessages::local_position:
       return true;
@@ -196,7 +228,7 @@ bool MavlinkPoses::pair_is_wanted(TimePoint arrival) const {
 
 std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odometry& odometry,
                                                            TimePoint arrival) {
-  if (wanted_ == MavlinkMessages::local_position) {
+  if (wanted_ == MavlinkMessages::local_position || earth_) {
     ++counters_.not_wanted;
     return std::nullopt;
   }
@@ -223,7 +255,7 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odomet
       {static_cast<double>(odometry.q[0]), imaginary.x, imaginary.y, imaginary.z}};
   observe(odometry_clock_, time_ns, arrival);
   std::optional<pose::PoseSample> known =
-      sample(time_ns + odometry_clock_.offset_ns.value(), T_local_frd, twist_of(odometry));
+      sample(time_ns + odometry_clock_.offset_ns.value(), T_world_local_, T_local_frd, twist_of(odometry));
   if (known) {
     last_odometry_ = arrival;
     headings_.clear();
@@ -277,7 +309,9 @@ bool MavlinkPoses::observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint
   return restarted;
 }
 
-std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns, pose::Transform T_ned_frd,
+std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns,
+                                                     const pose::Transform& T_world_local,
+                                                     pose::Transform T_ned_frd,
                                                      const std::optional<pose::Velocity>& twist_frd) {
   if (const auto fault = normalize(T_ned_frd); fault != pose::TransformFault::none) {
     complain(++counters_.bad_value, describe(fault));
@@ -285,7 +319,7 @@ std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns, pose:
   }
   pose::PoseSample result;
   result.time_ns = std::clamp(time_ns, -pose::max_time_ns, pose::max_time_ns);
-  result.T_world_vehicle = T_world_local_ * pose::enu_flu_from_ned_frd(T_ned_frd);
+  result.T_world_vehicle = T_world_local * pose::enu_flu_from_ned_frd(T_ned_frd);
   if (twist_frd) {
     result.twist = pose::flu_from_frd(*twist_frd);
   }

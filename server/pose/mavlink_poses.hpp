@@ -11,6 +11,7 @@
 
 #include "protocol/mavlink/messages.hpp"
 #include "protocol/pose/pose_codec.hpp"
+#include "renderer/scene/geographic_frame.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 
@@ -20,18 +21,18 @@ namespace sonard::server {
 struct MavlinkPoseCounters {
   std::uint64_t bad_value = 0;         ///< not finite, no rotation, or out of bounds
   std::uint64_t unknown_frame = 0;     ///< ODOMETRY whose frame_id has no place in the world
-  std::uint64_t without_attitude = 0;  ///< LOCAL_POSITION_NED that no attitude was near enough to
+  std::uint64_t without_attitude = 0;  ///< a position that no attitude was near enough to
   std::uint64_t not_wanted = 0;        ///< of the kind that is not configured, or gives way to ODOMETRY
   std::uint64_t clock_restarts = 0;    ///< the vehicle's clock restarted
 };
 
 /// The messages of one vehicle, one by one; reads no clock and no socket.
 ///
-/// ODOMETRY is a pose by itself. LOCAL_POSITION_NED is one together with the attitude at its time, told by
-/// time_boot_ms: that of a message of the same time, or between two at most `longest_gap` apart on the
-/// shortest arc. A position that is newer than every attitude waits for the next one. When the next position
-/// comes before it, the nearest attitude serves, turned on by its own rates, if it is within `nearest_limit`.
-/// ATTITUDE and ATTITUDE_QUATERNION are worth the same.
+/// ODOMETRY is a pose by itself. LOCAL_POSITION_NED, or GLOBAL_POSITION_INT where that is asked for, is one
+/// together with the attitude at its time, told by time_boot_ms: that of a message of the same time, or
+/// between two at most `longest_gap` apart on the shortest arc. A position that is newer than every attitude
+/// waits for the next one. When the next position comes before it, the nearest attitude serves, turned on by
+/// its own rates, if it is within `nearest_limit`. ATTITUDE and ATTITUDE_QUATERNION are worth the same.
 ///
 /// Time stamps become times of ours by what the clock was when the first message arrived; the clock since
 /// boot and that of ODOMETRY are two. A clock that goes back by more than PoseHistory::reset_threshold has
@@ -64,6 +65,7 @@ class MavlinkPoses {
   };
   struct Place {
     std::int64_t time_ns = 0;
+    pose::Transform T_world_local;  ///< where its north, east and down begin, as east, north, up
     pose::Vec3 position_ned_m;
     pose::Vec3 velocity_ned_mps;
   };
@@ -73,23 +75,28 @@ class MavlinkPoses {
   std::optional<pose::PoseSample> take_message(const mavlink::AttitudeQuaternion& attitude,
                                                TimePoint arrival);
   std::optional<pose::PoseSample> take_message(const mavlink::LocalPositionNed& position, TimePoint arrival);
+  std::optional<pose::PoseSample> take_message(const mavlink::GlobalPositionInt& position, TimePoint arrival);
   std::optional<pose::PoseSample> take_message(const mavlink::Odometry& odometry, TimePoint arrival);
 
   std::optional<pose::PoseSample> add(std::int64_t boot_ns, Heading heading, TimePoint arrival);
+  std::optional<pose::PoseSample> add(const Place& place, TimePoint arrival);
   std::optional<pose::PoseSample> joined(const Place& place, const std::optional<Heading>& heading);
   std::optional<Heading> between(std::int64_t time_ns) const;
   std::optional<Heading> nearest(std::int64_t time_ns) const;
-  bool pair_is_wanted(TimePoint arrival) const;
+  bool attitude_is_wanted(TimePoint arrival) const;
+  bool local_position_is_wanted(TimePoint arrival) const;
   /// True when it began again.
   bool observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint arrival);
-  /// Checked, converted, and put where `origin` says; nullopt, counted, when it means nothing.
-  std::optional<pose::PoseSample> sample(std::int64_t time_ns, pose::Transform T_ned_frd,
+  /// Checked and converted; nullopt, counted, when it means nothing.
+  std::optional<pose::PoseSample> sample(std::int64_t time_ns, const pose::Transform& T_world_local,
+                                         pose::Transform T_ned_frd,
                                          const std::optional<pose::Velocity>& twist_frd);
   std::optional<pose::Velocity> twist_of(const mavlink::Odometry& odometry);
   void complain(std::uint64_t count, const std::string& problem) const;
 
   MavlinkMessages wanted_;
   pose::Transform T_world_local_;
+  std::optional<render::GeographicFrame> earth_;
   VehicleClock boot_clock_, odometry_clock_;
   std::map<std::int64_t, Heading> headings_;  // by the vehicle's time since boot
   std::optional<Place> waiting_;

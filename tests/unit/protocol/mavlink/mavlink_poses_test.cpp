@@ -20,6 +20,7 @@ namespace {
 
 using mavlink::Attitude;
 using mavlink::AttitudeQuaternion;
+using mavlink::GlobalPositionInt;
 using mavlink::LocalPositionNed;
 using mavlink::MavFrame;
 using mavlink::Odometry;
@@ -282,6 +283,51 @@ TEST_F(MavlinkPosesTest, ASpeedThatIsNotKnownIsNone) {
   take(Attitude{10, 0, 0, 0, nan, nan, nan});
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_FALSE(samples[0].twist);
+}
+
+/// Metres to a degree of latitude and of longitude on WGS 84, by the radii of curvature of its ellipsoid.
+Vec3 metres_per_degree(double latitude_deg) {
+  constexpr double a_m = 6378137.0, e2 = 0.00669437999014;
+  const double latitude = latitude_deg * std::numbers::pi / 180.0;
+  const double root = std::sqrt(1.0 - e2 * std::sin(latitude) * std::sin(latitude));
+  return {a_m / root * std::cos(latitude) * std::numbers::pi / 180.0,
+          a_m * (1.0 - e2) / (root * root * root) * std::numbers::pi / 180.0, 0};
+}
+
+TEST_F(MavlinkPosesTest, AGlobalPositionIsMetresEastAndNorthOfTheOriginOfTheWorld) {
+  MavlinkPoseInput input;
+  input.messages = MavlinkMessages::global_position;
+  input.world_origin = {45.0, 10.0, 100.0};
+  use(input);
+  take(Attitude{10, 0, 0, quarter});
+  take(GlobalPositionInt{10, 450010000, 99990000, 95000, 100, 0, 50});
+  ASSERT_EQ(samples.size(), 1U);
+  const Vec3 per_degree = metres_per_degree(45.0);
+  const Vec3& p = samples[0].T_world_vehicle.position_m;
+  EXPECT_NEAR(p.x, -1e-3 * per_degree.x, 5e-3);
+  EXPECT_NEAR(p.y, 1e-3 * per_degree.y, 5e-3);
+  EXPECT_NEAR(p.z, -5.0, 5e-3);
+  // Heads east, at 1 m/s to the north and 0.5 m/s down: to port, and down.
+  EXPECT_NEAR(range_ahead_m(samples[0], east, 0), 1e-3 * per_degree.x, 1e-2);
+  EXPECT_THAT(samples[0].twist->linear_mps, IsVec3(Vec3{0, 1, -0.5}, 1e-6));
+}
+
+TEST_F(MavlinkPosesTest, OnlyTheKindOfPositionThatIsAskedForCounts) {
+  take(Attitude{10});
+  take(GlobalPositionInt{10, 450000000, 100000000});
+  EXPECT_EQ(samples.size(), 0U);
+  EXPECT_EQ(poses.counters().not_wanted, 1U);
+  MavlinkPoseInput input;
+  input.messages = MavlinkMessages::global_position;
+  input.world_origin = {45.0, 10.0, 0.0};
+  use(input);
+  take(Attitude{10});
+  take(LocalPositionNed{10});
+  take(Odometry{});
+  take(GlobalPositionInt{10, 910000000, 100000000});
+  EXPECT_EQ(samples.size(), 0U);
+  EXPECT_EQ(poses.counters().not_wanted, 2U);
+  EXPECT_EQ(poses.counters().bad_value, 1U);
 }
 
 }  // namespace

@@ -55,6 +55,31 @@ TEST(MavlinkMessages, LocalPositionNed) {
   }
 }
 
+TEST(MavlinkMessages, GlobalPositionInt) {
+  Bytes payload;
+  append(payload, std::uint32_t{123456});
+  append(payload, std::int32_t{473977418});
+  append(payload, std::int32_t{-85455939});
+  append(payload, std::int32_t{-30250});
+  append(payload, std::int32_t{77});  // relative_alt
+  append(payload, std::int16_t{-120});
+  append(payload, std::int16_t{50});
+  append(payload, std::int16_t{3});
+  append(payload, std::uint16_t{9000});  // hdg
+  ASSERT_EQ(payload.size(), 28U);
+  const std::uint8_t seed = test::mavlink_seed("GLOBAL_POSITION_INT", {{"uint32_t", "time_boot_ms"},
+                                                                       {"int32_t", "lat"},
+                                                                       {"int32_t", "lon"},
+                                                                       {"int32_t", "alt"},
+                                                                       {"int32_t", "relative_alt"},
+                                                                       {"int16_t", "vx"},
+                                                                       {"int16_t", "vy"},
+                                                                       {"int16_t", "vz"},
+                                                                       {"uint16_t", "hdg"}});
+  EXPECT_EQ(content_of<GlobalPositionInt>(test::mavlink_frame(33, seed, payload)),
+            (GlobalPositionInt{123456, 473977418, -85455939, -30250, -120, 50, 3}));
+}
+
 TEST(MavlinkMessages, Attitude) {
   Bytes payload;
   append(payload, std::uint32_t{99});

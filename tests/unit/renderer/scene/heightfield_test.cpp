@@ -29,10 +29,10 @@ TEST(GreyImage, ReadsSixteenBits) {
 }
 
 // Lowest -31.5 and -31 m, highest -26.5 and -26: 65535 / 5 = 13107 a metre.
-TEST(GreyImage, ReadsElevationsOfGeoTiffs) {
-  EXPECT_THAT(load_grey_image(data / "elevation_f32.tif").value,
+TEST(ElevationMap, ReadsElevationsOfTiffs) {
+  EXPECT_THAT(load_elevation_map(data / "elevation_f32.tif").picture.value,
               ElementsAre(45875, 55705, 65535, 0, 19661, 32768));  // 3.5, 4.25, 5; 0, 1.5, 2.5 m
-  EXPECT_THAT(load_grey_image(data / "elevation_i16.tif").value,
+  EXPECT_THAT(load_elevation_map(data / "elevation_i16.tif").picture.value,
               ElementsAre(39321, 52428, 65535, 0, 13107, 26214));
 }
 
