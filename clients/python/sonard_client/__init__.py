@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pings of an imaging sonar as NumPy arrays.
+"""Pings of an imaging sonar as NumPy arrays, and poses for sonard.
 
     from sonard_client import Gemini
 
@@ -12,5 +12,6 @@ from .gemini import Gemini
 from .mcap_log import LoggedPing, read_log
 from .micron import Micron
 from .ping import NoHead, NoPing, Ping
+from .poses import PosePublisher, encode_pose
 
-__all__ = ["Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Ping", "read_log"]
+__all__ = ["Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Ping", "PosePublisher", "encode_pose", "read_log"]

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Poses for sonard as messages of protocol/pose/pose.proto, written by hand so that no protobuf library is needed.
+
+Numbers of fields are those of pose.proto; the limits are those of sonard, which refuses what lies beyond them.
+"""
+
+from __future__ import annotations
+
+import math
+import socket
+import struct
+from typing import Optional, Sequence
+
+_FRAMES = {"enu_flu": 0, "ned_frd": 1}
+_MAX_TIME_NS = 4 * 10**18
+_MAX_COORDINATE_M = 1e8
+_MAX_SPEED = 1e6  # m/s and rad/s
+_MIN_NORM, _MAX_NORM = 1e-3, 1e3
+
+
+def _varint(value: int) -> bytes:
+    value &= (1 << 64) - 1  # protobuf writes negative numbers as their two's complement in 64 bits
+    data = bytearray()
+    while value > 0x7F:
+        data.append(value & 0x7F | 0x80)
+        value >>= 7
+    data.append(value)
+    return bytes(data)
+
+
+def _varint_field(number: int, value: int) -> bytes:
+    return _varint(number << 3) + _varint(value)
+
+
+def _message_field(number: int, body: bytes) -> bytes:
+    return _varint(number << 3 | 2) + _varint(len(body)) + body
+
+
+def _doubles(values: Sequence[float]) -> bytes:
+    """A message whose fields 1, 2, 3, ... are doubles."""
+    return b"".join(_varint(number << 3 | 1) + struct.pack("<d", value) for number, value in enumerate(values, 1))
+
+
+def _vector(name: str, values: Sequence[float], highest: float) -> bytes:
+    numbers = [float(value) for value in values]
+    # Not a number is no more than anything.
+    if len(numbers) != 3 or not all(abs(number) <= highest for number in numbers):
+        raise ValueError(f"{name} is {numbers}, expected three numbers within {highest:g}")
+    return _doubles(numbers)
+
+
+def _quaternion(values: Sequence[float]) -> bytes:
+    numbers = [float(value) for value in values]
+    if len(numbers) != 4 or not _MIN_NORM <= math.hypot(*numbers) <= _MAX_NORM:
+        raise ValueError(f"quaternion_xyzw is {numbers}, expected four numbers whose norm is within "
+                         f"{_MIN_NORM:g} to {_MAX_NORM:g}")
+    x, y, z, w = numbers
+    return _doubles((w, x, y, z))
+
+
+def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequence[float],
+                linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
+                axes: str = "enu_flu") -> bytes:
+    """One PoseUpdate of the vehicle.
+
+    time_ns          when the pose was true, on any clock of the publisher
+    position_m       of the vehicle's origin in the world
+    quaternion_xyzw  takes vectors from the vehicle's axes to the world's; it need not be of unit length
+    linear_mps, angular_radps
+                     velocities in the vehicle's axes. One alone: the other is 0. None of both: the pose holds until
+                     the next one
+    axes             enu_flu: world x east, y north, z up, vehicle x forward, y to port, z up, as in ROS;
+                     ned_frd: world x north, y east, z down, vehicle x forward, y to starboard, z down
+
+    Raises ValueError, which names the argument, where sonard would refuse a number.
+    """
+    if not -_MAX_TIME_NS <= time_ns <= _MAX_TIME_NS:
+        raise ValueError(f"time_ns is {time_ns}, expected a number within 4e18")
+    if axes not in _FRAMES:
+        raise ValueError(f"axes is '{axes}', expected enu_flu or ned_frd")
+    vehicle = _message_field(1, _vector("position_m", position_m, _MAX_COORDINATE_M)) + \
+        _message_field(2, _quaternion(quaternion_xyzw))
+    update = _varint_field(1, time_ns) + _varint_field(2, _FRAMES[axes]) + _message_field(3, vehicle)
+    twist = b""
+    if linear_mps is not None:
+        twist += _message_field(1, _vector("linear_mps", linear_mps, _MAX_SPEED))
+    if angular_radps is not None:
+        twist += _message_field(2, _vector("angular_radps", angular_radps, _MAX_SPEED))
+    return update + _message_field(4, twist) if twist else update
+
+
+class PosePublisher:
+    """Sends poses to sonard by UDP (`poses.udp.bind` of its configuration). One thread at a time."""
+
+    def __init__(self, host: str = "127.0.0.1", port: int = 14600) -> None:
+        self._receiver = (host, port)
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def __enter__(self) -> PosePublisher:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def send(self, time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequence[float],
+             linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
+             axes: str = "enu_flu") -> None:
+        """One pose, as encode_pose() takes it; 20 a second or more. Raises OSError where the host has no address or
+        no route; whether sonard listens there is not known."""
+        self._socket.sendto(encode_pose(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, axes),
+                            self._receiver)
+
+    def close(self) -> None:
+        self._socket.close()

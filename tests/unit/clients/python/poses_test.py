@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""sonard_client.poses against the module that protobuf generates from protocol/pose/pose.proto.
+
+    poses_test.py --modules DIR [Encoding.test_name ...]
+"""
+
+import argparse
+import math
+import os
+import socket
+import sys
+import unittest
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "..", ".."))
+sys.path.insert(0, os.path.join(SOURCE, "clients", "python"))
+
+from sonard_client import PosePublisher, encode_pose  # noqa: E402
+
+POSITION_M, QUATERNION_XYZW = (1.5, -2.25, -30.0), (0.1, -0.2, 0.3, 0.9)
+
+
+def decoded(*arguments, **named):
+    import pose_pb2
+    return pose_pb2.PoseUpdate.FromString(encode_pose(*arguments, **named))
+
+
+def numbers(message, names="xyz"):
+    return tuple(getattr(message, name) for name in names)
+
+
+class Encoding(unittest.TestCase):
+    def test_a_pose_alone(self):
+        update = decoded(1_700_000_000_123_456_789, POSITION_M, QUATERNION_XYZW)
+        self.assertEqual(update.time_ns, 1_700_000_000_123_456_789)
+        self.assertEqual(update.frame, 0)
+        self.assertEqual(numbers(update.vehicle.position_m), POSITION_M)
+        self.assertEqual(numbers(update.vehicle.orientation, "xyzw"), QUATERNION_XYZW)
+        self.assertFalse(update.HasField("twist"), "left out, the pose holds")
+        self.assertEqual(len(update.bodies), 0)
+        self.assertEqual(len(update.SerializeToString()), len(encode_pose(1_700_000_000_123_456_789, POSITION_M,
+                                                                        QUATERNION_XYZW)) - 2, "but the frame, which is 0")
+
+    def test_times(self):
+        for time_ns in (0, 1, 127, 128, 2**32, 4 * 10**18, -1, -128, -10**9, -4 * 10**18):
+            with self.subTest(time_ns):
+                self.assertEqual(decoded(time_ns, POSITION_M, QUATERNION_XYZW).time_ns, time_ns)
+
+    def test_axes(self):
+        import pose_pb2
+        self.assertEqual(decoded(1, POSITION_M, QUATERNION_XYZW, axes="enu_flu").frame, pose_pb2.FRAME_ENU_FLU)
+        self.assertEqual(decoded(1, POSITION_M, QUATERNION_XYZW, axes="ned_frd").frame, pose_pb2.FRAME_NED_FRD)
+
+    def test_velocities(self):
+        twist = decoded(1, POSITION_M, QUATERNION_XYZW, (0.5, -1, 2), (3, 4, -5)).twist
+        self.assertEqual((numbers(twist.linear_mps), numbers(twist.angular_radps)), ((0.5, -1, 2), (3, 4, -5)))
+        for names in ({"linear_mps": (0.5, -1, 2)}, {"angular_radps": (0.5, -1, 2)}):
+            with self.subTest(names):
+                update = decoded(1, POSITION_M, QUATERNION_XYZW, **names)
+                self.assertTrue(update.HasField("twist"))
+                for name in ("linear_mps", "angular_radps"):
+                    self.assertEqual(numbers(getattr(update.twist, name)), names.get(name, (0, 0, 0)))
+
+    def test_what_sonard_refuses(self):
+        good = {"time_ns": 1, "position_m": (1, 2, 3), "quaternion_xyzw": (0, 0, 0, 1), "linear_mps": (0, 0, 0),
+                "angular_radps": (0, 0, 0), "axes": "enu_flu"}
+        encode_pose(**good)
+        bad = {"time_ns": (4 * 10**18 + 1, -4 * 10**18 - 1),
+               "position_m": ((math.nan, 0, 0), (0, math.inf, 0), (0, 0, -1.1e8), (0, 0), (0, 0, 0, 0)),
+               "quaternion_xyzw": ((0, 0, 0, 0), (0, 0, 0, 1001), (0, math.nan, 0, 1), (math.inf, 0, 0, 0), (0, 0, 1)),
+               "linear_mps": ((math.nan, 0, 0), (0, 1.1e6, 0), (0, 0)), "angular_radps": ((0, 0, -math.inf), (0, 0, 1.1e6)),
+               "axes": ("flu", "")}
+        for name, values in bad.items():
+            for value in values:
+                with self.subTest(name, value=value), self.assertRaisesRegex(ValueError, f"^{name} is "):
+                    encode_pose(**{**good, name: value})
+
+    def test_publisher(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sonard:
+            sonard.bind(("127.0.0.1", 0))
+            sonard.settimeout(5)
+            with PosePublisher("127.0.0.1", sonard.getsockname()[1]) as poses:
+                poses.send(7, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd")
+            self.assertEqual(sonard.recv(2048), encode_pose(7, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--modules", required=True, help="folder of pose_pb2.py")
+    options, rest = parser.parse_known_args()
+    sys.path.insert(0, os.path.abspath(options.modules))
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()
