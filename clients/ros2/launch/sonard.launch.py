@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Both nodes: poses to sonard, and the pings of its head back. Each of their parameters is an argument.
+
+    ros2 launch sonard_ros2 sonard.launch.py topic:=/rov/odometry range_m:=30
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from sonard_ros2 import parameters
+
+
+def _argument(parameter):
+    return DeclareLaunchArgument(parameter.name, default_value=str(parameter.default), description=parameter.meaning)
+
+
+def _value(parameter):
+    """A text stays one, even "1"; what else is given is a number, read as YAML."""
+    value_type = str if isinstance(parameter.default, str) else None
+    return ParameterValue(LaunchConfiguration(parameter.name), value_type=value_type)
+
+
+def _node(executable, its_parameters):
+    values = {parameter.name: _value(parameter) for parameter in its_parameters}
+    return Node(package="sonard_ros2", executable=executable, name=executable, output="screen", parameters=[values])
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        *map(_argument, parameters.POSE_BRIDGE + parameters.SONAR_BRIDGE),
+        _node("pose_bridge", parameters.POSE_BRIDGE),
+        _node("sonar_bridge", parameters.SONAR_BRIDGE),
+    ])

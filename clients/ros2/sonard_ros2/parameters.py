@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of both nodes. The launch file has an argument for each; docs/simulators/ros2.md lists them."""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Optional, Sequence, Union
+
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.node import Node
+
+Value = Union[str, int, float]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Numbers are within `lowest` to `highest`, texts one of `choices`, where these are given. The names of both nodes
+    differ, so that the arguments of one launch file can have them."""
+
+    name: str
+    default: Value
+    meaning: str
+    lowest: Optional[float] = None
+    highest: Optional[float] = None
+    choices: Sequence[Value] = ()
+
+    def checked(self, value: Value) -> Value:
+        """The value, in the type of the default. Raises ValueError where it is none that is meant."""
+        if self.choices and value not in self.choices:
+            raise ValueError(f"parameter {self.name} is '{value}', expected {' or '.join(map(str, self.choices))}")
+        if self.lowest is not None and self.highest is not None:
+            is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+            if not is_number or not self.lowest <= float(value) <= self.highest:
+                raise ValueError(f"parameter {self.name} is {value}, expected a number from {self.lowest:g} to {self.highest:g}")
+        return type(self.default)(value)
+
+
+POSE_BRIDGE = (
+    Parameter("source", "odometry", "where poses come from", choices=("odometry", "pose", "tf")),
+    Parameter("topic", "/odom", "of nav_msgs/Odometry, or of geometry_msgs/PoseStamped with source pose"),
+    Parameter("world_frame", "world", "the frame that is sonard's world"),
+    Parameter("base_frame", "base_link", "the vehicle's frame; source tf alone"),
+    Parameter("rate_hz", 50.0, "how often tf is asked; source tf alone", 1.0, 1000.0),
+    Parameter("axes", "enu_flu", "ned_frd where z points down", choices=("enu_flu", "ned_frd")),
+    Parameter("host", "127.0.0.1", "where sonard listens for poses"),
+    Parameter("port", 14600, "the UDP port there", 1, 65535),
+)
+
+SONAR_BRIDGE = (
+    Parameter("device", "gemini", "the kind of head", choices=("gemini", "micron")),
+    Parameter("frame_id", "sonar", "the head's frame: x ahead, y to port, z up"),
+    Parameter("range_m", 20.0, "range of the pings", 1.0, 150.0),
+    Parameter("gain_percent", 50.0, "gain of the head", 0.0, 100.0),
+    Parameter("sound_speed_mps", 1500.0, "speed of sound from which ranges follow", 1400.0, 1600.0),
+    Parameter("interval_s", 0.1, "from ping to ping; Gemini", 0.01, 60.0),
+    Parameter("compression", 1, "2^n range lines are averaged into one; Gemini", 0, 4),
+    Parameter("bits", 8, "of a sample; Gemini", choices=(8, 16)),
+    Parameter("sonar_id", 0, "of the head; 0: the first whose status arrives; Gemini", 0, 65535),
+    Parameter("local", "", "address of this machine to talk from; empty: the one that routes to the head; Gemini"),
+    Parameter("micron_host", "127.0.0.1", "the Micron's device server"),
+    Parameter("micron_port", 4001, "the TCP port there", 1, 65535),
+    Parameter("step_deg", 1.8, "from line to line; Micron", 0.06, 14.3),
+    Parameter("bins", 400, "of a line; Micron", 20, 1500),
+)
+
+
+def declare(node: Node, parameters: Sequence[Parameter]) -> SimpleNamespace:
+    """Their values, by name. They are read at the start alone, so ROS is told to refuse later changes. A whole number will
+    do for one with decimals. Raises ValueError."""
+    values = {}
+    for parameter in parameters:
+        descriptor = ParameterDescriptor(description=parameter.meaning, read_only=True,
+                                         dynamic_typing=isinstance(parameter.default, float))
+        value = node.declare_parameter(parameter.name, parameter.default, descriptor).value
+        values[parameter.name] = parameter.checked(value)
+    return SimpleNamespace(**values)
