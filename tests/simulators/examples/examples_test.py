@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Poses in the axes of other simulators, through the examples of clients/examples, up to ranges in the image.
+"""Poses in the axes of other simulators, through the publishers of clients/examples and clients/ros2, up to ranges in the image.
 
     examples_test.py --programs DIR --modules DIR [--unity FILE] [Examples.test_name ...]
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Stands in for ROS 2 and for HoloOcean: 50 messages a second, or a few, through the example for it.
+"""Stands in for ROS 2 and for HoloOcean: 50 messages a second, or a few, through its publisher for sonard.
 
     python_simulators.py ros2|holoocean PORT COUNT X Y Z ROLL PITCH YAW VX VY VZ WX WY WZ      COUNT 0: until it is ended
 
@@ -13,24 +13,26 @@ import os
 import socket
 import sys
 import time
-from types import SimpleNamespace
 
-EXAMPLES = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "..", "clients", "examples"))
-
-
-def parts(names, values):
-    return SimpleNamespace(**dict(zip(names, values)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+HOLOOCEAN = os.path.join(HERE, "..", "..", "..", "clients", "examples", "holoocean")
+STAND_INS = os.path.join(HERE, "..", "ros2")
 
 
 def odometry(seconds, position, angles, velocity, turn_rate):
+    from ros2_messages import CLASSES
     (cr, cp, cy), (sr, sp, sy) = ([function(angle / 2) for angle in angles] for function in (math.cos, math.sin))
-    orientation = parts("wxyz", (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
-                                 cr * cp * sy - sr * sp * cy))
-    stamp = SimpleNamespace(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
-    return SimpleNamespace(header=SimpleNamespace(stamp=stamp, frame_id="world"), child_frame_id="base_link",
-                           pose=SimpleNamespace(pose=SimpleNamespace(position=parts("xyz", position), orientation=orientation)),
-                           twist=SimpleNamespace(twist=SimpleNamespace(linear=parts("xyz", velocity),
-                                                                       angular=parts("xyz", turn_rate))))
+    orientation = (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+                   cr * cp * sy - sr * sp * cy)
+    message = CLASSES["nav_msgs/Odometry"](child_frame_id="base_link")
+    message.header.frame_id = "world"
+    message.header.stamp.sec, message.header.stamp.nanosec = int(seconds), int(seconds % 1 * 1e9)
+    pose, twist = message.pose.pose, message.twist.twist
+    for vector, names, values in ((pose.position, "xyz", position), (pose.orientation, "wxyz", orientation),
+                                  (twist.linear, "xyz", velocity), (twist.angular, "xyz", turn_rate)):
+        for name, value in zip(names, values):
+            setattr(vector, name, value)
+    return message
 
 
 def state(seconds, position, angles, velocity, turn_rate):
@@ -53,28 +55,15 @@ def states(count, numbers, observe):
 
 
 def run_ros2(port, messages):
-    """The node itself, with the few names of rclpy that it takes."""
-    class Node:
-        def __init__(self, name):
-            self.name = name
-
-        def declare_parameter(self, name, default):
-            return SimpleNamespace(value=port if name == "port" else default)
-
-        def create_subscription(self, kind, topic, callback, qos):
-            self.callback = callback
-
-        def get_logger(self):
-            return SimpleNamespace(info=print, error=lambda text, throttle_duration_sec: print(text))
-
-    def spin(node):
-        for message in messages:
-            node.callback(message)
-
-    sys.modules.update({"rclpy": SimpleNamespace(init=lambda: None, spin=spin), "rclpy.node": SimpleNamespace(Node=Node),
-                        "rclpy.qos": SimpleNamespace(qos_profile_sensor_data=None),
-                        "nav_msgs": SimpleNamespace(), "nav_msgs.msg": SimpleNamespace(Odometry=None)})
-    import sonard_bridge  # noqa: F401
+    """The node of clients/ros2, with stand-ins for rclpy."""
+    from ros2_stand_ins import ros
+    ros.reset(port=port)
+    ros.echo = True
+    from sonard_ros2.pose_bridge import PoseBridge
+    node = PoseBridge()
+    for message in messages:
+        ros.publish("/odom", message)
+    node.destroy_node()
 
 
 def run_holoocean(port, messages):
@@ -86,7 +75,7 @@ def run_holoocean(port, messages):
 
 def main():
     simulator, port, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    sys.path.insert(0, os.path.join(EXAMPLES, simulator))
+    sys.path[:0] = [HOLOOCEAN, STAND_INS]
     observe, run = {"ros2": (odometry, run_ros2), "holoocean": (state, run_holoocean)}[simulator]
     run(port, states(count, [float(text) for text in sys.argv[4:]], observe))
 

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The few names of rclpy, tf2_ros, launch and launch_ros that clients/ros2 uses. Import this before sonard_ros2.
+
+One "ROS" for the process: `ros.parameters` are those that a node is started with, `ros.published` what was published by
+topic, `ros.log` what was logged, and publish() hands a message to the subscribers of a topic.
+"""
+
+import inspect
+import os
+import signal
+import sys
+import threading
+import time
+from types import ModuleType, SimpleNamespace
+
+from ros2_messages import CLASSES
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+sys.path[:0] = [os.path.join(SOURCE, "clients", "ros2"), os.path.join(SOURCE, "clients", "python")]
+
+
+class ExternalShutdownException(Exception):
+    pass
+
+
+class TransformException(Exception):
+    pass
+
+
+class InvalidParameterTypeException(Exception):
+    pass
+
+
+class Ros:
+    def __init__(self):
+        self.news = threading.Condition()
+        self.stopped = threading.Event()
+        self.echo = False  # log lines are printed, too
+        self.reset()
+
+    def reset(self, **parameters):
+        self.parameters = parameters
+        self.published, self.log, self.subscriptions, self.timers, self.transforms = {}, [], {}, [], {}
+        self.live_nodes = 0
+        self.declared = {}
+        self.stopped.clear()
+
+    def add(self, topic, message):
+        with self.news:
+            self.published.setdefault(topic, []).append(message)
+            self.news.notify_all()
+
+    def say(self, level, text):
+        with self.news:
+            self.log.append((level, text))
+            self.news.notify_all()
+        if self.echo:
+            print(f"[{level}] {text}", flush=True)
+
+    def wait(self, condition, seconds):
+        """What condition() returns, once it is true; fails after `seconds`."""
+        with self.news:
+            if not self.news.wait_for(condition, seconds):
+                raise AssertionError(f"nothing within {seconds} s; the log has {self.log}, "
+                                     f"topics have {({topic: len(all_) for topic, all_ in self.published.items()})}")
+            return condition()
+
+    def publish(self, topic, message):
+        kind, callback, _ = self.subscriptions[topic]
+        assert isinstance(message, kind), f"{topic} is of {kind}"
+        callback(message)
+
+
+ros = Ros()
+
+
+class Time:
+    def __init__(self, *, nanoseconds=0):
+        assert isinstance(nanoseconds, int)
+        if nanoseconds < 0:
+            raise ValueError("nanoseconds must not be negative")
+        self.nanoseconds = nanoseconds
+
+    def to_msg(self):
+        return CLASSES["builtin_interfaces/Time"](sec=self.nanoseconds // 10**9, nanosec=self.nanoseconds % 10**9)
+
+
+class Publisher:
+    def __init__(self, kind, topic):
+        self._kind, self._topic = kind, topic
+
+    def publish(self, message):
+        assert not ros.stopped.is_set(), "publish() after shutdown"
+        assert isinstance(message, self._kind), f"{self._topic} is of {self._kind}"
+        ros.add(self._topic, message)
+
+
+class Logger:
+    def info(self, text):
+        ros.say("info", text)
+
+    def error(self, text, *, throttle_duration_sec=None):
+        ros.say("error", text)
+
+
+class Node:
+    def __init__(self, name):
+        self.name = name
+        self.context = SimpleNamespace(ok=lambda: not ros.stopped.is_set())
+        ros.live_nodes += 1
+
+    def declare_parameter(self, name, default, descriptor):
+        assert isinstance(descriptor, CLASSES["rcl_interfaces/ParameterDescriptor"])
+        assert name not in ros.declared, f"{name} is declared twice"
+        ros.declared[name] = default
+        value = ros.parameters.get(name, default)
+        if type(value) is not type(default) and not descriptor.dynamic_typing:
+            raise InvalidParameterTypeException(f"{name} is {value!r}, expected {type(default)}")
+        return SimpleNamespace(value=value)
+
+    def create_subscription(self, kind, topic, callback, qos):
+        ros.subscriptions[topic] = (kind, callback, qos)
+
+    def create_publisher(self, kind, topic, qos):
+        ros.published.setdefault(topic, [])
+        return Publisher(kind, topic)
+
+    def create_timer(self, period_s, callback):
+        ros.timers.append((period_s, callback))
+
+    def get_clock(self):
+        return SimpleNamespace(now=lambda: Time(nanoseconds=time.time_ns()))
+
+    def get_logger(self):
+        return Logger()
+
+    def destroy_node(self):
+        ros.live_nodes -= 1
+
+
+class Buffer:
+    def lookup_transform(self, target_frame, source_frame, when):
+        assert isinstance(when, Time) and when.nanoseconds == 0, "the newest"
+        if (target_frame, source_frame) not in ros.transforms:
+            raise TransformException(f'"{source_frame}" is not connected to "{target_frame}"')
+        return ros.transforms[target_frame, source_frame]
+
+
+class StaticTransformBroadcaster:
+    def __init__(self, node):
+        self._publisher = node.create_publisher(CLASSES["geometry_msgs/TransformStamped"], "/tf_static", 1)
+
+    def sendTransform(self, transform):  # noqa: N802: as tf2_ros has it
+        self._publisher.publish(transform)
+
+
+def _spin(node):
+    """As rclpy does: SIGINT and SIGTERM shut ROS down, which ends this."""
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: ros.stopped.set())
+    while not ros.stopped.wait(0.02):
+        pass
+    raise ExternalShutdownException
+
+
+class _Made:
+    """An action or substitution of launch: what it was made with, after a look at the names of its arguments."""
+
+    def __init__(self, *arguments, **named):
+        known = inspect.signature(self.signature).parameters
+        assert set(named) <= set(known), f"{type(self).__name__} does not know {set(named) - set(known)}"
+        self.__dict__.update(zip(known, arguments))
+        self.__dict__.update(named)
+
+
+class LaunchDescription(_Made):
+    @staticmethod
+    def signature(entities):
+        pass
+
+
+class DeclareLaunchArgument(_Made):
+    @staticmethod
+    def signature(name, default_value, description, choices):
+        pass
+
+
+class LaunchConfiguration(_Made):
+    @staticmethod
+    def signature(variable_name):
+        pass
+
+
+class LaunchedNode(_Made):
+    @staticmethod
+    def signature(package, executable, name, namespace, parameters, remappings, output):
+        pass
+
+
+class ParameterValue(_Made):
+    @staticmethod
+    def signature(value, value_type):
+        pass
+
+
+def _install(**modules):
+    for name, members in modules.items():
+        name = name.replace("__", ".")
+        module = sys.modules.setdefault(name, ModuleType(name))
+        module.__dict__.update(members)
+
+
+SENSOR_DATA = "best effort, depth 5"
+
+_install(
+    rclpy={"init": lambda args=None: None, "spin": _spin, "try_shutdown": ros.stopped.set},
+    rclpy__node={"Node": Node}, rclpy__time={"Time": Time},
+    rclpy__executors={"ExternalShutdownException": ExternalShutdownException},
+    rclpy__qos={"qos_profile_sensor_data": SENSOR_DATA},
+    tf2_ros={"Buffer": Buffer, "TransformException": TransformException, "TransformListener": lambda buffer, node: None,
+             "StaticTransformBroadcaster": StaticTransformBroadcaster},
+    launch={"LaunchDescription": LaunchDescription},
+    launch__actions={"DeclareLaunchArgument": DeclareLaunchArgument},
+    launch__substitutions={"LaunchConfiguration": LaunchConfiguration},
+    launch_ros={}, launch_ros__actions={"Node": LaunchedNode},
+    launch_ros__parameter_descriptions={"ParameterValue": ParameterValue})
