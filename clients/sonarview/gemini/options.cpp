@@ -28,8 +28,9 @@ Ipv4 address_of(const std::string& option, const std::string& text) {
 }  // namespace
 
 void GeminiArguments::declare_link(CLI::App& app) {
-  app.add_option("--surface-address", topside_address_, "Local address that commands leave from, port 52901")
-      ->capture_default_str()
+  app.add_option(
+         "--surface-address", topside_address_,
+         "Local address that commands leave from, port 52901; default: the one that routes to the head")
       ->group("Link");
   app.add_option("--bind", bind_address_, "Local address on which reports arrive, port 52900")
       ->capture_default_str()
@@ -128,10 +129,12 @@ GeminiArguments::GeminiArguments(CLI::App& app) {
 
 GeminiOptions GeminiArguments::options() const {
   GeminiOptions options = options_;
-  options.topside_address = address_of("--surface-address", topside_address_);
   options.bind_address = address_of("--bind", bind_address_);
-  if (options.topside_address == 0) {
-    throw CLI::ValidationError("--surface-address", "must name one address of this machine");
+  if (!topside_address_.empty()) {
+    options.topside_address = address_of("--surface-address", topside_address_);
+    if (options.topside_address == 0) {
+      throw CLI::ValidationError("--surface-address", "must name one address of this machine");
+    }
   }
   if (!head_address_.empty()) {
     options.topside.head_address = address_of("--head", head_address_);

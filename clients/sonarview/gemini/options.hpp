@@ -19,7 +19,7 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  Ipv4 topside_address = 0x7F000001;        ///< commands leave from here
+  Ipv4 topside_address = 0;                 ///< commands leave from here; 0: from what routes to the head
   Ipv4 bind_address = 0;                    ///< reports arrive here; 0: on all addresses
   gemini::TopsideConfig topside;            ///< for each head with its ID in the place of sonar_id
   std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to talk to; 0: the first whose status arrives
@@ -58,7 +58,7 @@ class GeminiArguments {
 
   GeminiOptions options_;
   // As they are typed, before they have their units.
-  std::string topside_address_ = "127.0.0.1";
+  std::string topside_address_;
   std::string bind_address_ = "0.0.0.0";
   std::string head_address_;
   int bits_ = 8;

@@ -100,6 +100,21 @@ std::optional<std::size_t> receive(udp::socket& socket, std::span<std::uint8_t> 
   return static_cast<std::size_t>(size);
 }
 
+std::uint32_t address_towards(std::uint32_t head) {
+  boost::asio::io_context io;
+  udp::socket probe(io);
+  boost::system::error_code error;
+  probe.open(udp::v4(), error);
+  if (!error) {
+    probe.connect({boost::asio::ip::address_v4(head), gemini::head_port}, error);  // sends nothing
+  }
+  if (error) {
+    throw SocketError(fmt::format("no route to the head at {}: {}", address_text(head), error.message()));
+  }
+  const std::uint32_t own = probe.local_endpoint().address().to_v4().to_uint();
+  return own == head ? INADDR_LOOPBACK : own;
+}
+
 std::optional<std::uint32_t> interface_netmask(std::uint32_t address) {
   ifaddrs* first = nullptr;
   if (getifaddrs(&first) != 0) {

@@ -32,6 +32,11 @@ boost::asio::ip::udp::socket open_command_socket(boost::asio::io_context& io, st
 std::optional<std::size_t> receive(boost::asio::ip::udp::socket& socket, std::span<std::uint8_t> buffer,
                                    std::uint64_t& overflows);
 
+/// The local address that the system would send from to `head`; 127.0.0.1 when `head` is of this machine,
+/// since the head itself holds port 52901 there.
+/// @throws SocketError (no route)
+std::uint32_t address_towards(std::uint32_t head);
+
 /// Netmask of the interface that has `address`; nullopt when none has.
 std::optional<std::uint32_t> interface_netmask(std::uint32_t address);
 

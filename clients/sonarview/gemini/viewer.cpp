@@ -38,7 +38,7 @@ class Viewer {
   void advance();
   void arm_timer();
 
-  const GeminiOptions options_;
+  GeminiOptions options_;
   boost::asio::io_context io_;
   udp::socket reports_;
   udp::socket commands_;
@@ -50,9 +50,10 @@ class Viewer {
 };
 
 Viewer::Viewer(const GeminiOptions& options)
-    : options_(options),
-      reports_(open_report_socket(io_, options.bind_address)),
-      commands_(open_command_socket(io_, options.topside_address)) {
+    : options_(options), reports_(open_report_socket(io_, options.bind_address)), commands_(io_) {
+  if (options_.topside_address != 0) {
+    commands_ = open_command_socket(io_, options_.topside_address);
+  }
   for (std::size_t number = 0; number < options_.sonar_ids.size(); ++number) {
     heads_.emplace_back(options_, number, commands_);
   }
@@ -107,6 +108,10 @@ void Viewer::on_reports() {
 void Viewer::advance() {
   const TimePoint at = now();
   for (WatchedHead& head : heads_) {
+    if (const auto address = head.address(); address && !commands_.is_open()) {
+      options_.topside_address = address_towards(*address);
+      commands_ = open_command_socket(io_, options_.topside_address);
+    }
     head.advance(at);
   }
   if (std::ranges::all_of(heads_, &WatchedHead::ended)) {

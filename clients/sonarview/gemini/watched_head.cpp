@@ -180,6 +180,10 @@ void WatchedHead::end() {
   }
 }
 
+std::optional<Ipv4> WatchedHead::address() const {
+  return topside_.head() ? std::optional(topside_.head()->address) : std::nullopt;
+}
+
 TimePoint WatchedHead::next_wake(TimePoint at) const {
   TimePoint wake = topside_.next_deadline().value_or(TimePoint::max());
   if (!head_met_) {

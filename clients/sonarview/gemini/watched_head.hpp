@@ -35,6 +35,8 @@ class WatchedHead {
   /// Says goodbye to the head.
   void end();
   bool ended() const { return ended_; }
+  /// Where the head is; nullopt before its first status.
+  std::optional<Ipv4> address() const;
   /// When to advance() next; not before `at`.
   TimePoint next_wake(TimePoint at) const;
   /// Finishes the pictures and prints the summary.

@@ -12,6 +12,7 @@
 
 #include "clients/sonarview/compare/options.hpp"
 #include "clients/sonarview/gemini/options.hpp"
+#include "clients/sonarview/gemini/sockets.hpp"
 #include "clients/sonarview/micron/options.hpp"
 
 namespace sonard::client {
@@ -82,9 +83,16 @@ TEST(CommandLine, WithoutASubcommandItIsAGemini) {
   EXPECT_EQ(options.settings.compression_log2, 1);
   EXPECT_EQ(options.settings.interval, std::chrono::microseconds{100'000});
   EXPECT_EQ(options.pings, 7U);
-  EXPECT_EQ(options.topside_address, 0x7F000001U);
+  EXPECT_EQ(options.topside_address, 0U);
   EXPECT_EQ(options.status_wait, 5s);
   EXPECT_EQ(options.radius_px, 900);
+}
+
+TEST(CommandLine, CommandsLeaveFromTheAddressThatRoutesToTheHead) {
+  EXPECT_EQ(address_towards(0x7F000002), 0x7F000001U);
+  EXPECT_EQ(address_towards(0x7F000001), 0x7F000001U);
+  EXPECT_EQ(options_of<GeminiArguments>("gemini", {"--surface-address", "127.0.0.3"}).topside_address,
+            0x7F000003U);
 }
 
 TEST(CommandLine, GeminiMistakesAreSaidAsEver) {
