@@ -241,8 +241,12 @@ class RecordingTest(unittest.TestCase):
     def frames_with(self, condition):
         """Numbers of the frames that tshark shows."""
         scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
-        done = subprocess.run(["tshark", *scripts, "-r", self.files(".pcapng")[0], "-Y", condition, "-T", "fields", "-e",
-                               "frame.number"], capture_output=True, text=True, timeout=100 + 3 * SECONDS)
+        # From 4.4 on, Wireshark runs no scripts for root.
+        as_nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+        with open(self.files(".pcapng")[0], "rb") as log:
+            done = subprocess.run([*as_nobody, "tshark", *scripts, "-r", "-", "-Y", condition, "-T", "fields", "-e",
+                                   "frame.number"], stdin=log, capture_output=True, text=True, timeout=100 + 3 * SECONDS,
+                                  env={**os.environ, "HOME": "/nonexistent"})
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout.split()
 

@@ -111,7 +111,7 @@ class Web(OwnMachine):
                 return "open"
 
         self.assertEqual(asyncio.run(viewer(own["Origin"])), "open")
-        with self.assertRaises(websockets.InvalidStatusCode):
+        with self.assertRaises(websockets.InvalidHandshake):
             asyncio.run(viewer("http://evil.example"))
 
     def test_recording_is_turned_off_and_on(self):

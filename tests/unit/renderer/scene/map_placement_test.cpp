@@ -12,7 +12,7 @@
 
 #include "renderer/scene/image_file.hpp"
 #include "renderer/scene/world.hpp"
-#include ""
+#include "tests/unit/renderer/scene/scene_files.hpp"
 
 namespace sonard::render {
 namespace {
