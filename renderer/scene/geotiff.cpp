@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <tiffio.h>
@@ -67,13 +68,30 @@ const UtmZones* utm_of(int epsg) {
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-/// The values of a tag that libtiff has no name for.
+/// The values of a tag that libtiff has no name for. How it hands them out depends on whether GDAL, in the
+/// same process, has told it of the tag.
 template <typename T>
 std::span<const T> values_of(const Tiff& tiff, ttag_t tag) {
-  std::uint32_t count = 0;
+  const TIFFField* const field = TIFFFindField(tiff.get(), tag, TIFF_ANY);
   const T* values = nullptr;
-  return TIFFGetField(tiff.get(), tag, &count, &values) == 1 && values != nullptr ? std::span(values, count)
-                                                                                  : std::span<const T>();
+  if (field == nullptr) {
+    return {};
+  }
+  if (TIFFFieldPassCount(field) == 0) {
+    if constexpr (std::is_same_v<T, char>) {  // text that ends with a zero
+      if (TIFFGetField(tiff.get(), tag, &values) == 1 && values != nullptr) {
+        return std::string_view(values);
+      }
+    }
+    return {};
+  }
+  std::uint32_t count = 0;
+  std::uint16_t short_count = 0;
+  const bool is_long = TIFFFieldReadCount(field) == TIFF_VARIABLE2;
+  const int known = is_long ? TIFFGetField(tiff.get(), tag, &count, &values)
+                            : TIFFGetField(tiff.get(), tag, &short_count, &values);
+  return known == 1 && values != nullptr ? std::span(values, is_long ? count : short_count)
+                                         : std::span<const T>();
 }
 
 /// Keys whose value is a number of 16 bits.

@@ -27,7 +27,7 @@ struct TiffSpec {
   std::vector<double> scale{10, 10, 0};
   std::vector<double> tie{0, 0, 0, 500045, 105, 0};  ///< raster 0, 0 is there
   std::vector<std::uint16_t> keys;                   ///< id, value, id, value, ...
-  std::string no_data;
+  std::string no_data;  ///< of more than 3 characters: shorter values would lie in the directory
 };
 
 class TiffWriter {
@@ -255,7 +255,7 @@ TEST_F(MapPlacementTest, ErrorsSayWhatIsMissing) {
   spec.tie[4] = 1e9;
   EXPECT_THAT(error_of(spec), HasSubstr("bed.sdf"));
   spec = slope();
-  spec.no_data = "-30";
+  spec.no_data = "-30.0";
   spec.elevation_m.assign(spec.elevation_m.size(), -30.0F);
   EXPECT_THAT(error_of(spec), HasSubstr("no pixel has an elevation"));
 }
