@@ -8,6 +8,8 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -19,8 +21,8 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-const render::TriangleMesh& mesh_of(const Scene& scene, const std::string& body) {
-  return *scene.world.find_body(body)->parts.at(0).mesh;
+const render::TriangleMesh& mesh_of(const Scene& scene, std::string_view body) {
+  return *scene.world.find_body(std::string(body))->parts.at(0).mesh;
 }
 
 glm::dvec3 corner(const render::TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
