@@ -213,6 +213,14 @@ void Check::check_world() {
     report_.summary.push_back(fmt::format("world    {}: {} bodies, {} triangles, materials: {}", world.name,
                                           world.bodies.size(), world.triangle_count(),
                                           material_names(world)));
+    if (world.origin) {
+      report_.summary.push_back(fmt::format("origin   latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",
+                                            world.origin->latitude_deg, world.origin->longitude_deg,
+                                            world.origin->altitude_m));
+    }
+    for (const std::string& line : world.maps) {
+      report_.summary.push_back("map      " + line);
+    }
     const std::vector<BodyBox> boxes = boxes_of(world);
     list_bodies(world, boxes);
     const render::MeshDiagnostics& d = world.diagnostics;

@@ -310,6 +310,15 @@ TEST_F(CheckedWorld, whose_includes_multiply_ends_at_once_and_in_little_memory) 
   EXPECT_THAT(result.err, HasSubstr("more than 1000000 elements with all that is included"));
 }
 
+TEST_F(CheckedWorld, says_where_on_earth_it_is) {
+  const ProcessResult result = check(
+      "<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>53.5</latitude_deg>"
+      "<longitude_deg>-9.25</longitude_deg><elevation>2</elevation></spherical_coordinates>\n" +
+      model("wall", "<box><size>1 4 4</size></box>"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("origin   latitude 53.5000000, longitude -9.2500000, altitude 2.00 m\n"));
+}
+
 TEST_F(CheckedWorld, tries_where_it_will_write) {
   const std::string world = model("a", "<sphere/>");
   EXPECT_THAT(check(world, "recording: {directory: /proc/logs, mcap: true}\n").err,
