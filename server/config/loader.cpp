@@ -349,7 +349,7 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
 
 void read_recording(YamlSection& section, const std::filesystem::path& folder, RecordingConfig& recording) {
   section.introduce(
-      "Logs that users' tools open, of all heads. [logs.md](logs.md#recording) says what is in them, what "
+      "Logs that users' tools open, of all heads. [logs.md](logs.md#5-recording) says what is in them, what "
       "happens when the disk is full, and what a daemon that was killed leaves behind.");
   section.require("directory", "a folder for the logs");
   section.path("directory", recording.directory, folder,
