@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shape of an image, against what a recorded M1200d sent and what the protocol page says in numbers.
+#include "protocol/oculus/image_form.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace sonard::oculus {
+namespace {
+
+constexpr double recorded_speed_mps = 1490.658551265436;
+
+TEST(OculusBearings, are_those_of_a_recorded_head) {
+  const auto bearings = bearings_cdeg(256, 30.0);
+  ASSERT_EQ(bearings.size(), 256U);
+  EXPECT_EQ(bearings.front(), -3000);
+  EXPECT_EQ(bearings[127], -11);
+  EXPECT_EQ(bearings[128], 11);
+  EXPECT_EQ(bearings.back(), 3000);
+}
+
+TEST(OculusBearings, have_exact_ends_and_are_symmetric_and_rise) {
+  for (const double half : {20.0, 30.0, 35.0, 65.0}) {
+    for (const int beams : {256, 512}) {
+      const auto bearings = bearings_cdeg(beams, half);
+      EXPECT_EQ(bearings.back(), 100 * half);
+      for (std::size_t i = 1; i < bearings.size(); ++i) {
+        EXPECT_LT(bearings[i - 1], bearings[i]);
+        EXPECT_EQ(bearings[i], -bearings[bearings.size() - 1 - i]);
+      }
+    }
+  }
+}
+
+// A hundredth of a degree at most is cut off, towards zero.
+TEST(OculusBearings, are_equally_spaced_in_their_sine) {
+  const auto bearings = bearings_cdeg(512, 65.0);
+  const double degree = std::acos(-1.0) / 180.0;
+  for (std::size_t i = 256; i < 511; ++i) {
+    const double exact =
+        100.0 * std::asin(std::sin(65.0 * degree) * (2.0 * static_cast<double>(i) / 511.0 - 1.0)) / degree;
+    EXPECT_LE(bearings[i], exact + 1e-9);
+    EXPECT_GT(bearings[i], exact - 1.0);
+  }
+}
+
+TEST(OculusRanges, are_those_of_a_recorded_head) {
+  const RangeGrid grid = range_grid(2.0, recorded_speed_mps);
+  EXPECT_EQ(grid.ranges, 703);
+  EXPECT_NEAR(grid.resolution_m, 0.00284218897, 1e-11);
+}
+
+TEST(OculusRanges, keep_below_the_most_and_within_a_row_of_what_was_asked) {
+  for (const double range_m : {0.1, 0.5, 3.4, 3.42, 5.0, 10.0, 40.0, 119.9, 120.0}) {
+    const RangeGrid grid = range_grid(range_m, 1500.0);
+    const double samples = grid.resolution_m / (1500.0 / (2.0 * sample_rate_hz));
+    EXPECT_NEAR(samples, std::round(samples), 1e-9);
+    EXPECT_LE(grid.ranges, 1200);
+    EXPECT_LE(grid.ranges * grid.resolution_m, range_m);
+    EXPECT_GT((grid.ranges + 1) * grid.resolution_m, range_m);
+    if (samples > 1.5) {  // one less would be too many rows
+      EXPECT_GT(std::floor(range_m / (grid.resolution_m * (samples - 1.0) / samples)), 1200.0);
+    }
+  }
+}
+
+TEST(OculusGamma, two_points_are_documented) {
+  EXPECT_EQ(gamma_exponent(0), 1.0);
+  EXPECT_EQ(gamma_exponent(255), 1.0);
+  EXPECT_NEAR(gamma_exponent(127), 0.5, 0.002);
+}
+
+TEST(OculusGain, is_reported_in_another_scale_in_the_high_frequency_mode) {
+  Fire fire;
+  fire.gain_percent = 50.0;
+  fire.master_mode = 1;
+  EXPECT_EQ(reported_gain_percent(fire), 50.0);
+  fire.master_mode = 2;
+  EXPECT_EQ(reported_gain_percent(fire), 70.0);
+}
+
+TEST(OculusSoundSpeed, of_fresh_and_salt_water) {
+  EXPECT_NEAR(sound_speed_of_water_mps(23.0, 0.0), 1490.66, 0.2);
+  EXPECT_NEAR(sound_speed_of_water_mps(10.0, 35.0), 1490.0, 0.5);
+}
+
+TEST(OculusImageOffset, is_2048_up_to_512_beams) {
+  for (const bool second : {false, true}) {
+    EXPECT_EQ(usual_image_offset(second, 256), 2048U);
+    EXPECT_EQ(usual_image_offset(second, 512), 2048U);
+  }
+  EXPECT_EQ(usual_image_offset(false, 964), 4096U);
+}
+
+}  // namespace
+}  // namespace sonard::oculus
