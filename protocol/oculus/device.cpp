@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/oculus/device.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "protocol/oculus/codec.hpp"
+#include "protocol/oculus/frame.hpp"
+
+namespace sonard::oculus {
+namespace {
+
+using std::chrono::nanoseconds;
+
+std::array<std::uint8_t, 4> octets(Ipv4 address) {
+  return {static_cast<std::uint8_t>(address >> 24), static_cast<std::uint8_t>(address >> 16),
+          static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address)};
+}
+
+const DeviceConfig& validated(const DeviceConfig& config) {
+  const auto require = [](bool condition, const char* what) {
+    if (!condition) {
+      throw std::invalid_argument(std::string("oculus device: ") + what);
+    }
+  };
+  require(config.id != 0, "id must not be 0");
+  require(config.status_period > nanoseconds{0}, "status_period must be positive");
+  require(config.dummy_period > nanoseconds{0}, "dummy_period must be positive");
+  require(config.plan.most_ranges >= 1 && config.plan.most_ranges <= 0xFFFF, "most_ranges must be 1..65535");
+  require(config.plan.ping_overhead > nanoseconds{0}, "ping_overhead must be positive");
+  return config;
+}
+
+}  // namespace
+
+class Device::Impl {
+ public:
+  Impl(const DeviceConfig& config, TimePoint boot_time)
+      : config_(validated(config)),
+        identity_{config.id, config.plan.model.part_number},
+        boot_time_(boot_time),
+        next_status_(boot_time),
+        user_config_{octets(config.address), octets(config.netmask), 0} {}
+
+  void take(TimePoint, const TimePassed&) {}
+  void take(TimePoint now, const BytesReceived& received);
+  void take(TimePoint now, const ClientGone& gone);
+  void take(TimePoint, const PingRendered& ping);
+  void take(TimePoint, const PingNotRendered& ping);
+  void take(TimePoint, const TriggerEdge&) {}   // it has no such input here
+  void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
+  void take(TimePoint, const PingFed&) {}
+  void take(TimePoint, const PingGranted&) {}
+
+  void advance(TimePoint now);
+  Actions actions();
+  PingProgress progress() const { return {sent_, sent_ + failed_ + cancelled_count_, sent_}; }
+  std::vector<Counter> counts() const;
+
+ private:
+  struct Ping {
+    std::uint64_t number = 0;
+    PingPlan plan;
+    TimePoint transmit_time{};
+    std::vector<std::uint8_t> image;  ///< empty: it is still being rendered
+  };
+
+  bool pinging() const { return fire_ && period_of_rate(fire_->fire.ping_rate); }
+  void connect(TimePoint now, const Peer& peer);
+  void send(std::vector<std::uint8_t> bytes) {
+    actions_.send.push_back({Outgoing::To::peer, *client_, SharedBytes(std::move(bytes))});
+  }
+  void stop_ping();
+  void read_commands(TimePoint now);
+  void handle(TimePoint now, const SimpleFire& fire);
+  void handle(TimePoint now, const UserConfig& config);
+  void handle(TimePoint, const Unknown&) {}
+
+  void send_status(TimePoint now);
+  void send_dummy(TimePoint now);
+  void begin_ping(TimePoint now);
+  void send_ping(TimePoint now);
+
+  const DeviceConfig config_;
+  const Identity identity_;
+  const TimePoint boot_time_;
+  TimePoint next_status_;
+  TimePoint next_dummy_{};
+  TimePoint next_ping_{};
+  UserConfig user_config_;
+
+  std::optional<Peer> client_;
+  CommandBuffer input_;
+  std::optional<SimpleFire> fire_;
+  std::optional<Ping> ping_;                ///< that is wanted
+  std::optional<std::uint64_t> cancelled_;  ///< that is not answered yet
+  std::uint64_t next_number_ = 0;
+  std::uint32_t ping_id_ = 0;
+  Actions actions_;
+
+  std::uint64_t sent_ = 0;
+  std::uint64_t failed_ = 0;
+  std::uint64_t cancelled_count_ = 0;
+  std::uint64_t commands_ = 0;
+  std::uint64_t bad_commands_ = 0;
+  std::uint64_t other_clients_ = 0;
+};
+
+// ---- The client
+
+void Device::Impl::connect(TimePoint now, const Peer& peer) {
+  client_ = peer;
+  next_dummy_ = now + config_.dummy_period;
+  next_status_ = now;
+  actions_.notices.push_back({Notice::Level::info, "client " + endpoint_text(peer.remote) + " connected"});
+  send(encode_log(config_.log_text, identity_));
+}
+
+void Device::Impl::take(TimePoint now, const ClientGone& gone) {
+  if (!client_ || client_->remote != gone.who.remote) {
+    return;
+  }
+  actions_.notices.push_back(
+      {Notice::Level::info, "client " + endpoint_text(client_->remote) + " disconnected"});
+  client_.reset();
+  fire_.reset();
+  input_.clear();
+  stop_ping();
+  next_status_ = now;
+}
+
+void Device::Impl::take(TimePoint now, const BytesReceived& received) {
+  if (!client_) {
+    connect(now, received.from);
+  }
+  if (client_->remote != received.from.remote) {
+    ++other_clients_;
+    actions_.send.push_back({Outgoing::To::peer, received.from, SharedBytes()});
+    return;
+  }
+  input_.append({received.bytes.data(), received.bytes.size()});
+  read_commands(now);
+}
+
+void Device::Impl::read_commands(TimePoint now) {
+  while (const auto message = input_.front()) {
+    const auto command = decode_command(*message);
+    if (command) {
+      ++commands_;
+      std::visit([&](const auto& it) { handle(now, it); }, *command);
+    } else {
+      ++bad_commands_;
+    }
+    input_.pop();
+  }
+  if (input_.broken()) {
+    ++bad_commands_;
+    send({});
+  }
+}
+
+void Device::Impl::handle(TimePoint now, const SimpleFire& fire) {
+  const bool before = pinging();
+  fire_ = fire;
+  if (before && !pinging()) {
+    stop_ping();
+    next_dummy_ = now;
+  } else if (!before) {
+    next_ping_ = std::max(next_ping_, now);
+  }
+}
+
+void Device::Impl::handle(TimePoint, const UserConfig& config) {
+  if (config.address != UserConfig{}.address) {
+    user_config_ = config;  // remembered only: this machine's network is left as it is
+  }
+  send(encode(user_config_, identity_));
+}
+
+// ---- Pings
+
+void Device::Impl::stop_ping() {
+  if (!ping_) {
+    return;
+  }
+  ++cancelled_count_;
+  if (ping_->image.empty()) {
+    cancelled_ = ping_->number;
+  }
+  ping_.reset();
+}
+
+void Device::Impl::take(TimePoint, const PingRendered& ping) {
+  if (cancelled_ == ping.image.number) {
+    cancelled_.reset();
+    return;
+  }
+  if (!ping_ || ping_->number != ping.image.number || !ping_->image.empty()) {
+    return;
+  }
+  auto image = image_bytes(ping_->plan.result, ping.image.u8, ping.image.u16);
+  if (image) {
+    ping_->image = std::move(*image);
+  } else {
+    ++failed_;
+    ping_.reset();
+  }
+}
+
+void Device::Impl::take(TimePoint, const PingNotRendered& ping) {
+  if (cancelled_ == ping.number) {
+    cancelled_.reset();
+  } else if (ping_ && ping_->number == ping.number && ping_->image.empty()) {
+    ++failed_;
+    ping_.reset();
+  }
+}
+
+void Device::Impl::begin_ping(TimePoint now) {
+  if (!pinging() || ping_ || cancelled_ || now < next_ping_) {
+    return;
+  }
+  ping_ = Ping{next_number_++, plan_ping(*fire_, config_.plan), now, {}};
+  const PingPlan& plan = ping_->plan;
+  // Keeps the phase; of what a late caller has missed, one period at most is made up for.
+  next_ping_ = std::max(std::max(next_ping_, now - plan.period) + plan.period, now + plan.listening);
+  PingJob job;
+  job.number = ping_->number;
+  job.transmit_time = now;
+  job.transmit_us = static_cast<std::uint64_t>((now - boot_time_) / std::chrono::microseconds{1});
+  job.listening_time = plan.listening;
+  job.period = plan.period;
+  job.native_bins = plan.result.ranges;
+  job.native_bin_m = plan.result.range_resolution_m;
+  job.sixteen_bit = plan.result.data_size != DataSize::bits_8;
+  job.sound_speed_mps = plan.result.sound_speed_mps;
+  job.assumed_sound_speed_mps = plan.result.sound_speed_mps;
+  job.gain_percent = fire_->fire.gain_percent;
+  actions_.render = job;
+}
+
+void Device::Impl::send_ping(TimePoint now) {
+  if (!ping_ || ping_->image.empty() || now < ping_->transmit_time + ping_->plan.listening) {
+    return;
+  }
+  PingResult& result = ping_->plan.result;
+  const nanoseconds start = ping_->transmit_time - boot_time_;
+  result.ping_id = ++ping_id_;
+  result.start_time_ns = static_cast<std::uint32_t>(start.count());  // modulo 2^32
+  result.start_time_s = static_cast<double>(start.count()) * 1e-9;
+  result.image = ping_->image;
+  send(encode(result, identity_));
+  ++sent_;
+  ping_.reset();
+}
+
+// ---- Time
+
+void Device::Impl::send_status(TimePoint now) {
+  if (now < next_status_) {
+    return;
+  }
+  Status status;
+  status.device_id = config_.id;
+  status.part_number = identity_.part_number;
+  status.firmware = {0x01030007, 0x0134B35D, 0x01030007, 0x0134B35D, 0x00020001, 0x0134B35D};
+  status.address = octets(config_.address);
+  status.netmask = octets(config_.netmask);
+  status.client = octets(client_ ? client_->remote.address : 0);
+  status.mac = config_.mac;
+  status.temperatures_c.fill(config_.plan.temperature_c);
+  status.pressure_bar = config_.plan.pressure_bar;
+  actions_.send.push_back(
+      {Outgoing::To::everybody, Peer{status_channel, {}, 0}, SharedBytes(encode(status, identity_))});
+  next_status_ += config_.status_period * ((now - next_status_) / config_.status_period + 1);
+}
+
+void Device::Impl::send_dummy(TimePoint now) {
+  if (client_ && !pinging() && now >= next_dummy_) {
+    send(encode_dummy(identity_));
+    next_dummy_ += config_.dummy_period * ((now - next_dummy_) / config_.dummy_period + 1);
+  }
+}
+
+void Device::Impl::advance(TimePoint now) {
+  send_status(now);
+  send_dummy(now);
+  send_ping(now);
+  begin_ping(now);
+}
+
+Actions Device::Impl::actions() {
+  Actions actions = std::exchange(actions_, {});
+  actions.cancelled = cancelled_;
+  actions.nobody_there = !client_;
+  TimePoint wake = next_status_;
+  if (client_ && !pinging()) {
+    wake = std::min(wake, next_dummy_);
+  }
+  if (ping_ && !ping_->image.empty()) {
+    wake = std::min(wake, ping_->transmit_time + ping_->plan.listening);
+  }
+  if (pinging() && !ping_ && !cancelled_) {
+    wake = std::min(wake, next_ping_);
+  }
+  actions.wake_at = wake;
+  return actions;
+}
+
+std::vector<Counter> Device::Impl::counts() const {
+  using Shown = Counter::Shown;
+  return {{"pings_sent", sent_},
+          {"pings_failed", failed_, Shown::often},
+          {"pings_cancelled", cancelled_count_},
+          {"commands", commands_},
+          {"bad_commands", bad_commands_, Shown::warns, "{} commands were too short or too long"},
+          {"other_clients", other_clients_, Shown::warns, "{} times a second client came"}};
+}
+
+// ---- The door
+
+Device::Device(const DeviceConfig& config, TimePoint boot_time)
+    : impl_(std::make_unique<Impl>(config, boot_time)) {}
+Device::~Device() = default;
+
+Actions Device::step(TimePoint now, const Event& event) {
+  std::visit([&](const auto& what) { impl_->take(now, what); }, event);
+  impl_->advance(now);
+  return impl_->actions();
+}
+
+PingProgress Device::progress() const {
+  return impl_->progress();
+}
+
+std::vector<Counter> Device::counts() const {
+  return impl_->counts();
+}
+
+}  // namespace sonard::oculus

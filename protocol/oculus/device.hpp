@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// An Oculus as a pure state machine: bytes and time go in; messages and jobs come out.
+// Source: docs/protocols/oculus.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "protocol/common/device.hpp"
+#include "protocol/oculus/device_config.hpp"
+
+namespace sonard::oculus {
+
+/// One head, with one client at a time. Its channels are the stream of that client and the status datagrams,
+/// which go to everybody. Bytes from another client than the connected one are counted and not read.
+///
+/// Two agreements with the transport, as streams have no such events: empty BytesReceived say that a client
+/// has connected, and an empty message to a client says to close its connection.
+class Device final : public sonard::Device {
+ public:
+  static constexpr int stream_channel = 0;
+  static constexpr int status_channel = 1;
+
+  /// @throws std::invalid_argument naming the field of `config` that is out of range
+  Device(const DeviceConfig& config, TimePoint boot_time);
+  ~Device() override;
+
+  Actions step(TimePoint now, const Event& event) override;
+  PingProgress progress() const override;
+  std::vector<Counter> counts() const override;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::oculus

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything a user may set about a simulated Oculus, as plain values.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "protocol/common/endpoint.hpp"
+#include "protocol/oculus/ping_plan.hpp"
+
+namespace sonard::oculus {
+
+/// Section numbers are those of docs/protocols/oculus.md. The Device constructor refuses what is out of
+/// range.
+struct DeviceConfig {
+  std::uint16_t id = 7892;    ///< not 0, the same in status and TCP (1)
+  Ipv4 address = 0x7F000001;  ///< clients connect to exactly this; 127.0.0.1 (6)
+  Ipv4 netmask = 0xFFFFFF00;  ///< (6)
+  std::array<std::uint8_t, 6> mac{0x00, 0x1E, 0x63, 0x01, 0x02, 0x03};
+  PlanConfig plan;
+  std::string log_text = "sonard Oculus\nready\n";                  ///< sent to who connects (5)
+  std::chrono::nanoseconds status_period{std::chrono::seconds{1}};  ///< > 0 (6)
+  std::chrono::nanoseconds dummy_period{std::chrono::seconds{1}};   ///< > 0 (5)
+};
+
+}  // namespace sonard::oculus
