@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// The head as its clients meet it (docs/protocols/oculus.md 5, 6, 7).
+#include "protocol/oculus/device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "protocol/oculus/codec.hpp"
+#include "tests/support/hex_fixture.hpp"
+
+namespace sonard::oculus {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const Peer client{Device::stream_channel, {0xC0A80205, 40000}, 0};
+const Peer second_client{Device::stream_channel, {0xC0A80206, 40001}, 0};
+
+/// A head whose pings are rendered at once, and what it has sent.
+class Bench {
+ public:
+  explicit Bench(bool renders = true) : renders_(renders) { step(TimePassed{}); }
+
+  void step(const Event& event) { keep(device_.step(now_, event)); }
+  void receive(const Bytes& bytes, const Peer& from = client) {
+    step(BytesReceived{from, SharedBytes(bytes)});
+  }
+  void run_for(TimePoint duration) {
+    const TimePoint end = now_ + duration;
+    while (wake_ <= end) {
+      now_ = wake_;
+      step(TimePassed{});
+    }
+    now_ = end;
+  }
+
+  std::size_t count(MessageId id) const {
+    return static_cast<std::size_t>(std::ranges::count_if(stream, [&](const Bytes& bytes) {
+      return bytes.size() >= 16 && (bytes[6] | bytes[7] << 8) == static_cast<int>(id);
+    }));
+  }
+
+  std::vector<Bytes> stream;
+  std::vector<Bytes> statuses;
+  std::vector<Peer> closed;
+  std::optional<std::uint64_t> cancelled;
+
+ private:
+  void keep(const Actions& actions) {
+    for (const Outgoing& message : actions.send) {
+      const Bytes bytes(message.bytes.begin(), message.bytes.end());
+      if (message.to == Outgoing::To::everybody) {
+        statuses.push_back(bytes);
+      } else if (bytes.empty()) {
+        closed.push_back(message.peer);
+      } else {
+        stream.push_back(bytes);
+      }
+    }
+    cancelled = actions.cancelled;
+    wake_ = actions.wake_at.value();
+    ASSERT_GT(wake_, now_);
+    if (actions.render && renders_) {
+      const auto beams = static_cast<std::size_t>(actions.render->native_bins) * 256;
+      step(PingRendered{{actions.render->number, Bytes(beams, 7), {}}});
+    }
+  }
+
+  const bool renders_;
+  TimePoint now_{};
+  TimePoint wake_{};
+  Device device_{{}, TimePoint{}};
+};
+
+SimpleFire fire_at(std::uint8_t rate) {
+  SimpleFire fire;
+  fire.fire.ping_rate = rate;
+  return fire;
+}
+
+TEST(OculusDevice, sends_a_status_of_142_bytes_each_second) {
+  Bench bench;
+  bench.run_for(milliseconds{10'500});
+  EXPECT_EQ(bench.statuses.size(), 11U);
+  for (const Bytes& bytes : bench.statuses) {
+    const Status status = decode_status(bytes).value();
+    EXPECT_EQ(status.address, (std::array<std::uint8_t, 4>{127, 0, 0, 1}));
+    EXPECT_EQ(status.client, (std::array<std::uint8_t, 4>{}));
+    EXPECT_EQ(status.status, 3U);
+  }
+}
+
+TEST(OculusDevice, status_follows_the_client_at_once) {
+  Bench bench;
+  bench.receive({});
+  EXPECT_EQ(decode_status(bench.statuses.back())->client, (std::array<std::uint8_t, 4>{192, 168, 2, 5}));
+  bench.step(ClientGone{client});
+  EXPECT_EQ(decode_status(bench.statuses.back())->client, (std::array<std::uint8_t, 4>{}));
+  EXPECT_EQ(bench.statuses.size(), 3U);
+}
+
+TEST(OculusDevice, greets_with_a_log_and_then_dummies) {
+  Bench bench;
+  bench.receive({});
+  EXPECT_EQ(bench.count(MessageId::logs), 1U);
+  bench.run_for(milliseconds{5'500});
+  EXPECT_EQ(bench.count(MessageId::dummy), 5U);
+  EXPECT_EQ(bench.count(MessageId::simple_ping_result), 0U);
+}
+
+TEST(OculusDevice, one_fire_pings_on_at_its_rate) {
+  for (const auto& [rate, pings] : {std::pair{0, 100U}, {1, 150U}, {2, 400U}, {3, 50U}, {4, 20U}}) {
+    Bench bench;
+    bench.receive(encode(fire_at(static_cast<std::uint8_t>(rate))));
+    bench.run_for(milliseconds{9'999});
+    EXPECT_NEAR(static_cast<double>(bench.count(MessageId::simple_ping_result)), pings, 1.0) << rate;
+    EXPECT_EQ(bench.count(MessageId::dummy), 0U);
+  }
+}
+
+TEST(OculusDevice, the_same_fire_again_changes_nothing) {
+  Bench bench;
+  for (int i = 0; i < 999; ++i) {
+    bench.receive(encode(fire_at(0)));
+    bench.run_for(milliseconds{10});
+  }
+  EXPECT_EQ(bench.count(MessageId::simple_ping_result), 100U);
+}
+
+TEST(OculusDevice, standby_stops_pings_with_a_dummy_and_a_fire_resumes) {
+  Bench bench;
+  bench.receive(encode(fire_at(1)));
+  bench.run_for(seconds{1});
+  const std::size_t before = bench.count(MessageId::simple_ping_result);
+  bench.receive(encode(fire_at(5)));
+  bench.run_for(milliseconds{3'500});
+  EXPECT_EQ(bench.count(MessageId::simple_ping_result), before);
+  EXPECT_EQ(bench.count(MessageId::dummy), 4U);
+  bench.receive(encode(fire_at(1)));
+  bench.run_for(seconds{1});
+  EXPECT_GT(bench.count(MessageId::simple_ping_result), before + 13);
+}
+
+TEST(OculusDevice, ping_ids_count_up_and_the_id_is_that_of_the_status) {
+  Bench bench;
+  bench.receive(encode(fire_at(1)));
+  bench.run_for(seconds{1});
+  std::uint32_t before = 0;
+  for (const Bytes& bytes : bench.stream) {
+    EXPECT_EQ(bytes[2] | bytes[3] << 8, 7892);
+    if (const auto ping = decode_ping_result(bytes)) {
+      EXPECT_EQ(ping->ping_id, before + 1);
+      before = ping->ping_id;
+    }
+  }
+  EXPECT_GE(before, 14U);
+}
+
+TEST(OculusDevice, a_second_client_is_closed) {
+  Bench bench;
+  bench.receive({});
+  bench.receive({}, second_client);
+  EXPECT_EQ(bench.closed, std::vector<Peer>{second_client});
+  bench.step(ClientGone{second_client});
+  bench.receive(encode(fire_at(0)));
+  bench.run_for(seconds{1});
+  EXPECT_GE(bench.count(MessageId::simple_ping_result), 9U);
+}
+
+TEST(OculusDevice, a_command_of_5000_bytes_closes_the_connection) {
+  Bench bench;
+  Bytes bytes = encode(fire_at(0));
+  bytes[11] = 0x20;
+  bench.receive(bytes);
+  EXPECT_EQ(bench.closed, std::vector<Peer>{client});
+}
+
+TEST(OculusDevice, user_config_is_answered_and_remembered) {
+  Bench bench;
+  bench.receive(sonard::testing::load_hex_fixture("oculus", "user_config_request"));
+  EXPECT_EQ(bench.count(MessageId::user_config), 1U);
+  const UserConfig other{{10, 0, 0, 9}, {255, 0, 0, 0}, 0};
+  bench.receive(encode(other));
+  bench.receive(encode(UserConfig{}));
+  EXPECT_TRUE(*decode_command(bench.stream.back()) == Command{other});
+}
+
+TEST(OculusDevice, a_ping_that_nobody_wants_any_more_is_cancelled) {
+  Bench bench(false);
+  bench.receive(encode(fire_at(0)));
+  bench.receive(encode(fire_at(5)));
+  EXPECT_EQ(bench.cancelled, std::optional<std::uint64_t>{0});
+  bench.step(PingNotRendered{0});
+  EXPECT_FALSE(bench.cancelled);
+}
+
+TEST(OculusDevice, refuses_an_id_of_zero) {
+  DeviceConfig config;
+  config.id = 0;
+  EXPECT_THROW(Device(config, TimePoint{}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sonard::oculus
