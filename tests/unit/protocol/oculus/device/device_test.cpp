@@ -3,6 +3,7 @@
 #include "protocol/oculus/device.hpp"
 
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <stdexcept>
 
