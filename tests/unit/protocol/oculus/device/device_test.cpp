@@ -3,9 +3,10 @@
 #include "protocol/oculus/device.hpp"
 
 #include <gtest/gtest.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 #include "protocol/oculus/codec.hpp"
 #include "tests/support/hex_fixture.hpp"
