@@ -81,9 +81,8 @@ TriangleMesh make_heightfield(const GreyImage& image, const glm::dvec3& size_m, 
   }
   const auto width = static_cast<std::uint32_t>(image.width_px);
   const auto height = static_cast<std::uint32_t>(image.height_px);
-  const auto is_hole = [&](std::uint32_t pixel) { return !image.hole.empty() && image.hole[pixel]; };
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    if (!is_hole(a) && !is_hole(b) && !is_hole(c)) {
+    if (!image.is_hole(a) && !image.is_hole(b) && !image.is_hole(c)) {
       mesh.indices.insert(mesh.indices.end(), {a, b, c});
     }
   };

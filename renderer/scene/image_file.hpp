@@ -21,9 +21,10 @@ struct GreyImage {
   std::vector<std::uint16_t> value;  ///< 0 to 65535; 8-bit files are spread over the whole range
   std::vector<bool> hole{};          ///< where nothing is known; empty: there are none
 
+  bool is_hole(std::size_t pixel) const { return !hole.empty() && hole[pixel]; }
   bool is_hole(int x, int y) const {
-    return !hole.empty() && hole[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) +
-                                 static_cast<std::size_t>(x)];
+    return is_hole(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) +
+                   static_cast<std::size_t>(x));
   }
 };
 
