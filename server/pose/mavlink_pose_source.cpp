@@ -40,20 +40,7 @@ std::uint64_t& counter_of(const mavlink::Message& message, Received& received) {
   return std::holds_alternative<std::monostate>(message) ? received.other : received.attitude;
 }
 
-std::string_view name_of(MavlinkMessages messages) {
-  switch (messages) {
-    case MavlinkMessages::automatic:
-      return "auto";
-    case MavlinkMessages::odometry:
-      return "odometry";
-    case MavlinkMessages::local_position:
-      return "local_position";
-    case MavlinkMessages::global_position:
-      break;
-  }
-  return "global_position";
-}
-
+/// What a pose takes.
 std::string_view expected_of(MavlinkMessages messages) {
   switch (messages) {
     case MavlinkMessages::automatic:
@@ -163,11 +150,9 @@ void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
   missing_said = true;
   spdlog::warn(
       "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, GLOBAL_POSITION_INT {}, "
-      "ATTITUDE "
-      "or ATTITUDE_QUATERNION {}, others {} (poses.mavlink.messages is {}: expected {})",
+      "ATTITUDE or ATTITUDE_QUATERNION {}, others {} (expected {}, by poses.mavlink.messages)",
       listener.description(), input.system_id, patience.count(), received.odometry, received.local_position,
-      received.global_position, received.attitude, received.other, name_of(input.messages),
-      expected_of(input.messages));
+      received.global_position, received.attitude, received.other, expected_of(input.messages));
 }
 
 void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
