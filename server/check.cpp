@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -19,7 +20,6 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
-#include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/overlaps.hpp"
@@ -28,6 +28,7 @@
 #include "server/devices/device_kind.hpp"
 #include "server/diagnosis/sight.hpp"
 #include "server/net/udp_endpoint.hpp"
+#include "server/trial_pings.hpp"
 
 namespace sonard::server {
 namespace {
@@ -71,9 +72,9 @@ class Check {
   void check_addresses();
   template <typename Protocol>
   void try_socket(const Endpoint& endpoint, const std::string& key);
-  void list_bodies(const render::World& world, const std::vector<BodyBox>& boxes);
-  void check_start(const render::World& world, const std::vector<BodyBox>& boxes);
-  bool try_ping(render::SonarRenderer& renderer, std::size_t head, std::size_t triangles);
+  void list_bodies(const render::World& world);
+  void check_start(const render::World& world);
+  void report_cost(const HeadConfig& head, double ms, std::size_t triangles);
   void try_folder(const std::filesystem::path& folder, const std::string& key);
   void try_connecting(std::size_t head);
 
@@ -119,8 +120,9 @@ std::string unit_hint(double longest_m) {
 }
 
 /// "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete", of the first bodies.
-void Check::list_bodies(const render::World& world, const std::vector<BodyBox>& boxes) {
+void Check::list_bodies(const render::World& world) {
   constexpr std::size_t most = 50;
+  const std::vector<BodyBox> boxes = boxes_of(world);
   for (std::size_t i = 0; i < std::min(most, world.bodies.size()); ++i) {
     const render::Body& body = world.bodies[i];
     const glm::dvec3 size = boxes[i].max_m - boxes[i].min_m;
@@ -147,62 +149,42 @@ void Check::list_bodies(const render::World& world, const std::vector<BodyBox>& 
   }
 }
 
-/// Renders one on the CPU, and says what it takes here.
-/// @return whether it shows a surface
-bool Check::try_ping(render::SonarRenderer& renderer, std::size_t head, std::size_t triangles) {
-  constexpr double slow_ms = 60.0;
-  constexpr std::size_t many_triangles = 1'000'000;
-  const render::PingRequest ping = usual_ping(config_.heads[head], *config_.poses.T_world_vehicle_initial);
-  const int stream = static_cast<int>(head);
-  renderer.render_ping(ping, stream);  // the first one builds what the next ones use
-  const TimePoint begin = SteadyClock().now();
-  render::PingRequest next = ping;
-  next.T_world_sonar.position_m.x += 1e-3;  // a world that stands still is not looked at again
-  renderer.render_ping(next, stream);
-  const double ms = std::chrono::duration<double, std::milli>(SteadyClock().now() - begin).count();
-  const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.{}f} ms on this machine's CPU",
-                                       ping.settings.range.sampled_range_m(), ms, ms < 10.0 ? 1 : 0);
-  const std::string& name = config_.heads[head].name;
-  report_.summary.push_back(fmt::format("cost     {}: {}", name, cost));
-  if (ms > slow_ms && triangles > many_triangles) {
-    warning("world.file",
-            fmt::format("head '{}': {}, with {} triangles in the world: a heightmap for the ground "
-                        "(docs/worlds.md) or coarser meshes make it faster",
-                        name, cost, triangles));
-  }
-  return renderer.last_statistics().sees_surface;
-}
-
-/// What a sonar would see from `poses.initial`, by a ping of each head.
-void Check::check_start(const render::World& world, const std::vector<BodyBox>& boxes) {
+/// What the heads would see from `poses.initial`, and what a ping takes here.
+void Check::check_start(const render::World& world) {
   if (!config_.poses.T_world_vehicle_initial) {
     return;
   }
   const render::Pose& T_world_vehicle = *config_.poses.T_world_vehicle_initial;
-  render::RendererOptions options = renderer_options(config_);
-  options.engine = render::EngineKind::cpu;
-  render::SonarRenderer renderer(world, options);
-  if (!config_.vehicle_model.empty()) {
-    renderer.set_body_pose(config_.vehicle_model, T_world_vehicle);
-  }
+  render::Pose T_world_beside = T_world_vehicle;
+  T_world_beside.position_m.x += 1e-3;  // a world that stands still is not looked at again
+  TrialPings pings(config_, world);
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
-    const HeadConfig& head = config_.heads[i];
-    const Sight sight{.T_world_vehicle = T_world_vehicle,
-                      .T_world_sonar = T_world_vehicle * head.T_vehicle_sonar,
-                      .range_m = usual_settings(head).range.sampled_range_m(),
-                      .sees_surface = try_ping(renderer, i, world.triangle_count()),
-                      .vehicle_model = config_.vehicle_model,
-                      .hides_vehicle = head.hides_vehicle};
-    const std::vector<PosedBody> moved{{config_.vehicle_model, T_world_vehicle}};
-    for (const Finding& finding : look_around(world, boxes, moved, sight)) {
-      warning("poses.initial", fmt::format("head '{}': {}", head.name, finding.text));
+    for (const Finding& finding : pings.ping(i, T_world_vehicle)) {
+      warning("poses.initial", fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
     }
+    pings.ping(i, T_world_beside);
+    report_cost(config_.heads[i], pings.last_ms(), world.triangle_count());
+  }
+}
+
+void Check::report_cost(const HeadConfig& head, double ms, std::size_t triangles) {
+  constexpr double slow_ms = 60.0;
+  constexpr std::size_t many_triangles = 1'000'000;
+  const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.{}f} ms on this machine's CPU",
+                                       usual_settings(head).range.sampled_range_m(), ms, ms < 10.0 ? 1 : 0);
+  report_.summary.push_back(fmt::format("cost     {}: {}", head.name, cost));
+  if (ms > slow_ms && triangles > many_triangles) {
+    warning("world.file",
+            fmt::format("head '{}': {}, with {} triangles in the world: a heightmap for the ground "
+                        "(docs/worlds.md) or coarser meshes make it faster",
+                        head.name, cost, triangles));
   }
 }
 
 void Check::check_world() {
   try {
-    const render::World world = read_world(config_);
+    report_.world = std::make_shared<const render::World>(read_world(config_));
+    const render::World& world = *report_.world;
     for (const std::string& line : world.warnings) {
       warning("world.file", line);
     }
@@ -221,8 +203,7 @@ void Check::check_world() {
     for (const std::string& line : world.maps) {
       report_.summary.push_back("map      " + line);
     }
-    const std::vector<BodyBox> boxes = boxes_of(world);
-    list_bodies(world, boxes);
+    list_bodies(world);
     const render::MeshDiagnostics& d = world.diagnostics;
     if (d.degenerate_triangles + d.non_finite_triangles + d.bad_normals + d.bad_texcoords > 0) {
       report_.summary.push_back(
@@ -240,7 +221,7 @@ void Check::check_world() {
       problem(found.key, found.message);
     }
     try {
-      check_start(world, boxes);
+      check_start(world);
     } catch (const render::RequestError&) {
       // The sampling, of which check_head() tells.
     }

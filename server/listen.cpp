@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "server/daemon/exit_codes.hpp"
 #include "server/diagnosis/pose_stream.hpp"
 #include "server/pose/pose_inputs.hpp"
+#include "server/pose/posed_body.hpp"
+#include "server/pose/to_render.hpp"
+#include "server/trial_pings.hpp"
 
 namespace sonard::server {
 namespace {
@@ -73,6 +77,20 @@ std::string likely_cause(const PoseSource& source) {
   return "nothing arrived: " + source.silence_hint();
 }
 
+/// Where every head finds itself with a pose that was heard.
+void print_places(const DaemonConfig& config, const render::World& world, const pose::PoseSample& heard) {
+  std::vector<PosedBody> moved;
+  for (const pose::NamedTransform& body : heard.bodies) {
+    moved.push_back({body.name, to_render(body.T_world_body)});
+  }
+  TrialPings pings(config, world);
+  for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    for (const Finding& finding : pings.ping(i, to_render(heard.T_world_vehicle), moved)) {
+      fmt::print("  wrong?   head '{}': {}\n", config.heads[i].name, finding.text);
+    }
+  }
+}
+
 void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   const PoseSource& source = inputs.source(index);
   const PoseStatistics& statistics = inputs.statistics(index);
@@ -84,11 +102,11 @@ void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   } else {
     fmt::print("  no pose of the vehicle: {}\n", likely_cause(source));
   }
-  for (const Finding& finding : look_at_stream(inputs, index, now)) {
-    fmt::print("  wrong?   {}\n", finding.text);
-  }
   if (const std::string details = source.details(); !details.empty()) {
     fmt::print(" {}\n", details);
+  }
+  for (const Finding& finding : look_at_stream(inputs, index, now)) {
+    fmt::print("  wrong?   {}\n", finding.text);
   }
 }
 
@@ -98,8 +116,9 @@ bool any_is_live(const PoseConfig& poses) {
 
 }  // namespace
 
-int listen_to_poses(const PoseConfig& poses, std::chrono::nanoseconds duration) {
-  if (!any_is_live(poses)) {
+int listen_to_poses(const DaemonConfig& config, const render::World& world,
+                    std::chrono::nanoseconds duration) {
+  if (!any_is_live(config.poses)) {
     fmt::print("nothing to listen to: the configuration has no live pose input\n");
     return exit_config;
   }
@@ -107,13 +126,17 @@ int listen_to_poses(const PoseConfig& poses, std::chrono::nanoseconds duration) 
   const SteadyClock clock;
   bool any = false;
   try {
-    PoseInputs inputs(io, poses, clock, [&](const pose::PoseSample&, TimePoint) { any = true; });
+    PoseInputs inputs(io, config.poses, clock, [&](const pose::PoseSample&, TimePoint) { any = true; });
     inputs.start();
     fmt::print("listening for {:.1f} s\n", seconds(duration));
+    std::fflush(stdout);
     io.run_for(duration);
     const TimePoint now = clock.now();
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       print_input(inputs, i, now);
+      if (const auto& newest = inputs.statistics(i).newest()) {
+        print_places(config, world, *newest);
+      }
     }
     inputs.stop();
   } catch (const PoseSourceError& error) {

@@ -152,7 +152,7 @@ int check(const CommandLine& arguments) {
     fmt::print("{}: good\n", arguments.config.string());
     if (arguments.listen_s > 0.0) {
       spdlog::set_level(spdlog::level::warn);  // who sends what is in the report
-      return listen_to_poses(report.config.poses,
+      return listen_to_poses(report.config, *report.world,
                              std::chrono::nanoseconds(std::llround(1e9 * arguments.listen_s)));
     }
     return exit_clean;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pose/pose_inputs.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -64,20 +65,23 @@ void PoseInputs::note_publisher(std::size_t index, TimePoint now) {
   if (!who.starts_with(from)) {
     return;
   }
-  LastPoses& times = publishers_[index];
-  times.insert_or_assign(who.substr(from.size()), now);
-  if (times.size() > most_publishers) {
-    std::erase_if(times, [now](const auto& publisher) { return now - publisher.second > at_once; });
+  Publishers& publishers = publishers_[index];
+  publishers.try_emplace(who.substr(from.size()), Times{.first = now}).first->second.last = now;
+  if (publishers.size() > most_publishers) {
+    std::erase_if(publishers, [now](const auto& known) { return now - known.second.last > at_once; });
   }
-  if (times.size() > most_publishers) {
-    times.erase(times.begin());
+  if (publishers.size() > most_publishers) {
+    publishers.erase(publishers.begin());
   }
 }
 
 std::vector<std::string> PoseInputs::publishers(std::size_t index, TimePoint now) const {
   std::vector<std::string> recent;
-  for (const auto& [publisher, last] : publishers_[index]) {
-    if (now - last <= at_once) {
+  for (const auto& [publisher, times] : publishers_[index]) {
+    // One that fell silent before another began was started anew, with a port of its own.
+    const bool replaced = std::ranges::any_of(
+        publishers_[index], [&](const auto& other) { return other.second.first > times.last; });
+    if (now - times.last <= at_once && !replaced) {
       recent.push_back(publisher);
     }
   }

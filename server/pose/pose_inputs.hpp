@@ -33,11 +33,16 @@ class PoseInputs {
   std::size_t size() const { return sources_.size(); }
   const PoseSource& source(std::size_t index) const { return *sources_[index]; }
   const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
-  /// Who has sent poses by an input within the last two seconds; empty where publishers are not told apart.
+  /// Who has sent poses by an input within the last two seconds, without those that another has come after;
+  /// empty where publishers are not told apart.
   std::vector<std::string> publishers(std::size_t index, TimePoint now) const;
 
  private:
-  using LastPoses = std::map<std::string, TimePoint>;
+  /// When a publisher gave its first and its newest pose.
+  struct Times {
+    TimePoint first{}, last{};
+  };
+  using Publishers = std::map<std::string, Times>;
 
   void note_publisher(std::size_t index, TimePoint now);
   void report_every_period();
@@ -47,8 +52,8 @@ class PoseInputs {
   std::chrono::milliseconds report_period_;
   std::vector<std::unique_ptr<PoseStatistics>> statistics_;  // by source
   std::vector<std::unique_ptr<PoseSource>> sources_;
-  std::vector<LastPoses> publishers_;  // by source: when each gave a pose
-  std::vector<bool> told_silent_;      // by source
+  std::vector<Publishers> publishers_;  // by source
+  std::vector<bool> told_silent_;       // by source
   bool running_ = false;
   boost::asio::steady_timer report_timer_;
 };

@@ -138,17 +138,38 @@ class Diagnosis(OwnMachine):
             said = [line for line in daemon.lines if re.search("warning head=bow .*" + pose["says"], line)]
             self.assertEqual(len(said), 1, said)
 
+    @staticmethod
+    def says_of_check(pose):
+        """Before a client asks for a range, it is that of the head's usual ping."""
+        return pose["says"].replace("20(\\.\\d+)?", "\\d+(\\.\\d+)?")
+
     def test_check_names_every_wrong_start_pose(self):
         for pose in wrong_poses():
             if "orientation_xyzw" in pose:
                 continue  # angles say it in the configuration
             with self.subTest(pose["name"]):
-                # Before a client asks there is no range; the head's own longest is looked at.
-                says = pose["says"].replace("20(\\.\\d+)?", "\\d+(\\.\\d+)?")
                 printed = self.check(self.config("initial: {position_m: %s}" % pose["position_m"]))
-                if "far from" in pose["name"]:
-                    says = "good$"  # to 120 m the pier is in range
-                self.assertRegex(printed, re.compile(says, re.MULTILINE))
+                self.assertRegex(printed, "head 'bow': .*" + self.says_of_check(pose))
+
+    def test_listening_names_every_wrong_pose_that_is_heard(self):
+        publisher = self.publish(GOOD)
+        self.assertNotIn("wrong?", self.check("--listen", "1", self.config()))
+        for pose in wrong_poses():
+            with self.subTest(pose["name"]):
+                publisher.pose = pose
+                printed = self.check("--listen", "1", self.config())
+                self.assertRegex(printed, "wrong\\?   head 'bow': .*" + self.says_of_check(pose))
+
+    def test_a_publisher_that_was_started_anew_is_not_two(self):
+        first = self.publish(GOOD)
+        check = Program([os.path.join(PROGRAMS, "sonard"), "check", "--no-network", "--listen", "2", self.config()], "check")
+        self.addCleanup(check.kill)
+        check.wait_for_line("listening for", PATIENCE_S)
+        time.sleep(0.7)
+        first.close()
+        self.publish(GOOD)
+        self.assertEqual(check.wait(PATIENCE_S), 0, check.tail())
+        self.assertFalse([line for line in check.lines if "at once" in line])
 
     def test_check_tells_of_the_own_hull(self):
         start = "initial: {position_m: [30, 0, -5]}"

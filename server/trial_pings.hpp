@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the heads of a configuration see from a pose of the vehicle, before anybody is served.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+#include "renderer/scene/world.hpp"
+#include "server/config/config.hpp"
+#include "server/diagnosis/finding.hpp"
+#include "server/diagnosis/sight.hpp"
+#include "server/pose/posed_body.hpp"
+
+namespace sonard::server {
+
+/// Pings of a configuration's heads with their usual settings, rendered on the CPU. For one thread.
+class TrialPings {
+ public:
+  /// @param config with its mounts resolved (resolve_mounts()); outlives this object, as does the world
+  TrialPings(const DaemonConfig& config, const render::World& world);
+
+  /// Renders one ping of a head. The first of a head also builds what the next ones use.
+  /// @param moved bodies that are not where the world has them; the vehicle's own model moves by itself
+  /// @return what looks wrong there; empty: nothing does
+  /// @throws render::RequestError when the sampling cannot be had
+  std::vector<Finding> ping(std::size_t head, const render::Pose& T_world_vehicle,
+                            std::vector<PosedBody> moved = {});
+
+  /// How long the newest ping took, in milliseconds.
+  double last_ms() const { return last_ms_; }
+
+ private:
+  const DaemonConfig& config_;
+  const render::World& world_;
+  std::vector<BodyBox> boxes_;
+  render::SonarRenderer renderer_;
+  double last_ms_ = 0.0;
+};
+
+}  // namespace sonard::server
