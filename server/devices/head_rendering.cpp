@@ -32,7 +32,7 @@ HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadSer
     : config_(config),
       stream_(stream),
       services_(services),
-      load_(config.acoustics.sampling.preset, config.adaptive_quality) {
+      load_(config.acoustics, config.adaptive_quality) {
   if (services.poses.ping_clock() != PingClock::wall) {
     ping_times_.emplace(services.poses);
   }

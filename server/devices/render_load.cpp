@@ -45,9 +45,25 @@ std::string name_of(Preset preset) {
   return preset == Preset::fast ? "fast" : preset == Preset::normal ? "default" : "reference";
 }
 
+std::string advice_for(const render::SonarSettings& configured) {
+  std::string advice = "fewer range bins (a shorter range or more compression), ";
+  if (configured.aperture.azimuth == render::Aperture::Azimuth::array && configured.aperture.fine_beams > 1) {
+    advice += "acoustics.fine_beams: 1, ";
+  }
+  if (configured.model == render::Model::physical &&
+      configured.physical.multipath.level != render::MultipathSettings::Level::off) {
+    advice += "acoustics.multipath: off, ";
+  }
+  return advice + "or a GPU";
+}
+
 }  // namespace
 
-RenderLoad::RenderLoad(Preset asked, bool adaptive) : asked_(asked), preset_(asked), adaptive_(adaptive) {}
+RenderLoad::RenderLoad(const render::SonarSettings& configured, bool adaptive)
+    : asked_(configured.sampling.preset),
+      preset_(asked_),
+      adaptive_(adaptive),
+      advice_(advice_for(configured)) {}
 
 void RenderLoad::submitted(TimePoint now, std::chrono::nanoseconds period) {
   submitted_ = now;
@@ -94,10 +110,9 @@ std::optional<Notice> RenderLoad::decide(const Load& load) {
         Notice::Level::warning,
         fmt::format(
             "the renderer is too slow: {:.1f} of {:.1f} pings per second asked for, {:.0f} ms a ping; "
-            "try {}fewer range bins (a shorter range or more compression), acoustics.fine_beams: 1, "
-            "acoustics.multipath: off, or a GPU",
+            "try {}{}",
             load.pings_per_s, load.asked_per_s, load.mean_ms,
-            faster ? "sampling.preset: fast or sampling.adaptive_quality: on, " : "")};
+            faster ? "sampling.preset: fast or sampling.adaptive_quality: on, " : "", advice_)};
   }
   if (load.share < has_time) {
     told_ = false;

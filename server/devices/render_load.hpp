@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "protocol/common/device.hpp"
 #include "renderer/sonar_settings.hpp"
@@ -18,8 +19,9 @@ namespace sonard::server {
 /// are made than were asked for. Belongs to the thread of its head.
 class RenderLoad {
  public:
-  /// @param asked the preset of the configuration, which is never exceeded; Preset::grid has no faster one
-  RenderLoad(render::Sampling::Preset asked, bool adaptive);
+  /// @param configured of the head. Its preset is never exceeded; Preset::grid has no faster one. The
+  /// operator is advised to give up what it has on.
+  RenderLoad(const render::SonarSettings& configured, bool adaptive);
 
   /// The preset of the next ping.
   render::Sampling::Preset preset() const { return preset_; }
@@ -50,6 +52,7 @@ class RenderLoad {
 
   render::Sampling::Preset asked_, preset_;
   bool adaptive_;
+  std::string advice_;  ///< what else makes it faster
   bool told_ = false;
   std::optional<TimePoint> submitted_;
   std::optional<Window> window_;

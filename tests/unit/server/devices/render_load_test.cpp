@@ -48,8 +48,29 @@ int milliseconds_of(Preset preset) {
   return preset == Preset::fast ? 50 : preset == Preset::normal ? 120 : 900;
 }
 
+render::SonarSettings with(Preset preset) {
+  render::SonarSettings settings;
+  settings.sampling.preset = preset;
+  return settings;
+}
+
+TEST(RenderLoad, AdvisesOnlyWhatIsNotSetAlready) {
+  render::SonarSettings settings = with(Preset::fast);
+  settings.model = render::Model::physical;
+  settings.aperture.azimuth = render::Aperture::Azimuth::array;
+  const auto advice = [&] {
+    RenderLoad load(settings, false);
+    return Client(load).ask(std::chrono::seconds(3), milliseconds(40), milliseconds_of).at(0);
+  };
+  EXPECT_THAT(advice(), HasSubstr("acoustics.fine_beams: 1, acoustics.multipath: off, or a GPU"));
+  settings.aperture.fine_beams = 1;
+  EXPECT_THAT(advice(), ::testing::EndsWith("more compression), acoustics.multipath: off, or a GPU"));
+  settings.physical.multipath.level = render::MultipathSettings::Level::off;
+  EXPECT_THAT(advice(), ::testing::EndsWith("more compression), or a GPU"));
+}
+
 TEST(RenderLoad, SaysOnceWhatToDoWhereAClientAsksForTooMuch) {
-  RenderLoad load(Preset::normal, false);
+  RenderLoad load(with(Preset::normal), false);
   Client client(load);
   const auto lines = client.ask(std::chrono::seconds(20), milliseconds(60), milliseconds_of);
   ASSERT_THAT(lines, ElementsAre(HasSubstr("sampling.preset: fast")));
@@ -58,7 +79,7 @@ TEST(RenderLoad, SaysOnceWhatToDoWhereAClientAsksForTooMuch) {
 }
 
 TEST(RenderLoad, NamesNoFasterPresetWhereThereIsNone) {
-  RenderLoad load(Preset::fast, true);
+  RenderLoad load(with(Preset::fast), true);
   Client client(load);
   const auto lines = client.ask(std::chrono::seconds(20), milliseconds(30), milliseconds_of);
   ASSERT_THAT(lines, ElementsAre(HasSubstr("acoustics.fine_beams: 1")));
@@ -66,19 +87,19 @@ TEST(RenderLoad, NamesNoFasterPresetWhereThereIsNone) {
 }
 
 TEST(RenderLoad, IsSilentWhereTheRateIsReachedJustSo) {
-  RenderLoad load(Preset::fast, false);
+  RenderLoad load(with(Preset::fast), false);
   Client client(load);
   EXPECT_THAT(client.ask(std::chrono::seconds(20), milliseconds(52), milliseconds_of), IsEmpty());
 }
 
 TEST(RenderLoad, IsSilentWhereThereIsTime) {
-  RenderLoad load(Preset::normal, true);
+  RenderLoad load(with(Preset::normal), true);
   Client client(load);
   EXPECT_THAT(client.ask(std::chrono::seconds(20), milliseconds(200), milliseconds_of), IsEmpty());
 }
 
 TEST(RenderLoad, StepsDownAndComesBackWhenThereIsTime) {
-  RenderLoad load(Preset::reference, true);
+  RenderLoad load(with(Preset::reference), true);
   Client client(load);
   const auto down = client.ask(std::chrono::seconds(20), milliseconds(60), milliseconds_of);
   ASSERT_THAT(down, ElementsAre(HasSubstr("from reference to default"), HasSubstr("from default to fast")));
@@ -90,14 +111,14 @@ TEST(RenderLoad, StepsDownAndComesBackWhenThereIsTime) {
 }
 
 TEST(RenderLoad, DoesNotSwingToAndFro) {
-  RenderLoad load(Preset::normal, true);
+  RenderLoad load(with(Preset::normal), true);
   Client client(load);
   EXPECT_THAT(client.ask(std::chrono::seconds(120), milliseconds(110), milliseconds_of),
               ElementsAre(HasSubstr("from default to fast")));
 }
 
 TEST(RenderLoad, AnIdleClientChangesNothing) {
-  RenderLoad load(Preset::normal, true);
+  RenderLoad load(with(Preset::normal), true);
   EXPECT_EQ(load.answered(TimePoint(1)), std::nullopt);
   Client client(load);
   EXPECT_THAT(client.ask(std::chrono::seconds(60), std::chrono::seconds(20), milliseconds_of), IsEmpty());
