@@ -80,7 +80,7 @@ void add_newest_ping(json& head, const HeadStatus& status) {
   }
   head["settings"] = std::move(settings);
   head["range_m"] = newest.range_m;
-  head["bearing_rad"] = newest.bearing_rad;
+  head["bearing_rad"] = 0.0 - newest.bearing_rad;  // to port, as in REP-103; 0 without a sign
   head["pose"] = where_json(newest.T_world_mount);
   head["aperture"] = {{"azimuth_rad", newest.azimuth_rad}, {"elevation_rad", newest.elevation_rad}};
 }

@@ -71,7 +71,7 @@ std::string live_frame(std::span<const std::shared_ptr<const ShownPing>> pings, 
   out += header;
   for (const std::shared_ptr<const ShownPing>& ping : pings) {
     for (const double bearing_rad : ping->record.bearings_rad) {
-      append_number(out, static_cast<float>(bearing_rad));
+      append_number(out, static_cast<float>(-bearing_rad));
     }
   }
   for (const std::shared_ptr<const ShownPing>& ping : pings) {

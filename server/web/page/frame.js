@@ -19,7 +19,7 @@ export function readPing(buffer) {
   }
   return {
     ...header,
-    bearings: new Float32Array(buffer, start, directions),
+    bearings: new Float32Array(buffer, start, directions).map((toPort) => -toPort),
     samples: new Uint8Array(buffer, start + 4 * directions, directions * header.rows),
   };
 }

@@ -20,7 +20,7 @@ const COLOUR = {
 function footprint(head, upright) {
   const { azimuth_rad, elevation_rad } = head.aperture;
   const half = Math.max(THINNEST_RAD, upright ? elevation_rad : azimuth_rad) / 2;
-  const ahead = head.scanning ? head.bearing_rad : 0;
+  const ahead = head.scanning ? -head.bearing_rad : 0;  // the status counts to port
   const points = [head.pose.position_m];
   for (let step = 0; step <= ARC_STEPS; ++step) {
     const angle = half * ((2 * step) / ARC_STEPS - 1);

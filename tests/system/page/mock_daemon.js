@@ -56,7 +56,7 @@ function message(header, directions, samples) {
   text += " ".repeat((4 - (Buffer.byteLength(text) % 4)) % 4);
   const length = Buffer.alloc(4);
   length.writeUInt32LE(Buffer.byteLength(text));
-  return Buffer.concat([length, Buffer.from(text), Buffer.from(directions.buffer), Buffer.from(samples.buffer)]);
+  return Buffer.concat([length, Buffer.from(text), Buffer.from(directions.map((toStarboard) => -toStarboard).buffer), Buffer.from(samples.buffer)]);
 }
 
 function fanMessage(number, rows) {
@@ -219,7 +219,7 @@ export class MockDaemon {
       heads: [
         this.head("bow", "multibeam", { findings: this.findings }),
         this.head("stern", "scanner", { scanning: true, serves: ["tcp 127.0.0.1:4001"], link_faults: "2 % loss, 10 ms delay", range_m: LINE_RANGE_M,
-          aperture: { azimuth_rad: 0.05, elevation_rad: 0.6 }, bearing_rad, clients: [] }),
+          aperture: { azimuth_rad: 0.05, elevation_rad: 0.6 }, bearing_rad: -bearing_rad, clients: [] }),
       ],
       poses: {
         inputs: [{ input: "pose stream udp 127.0.0.1:14600", publisher: "127.0.0.1:41234", poses: 4321, rate_hz: 50, age_s: 0.01, gaps: 0, jumps: 0, clock_restarts: 0, bad_messages: 0, refused: 0, findings: this.poseFindings }],

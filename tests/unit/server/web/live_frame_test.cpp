@@ -54,7 +54,7 @@ TEST(LiveFrame, CarriesAFanRowByRow) {
   EXPECT_EQ(frame.header["bin_m"], 0.5);
   EXPECT_EQ(frame.header["range_m"], 1.5);
   EXPECT_EQ(frame.header["pose"], nullptr);
-  EXPECT_EQ(frame.bearings_rad, (std::vector<float>{-0.25F, 0.25F}));
+  EXPECT_EQ(frame.bearings_rad, (std::vector<float>{0.25F, -0.25F}));
   EXPECT_EQ(frame.samples, (std::vector<int>{1, 2, 3, 4, 5, 255}));
 }
 
@@ -73,7 +73,7 @@ TEST(LiveFrame, CarriesLinesOfAScanningHeadOneAfterTheOther) {
       decoded(live_frame(std::array{ping(1, 2, {1, 2}, {0.5}), ping(1, 2, {3, 4}, {0.75})}, 600), 2);
   EXPECT_EQ(frame.header["lines"], 2);
   EXPECT_EQ(frame.header["scanning"], true);
-  EXPECT_EQ(frame.bearings_rad, (std::vector<float>{0.5F, 0.75F}));
+  EXPECT_EQ(frame.bearings_rad, (std::vector<float>{-0.5F, -0.75F}));
   EXPECT_EQ(frame.samples, (std::vector<int>{1, 2, 3, 4}));
 }
 
