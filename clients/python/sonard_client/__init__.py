@@ -9,9 +9,9 @@
 """
 
 from .gemini import Gemini
-from .mcap_log import LoggedPing, read_log
+from .log import read_log
 from .micron import Micron
-from .ping import NoHead, NoPing, Ping
+from .ping import LoggedPing, NoHead, NoPing, Ping
 from .poses import PosePublisher, encode_pose
 
 __all__ = ["Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Ping", "PosePublisher", "encode_pose", "read_log"]

@@ -5,55 +5,32 @@ field numbers stand below; the wire format is Protocol Buffers'."""
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass, field
-from os import PathLike
-from typing import Any, Iterator, Union
+from typing import Any, Iterator
 
 import numpy as np
 
-from .ping import Array, Ping
+from .ping import Array, LoggedPing
 
-_MAGIC = b"\x89MCAP0\r\n"
+MAGIC = b"\x89MCAP0\r\n"
 _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK = 3, 4, 5, 6
 
 
-@dataclass(frozen=True)
-class LoggedPing(Ping):
-    """A ping, or a line of a scanning head, as it was recorded.
-
-    head                   its name in the configuration
-    time_ns                when it was sent, since the Unix epoch
-    sonar_position_m       of the sonar in the world, (3,)
-    sonar_quaternion_xyzw  likewise; the real part last
-    """
-
-    head: str = ""
-    time_ns: int = 0
-    sonar_position_m: Array = field(default_factory=lambda: np.zeros(3))
-    sonar_quaternion_xyzw: Array = field(default_factory=lambda: np.array([0.0, 0.0, 0.0, 1.0]))
-
-
-def read_log(path: Union[str, PathLike[str]]) -> Iterator[LoggedPing]:
-    """The pings of an .mcap file in the order in which they were recorded, also of one that is still being written.
-
-    Raises ValueError where it is no such file, or is damaged.
-    """
-    with open(path, "rb") as file:
-        if file.read(len(_MAGIC)) != _MAGIC:
-            raise ValueError(f"{path} is no MCAP file")
-        schemas: dict[int, str] = {}
-        channels: dict[int, int] = {}
-        for kind, body in _records_of_file(file):
-            for kind, body in _records_of_chunk(body, path) if kind == _CHUNK else [(kind, body)]:
-                if kind == _SCHEMA:
-                    schemas[struct.unpack_from("<H", body)[0]] = _text(body, 2)
-                elif kind == _CHANNEL:
-                    number, schema = struct.unpack_from("<HH", body)
-                    channels[number] = schema
-                elif kind == _MESSAGE:
-                    schema_name = schemas.get(channels.get(struct.unpack_from("<H", body)[0], 0), "")
-                    if schema_name in _MAKERS:
-                        yield _MAKERS[schema_name](_fields(body[22:]))
+def pings(file: Any, path: Any) -> Iterator[LoggedPing]:
+    """`path` is for messages."""
+    file.read(len(MAGIC))
+    schemas: dict[int, str] = {}
+    channels: dict[int, int] = {}
+    for kind, body in _records_of_file(file):
+        for kind, body in _records_of_chunk(body, path) if kind == _CHUNK else [(kind, body)]:
+            if kind == _SCHEMA:
+                schemas[struct.unpack_from("<H", body)[0]] = _text(body, 2)
+            elif kind == _CHANNEL:
+                number, schema = struct.unpack_from("<HH", body)
+                channels[number] = schema
+            elif kind == _MESSAGE:
+                schema_name = schemas.get(channels.get(struct.unpack_from("<H", body)[0], 0), "")
+                if schema_name in _MAKERS:
+                    yield _MAKERS[schema_name](_fields(body[22:]))
 
 
 def _records_of_file(file: Any) -> Iterator[tuple[int, bytes]]:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """One ping, whichever sonar it is of."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Optional
 
+import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[Any]
@@ -34,3 +35,23 @@ class Ping:
     bearings_rad: Array
     transmit_us: Optional[int]
     missing: int = 0
+
+
+def _unknown(size: int) -> Array:
+    return np.full(size, np.nan)
+
+
+@dataclass(frozen=True)
+class LoggedPing(Ping):
+    """A ping, or a line of a scanning head, as it was recorded.
+
+    head                   its name in the configuration; in a .glf the number of the sonar
+    time_ns                when it was sent, since the Unix epoch
+    sonar_position_m       of the sonar in the world, (3,); not a number in a .glf, which has none
+    sonar_quaternion_xyzw  likewise; the real part last
+    """
+
+    head: str = ""
+    time_ns: int = 0
+    sonar_position_m: Array = field(default_factory=lambda: _unknown(3))
+    sonar_quaternion_xyzw: Array = field(default_factory=lambda: _unknown(4))

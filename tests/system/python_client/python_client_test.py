@@ -9,6 +9,7 @@ Pings are compared by CRC-32 with what the renderer handed over, and by range an
 """
 
 import argparse
+import contextlib
 import csv
 import glob
 import math
@@ -128,8 +129,29 @@ class PythonClient(OwnMachine):
             self.assertEqual(list(kept.sonar_quaternion_xyzw), [0, 0, 0, 1])
         self.assertAlmostEqual((logged[2].time_ns - logged[0].time_ns) / 1e3,
                                pings[2].transmit_us - pings[0].transmit_us, delta=1000)
-        with self.assertRaisesRegex(ValueError, "is no MCAP file"):
+        glf, = glob.glob(os.path.join(self.folder.name, "logs", "*.glf"))
+        kept = list(read_log(glf))
+        self.assertEqual([ping.head for ping in kept], ["513"] * 3)
+        for ping, kept_in_mcap, kept_in_glf in zip(pings, logged, kept):
+            numpy.testing.assert_array_equal(ping.samples, kept_in_glf.samples)
+            numpy.testing.assert_allclose(ping.ranges_m, kept_in_glf.ranges_m, rtol=1e-4)  # whole hertz
+            numpy.testing.assert_allclose(ping.bearings_rad, kept_in_glf.bearings_rad, atol=1e-6)
+            self.assertAlmostEqual(kept_in_mcap.time_ns, kept_in_glf.time_ns, delta=2e6)
+        self.expect_errors_of_logs(glf)
+
+    def expect_errors_of_logs(self, glf):
+        with self.assertRaisesRegex(ValueError, "sonard.yaml is no .mcap, .glf or .dat log"):
             next(read_log(os.path.join(self.folder.name, "sonard.yaml")))
+        with open(glf, "rb") as file:
+            whole = file.read()
+        for size in range(100, len(whole), len(whole) // 50):  # each without its end, and with a byte turned over
+            for name, damaged in (("cut.glf", whole[:size]),
+                                  ("turned.glf", whole[:size] + bytes([whole[size] ^ 0xFF]) + whole[size + 1:])):
+                path = os.path.join(self.folder.name, name)
+                with open(path, "wb") as file:
+                    file.write(damaged)
+                with contextlib.suppress(ValueError):
+                    list(read_log(path))
 
     def test_a_head_that_is_silent(self):
         with self.assertRaisesRegex(NoHead, "is the head on"):
