@@ -192,9 +192,9 @@ void Check::check_world() {
       problem("world.file", fmt::format("{}: the world has no triangles (expected a surface that echoes)",
                                         config_.world_file.string()));
     }
-    report_.summary.push_back(fmt::format("world    {}: {} bodies, {} triangles, materials: {}", world.name,
-                                          world.bodies.size(), world.triangle_count(),
-                                          material_names(world)));
+    report_.summary.push_back(fmt::format("world    {}: {} {}, {} triangles, materials: {}", world.name,
+                                          world.bodies.size(), world.bodies.size() == 1 ? "body" : "bodies",
+                                          world.triangle_count(), material_names(world)));
     if (world.origin) {
       report_.summary.push_back(fmt::format("origin   latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",
                                             world.origin->latitude_deg, world.origin->longitude_deg,
@@ -229,6 +229,9 @@ void Check::check_world() {
       report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.vehicle_model));
     }
   } catch (const render::WorldError& error) {
+    for (const std::string& line : error.warnings) {
+      warning("world.file", line);
+    }
     problem("world.file", error.what());
     for (const std::string& line : error.more) {
       problem("world.file", line);

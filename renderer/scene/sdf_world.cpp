@@ -132,10 +132,10 @@ class WorldBuilder {
     if (problems_.empty() && world_.triangle_count() == 0) {
       problems_.add(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
     }
-    if (!problems_.empty()) {
-      throw WorldError(problems_.lines());
-    }
     drop_repeated_warnings();
+    if (!problems_.empty()) {
+      throw WorldError(problems_.lines(), std::move(world_.warnings));
+    }
     tell_what_is_left_out(*sdf);
     return std::move(world_);
   }

@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -143,10 +144,13 @@ void replace_meshes(World& world, std::span<const PartMesh> changes);
 struct WorldError : std::runtime_error {
   using std::runtime_error::runtime_error;
   /// @param lines at least one
-  explicit WorldError(std::vector<std::string> lines)
-      : std::runtime_error(lines.front()), more(lines.begin() + 1, lines.end()) {}
+  explicit WorldError(std::vector<std::string> lines, std::vector<std::string> remarks = {})
+      : std::runtime_error(lines.front()),
+        more(lines.begin() + 1, lines.end()),
+        warnings(std::move(remarks)) {}
 
-  std::vector<std::string> more{};  ///< what else is wrong, in the same form
+  std::vector<std::string> more{};      ///< what else is wrong, in the same form
+  std::vector<std::string> warnings{};  ///< World::warnings, as far as it was read
 };
 
 /// What becomes of an include, or a mesh, whose file is not there.

@@ -274,14 +274,16 @@ TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
 }
 
 TEST_F(CheckedWorld, is_told_of_with_all_that_is_wrong) {
-  const ProcessResult result = check(model("a", "<mesh><uri>gone.obj</uri></mesh>") +
-                                     model("b", "<sphere><radius>x</radius></sphere>") +
-                                     "<include><uri>model://nowhere</uri></include>\n");
+  const ProcessResult result = check(
+      model("a", "<mesh><uri>gone.obj</uri></mesh>") + model("b", "<sphere><radius>x</radius></sphere>") +
+      "<include><uri>model://nowhere</uri></include>\n" +
+      model("c", "<cylinder><radius>1</radius><longness>2</longness></cylinder>"));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(lines_of(result.err),
               testing::UnorderedElementsAre(HasSubstr("world.sdf:2: a::l::v: 'gone.obj' not found"),
                                             HasSubstr("world.sdf:3: b::l::v: radius 'x'"),
-                                            HasSubstr("world.sdf:4: include 'model://nowhere' not found")));
+                                            HasSubstr("world.sdf:4: include 'model://nowhere' not found"),
+                                            HasSubstr("world.sdf:5: <longness> in <cylinder> is not known")));
   EXPECT_THAT(result.out, HasSubstr("3 problems"));
 }
 
