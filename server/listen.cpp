@@ -77,15 +77,15 @@ std::string likely_cause(const PoseSource& source) {
   return "nothing arrived: " + source.silence_hint();
 }
 
-/// Where every head finds itself with a pose that was heard.
-void print_places(const DaemonConfig& config, const render::World& world, const pose::PoseSample& heard) {
+/// What looks wrong about the place of each head by a pose that arrived.
+void print_places(const DaemonConfig& config, const render::World& world, const pose::PoseSample& sample) {
   std::vector<PosedBody> moved;
-  for (const pose::NamedTransform& body : heard.bodies) {
+  for (const pose::NamedTransform& body : sample.bodies) {
     moved.push_back({body.name, to_render(body.T_world_body)});
   }
   TrialPings pings(config, world);
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
-    for (const Finding& finding : pings.ping(i, to_render(heard.T_world_vehicle), moved)) {
+    for (const Finding& finding : pings.ping(i, to_render(sample.T_world_vehicle), moved)) {
       fmt::print("  wrong?   head '{}': {}\n", config.heads[i].name, finding.text);
     }
   }

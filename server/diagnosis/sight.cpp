@@ -188,9 +188,8 @@ class LookAround {
     const auto up_of = [](const glm::dquat& turn) { return (turn * glm::dvec3(0, 0, 1)).z; };
     if (up_of(q) < 0.7 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.98) {
       add("quaternion_w_first",
-          "The vehicle lies on its side or upside down, and would be level if its quaternion came with w "
-          "first "
-          "(messages want x, y, z, w).");
+          "The vehicle lies on its side or upside down (is its quaternion sent with w first? Read so, it is "
+          "level; messages carry x, y, z, w).");
     }
   }
 
