@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: command line, log, and the one place where exceptions become exit codes.
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -20,6 +22,7 @@
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
+#include "server/demo.hpp"
 #include "server/devices/kinds/kinds.hpp"
 #include "server/info/info.hpp"
 #include "server/listen.hpp"
@@ -29,8 +32,10 @@
 #include "server/offline/render_run.hpp"
 #include "server/offline/vehicle_trajectory.hpp"
 #include "server/program_log/stderr_sink.hpp"
+#include "server/reload.hpp"
 #include "server/replay/replay.hpp"
 #include "server/selftest.hpp"
+#include "sonard_build_info.hpp"
 
 namespace sonard::server {
 namespace {
@@ -54,6 +59,8 @@ struct CommandLine {
   std::filesystem::path log;  ///< of replay and info
   ReplayTiming timing;
   InfoOptions info;
+  DemoOptions demo;
+  int demo_s = 0;  ///< 0: until a signal
 };
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
@@ -99,17 +106,23 @@ LoadedConfig load_and_log(const CommandLine& arguments) {
                                               ? spdlog_level(loaded.config.log_level)
                                               : spdlog::level::from_str(arguments.log_level);
   spdlog::set_level(level);
-  spdlog::info("sonard " SONARD_VERSION " with {}", arguments.config.string());
+  spdlog::info("sonard " SONARD_BUILD_INFO ": {}", arguments.config.string());
   for (const std::string& warning : loaded.warnings) {
     spdlog::warn("{}", warning);
   }
   return loaded;
 }
 
-int run(const CommandLine& arguments) {
+/// @param argv of main()
+int run(const CommandLine& arguments, char** argv) {
   const LoadedConfig loaded = load_and_log(arguments);
   try {
-    return run_daemon(loaded.config);
+    const int code = run_daemon(loaded.config, [&] { return configuration_is_good(arguments.config); });
+    if (code == begins_anew) {
+      begin_anew(argv);
+      throw std::system_error(errno, std::generic_category(), "cannot begin anew");
+    }
+    return code;
   } catch (const StartError& error) {
     print_start_error(loaded, error);
     return error.exit_code;
@@ -214,7 +227,7 @@ int guarded(const Command& command) {
 
 int main_program(int argc, char** argv) {
   CLI::App app{"sonard - an imaging sonar on the network, rendered from a 3D world", "sonard"};
-  app.set_version_flag("--version", std::string("sonard " SONARD_VERSION));
+  app.set_version_flag("--version", std::string("sonard " SONARD_BUILD_INFO));
   app.footer(exit_code_help);
   app.require_subcommand(1);
 
@@ -224,6 +237,15 @@ int main_program(int argc, char** argv) {
   run_command->add_option("CONFIG", arguments.config, "YAML file (docs/configuration.md)")->required();
   run_command->add_option("--log-level", arguments.log_level, "Log level; overrides the one in CONFIG")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
+
+  CLI::App* demo_command = app.add_subcommand(
+      "demo", "Show sonard at work: the daemon, moving poses, a client, and a page in the browser");
+  demo_command
+      ->add_option("NAME", arguments.demo.name, "gemini, micron, ping360: an entry of configs/demo/list.yaml")
+      ->capture_default_str();
+  demo_command->add_option("--out", arguments.demo.out, "Folder for pictures and the programs' lines");
+  demo_command->add_option("--seconds", arguments.demo_s, "End after this time; default: at Ctrl-C")
+      ->check(CLI::Range(1, 1'000'000));
 
   CLI::App* check_command =
       app.add_subcommand("check", "Validate a configuration with its world, trajectory and addresses");
@@ -292,8 +314,8 @@ int main_program(int argc, char** argv) {
                    "Hours that the clock of a .glf was ahead of UTC; default: this machine's time zone")
       ->check(CLI::Range(-14.0, 14.0));
 
-  for (CLI::App* command :
-       {run_command, check_command, render_command, replay_command, info_command, selftest_command}) {
+  for (CLI::App* command : {run_command, demo_command, check_command, render_command, replay_command,
+                            info_command, selftest_command}) {
     command->footer(exit_code_help);
   }
 
@@ -309,7 +331,13 @@ int main_program(int argc, char** argv) {
   }
   return guarded([&] {
     if (run_command->parsed()) {
-      return run(arguments);
+      return run(arguments, argv);
+    }
+    if (demo_command->parsed()) {
+      if (arguments.demo_s > 0) {
+        arguments.demo.time = std::chrono::seconds(arguments.demo_s);
+      }
+      return run_demo(arguments.demo);
     }
     if (render_command->parsed()) {
       return render_offline(offline);

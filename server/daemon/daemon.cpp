@@ -112,7 +112,7 @@ std::unique_ptr<WebServer> make_page(const DaemonConfig& config) {
 class Daemon {
  public:
   Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-         Playback* playback);
+         Playback* playback, std::function<bool()> may_begin_anew);
 
   /// Serves until it shall end. Returns the exit code.
   int run();
@@ -132,6 +132,7 @@ class Daemon {
   void start_page(const DaemonConfig& config, const render::World& world);
   DaemonStatus status() const;
   void wait_for_signal();
+  void reload();
   void end_when_played();
   void run_io();
   void stop_io();
@@ -144,6 +145,7 @@ class Daemon {
   int exit_code_ = exit_clean;                         // of main
   asio::io_context io_;
   Playback* playback_;  // may be null
+  std::function<bool()> may_begin_anew_;
   asio::steady_timer playback_timer_;
   PoseHistory poses_;
   PoseIntake intake_;
@@ -160,8 +162,9 @@ class Daemon {
 };
 
 Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-               Playback* playback)
+               Playback* playback, std::function<bool()> may_begin_anew)
     : playback_(playback),
+      may_begin_anew_(std::move(may_begin_anew)),
       playback_timer_(io_),
       poses_(config.poses),
       intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return pose_lead(); }}),
@@ -341,11 +344,13 @@ int Daemon::run() {
       head->start();
     }
     spdlog::info(ready_line_);
+    tell_service_manager("READY=1");
     look_at_streams();
     end_when_played();
   });
 
   lifetime_.run();
+  tell_service_manager(exit_code_ == begins_anew ? "RELOADING=1" : "STOPPING=1");
 
   if (page_) {
     page_->stop();
@@ -371,13 +376,26 @@ void Daemon::wait_for_signal() {
                                return;
                              }
                              if (signal_ == SIGHUP) {
-                               spdlog::info("SIGHUP ignored: the configuration is read at the start only");
-                               wait_for_signal();
-                             } else {
-                               spdlog::info("signal {}: ending", signal_);
-                               lifetime_.stop();
+                               reload();
+                               return;
                              }
+                             spdlog::info("signal {}: ending", signal_);
+                             lifetime_.stop();
                            });
+}
+
+void Daemon::reload() {
+  if (!may_begin_anew_) {
+    spdlog::info("SIGHUP ignored: a replay has no configuration to read again");
+  } else if (spdlog::info("SIGHUP: the configuration is read again"); may_begin_anew_()) {
+    spdlog::info("the configuration is good: beginning anew with it");
+    exit_code_ = begins_anew;
+    lifetime_.stop();
+    return;
+  } else {
+    spdlog::error("the configuration has problems: going on with the one in use");
+  }
+  wait_for_signal();
 }
 
 // Checks now and then: a replay may end a little late.
@@ -461,6 +479,9 @@ render::World load_world_of(DaemonConfig& config) {
     }
     return world;
   } catch (const render::WorldError& error) {
+    for (const std::string& line : error.warnings) {
+      spdlog::warn("{}", line);
+    }
     throw StartError("world.file", exit_config, error.what(), error.more);
   }
 }
@@ -475,7 +496,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config) {
   return options;
 }
 
-int run_daemon(DaemonConfig config) {
+int run_daemon(DaemonConfig config, const std::function<bool()>& may_begin_anew) {
   const render::World world = load_world_of(config);
   for (const HeadConfig& head : config.heads) {
     try {
@@ -490,12 +511,13 @@ int run_daemon(DaemonConfig config) {
       spdlog::info("skip rule {} is off", entry.name);
     }
   }
-  return serve(config, world, world_renderer_factory(world, options, engine_choice_path()));
+  return serve(config, world, world_renderer_factory(world, options, engine_choice_path()), nullptr,
+               may_begin_anew);
 }
 
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-          Playback* playback) {
-  Daemon daemon(config, world, make_renderer, playback);
+          Playback* playback, const std::function<bool()>& may_begin_anew) {
+  Daemon daemon(config, world, make_renderer, playback, may_begin_anew);
   return daemon.run();
 }
 

@@ -2,6 +2,7 @@
 // The daemon: pose sources, heads and the render thread joined, from start to signal.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,15 +43,18 @@ render::RendererOptions renderer_options(const DaemonConfig& config);
 /// Loads the world, starts the renderer (self-test first), binds the sockets and serves until SIGINT or
 /// SIGTERM, which end it within the time of one ping. When all is up it logs one line that begins with
 /// "sonard ready": one ping of each head has then been rendered and dropped, so that the first one for
-/// a client takes no longer than others. A signal a second after the first kills at once; SIGHUP is one line
-/// in the log.
-/// @return exit_clean; exit_renderer when the renderer fails while serving; exit_internal
+/// a client takes no longer than others. A signal a second after the first kills at once.
+/// @param may_begin_anew asked at SIGHUP, on the thread that called this: true ends the daemon to begin anew,
+/// false lets it go on. Empty: SIGHUP is one line in the log.
+/// @return exit_clean; begins_anew; exit_renderer when the renderer fails while serving; exit_internal
 /// @throws StartError, render::RendererError, render::RequestError, std::system_error before it is ready
-int run_daemon(DaemonConfig config);
+int run_daemon(DaemonConfig config, const std::function<bool()>& may_begin_anew = {});
+
+inline constexpr int begins_anew = -1;  ///< no exit code: the daemon has ended, and is to be started again
 
 /// Runs the daemon with a loaded world and any renderer; for replay, and for tests without rendering.
 /// @param playback what heads play back that are told to; the daemon ends when it is finished. May be null.
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-          Playback* playback = nullptr);
+          Playback* playback = nullptr, const std::function<bool()>& may_begin_anew = {});
 
 }  // namespace sonard::server

@@ -2,13 +2,18 @@
 #include "server/daemon/process.hpp"
 
 #include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <system_error>
 
@@ -60,6 +65,28 @@ void open_standard_descriptors() {
 void ignore_broken_pipes_and_hang_ups() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGHUP, SIG_IGN);
+}
+
+void tell_service_manager(std::string_view line) {
+  const char* const path = std::getenv("NOTIFY_SOCKET");
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::size_t length = path == nullptr ? 0 : std::strlen(path);
+  if (length < 2 || length >= sizeof(address.sun_path)) {
+    return;
+  }
+  std::memcpy(address.sun_path, path, length);
+  if (path[0] == '@') {
+    address.sun_path[0] = '\0';  // the abstract namespace
+  }
+  const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket >= 0) {
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length);
+    // A manager that does not listen finds out by its own time-out.
+    static_cast<void>(::sendto(socket, line.data(), line.size(), MSG_NOSIGNAL,
+                               reinterpret_cast<const sockaddr*>(&address), size));
+    ::close(socket);
+  }
 }
 
 int catch_signals(std::chrono::nanoseconds grace) {

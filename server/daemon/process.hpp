@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <string_view>
 
 namespace sonard::server {
 
@@ -21,5 +22,9 @@ void ignore_broken_pipes_and_hang_ups();
 /// @return the descriptor to read from, which belongs to the caller
 /// @throws std::system_error
 int catch_signals(std::chrono::nanoseconds grace);
+
+/// Sends one line of the protocol of sd_notify(3), such as "READY=1", to the service manager that has started
+/// this process (NOTIFY_SOCKET); does nothing where there is none.
+void tell_service_manager(std::string_view line);
 
 }  // namespace sonard::server

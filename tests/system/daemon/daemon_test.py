@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
 from lab import Deadline, Program
@@ -205,16 +206,57 @@ class Signals(DaemonCase):
         daemon.send_signal(signal.SIGTERM)
         self.assertEqual(daemon.wait(PATIENCE_S), 0)
 
-    def test_sigpipe_and_sighup_end_nothing(self):
+    def test_sigpipe_ends_nothing(self):
         daemon = self.start()
         client = self.client()
         self.configured(client)
-        for number in (signal.SIGPIPE, signal.SIGHUP, signal.SIGPIPE, signal.SIGHUP):
-            daemon.signal(number)
+        for _ in range(2):
+            daemon.signal(signal.SIGPIPE)
             self.lines(client, 3)
-        daemon.wait_for_line("SIGHUP ignored", PATIENCE_S, count=2)
         code, _ = daemon.terminate(PATIENCE_S)
         self.assertEqual(code, 0)
+
+    def test_sighup_with_a_bad_configuration_changes_nothing(self):
+        daemon = self.start()
+        client = self.client()
+        self.configured(client)
+        with open(os.path.join(self.folder.name, "sonard.yaml"), "a", encoding="utf-8") as file:
+            file.write("colour: green\n")
+        daemon.signal(signal.SIGHUP)
+        daemon.wait_for_line("sonard.yaml:\\d+:\\d+: colour", PATIENCE_S)
+        daemon.wait_for_line("going on with the one in use", PATIENCE_S)
+        self.lines(client, 3)
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def test_sighup_begins_anew_with_a_good_configuration(self):
+        daemon = self.start()
+        client = self.client()
+        self.configured(client)
+        before, self.port = self.port, free_port()
+        self.configuration()
+        daemon.signal(signal.SIGHUP)
+        daemon.wait_for_line("beginning anew", PATIENCE_S)
+        daemon.wait_for_line("sonard ready", START_S, count=2)
+        self.configured(self.client())
+        with self.assertRaises(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", before))
+        code, _ = daemon.terminate(PATIENCE_S)
+        self.assertEqual(code, 0)
+
+    def test_the_service_manager_is_told(self):
+        """By the protocol of sd_notify(3)."""
+        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(manager.close)
+        manager.settimeout(START_S)
+        manager.bind(os.path.join(self.folder.name, "notify"))
+        with unittest.mock.patch.dict(os.environ, NOTIFY_SOCKET=manager.getsockname()):
+            daemon = self.start()
+            self.assertEqual(manager.recv(100), b"READY=1")
+            daemon.signal(signal.SIGHUP)
+            self.assertEqual([manager.recv(100), manager.recv(100)], [b"RELOADING=1", b"READY=1"])
+            daemon.signal(signal.SIGTERM)
+            self.assertEqual(manager.recv(100), b"STOPPING=1")
+            self.assertEqual(daemon.wait(PATIENCE_S), 0)
 
     def test_a_second_sigterm_is_the_first_one(self):
         """As `timeout` sends them: to its child, and to the whole process group."""

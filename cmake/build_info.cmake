@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+# sonard_build_info: a header with what --version prints. It is written anew when the commit has changed, and only the
+# files with main() include it.
+set(SONARD_FEATURES "")
+if(assimp_FOUND)
+  list(APPEND SONARD_FEATURES Assimp)
+endif()
+if(GEOGRAPHICLIB_FOUND)
+  list(APPEND SONARD_FEATURES GeographicLib)
+endif()
+if(TARGET sonard_gazebo)
+  list(APPEND SONARD_FEATURES "Gazebo Transport")
+endif()
+list(JOIN SONARD_FEATURES ", " SONARD_FEATURES)
+
+add_custom_target(sonard_write_build_info
+  COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D OUT=${PROJECT_BINARY_DIR}/build_info/sonard_build_info.hpp
+          -D VERSION=${PROJECT_VERSION} -D "FEATURES=${SONARD_FEATURES}" -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
+  BYPRODUCTS ${PROJECT_BINARY_DIR}/build_info/sonard_build_info.hpp
+  VERBATIM)
+add_library(sonard_build_info INTERFACE)
+target_include_directories(sonard_build_info INTERFACE ${PROJECT_BINARY_DIR}/build_info)
+add_dependencies(sonard_build_info sonard_write_build_info)

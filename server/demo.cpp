@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/demo.hpp"
+
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstddef>
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <istream>
+#include <memory>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/streambuf.hpp>
+
+#include "server/boost_process.hpp"
+#include "server/daemon/exit_codes.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds longest_start{120};  // of the daemon
+constexpr std::chrono::seconds longest_end{5};      // of each program that was asked to end
+
+fs::path folder_of_programs() {
+  return fs::canonical("/proc/self/exe").parent_path();
+}
+
+/// Where the configurations lie. @throws std::runtime_error
+fs::path folder_of_configurations() {
+  const fs::path programs = folder_of_programs();
+  for (const char* const folder : {"../share/sonard/configs", "../../../configs"}) {
+    if (fs::exists(programs / folder / "demo/list.yaml")) {
+      return fs::canonical(programs / folder);
+    }
+  }
+  throw std::runtime_error(
+      fmt::format("demo/list.yaml is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
+                  programs.string()));
+}
+
+/// A program that runs, and its lines.
+class Part {
+ public:
+  /// @param take is called with each line
+  Part(asio::io_context& io, const std::string& name, const std::vector<std::string>& arguments,
+       const fs::path& out, std::function<void(const std::string&)> take)
+      : name_(name), lines_(io), take_(std::move(take)) {
+    if (!out.empty()) {
+      log_.open(out / (name + ".log"));
+    }
+    child_ =
+        process::child((folder_of_programs() / name).string(), process::args(arguments),
+                       process::std_in<process::null, (process::std_out & process::std_err)> lines_, io,
+                       process::on_exit = [this](int code, const std::error_code&) { exit_code_ = code; },
+                       process::extend::on_exec_setup = [](auto&) { ::prctl(PR_SET_PDEATHSIG, SIGTERM); });
+    read();
+  }
+
+  const std::string& name() const { return name_; }
+  bool ended() const { return exit_code_.has_value(); }
+  int exit_code() const { return exit_code_.value_or(0); }
+  std::string last_words() const { return fmt::format("  {}\n", fmt::join(tail_, "\n  ")); }
+  void signal(int number) {
+    if (!ended()) {
+      ::kill(child_.id(), number);
+    }
+  }
+
+ private:
+  void read() {
+    asio::async_read_until(lines_, buffer_, '\n',
+                           [this](const boost::system::error_code& error, std::size_t) {
+                             if (error) {
+                               return;
+                             }
+                             std::istream in(&buffer_);
+                             std::string line;
+                             std::getline(in, line);
+                             if (log_.is_open()) {
+                               log_ << line << std::endl;
+                             }
+                             tail_.push_back(line);
+                             if (tail_.size() > 15) {
+                               tail_.pop_front();
+                             }
+                             take_(line);
+                             read();
+                           });
+  }
+
+  std::string name_;
+  process::async_pipe lines_;
+  asio::streambuf buffer_;
+  std::function<void(const std::string&)> take_;
+  std::ofstream log_;
+  std::deque<std::string> tail_;
+  std::optional<int> exit_code_;
+  process::child child_;
+};
+
+/// A template with what a line "summary key=value ..." says put in for each {key}.
+std::string filled_in(std::string text, const std::string& summary) {
+  std::istringstream words(summary);
+  for (std::string word; words >> word;) {
+    if (const std::size_t sign = word.find('='); sign != std::string::npos) {
+      const std::string key = "{" + word.substr(0, sign) + "}";
+      if (const std::size_t at = text.find(key); at != std::string::npos) {
+        text.replace(at, key.size(), word.substr(sign + 1));
+      }
+    }
+  }
+  return text;
+}
+
+class Demo {
+ public:
+  Demo(const DemoOptions& options, const fs::path& configurations, const YAML::Node& entry)
+      : options_(options), configurations_(configurations), entry_(entry) {}
+
+  int run() {
+    signals_.async_wait([this](const boost::system::error_code& error, int) { interrupted_ = !error; });
+    start_daemon();
+    if (wait([this] { return ready_; }, longest_start)) {
+      fmt::print("demo: watch at {} ({})\n", page(),
+                 options_.time ? fmt::format("for {} s", options_.time->count()) : "until Ctrl-C");
+      std::fflush(stdout);
+      start_poses();
+      start_client();
+      wait([] { return false; }, std::chrono::hours(1'000'000));
+    }
+    return finish();
+  }
+
+ private:
+  std::string path(const char* key) const {
+    return (configurations_ / entry_[key].as<std::string>()).string();
+  }
+
+  std::string page() const {
+    return "http://" + YAML::LoadFile(path("configuration"))["web"]["bind"].as<std::string>();
+  }
+
+  void start_daemon() {
+    parts_.push_back(std::make_unique<Part>(io_, "sonard",
+                                            std::vector<std::string>{"run", path("configuration")},
+                                            options_.out, [this](const std::string& line) {
+                                              if (line.find("sonard ready") != std::string::npos) {
+                                                ready_ = true;
+                                                fmt::print("{}\n", line);
+                                              }
+                                            }));
+  }
+
+  void start_poses() {
+    parts_.push_back(std::make_unique<Part>(io_, "posecast",
+                                            std::vector<std::string>{path("trajectory"), "--loop"},
+                                            options_.out, [](const std::string&) {}));
+  }
+
+  void start_client() {
+    auto arguments = entry_["client"].as<std::vector<std::string>>();
+    if (!options_.out.empty()) {
+      arguments.insert(arguments.end(), {"--out", options_.out.string()});
+    }
+    if (options_.time) {
+      arguments.insert(arguments.end(), {"--seconds", std::to_string(options_.time->count())});
+    }
+    parts_.push_back(
+        std::make_unique<Part>(io_, "sonarview", arguments, options_.out, [this](const std::string& line) {
+          if (line.rfind("summary ", 0) == 0) {
+            summary_ = line;
+          }
+          fmt::print("{}\n", line);
+          std::fflush(stdout);
+        }));
+  }
+
+  /// Until `done`, a signal, or the end of a program. @return whether it is done
+  template <typename Done>
+  bool wait(Done done, std::chrono::steady_clock::duration longest) {
+    const auto end = std::chrono::steady_clock::now() + longest;
+    const auto one_ended = [this] {
+      return std::ranges::any_of(parts_, [](const auto& part) { return part->ended(); });
+    };
+    while (!done() && !interrupted_ && !one_ended() && std::chrono::steady_clock::now() < end) {
+      io_.run_one_for(std::chrono::milliseconds(100));
+    }
+    return done();
+  }
+
+  /// Ends all, the client first, so that it can say goodbye.
+  int finish() {
+    const Part* const fallen = first_that_ended();
+    for (std::size_t i = parts_.size(); i-- > 0;) {
+      end(*parts_[i]);
+    }
+    const bool client_done = fallen != nullptr && fallen->name() == "sonarview" && fallen->exit_code() == 0;
+    if (!interrupted_ && !client_done) {
+      const Part& part = fallen == nullptr ? *parts_.front() : *fallen;
+      fmt::print(stderr, "demo: {} {}. It said last:\n{}", part.name(),
+                 fallen == nullptr ? fmt::format("was not ready after {} s", longest_start.count())
+                                   : "ended by itself",
+                 part.last_words());
+      return exit_internal;
+    }
+    if (!summary_.empty()) {
+      fmt::print("demo: {}\n", filled_in(entry_["report"].as<std::string>(), summary_));
+    }
+    if (!options_.out.empty()) {
+      fmt::print("demo: pictures and the programs' lines are in {}\n", options_.out.string());
+    }
+    return exit_clean;
+  }
+
+  const Part* first_that_ended() const {
+    for (const auto& part : parts_) {
+      if (part->ended()) {
+        return part.get();
+      }
+    }
+    return nullptr;
+  }
+
+  void end(Part& part) {
+    for (const int number : {SIGTERM, SIGKILL}) {
+      part.signal(number);
+      const auto end = std::chrono::steady_clock::now() + longest_end;
+      while (!part.ended() && std::chrono::steady_clock::now() < end) {
+        io_.run_one_for(std::chrono::milliseconds(100));
+      }
+    }
+    io_.poll();  // its last lines
+  }
+
+  DemoOptions options_;
+  fs::path configurations_;
+  YAML::Node entry_;
+  asio::io_context io_;
+  asio::signal_set signals_{io_, SIGINT, SIGTERM};
+  bool interrupted_ = false;
+  bool ready_ = false;
+  std::string summary_;
+  std::vector<std::unique_ptr<Part>> parts_;  ///< in the order of their start
+};
+
+}  // namespace
+
+int run_demo(const DemoOptions& options) {
+  const fs::path configurations = folder_of_configurations();
+  const YAML::Node demos = YAML::LoadFile((configurations / "demo/list.yaml").string());
+  const YAML::Node entry = demos[options.name];
+  if (!entry) {
+    std::vector<std::string> names;
+    for (const auto& demo : demos) {
+      names.push_back(demo.first.as<std::string>());
+    }
+    fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", options.name,
+               fmt::join(names, ", "));
+    return exit_config;
+  }
+  if (!options.out.empty()) {
+    fs::create_directories(options.out);
+  }
+  return Demo(options, configurations, entry).run();
+}
+
+}  // namespace sonard::server
