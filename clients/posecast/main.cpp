@@ -14,6 +14,7 @@
 #include "clients/posecast/caster.hpp"
 #include "clients/posecast/pose_link.hpp"
 #include "protocol/pose/trajectory.hpp"
+#include "sonard_build_info.hpp"
 
 namespace {
 
@@ -129,6 +130,7 @@ int cast(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Plays a trajectory file as a pose stream for sonard"};
+  app.set_version_flag("--version", std::string("posecast " SONARD_BUILD_INFO));
   Arguments arguments;
   declare(app, arguments);
   try {

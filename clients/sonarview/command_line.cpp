@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clients/sonarview/compare/subcommand.hpp"
+#include "sonard_build_info.hpp"
 
 namespace sonard::client {
 namespace {
@@ -26,6 +27,7 @@ void refuse_options_before(const CLI::App& app, const std::string& subcommand) {
 std::optional<Run> parse_command_line(int argc, const char* const* argv, ExitStatus& status) {
   const std::span<const Subcommand> devices = device_subcommands();
   CLI::App app{devices.front().summary, "sonarview"};
+  app.set_version_flag("--version", std::string("sonarview " SONARD_BUILD_INFO));
   app.footer(devices.front().footer);
   const Prepare usual = devices.front().declare(app);
   std::vector<std::pair<CLI::App*, Prepare>> choices;

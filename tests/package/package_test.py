@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The Debian package, as a user has it: lintian, then installed, used and purged on a fresh system.
+
+    sudo package_test.py PACKAGE.deb
+
+The system is a folder made by debootstrap from this machine's mirror, for this machine's release. What runs there has mount,
+process and network namespaces of its own. Needs root, debootstrap, lintian, iproute2, and systemd for its opinion of the unit.
+"""
+
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(REPOSITORY / "docker"))
+from prove_in_chroot import apt_mirror  # noqa: E402
+
+PACKAGE = None
+PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+
+
+def codename():
+    text = pathlib.Path("/etc/os-release").read_text(encoding="utf-8")
+    return re.search("^VERSION_CODENAME=(.*)$", text, re.MULTILINE).group(1)
+
+
+class System:
+    """A fresh Debian in a folder."""
+
+    def __init__(self, root):
+        self.root = pathlib.Path(root)
+        name = codename()
+        subprocess.run(["debootstrap", "--variant=minbase", "--include=ca-certificates", name, root, apt_mirror(name)], check=True,
+                       stdout=subprocess.DEVNULL)
+        for file in ("/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs/ca-certificates.crt"):
+            if os.path.exists(file):
+                shutil.copy(file, self.root / file.lstrip("/"))
+
+    def run(self, command, network=True, expected=0, timeout=600):
+        """What a shell prints there, both ways together."""
+        inside = shlex.join(["chroot", str(self.root), "env", "-i", f"PATH={PATH}", "HOME=/root", "DEBIAN_FRONTEND=noninteractive",
+                             "sh", "-c", command])
+        setup = (f"mount -t proc proc {shlex.quote(str(self.root / 'proc'))} && mount --bind /dev {shlex.quote(str(self.root / 'dev'))} && "
+                 + ("" if network else "ip link set lo up && ") + "exec " + inside)
+        done = subprocess.run(["unshare", "--mount", "--pid", "--fork", "--kill-child", *([] if network else ["--net"]), "sh", "-c", setup],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
+        if done.returncode != expected:
+            raise AssertionError(f"'{command}' ended with {done.returncode}:\n{done.stdout[-4000:]}")
+        return done.stdout
+
+    def files(self):
+        """Those that a package could have left."""
+        return {str(path.relative_to(self.root)) for folder in ("etc", "usr", "opt", "var", "srv")
+                for path in (self.root / folder).rglob("*") if "sonar" in path.name or "posecast" in path.name}
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.system = System(cls.folder.name + "/root")
+        shutil.copy(PACKAGE, cls.system.root / "tmp" / "sonard.deb")
+        cls.system.run("apt-get update && apt-get install --yes --no-install-recommends /tmp/sonard.deb", timeout=1800)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_1_lintian_has_nothing_to_say(self):
+        done = subprocess.run(["lintian", "--allow-root", "--fail-on", "error,warning", PACKAGE], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
+        self.assertEqual((done.returncode, done.stdout.strip()), (0, ""))
+
+    def test_2_the_demo_moves_from_the_package_alone(self):
+        printed = self.system.run("cd /tmp && sonard demo --seconds 10 --out /tmp/out", network=False)
+        print(printed)
+        self.assertRegex(printed, r"demo: watch at http://127\.0\.0\.1:8014")
+        self.assertRegex(printed, r"got .* complete \([1-9]\d* in all\); 0 lines missing")
+        picture = (self.system.root / "tmp/out/fan-last.png").read_bytes()
+        self.assertTrue(picture.startswith(b"\x89PNG") and len(picture) > 10000)
+
+    def test_3_the_service_serves_sonarview(self):
+        unit = (self.system.root / "usr/lib/systemd/system/sonard.service").read_text()
+        start = re.search("^ExecStart=(.*)$", unit, re.MULTILINE).group(1)
+        printed = self.system.run(
+            f"{start} 2>/tmp/log & daemon=$!; "
+            "for try in $(seq 300); do grep -q 'sonard ready' /tmp/log && break; sleep 0.2; done; "
+            "sonarview --pings 5 --range 10; code=$?; kill $daemon; wait $daemon; cat /tmp/log; exit $code", network=False)
+        self.assertRegex(printed, "summary pings_complete=5 pings_incomplete=0")
+
+    def test_4_the_configuration_of_the_service_is_good(self):
+        self.assertIn("/etc/sonard/sonard.yaml: good", self.system.run("sonard check /etc/sonard/sonard.yaml", network=False))
+
+    def test_5_pages_and_versions(self):
+        pages = {path.name for path in (self.system.root / "usr/share/man").rglob("*.gz")}
+        for command in ("sonard", "sonarview", "posecast"):
+            self.assertIn(command + ".1.gz", pages)
+            self.assertRegex(self.system.run(command + " --version"), rf"^{command} \d+\.\d+\.\d+, commit [0-9a-f]+")
+        self.assertIn("sonard.yaml.5.gz", pages)
+        words = self.system.run("apt-get install --yes bash-completion >/dev/null 2>&1; bash -c '. /usr/share/bash-completion/completions/sonard; "
+                                "COMP_WORDS=(sonard re); COMP_CWORD=1; _sonard; echo ${COMPREPLY[@]}; "
+                                "COMP_WORDS=(sonard replay --l); COMP_CWORD=2; _sonard; echo ${COMPREPLY[@]}'")
+        self.assertEqual(words.split("\n")[:2], ["render replay", "--loop --log-level"])
+
+    def test_6_the_unit_is_sound(self):
+        unit = str(self.system.root / "usr/lib/systemd/system/sonard.service")
+        line = subprocess.run(["systemd-analyze", "security", "--offline=true", "--no-pager", unit], stdout=subprocess.PIPE, text=True).stdout
+        print(line.strip().splitlines()[-1])
+        self.assertRegex(line, "Overall exposure level for .*: [0-2]\\.")
+
+    def test_9_purged_it_leaves_nothing(self):
+        self.system.run("apt-get purge --yes sonard")
+        self.assertEqual(self.system.files(), set())
+
+
+if __name__ == "__main__":
+    PACKAGE = os.path.abspath(sys.argv.pop(1))
+    unittest.main(verbosity=2)
