@@ -245,6 +245,7 @@ struct Sampling {
 /// What a sample says of the amplitude at the output.
 enum class OutputScale {
   linear,         ///< in proportion, full scale at the highest code
+  power,          ///< in proportion to its power `output_exponent`, rounded down: the highest code is not met
   half_decibels,  ///< of a scanning head: 255 codes for 80 dB in steps of half a decibel, none above 191
 };
 
@@ -256,8 +257,9 @@ struct SonarSettings {
   PhysicalModel physical;
   Sampling sampling;
   bool transmit = true;      ///< false: the sonar only listens, there is no echo
-  bool sixteen_bit = false;  ///< output samples of 16 instead of 8 bits; of a linear scale only
+  bool sixteen_bit = false;  ///< output samples of 16 instead of 8 bits; not of half decibels
   OutputScale output_scale = OutputScale::linear;
+  double output_exponent = 1.0;  ///< with OutputScale::power; > 0
 };
 
 /// Whether the beams are those of a straight array: mode `physical`, Azimuth::array, two beams or more.

@@ -38,6 +38,15 @@ void quantise_row(const float* __restrict codes, int count, std::uint16_t* __res
   }
 }
 
+/// @param full code of full scale, which is not met
+template <class Code>
+void quantise_power(const float* codes, float exponent, float full, int count, Code* out) {
+  for (int b = 0; b < count; ++b) {
+    const float code = full * std::pow(codes[b] / full, exponent);
+    out[b] = static_cast<Code>(std::min(full - 1.0F, code));
+  }
+}
+
 void add_decibels(const float* amplitude, int count, float* sum) {
   for (int b = 0; b < count; ++b) {
     sum[b] += 20 * std::log10(std::max(amplitude[b], 1e-6F));
@@ -67,8 +76,8 @@ PingSamples make_samples(const SonarSettings& settings) {
 }
 
 float codes_per_amplitude(const SonarSettings& settings) {
-  const bool linear = settings.output_scale == OutputScale::linear;
-  const float full_scale = !linear ? 1.0F : settings.sixteen_bit ? 65535.0F : 255.0F;
+  const bool decibels = settings.output_scale == OutputScale::half_decibels;
+  const float full_scale = decibels ? 1.0F : settings.sixteen_bit ? 65535.0F : 255.0F;
   const int shares = settings.range.compression_peak ? 1 : 1 << settings.range.compression_log2;
   return full_scale / static_cast<float>(shares);
 }
@@ -76,6 +85,7 @@ float codes_per_amplitude(const SonarSettings& settings) {
 Quantizer::Quantizer(const SonarSettings& settings, PingSamples& samples)
     : samples_(samples),
       scale_(settings.output_scale),
+      exponent_(static_cast<float>(settings.output_exponent)),
       peak_(settings.range.compression_peak),
       sum_(static_cast<std::size_t>(samples.beams)) {}
 
@@ -107,6 +117,10 @@ void Quantizer::end(int output_line) {
   const std::size_t at = static_cast<std::size_t>(output_line) * beams;
   if (scale_ == OutputScale::half_decibels) {
     quantise_decibels(sum_.data(), static_cast<float>(terms_), samples_.beams, &samples_.u8[at]);
+  } else if (scale_ == OutputScale::power && samples_.u16.empty()) {
+    quantise_power(sum_.data(), exponent_, 255.0F, samples_.beams, &samples_.u8[at]);
+  } else if (scale_ == OutputScale::power) {
+    quantise_power(sum_.data(), exponent_, 65535.0F, samples_.beams, &samples_.u16[at]);
   } else if (samples_.u16.empty()) {
     quantise_row(sum_.data(), samples_.beams, &samples_.u8[at]);
   } else {

@@ -24,12 +24,13 @@ class Quantizer {
   /// @param codes amplitude of one range bin in each beam, times codes_per_amplitude(). A line that is 0
   /// throughout may be left out.
   void add(const float* codes);
-  /// Quantises last, rounding to nearest and clamping: nothing wraps.
+  /// Quantises last, rounding as the scale says, and clamping: nothing wraps.
   void end(int output_line);
 
  private:
   PingSamples& samples_;
   OutputScale scale_;
+  float exponent_;
   bool peak_;
   int terms_ = 0;  ///< range bins, or cells, that were added
   AlignedVector<float> sum_;

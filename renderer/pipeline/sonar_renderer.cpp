@@ -44,8 +44,12 @@ void check(const SonarSettings& settings) {
   if (!(range.step_m >= shortest_line_m) || !(range.max_range_m() <= longest_range_m)) {
     throw RequestError("range: a line of " + std::to_string(range.step_m) + " m gives no usable range");
   }
-  if (settings.sixteen_bit && settings.output_scale != OutputScale::linear) {
-    throw RequestError("output: samples of 16 bits are linear, a scale of half decibels has 8 bits");
+  if (settings.sixteen_bit && settings.output_scale == OutputScale::half_decibels) {
+    throw RequestError("output: a scale of half decibels has 8 bits, not 16");
+  }
+  if (!(settings.output_exponent > 0 && std::isfinite(settings.output_exponent))) {
+    throw RequestError("output: an amplitude to the power of " + std::to_string(settings.output_exponent) +
+                       ", expected more than 0");
   }
   if (range.compression_log2 < 0 || range.compression_log2 > 4) {
     throw RequestError("range: compression 2^" + std::to_string(range.compression_log2) +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples in half decibels, as a DST head puts them out: v = floor(k 255 / 160) with k = round(2 L / dB), and
-// nothing above k = 120 (docs/physics.md 2.16). Full scale is 80 dB.
+// nothing above k = 120 (docs/physics.md 2.16), full scale is 80 dB; and in powers of the amplitude.
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -69,6 +69,47 @@ TEST(OutputScale, AMeanOfNativeLinesIsOneOfAmplitudes) {
   echo.intensity[8] = 1e-4F;  // amplitude 0.01; with three lines of nothing 0.0025: 80 - 52.04 dB
   const PingSamples samples = receiver.receive(echo, request, 0, workers);
   EXPECT_EQ(samples.u8[2], 56 * 255 / 160);
+}
+
+/// 1000 amplitudes from 0 to 1.2 of full scale, as samples of a power of them.
+PingSamples powers(double exponent, bool sixteen_bit) {
+  std::vector<float> intensity;
+  for (int i = 0; i < 1000; ++i) {
+    const double amplitude = i * 1.2e-3;
+    intensity.push_back(static_cast<float>(amplitude * amplitude));
+  }
+  PingRequest request = scanning_request(1000);
+  request.settings.output_scale = OutputScale::power;
+  request.settings.output_exponent = exponent;
+  request.settings.sixteen_bit = sixteen_bit;
+  WorkerPool workers(1);
+  Receiver receiver;
+  return receiver.receive(EchoImage{1, 1000, intensity}, request, 0, workers);
+}
+
+TEST(OutputScale, PowersAreRoundedDownAndEndBelowTheHighestCode) {
+  for (const double exponent : {1.0, 0.75, 127.0 / 255.0, 1.0 / 255.0}) {
+    const PingSamples narrow = powers(exponent, false);
+    const PingSamples wide = powers(exponent, true);
+    ASSERT_EQ(narrow.u8.size(), 1000U);
+    ASSERT_EQ(wide.u16.size(), 1000U);
+    for (std::size_t i = 1; i < 1000; ++i) {
+      const double power = std::pow(static_cast<double>(i) * 1.2e-3, exponent);
+      // Single precision may fall on the other side of a whole number.
+      EXPECT_NEAR(narrow.u8[i], std::min(254.0, 255.0 * power - 0.5), 0.501) << exponent << " " << i;
+      EXPECT_NEAR(wide.u16[i], std::min(65534.0, 65535.0 * power - 0.5), 0.55) << exponent << " " << i;
+    }
+    EXPECT_EQ(narrow.u8[0], 0);
+    EXPECT_EQ(narrow.u8[999], 254);
+    EXPECT_EQ(wide.u16[999], 65534);
+  }
+}
+
+TEST(OutputScale, RefusesAPowerOfZero) {
+  SonarRenderer renderer(World{}, {EngineKind::cpu, 1});
+  PingRequest request = scanning_request(10);
+  request.settings.output_exponent = 0.0;
+  EXPECT_THROW(renderer.render_ping(request), RequestError);
 }
 
 TEST(OutputScale, SixteenBitsHaveNoSuchScale) {
