@@ -278,6 +278,34 @@ void read_single_beam(YamlSection& section, render::Aperture& aperture) {
   aperture.beam_edges_rad = {aperture.receive_beamwidth_rad / 2, -aperture.receive_beamwidth_rad / 2};
 }
 
+void read_receive_array(YamlSection& section, render::Aperture& aperture) {
+  section.angle("receive_beamwidth_deg", aperture.receive_beamwidth_rad, Range::from(0.1, 60.0),
+                "-3 dB width of one beam at broadside: the pattern of the beams, and over how many beams "
+                "speckle and noise are correlated");
+  using Taper = render::Aperture::Taper;
+  using Azimuth = render::Aperture::Azimuth;
+  section.choice("azimuth_pattern", aperture.azimuth, {{"array", Azimuth::array}, {"ideal", Azimuth::ideal}},
+                 "beams overlap and have side lobes as a straight array's do, or receive what lies between "
+                 "their edges and nothing else");
+  section.choice("taper", aperture.taper,
+                 {{"hamming", Taper::hamming},
+                  {"hann", Taper::hann},
+                  {"kaiser", Taper::kaiser},
+                  {"uniform", Taper::uniform}},
+                 "weights of the array's elements: side lobes of -43, -31, -21 (beta 2.5) or -13 dB");
+  section.integer("fine_beams", aperture.fine_beams, 1, 16,
+                  "with `array`: a bearing is known to one part in this many of a beam");
+  using Bearing = render::Aperture::Bearing;
+  section.choice("bearing", aperture.bearing, {{"planar", Bearing::planar}, {"conical", Bearing::conical}},
+                 "with `array`: a beam looks at an azimuth, or, as a straight array does, along a cone: what "
+                 "lies off the horizontal appears nearer to the axis");
+  section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0),
+                 "with `array`: standard deviation of the elements' amplitude errors, as a share; they let "
+                 "strong echoes leak into all beams. The errors belong to `seed`");
+  section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0),
+                "the same of their phase errors");
+}
+
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   render::SonarSettings& settings = head.acoustics;
   section.choice("mode", settings.model,

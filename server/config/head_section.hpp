@@ -36,6 +36,8 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head);
 /// The width of the one beam of a scanning head.
 void read_single_beam(YamlSection& section, render::Aperture& aperture);
+/// The array and the beams of a multibeam head.
+void read_receive_array(YamlSection& section, render::Aperture& aperture);
 /// Absorption at the frequency of the head. To be called before the acoustics are read.
 void apply_water(YamlSection& section, const HeadContext& context, double carrier_hz, HeadConfig& head);
 

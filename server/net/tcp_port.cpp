@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp_port.hpp"
 
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-
 #include <array>
 #include <set>
 #include <utility>
@@ -13,6 +10,7 @@
 
 #include "server/net/frame_writer.hpp"
 #include "server/net/tcp_listener.hpp"
+#include "server/net/tcp_options.hpp"
 
 namespace sonard::server {
 namespace {
@@ -24,24 +22,6 @@ using boost::system::error_code;
 // What a client that pauses finds when it goes on is old by up to so much; the line itself would hold
 // nothing.
 constexpr int send_buffer_bytes = 16 << 10;
-// A silent peer is asked after half a minute and given up half a minute later.
-constexpr int keepalive_idle_s = 30;
-constexpr int keepalive_interval_s = 10;
-constexpr int keepalive_probes = 3;
-
-template <int Name>
-using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, Name>;
-
-void set_options(tcp::socket& socket) {
-  error_code ignored;  // the peer may be gone already
-  socket.non_blocking(true, ignored);
-  socket.set_option(tcp::no_delay{true}, ignored);
-  socket.set_option(tcp::socket::send_buffer_size{send_buffer_bytes}, ignored);
-  socket.set_option(tcp::socket::keep_alive{true}, ignored);
-  socket.set_option(TcpOption<TCP_KEEPIDLE>{keepalive_idle_s}, ignored);
-  socket.set_option(TcpOption<TCP_KEEPINTVL>{keepalive_interval_s}, ignored);
-  socket.set_option(TcpOption<TCP_KEEPCNT>{keepalive_probes}, ignored);
-}
 
 }  // namespace
 
@@ -130,7 +110,7 @@ void TcpPort::Impl::admit(tcp::socket socket, const Endpoint& peer) {
     listener->refuse(peer, "too many clients");
     return;
   }
-  set_options(socket);
+  set_client_options(socket, send_buffer_bytes);
   ++counters.connections;
   log.info("serial {}: tcp {} connected", description(), endpoint_text(peer));
   const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), peer);

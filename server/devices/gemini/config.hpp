@@ -4,24 +4,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "protocol/gemini/device_config.hpp"
 #include "server/config/config.hpp"
+#include "server/config/status_destination.hpp"
 #include "server/net/faulty_link.hpp"
 
 namespace sonard::server {
-
-/// Where the 1 Hz status packets go.
-struct StatusDestination {
-  enum class Mode {
-    limited_broadcast,   ///< 255.255.255.255, as the device does
-    directed_broadcast,  ///< the broadcast address of the alternate address under its netmask
-    unicast,             ///< each of `hosts`
-  };
-  Mode mode = Mode::limited_broadcast;
-  std::vector<Ipv4> hosts;  ///< for `unicast` only, then not empty
-};
 
 /// The sonar's x axis is the acoustic axis, so a down tilt is in the mount. The bearing table of the device
 /// and its jobs fill in `aperture.beam_edges_rad` and `range` of the acoustics.
@@ -47,9 +36,6 @@ struct GeminiConfig final : DeviceSettings {
 inline const GeminiConfig& gemini_config(const HeadConfig& head) {
   return static_cast<const GeminiConfig&>(*head.device);
 }
-
-/// Hosts that status packets go to.
-std::vector<Ipv4> status_hosts(const StatusDestination& status, Ipv4 address, Ipv4 netmask);
 
 /// The acoustics of such a head, where nothing is configured.
 render::SonarSettings gemini_acoustics();

@@ -34,24 +34,6 @@ double worst_bearing_error_rad(const LoggedHead& head) {
   return worst;
 }
 
-std::string status_text(const GeminiConfig& config) {
-  using Mode = StatusDestination::Mode;
-  std::vector<std::string> hosts;
-  for (const Ipv4 host :
-       status_hosts(config.status, config.device.alternate_address, config.device.netmask)) {
-    hosts.push_back(address_text(host));
-  }
-  switch (config.status.mode) {
-    case Mode::limited_broadcast:
-      return "by limited broadcast";
-    case Mode::directed_broadcast:
-      return "by broadcast to " + hosts.front();
-    case Mode::unicast:
-      break;
-  }
-  return fmt::format("to {}", fmt::join(hosts, ", "));
-}
-
 class GeminiKind final : public DeviceKind {
  public:
   std::string_view type() const override { return "gemini_720i"; }
@@ -99,7 +81,8 @@ class GeminiKind final : public DeviceKind {
   std::string summary(const HeadConfig& head) const override {
     const GeminiConfig& config = gemini_config(head);
     return fmt::format("ID {}, commands to {}, status {}", config.device.sonar_id,
-                       endpoint_text({config.bind_address, config.command_port}), status_text(config));
+                       endpoint_text({config.bind_address, config.command_port}),
+                       status_text(config.status, config.device.alternate_address, config.device.netmask));
   }
 
   // Later clients stay silent towards a head whose mask is not that of their own interface.
@@ -254,20 +237,6 @@ render::SonarSettings gemini_acoustics() {
   // (docs/physics.md 2.5).
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
   return acoustics;
-}
-
-std::vector<Ipv4> status_hosts(const StatusDestination& status, Ipv4 address, Ipv4 netmask) {
-  using Mode = StatusDestination::Mode;
-  constexpr Ipv4 limited_broadcast = 0xFFFFFFFF;
-  switch (status.mode) {
-    case Mode::limited_broadcast:
-      return {limited_broadcast};
-    case Mode::directed_broadcast:
-      return {address | ~netmask};
-    case Mode::unicast:
-      break;
-  }
-  return status.hosts;
 }
 
 }  // namespace sonard::server

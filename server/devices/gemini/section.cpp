@@ -5,18 +5,15 @@
 
 #include "protocol/gemini/messages.hpp"
 #include "server/config/network_section.hpp"
+#include "server/config/status_section.hpp"
 #include "server/net/addresses.hpp"
 
 namespace sonard::server {
 namespace {
 
 constexpr double minute_ms = 60'000.0;
-constexpr TextForm address_form{"an IPv4 address such as 127.0.0.2", "address", address_schema};
-constexpr TextForm addresses_form{address_form.expected, "addresses", address_schema};
-constexpr TextForm netmask_form{"a netmask such as 255.255.255.0", "netmask", address_schema};
 constexpr TextForm bind_form{"an address of this machine, or 0.0.0.0 for all of them", "address",
                              address_schema};
-constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets", mac_schema};
 constexpr TextForm trigger_form{"an address and port such as 127.0.0.1:14700", endpoint_form.type,
                                 endpoint_form.schema};
 
@@ -25,58 +22,6 @@ void read_identity(YamlSection& section, GeminiConfig& config) {
   // (docs/protocols/gemini.md 1.4).
   section.require("sonar_id", "a whole number from 2 to 65535");
   section.integer("sonar_id", config.device.sonar_id, 2, 65535, "unique; clients never talk to 0 and 1");
-}
-
-/// An address that a head can own or talk to.
-void check_host_address(YamlSection& section, std::string_view key, Ipv4 address) {
-  if (address == 0 || is_multicast(address) || address == 0xFFFFFFFF) {
-    section.report(key, fmt::format("{} is not the address of one host (expected {})", address_text(address),
-                                    address_form.expected));
-  }
-}
-
-void check_inside_network(YamlSection& section, const gemini::DeviceConfig& device) {
-  const std::optional<int> prefix = prefix_length_of(device.netmask);
-  if (!prefix || *prefix == 0) {
-    section.report("netmask",
-                   fmt::format("{} is not a netmask (expected leading ones only, such as 255.255.255.0)",
-                               address_text(device.netmask)));
-    return;
-  }
-  const Ipv4 host = device.alternate_address & ~device.netmask;
-  if (*prefix <= 30 && (host == 0 || host == ~device.netmask)) {
-    section.report(
-        "alternate_address",
-        fmt::format("{} is the {} address of its network (expected the address of one host under mask {})",
-                    address_text(device.alternate_address), host == 0 ? "first" : "broadcast",
-                    address_text(device.netmask)));
-  }
-}
-
-void read_status_destination(YamlSection& section, const gemini::DeviceConfig& device,
-                             StatusDestination& status) {
-  using Mode = StatusDestination::Mode;
-  if (!section.is_list("status")) {
-    section.choice(
-        "status", status.mode,
-        {{"limited_broadcast", Mode::limited_broadcast}, {"directed_broadcast", Mode::directed_broadcast}},
-        "where status packets go, once a second: 255.255.255.255 as the device does, the broadcast address "
-        "of `alternate_address` under `netmask`, or these hosts");
-  }
-  if (section.is_list("status") || section.describing()) {
-    status.mode = Mode::unicast;
-    section.parsed_list("status", status.hosts, &parse_ipv4, addresses_form, "",
-                        "no host is listed (expected at least one address)");
-    for (const Ipv4 host : status.hosts) {
-      check_host_address(section, "status", host);
-    }
-  }
-  const std::optional<int> prefix = prefix_length_of(device.netmask);
-  if (status.mode == Mode::directed_broadcast && prefix && *prefix > 30) {
-    section.report("status",
-                   fmt::format("mask {} leaves no broadcast address (expected limited_broadcast or a list)",
-                               address_text(device.netmask)));
-  }
 }
 
 void read_network(YamlSection& section, GeminiConfig& config) {
@@ -92,7 +37,7 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   section.parsed("netmask", device.netmask, &parse_ipv4, netmask_form,
                  "the true mask of the interface served: some clients send nothing when it is not that of "
                  "their own interface");
-  check_inside_network(section, device);
+  check_inside_network(section, "alternate_address", device.alternate_address, device.netmask);
   const std::string fixed_address = address_text(device.fixed_address);
   section.parsed("fixed_address", device.fixed_address, &parse_ipv4, address_form,
                  "the hard-wired address of a 720i, reported in the status packets; served too where the "
@@ -122,15 +67,9 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   section.default_is("mac", "00:12:34:00 and the sonar ID");
   section.boolean("accept_id_zero", device.accept_id_zero, "also take commands with the header ID 0");
 
-  read_status_destination(section, device, config.status);
+  read_status_destination(section, "alternate_address", device.netmask, config.status);
   read_allow_list(section, config.bind_address, config.allow, "clients that are served");
-  for (const Ipv4 host : config.status.hosts) {
-    if (!config.allow.empty() && !allows(config.allow, host)) {
-      section.warn("status",
-                   fmt::format("{} gets status packets but is not in `allow`: its commands are dropped",
-                               address_text(host)));
-    }
-  }
+  warn_of_status_without_access(section, config.status, config.allow);
 }
 
 void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
@@ -167,34 +106,6 @@ void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
                  "dB per percent of gain, as early clients count it");
   section.number("nominal_main_gain_db", law.nominal_main_gain_db, Range::from(0.0, 100.0),
                  "main gain at which the level is 0 dB");
-}
-
-void read_receive_array(YamlSection& section, render::Aperture& aperture) {
-  section.angle("receive_beamwidth_deg", aperture.receive_beamwidth_rad, Range::from(0.1, 60.0),
-                "-3 dB width of one beam at broadside: the pattern of the beams, and over how many beams "
-                "speckle and noise are correlated");
-  using Taper = render::Aperture::Taper;
-  using Azimuth = render::Aperture::Azimuth;
-  section.choice("azimuth_pattern", aperture.azimuth, {{"array", Azimuth::array}, {"ideal", Azimuth::ideal}},
-                 "beams overlap and have side lobes as a straight array's do, or receive what lies between "
-                 "their edges and nothing else");
-  section.choice("taper", aperture.taper,
-                 {{"hamming", Taper::hamming},
-                  {"hann", Taper::hann},
-                  {"kaiser", Taper::kaiser},
-                  {"uniform", Taper::uniform}},
-                 "weights of the array's elements: side lobes of -43, -31, -21 (beta 2.5) or -13 dB");
-  section.integer("fine_beams", aperture.fine_beams, 1, 16,
-                  "with `array`: a bearing is known to one part in this many of a beam");
-  using Bearing = render::Aperture::Bearing;
-  section.choice("bearing", aperture.bearing, {{"planar", Bearing::planar}, {"conical", Bearing::conical}},
-                 "with `array`: a beam looks at an azimuth, or, as a straight array does, along a cone: what "
-                 "lies off the horizontal appears nearer to the axis");
-  section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0),
-                 "with `array`: standard deviation of the elements' amplitude errors, as a share; they let "
-                 "strong echoes leak into all beams. The errors belong to `seed`");
-  section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0),
-                "the same of their phase errors");
 }
 
 void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig& config) {

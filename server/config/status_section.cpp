@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config/status_section.hpp"
+
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+namespace {
+
+constexpr TextForm addresses_form{address_form.expected, "addresses", address_schema};
+
+}  // namespace
+
+void check_host_address(YamlSection& section, std::string_view key, Ipv4 address) {
+  if (address == 0 || is_multicast(address) || address == 0xFFFFFFFF) {
+    section.report(key, fmt::format("{} is not the address of one host (expected {})", address_text(address),
+                                    address_form.expected));
+  }
+}
+
+void check_inside_network(YamlSection& section, std::string_view address_key, Ipv4 address, Ipv4 netmask) {
+  const std::optional<int> prefix = prefix_length_of(netmask);
+  if (!prefix || *prefix == 0) {
+    section.report("netmask",
+                   fmt::format("{} is not a netmask (expected leading ones only, such as 255.255.255.0)",
+                               address_text(netmask)));
+    return;
+  }
+  const Ipv4 host = address & ~netmask;
+  if (*prefix <= 30 && (host == 0 || host == ~netmask)) {
+    section.report(
+        address_key,
+        fmt::format("{} is the {} address of its network (expected the address of one host under "
+                    "mask {})",
+                    address_text(address), host == 0 ? "first" : "broadcast", address_text(netmask)));
+  }
+}
+
+void read_status_destination(YamlSection& section, std::string_view address_key, Ipv4 netmask,
+                             StatusDestination& status) {
+  using Mode = StatusDestination::Mode;
+  const std::string meaning = fmt::format(
+      "where status packets go, once a second: 255.255.255.255 as the device does, the broadcast address of "
+      "`{}` under `netmask`, or these hosts",
+      address_key);
+  if (!section.is_list("status")) {
+    section.choice(
+        "status", status.mode,
+        {{"limited_broadcast", Mode::limited_broadcast}, {"directed_broadcast", Mode::directed_broadcast}},
+        meaning);
+  }
+  if (section.is_list("status") || section.describing()) {
+    status.mode = Mode::unicast;
+    section.parsed_list("status", status.hosts, &parse_ipv4, addresses_form, "",
+                        "no host is listed (expected at least one address)");
+    for (const Ipv4 host : status.hosts) {
+      check_host_address(section, "status", host);
+    }
+  }
+  const std::optional<int> prefix = prefix_length_of(netmask);
+  if (status.mode == Mode::directed_broadcast && prefix && *prefix > 30) {
+    section.report("status",
+                   fmt::format("mask {} leaves no broadcast address (expected limited_broadcast or a list)",
+                               address_text(netmask)));
+  }
+}
+
+void warn_of_status_without_access(YamlSection& section, const StatusDestination& status,
+                                   const AllowList& allow) {
+  for (const Ipv4 host : status.hosts) {
+    if (!allow.empty() && !allows(allow, host)) {
+      section.warn("status",
+                   fmt::format("{} gets status packets but is not in `allow`: its commands are dropped",
+                               address_text(host)));
+    }
+  }
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the loader that reads where a head is on its network, and whom it tells so.
+#pragma once
+
+#include <string_view>
+
+#include "server/config/network_section.hpp"
+#include "server/config/status_destination.hpp"
+#include "server/config/yaml_section.hpp"
+#include "server/net/addresses.hpp"
+
+namespace sonard::server {
+
+inline constexpr TextForm address_form{"an IPv4 address such as 127.0.0.2", "address", address_schema};
+inline constexpr TextForm netmask_form{"a netmask such as 255.255.255.0", "netmask", address_schema};
+inline constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets",
+                                   mac_schema};
+
+/// Reports an address that a head cannot own or talk to.
+void check_host_address(YamlSection& section, std::string_view key, Ipv4 address);
+/// The key `netmask` stands beside `address_key`: reports a mask that is none, and an address that is not
+/// that of one host under it.
+void check_inside_network(YamlSection& section, std::string_view address_key, Ipv4 address, Ipv4 netmask);
+/// The key `status`, of a head that has the address of `address_key` under `netmask`.
+void read_status_destination(YamlSection& section, std::string_view address_key, Ipv4 netmask,
+                             StatusDestination& status);
+/// Warns of hosts that are told of the head and may not use it.
+void warn_of_status_without_access(YamlSection& section, const StatusDestination& status,
+                                   const AllowList& allow);
+
+}  // namespace sonard::server
