@@ -32,6 +32,10 @@ struct BytesReceived {
   Peer from;
   SharedBytes bytes;
 };
+/// A client has connected, where the transport knows of such a thing: a stream of its own has begun.
+struct ClientCame {
+  Peer who;
+};
 /// A client has gone: the rest of a message that it had begun will not come.
 struct ClientGone {
   Peer who;
@@ -60,8 +64,8 @@ struct PingGranted {};
 /// Actions::wake_at has come, and nothing else has happened.
 struct TimePassed {};
 
-using Event = std::variant<TimePassed, BytesReceived, ClientGone, PingRendered, PingNotRendered, TriggerEdge,
-                           WaterChanged, PingFed, PingGranted>;
+using Event = std::variant<TimePassed, BytesReceived, ClientCame, ClientGone, PingRendered, PingNotRendered,
+                           TriggerEdge, WaterChanged, PingFed, PingGranted>;
 
 // ---- What a device wants done
 
@@ -86,6 +90,8 @@ struct Notice {
 /// The answer to one event. The lists belong to that event; the other members are the state after it.
 struct Actions {
   std::vector<Outgoing> send;  ///< in order
+  /// Clients whose connections are to be closed, behind what is sent to them. ClientGone follows.
+  std::vector<Peer> disconnect;
   /// A ping to render. Each is answered once, by PingRendered or PingNotRendered, and the next waits for
   /// that: at most one job is outstanding.
   std::optional<PingJob> render;

@@ -45,6 +45,10 @@ struct PingJob {
   double native_bin_m = 0.0;  ///< range of each: bin k holds [k, k + 1) of it
   int compression_log2 = 0;   ///< 2^n of them are averaged into one bin of the image; 0..4
   bool sixteen_bit = false;   ///< width of the samples that are asked for; false: 8 bits
+  int mode = 0;               ///< of a head that pings in several ways, as its kind numbers them
+  int beams = 0;              ///< of a head that forms more or fewer as it is asked; 0: the kind knows
+  /// A sample is in proportion to the amplitude to this power, which a client may choose; > 0.
+  double amplitude_exponent = 1.0;
 
   double sound_speed_mps = 0.0;  ///< true speed in the water
   /// The speed that the head is set to and forms its beams by; 0: it forms none.

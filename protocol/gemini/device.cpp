@@ -115,6 +115,7 @@ class Device::Impl {
   // One for each event.
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& datagram);
+  void take(TimePoint, const ClientCame&) {}
   void take(TimePoint, const ClientGone&) {}  // not the topside, which is the sender of the last command
   void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
   void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }

@@ -72,6 +72,7 @@ class Device::Impl {
   // One for each event.
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& piece);
+  void take(TimePoint, const ClientCame&) {}
   void take(TimePoint, const ClientGone&) { input_.clear(); }
   void take(TimePoint now, const PingRendered& ping) { scanner_.on_image(now, ping.image); }
   void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }

@@ -52,8 +52,9 @@ std::vector<std::uint8_t> encode_text(MessageId id, std::string_view text, const
   return bytes;
 }
 
-/// Whether counts, offsets and sizes fit each other and the message.
-bool fits(const PingResult& ping, std::size_t fixed_size, std::size_t size) {
+/// Whether counts, offsets and sizes fit each other and the message, which has `size` bytes.
+bool fits(const PingResult& ping, std::uint64_t size) {
+  const std::size_t fixed_size = ping.fire.extension ? result_v2_size : result_v1_size;
   const std::uint64_t image_size = std::uint64_t{ping.ranges} * row_size(ping);
   return ping.image_size == image_size && ping.message_size == size &&
          std::uint64_t{ping.image_offset} + ping.image_size == size &&
@@ -139,34 +140,44 @@ std::vector<std::uint8_t> encode(const PingResult& ping, const Identity& identit
   return bytes;
 }
 
-Result<PingResult, WireError> decode_ping_result(std::span<const std::uint8_t> message) {
+Result<PingResult, WireError> decode_ping_head(std::span<const std::uint8_t> message) {
   ByteReader reader(message);
   const Header header = take_header(reader);
-  const bool second = header.version == 2;
   PingResult ping;
   ping.fire.version = header.version;
   read_fields<FireLayout>(reader, ping.fire.fire);
-  if (second) {
+  if (header.version == 2) {
     read_fields<FireExtensionLayout>(reader, ping.fire.extension.emplace());
     read_fields<ResultV2Layout>(reader, ping);
   } else {
     read_fields<ResultV1Layout>(reader, ping);
   }
-  const std::size_t fixed_size = second ? result_v2_size : result_v1_size;
   if (header.id != MessageId::simple_ping_result) {
     reader.fail_at(6, WireErrorReason::bad_value, "msgId");
   }
-  if (header.payload_size + header_size != message.size() || !fits(ping, fixed_size, message.size())) {
+  if (!fits(ping, std::uint64_t{header.payload_size} + header_size)) {
     reader.fail(WireErrorReason::bad_length, "imageSize");
+  }
+  if (reader.ok()) {
+    ping.bearings_cdeg.resize(ping.beams);
+  }
+  for (std::int16_t& bearing : ping.bearings_cdeg) {
+    read_value(reader, "bearings", bearing);
   }
   if (!reader.ok()) {
     return *reader.error();
   }
-  ping.bearings_cdeg.resize(ping.beams);
-  for (std::int16_t& bearing : ping.bearings_cdeg) {
-    read_value(reader, "bearings", bearing);
+  return ping;
+}
+
+Result<PingResult, WireError> decode_ping_result(std::span<const std::uint8_t> message) {
+  Result<PingResult, WireError> ping = decode_ping_head(message);
+  if (ping && ping->message_size != message.size()) {
+    return WireError{WireErrorReason::bad_length, message.size(), "messageSize"};
   }
-  ping.image = message.subspan(ping.image_offset, ping.image_size);
+  if (ping) {
+    ping->image = message.subspan(ping->image_offset, ping->image_size);
+  }
   return ping;
 }
 

@@ -38,6 +38,8 @@ std::vector<std::uint8_t> encode_log(std::string_view text, const Identity& iden
 
 /// What a client reads. PingResult::image views `message`. Refuses sizes that do not fit each other (4.3).
 Result<PingResult, WireError> decode_ping_result(std::span<const std::uint8_t> message);
+/// The same without the image, of a message that may end behind its bearings.
+Result<PingResult, WireError> decode_ping_head(std::span<const std::uint8_t> message);
 Result<Status, WireError> decode_status(std::span<const std::uint8_t> datagram);
 
 }  // namespace sonard::oculus

@@ -9,6 +9,7 @@
 
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/frame.hpp"
+#include "protocol/oculus/recorded_form.hpp"
 
 namespace sonard::oculus {
 namespace {
@@ -47,13 +48,14 @@ class Device::Impl {
 
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& received);
+  void take(TimePoint now, const ClientCame& came);
   void take(TimePoint now, const ClientGone& gone);
   void take(TimePoint, const PingRendered& ping);
   void take(TimePoint, const PingNotRendered& ping);
   void take(TimePoint, const TriggerEdge&) {}   // it has no such input here
   void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
-  void take(TimePoint, const PingFed&) {}
-  void take(TimePoint, const PingGranted&) {}
+  void take(TimePoint, const PingFed& feed) { fed_ = feed.ping; }
+  void take(TimePoint, const PingGranted&) { granted_ = true; }
 
   void advance(TimePoint now);
   Actions actions();
@@ -65,11 +67,12 @@ class Device::Impl {
     std::uint64_t number = 0;
     PingPlan plan;
     TimePoint transmit_time{};
+    double gain_percent = 0.0;        ///< for logs
     std::vector<std::uint8_t> image;  ///< empty: it is still being rendered
   };
 
-  bool pinging() const { return fire_ && period_of_rate(fire_->fire.ping_rate); }
-  void connect(TimePoint now, const Peer& peer);
+  bool pinging() const { return plan_.has_value(); }
+  bool is_client(const Peer& peer) const { return client_ && client_->remote == peer.remote; }
   void send(std::vector<std::uint8_t> bytes) {
     actions_.send.push_back({Outgoing::To::peer, *client_, SharedBytes(std::move(bytes))});
   }
@@ -81,6 +84,8 @@ class Device::Impl {
 
   void send_status(TimePoint now);
   void send_dummy(TimePoint now);
+  std::optional<TimePoint> next_start() const;
+  std::optional<NextPing> next_ping() const;
   void begin_ping(TimePoint now);
   void send_ping(TimePoint now);
 
@@ -94,7 +99,9 @@ class Device::Impl {
 
   std::optional<Peer> client_;
   CommandBuffer input_;
-  std::optional<SimpleFire> fire_;
+  std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: there is none, or it was for standby
+  std::optional<RecordedPing> fed_;
+  bool granted_ = false;
   std::optional<Ping> ping_;                ///< that is wanted
   std::optional<std::uint64_t> cancelled_;  ///< that is not answered yet
   std::uint64_t next_number_ = 0;
@@ -111,38 +118,38 @@ class Device::Impl {
 
 // ---- The client
 
-void Device::Impl::connect(TimePoint now, const Peer& peer) {
-  client_ = peer;
+void Device::Impl::take(TimePoint now, const ClientCame& came) {
+  if (client_) {
+    ++other_clients_;
+    actions_.disconnect.push_back(came.who);
+    return;
+  }
+  client_ = came.who;
   next_dummy_ = now + config_.dummy_period;
   next_status_ = now;
-  actions_.notices.push_back({Notice::Level::info, "client " + endpoint_text(peer.remote) + " connected"});
+  actions_.notices.push_back(
+      {Notice::Level::info, "client " + endpoint_text(came.who.remote) + " connected"});
   send(encode_log(config_.log_text, identity_));
 }
 
 void Device::Impl::take(TimePoint now, const ClientGone& gone) {
-  if (!client_ || client_->remote != gone.who.remote) {
+  if (!is_client(gone.who)) {
     return;
   }
   actions_.notices.push_back(
       {Notice::Level::info, "client " + endpoint_text(client_->remote) + " disconnected"});
   client_.reset();
-  fire_.reset();
+  plan_.reset();
   input_.clear();
   stop_ping();
   next_status_ = now;
 }
 
 void Device::Impl::take(TimePoint now, const BytesReceived& received) {
-  if (!client_) {
-    connect(now, received.from);
+  if (is_client(received.from)) {
+    input_.append({received.bytes.data(), received.bytes.size()});
+    read_commands(now);
   }
-  if (client_->remote != received.from.remote) {
-    ++other_clients_;
-    actions_.send.push_back({Outgoing::To::peer, received.from, SharedBytes()});
-    return;
-  }
-  input_.append({received.bytes.data(), received.bytes.size()});
-  read_commands(now);
 }
 
 void Device::Impl::read_commands(TimePoint now) {
@@ -158,13 +165,13 @@ void Device::Impl::read_commands(TimePoint now) {
   }
   if (input_.broken()) {
     ++bad_commands_;
-    send({});
+    actions_.disconnect.push_back(*client_);
   }
 }
 
 void Device::Impl::handle(TimePoint now, const SimpleFire& fire) {
   const bool before = pinging();
-  fire_ = fire;
+  plan_ = period_of_rate(fire.fire.ping_rate) ? std::optional(plan_ping(fire, config_.plan)) : std::nullopt;
   if (before && !pinging()) {
     stop_ping();
     next_dummy_ = now;
@@ -219,27 +226,45 @@ void Device::Impl::take(TimePoint, const PingNotRendered& ping) {
   }
 }
 
+/// nullopt: none is wanted, or it waits for an image, a recorded ping or a grant.
+std::optional<TimePoint> Device::Impl::next_start() const {
+  if (!pinging() || ping_ || cancelled_ || (config_.plays_back && !fed_)) {
+    return std::nullopt;
+  }
+  if (config_.waits_for_permission) {  // the grant keeps the period, in a time of its own
+    return boot_time_;
+  }
+  return fed_ && fed_->due ? std::max(next_ping_, *fed_->due) : next_ping_;
+}
+
+std::optional<NextPing> Device::Impl::next_ping() const {
+  const std::optional<TimePoint> start = next_start();
+  return start ? std::optional(NextPing{*start, plan_->period, plan_->listening}) : std::nullopt;
+}
+
 void Device::Impl::begin_ping(TimePoint now) {
-  if (!pinging() || ping_ || cancelled_ || now < next_ping_) {
+  const std::optional<TimePoint> start = next_start();
+  if (!start || now < *start || (config_.waits_for_permission && !granted_)) {
     return;
   }
-  ping_ = Ping{next_number_++, plan_ping(*fire_, config_.plan), now, {}};
+  granted_ = false;
+  const std::optional<RecordedPing> fed = std::exchange(fed_, std::nullopt);
+  ping_ = Ping{next_number_++, fed ? held_to(*fed, *plan_) : *plan_, now, plan_->asked.fire.gain_percent, {}};
   const PingPlan& plan = ping_->plan;
   // Keeps the phase; of what a late caller has missed, one period at most is made up for.
   next_ping_ = std::max(std::max(next_ping_, now - plan.period) + plan.period, now + plan.listening);
-  PingJob job;
+  PingJob job = job_of(plan, config_.plan);
   job.number = ping_->number;
   job.transmit_time = now;
   job.transmit_us = static_cast<std::uint64_t>((now - boot_time_) / std::chrono::microseconds{1});
-  job.listening_time = plan.listening;
-  job.period = plan.period;
-  job.native_bins = plan.result.ranges;
-  job.native_bin_m = plan.result.range_resolution_m;
-  job.sixteen_bit = plan.result.data_size != DataSize::bits_8;
-  job.sound_speed_mps = plan.result.sound_speed_mps;
-  job.assumed_sound_speed_mps = plan.result.sound_speed_mps;
-  job.gain_percent = fire_->fire.gain_percent;
-  actions_.render = job;
+  if (fed) {
+    job.record = fed->record;
+    job.differences = differences(*plan_, plan, fed->settings);
+    if (fed->settings.gain_percent >= 0.0) {
+      ping_->gain_percent = fed->settings.gain_percent;
+    }
+  }
+  actions_.render = std::move(job);
 }
 
 void Device::Impl::send_ping(TimePoint now) {
@@ -252,7 +277,12 @@ void Device::Impl::send_ping(TimePoint now) {
   result.start_time_ns = static_cast<std::uint32_t>(start.count());  // modulo 2^32
   result.start_time_s = static_cast<double>(start.count()) * 1e-9;
   result.image = ping_->image;
-  send(encode(result, identity_));
+  std::vector<std::uint8_t> message = encode(result, identity_);
+  actions_.record = record_of(result, message);
+  actions_.record->number = ping_->number;
+  actions_.record->transmit_time = ping_->transmit_time;
+  actions_.record->settings.gain_percent = ping_->gain_percent;
+  send(std::move(message));
   ++sent_;
   ping_.reset();
 }
@@ -303,8 +333,12 @@ Actions Device::Impl::actions() {
   if (ping_ && !ping_->image.empty()) {
     wake = std::min(wake, ping_->transmit_time + ping_->plan.listening);
   }
-  if (pinging() && !ping_ && !cancelled_) {
-    wake = std::min(wake, next_ping_);
+  const std::optional<TimePoint> start = next_start();
+  if (start && !config_.waits_for_permission) {
+    wake = std::min(wake, *start);
+  }
+  if (config_.waits_for_permission) {
+    actions.next_ping = next_ping();
   }
   actions.wake_at = wake;
   return actions;

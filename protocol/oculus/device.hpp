@@ -13,10 +13,7 @@
 namespace sonard::oculus {
 
 /// One head, with one client at a time. Its channels are the stream of that client and the status datagrams,
-/// which go to everybody. Bytes from another client than the connected one are counted and not read.
-///
-/// Two agreements with the transport, as streams have no such events: empty BytesReceived say that a client
-/// has connected, and an empty message to a client says to close its connection.
+/// which go to everybody. A second client is disconnected at once, and what it sends is not read.
 class Device final : public sonard::Device {
  public:
   static constexpr int stream_channel = 0;

@@ -23,6 +23,8 @@ struct DeviceConfig {
   std::string log_text = "sonard Oculus\nready\n";                  ///< sent to who connects (5)
   std::chrono::nanoseconds status_period{std::chrono::seconds{1}};  ///< > 0 (6)
   std::chrono::nanoseconds dummy_period{std::chrono::seconds{1}};   ///< > 0 (5)
+  bool waits_for_permission = false;                                ///< each ping begins with PingGranted
+  bool plays_back = false;                                          ///< sends recorded pings, and no others
 };
 
 }  // namespace sonard::oculus

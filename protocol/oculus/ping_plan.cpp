@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "protocol/common/byte_writer.hpp"
 
@@ -64,6 +67,7 @@ std::optional<nanoseconds> period_of_rate(std::uint8_t ping_rate) {
 PingPlan plan_ping(const SimpleFire& fire, const PlanConfig& config) {
   const Mode& mode = config.model.mode(fire.fire.master_mode);
   PingPlan plan;
+  plan.asked = fire;
   PingResult& ping = plan.result;
   ping.fire = fire;
   if (!fire.extension && fire.version != 1) {
@@ -95,12 +99,40 @@ PingPlan plan_ping(const SimpleFire& fire, const PlanConfig& config) {
   return plan;
 }
 
+PingJob job_of(const PingPlan& plan, const PlanConfig& config) {
+  const Fire& fire = plan.asked.fire;
+  const PingResult& ping = plan.result;
+  const Mode& mode = config.model.mode(fire.master_mode);
+  const double true_speed_mps =
+      config.water_sound_speed_mps > 0.0 ? config.water_sound_speed_mps : ping.sound_speed_mps;
+  PingJob job;
+  job.listening_time = plan.listening;
+  job.period = plan.period;
+  job.native_bins = ping.ranges;
+  job.native_bin_m = ping.range_resolution_m * true_speed_mps / ping.sound_speed_mps;
+  job.sixteen_bit = ping.data_size != DataSize::bits_8;
+  job.mode = &mode == &config.model.modes[0] ? 0 : 1;
+  job.beams = ping.beams;
+  job.amplitude_exponent = gamma_exponent(fire.gamma);
+  job.sound_speed_mps = true_speed_mps;
+  job.assumed_sound_speed_mps = ping.sound_speed_mps;
+  job.gain_percent = std::isfinite(fire.gain_percent) ? std::clamp(fire.gain_percent, 0.0, 100.0) : 0.0;
+  job.settings = {{"frequency", fmt::format("{:.0f}kHz", ping.frequency_hz * 1e-3)},
+                  {"range", fmt::format("{:.2f}m", plan.range_m)},
+                  {"beams", std::to_string(ping.beams)},
+                  {"gain", fmt::format("{:.0f}%", job.gain_percent)},
+                  {"gamma", std::to_string(fire.gamma)},
+                  {"sound_speed", fmt::format("{:.1f}m/s", ping.sound_speed_mps)},
+                  {"bits", std::to_string(8 * bytes_per_sample(ping.data_size))}};
+  return job;
+}
+
 std::optional<std::vector<std::uint8_t>> image_bytes(const PingResult& ping,
                                                      const std::vector<std::uint8_t>& u8,
                                                      const std::vector<std::uint16_t>& u16) {
   const std::size_t count = std::size_t{ping.ranges} * ping.beams;
-  const bool narrow = ping.data_size == DataSize::bits_8;
-  if ((narrow ? u8.size() : u16.size()) != count) {
+  const bool narrow = u16.empty();
+  if ((narrow ? u8.size() : u16.size()) != count || (ping.data_size == DataSize::bits_8 && !narrow)) {
     return std::nullopt;
   }
   std::vector<std::uint8_t> bytes;
@@ -110,12 +142,13 @@ std::optional<std::vector<std::uint8_t>> image_bytes(const PingResult& ping,
     if (i % ping.beams == 0 && (ping.fire.fire.flags & fire_flags::row_gains) != 0) {
       writer.u32le(row_gain);
     }
-    if (narrow) {
+    // Full scale is full scale, in any width.
+    if (ping.data_size == DataSize::bits_8) {
       writer.u8(u8[i]);
     } else if (ping.data_size == DataSize::bits_16) {
-      writer.u16le(u16[i]);
+      writer.u16le(narrow ? static_cast<std::uint16_t>(u8[i] * 0x101U) : u16[i]);
     } else {
-      writer.u32le(u16[i] * 0x10001U);  // full scale is full scale
+      writer.u32le(narrow ? u8[i] * 0x1010101U : u16[i] * 0x10001U);
     }
   }
   return bytes;

@@ -173,6 +173,13 @@ TransportEvents Head::Impl::transport_events() {
                                 self->happen(std::move(received));
                               }
                             },
+                        .came =
+                            [weak](const ClientCame& came) {
+                              if (const auto self = weak.lock()) {
+                                self->clients.sent(came.who.remote, self->services.clock.now());
+                                self->happen(came);
+                              }
+                            },
                         .gone =
                             [weak](const ClientGone& gone) {
                               if (const auto self = weak.lock()) {
@@ -274,6 +281,9 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
     record(now, std::move(*actions.record));
   }
   send(std::move(actions.send));
+  for (const Peer& client : actions.disconnect) {
+    connected->transport().disconnect(client);
+  }
   wake_at = actions.wake_at;
   next_ping = actions.next_ping;
   if (actions.nobody_there) {

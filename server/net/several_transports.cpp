@@ -16,6 +16,10 @@ void SeveralTransports::start(TransportEvents events) {
       bytes.from.channel = channel;
       to(std::move(bytes));
     };
+    of_one.came = [to = events.came, channel](ClientCame came) {
+      came.who.channel = channel;
+      to(came);
+    };
     of_one.gone = [to = events.gone, channel](ClientGone gone) {
       gone.who.channel = channel;
       to(gone);
@@ -42,6 +46,10 @@ void SeveralTransports::send(std::vector<Outgoing> messages) {
       transports_[i]->send(std::move(here));
     }
   }
+}
+
+void SeveralTransports::disconnect(const Peer& client) {
+  transports_.at(static_cast<std::size_t>(client.channel))->disconnect(client);
 }
 
 bool SeveralTransports::blocked() const {

@@ -20,6 +20,7 @@ class SeveralTransports final : public Transport {
   void start(TransportEvents events) override;
   void stop() override;
   void send(std::vector<Outgoing> messages) override;
+  void disconnect(const Peer& client) override;
   bool blocked() const override;
   std::vector<std::string> descriptions() const override;
   std::string faults() const override;

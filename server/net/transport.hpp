@@ -14,6 +14,7 @@ namespace sonard::server {
 /// Callbacks of a transport to its head. All are called on the I/O thread, none after stop().
 struct TransportEvents {
   std::function<void(BytesReceived)> received;
+  std::function<void(ClientCame)> came;  ///< may be empty, of transports that have no connections
   std::function<void(ClientGone)> gone;
   std::function<void()> writable;  ///< blocked() is false again
   std::function<void(Notice)> notice;
@@ -37,6 +38,8 @@ class Transport {
   virtual void start(TransportEvents events) = 0;
   virtual void stop() = 0;
   virtual void send(std::vector<Outgoing> messages) = 0;
+  /// Closes the connection of a client behind what was sent to it, where there are connections.
+  virtual void disconnect(const Peer& /*client*/) {}
   /// True while something to send waits for the OS: a head that continues to send would pile it up.
   virtual bool blocked() const { return false; }
 

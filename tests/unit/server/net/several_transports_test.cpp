@@ -16,6 +16,7 @@ class ScriptedTransport final : public Transport {
       sent.push_back(std::move(message));
     }
   }
+  void disconnect(const Peer& client) override { disconnected.push_back(client); }
   bool blocked() const override { return full; }
   std::vector<std::string> descriptions() const override { return {"a way"}; }
   std::vector<Counter> counts() const override {
@@ -24,6 +25,7 @@ class ScriptedTransport final : public Transport {
 
   TransportEvents events;
   std::vector<Outgoing> sent;
+  std::vector<Peer> disconnected;
   bool full = false, stopped = false;
 };
 
@@ -31,6 +33,7 @@ struct SeveralTransportsTest : testing::Test {
   ScriptedTransport *first, *second;
   std::unique_ptr<SeveralTransports> both;
   std::vector<BytesReceived> received;
+  std::vector<ClientCame> came;
   std::vector<ClientGone> gone;
 
   SeveralTransportsTest() {
@@ -43,6 +46,7 @@ struct SeveralTransportsTest : testing::Test {
     both = std::make_unique<SeveralTransports>(std::move(transports));
     TransportEvents events;
     events.received = [this](BytesReceived bytes) { received.push_back(std::move(bytes)); };
+    events.came = [this](const ClientCame& client) { came.push_back(client); };
     events.gone = [this](const ClientGone& client) { gone.push_back(client); };
     both->start(std::move(events));
   }
@@ -57,6 +61,15 @@ TEST_F(SeveralTransportsTest, TellWhichWayAMessageCame) {
   EXPECT_EQ(received[1].from, (Peer{0, {5, 6}, 0}));
   ASSERT_EQ(gone.size(), 1U);
   EXPECT_EQ(gone[0].who.channel, 1);
+}
+
+TEST_F(SeveralTransportsTest, TellWhichWayAClientCameAndDisconnectItThere) {
+  second->events.came({{0, {1, 2}, 3}});
+  ASSERT_EQ(came.size(), 1U);
+  EXPECT_EQ(came[0].who, (Peer{1, {1, 2}, 3}));
+  both->disconnect(came[0].who);
+  EXPECT_EQ(second->disconnected.size(), 1U);
+  EXPECT_TRUE(first->disconnected.empty());
 }
 
 TEST_F(SeveralTransportsTest, SendTheWayThatIsNamedAndToEverybodyAllWays) {

@@ -126,7 +126,21 @@ TEST(OculusPlan, image_has_a_gain_of_one_before_each_row_and_full_scale) {
   ping.ranges = 1;
   EXPECT_EQ(*image_bytes(ping, {}, {0, 0xFFFF}),
             (std::vector<std::uint8_t>{0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}));
-  EXPECT_FALSE(image_bytes(ping, {1, 2}, {}));
+  EXPECT_FALSE(image_bytes(ping, {}, {0}));
+}
+
+TEST(OculusPlan, samples_of_eight_bits_are_widened_and_wide_ones_not_cut) {
+  PingResult ping;
+  ping.ranges = 1;
+  ping.beams = 2;
+  ping.fire.fire.flags = 0x0B;
+  ping.data_size = DataSize::bits_16;
+  EXPECT_EQ(*image_bytes(ping, {1, 0xFF}, {}), (std::vector<std::uint8_t>{1, 1, 0xFF, 0xFF}));
+  ping.data_size = DataSize::bits_32;
+  EXPECT_EQ(*image_bytes(ping, {1, 0xFF}, {}),
+            (std::vector<std::uint8_t>{1, 1, 1, 1, 0xFF, 0xFF, 0xFF, 0xFF}));
+  ping.data_size = DataSize::bits_8;
+  EXPECT_FALSE(image_bytes(ping, {}, {1, 2}));
 }
 
 }  // namespace

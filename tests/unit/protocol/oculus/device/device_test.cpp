@@ -27,6 +27,7 @@ class Bench {
   explicit Bench(bool renders = true) : renders_(renders) { step(TimePassed{}); }
 
   void step(const Event& event) { keep(device_.step(now_, event)); }
+  void connect(const Peer& who = client) { step(ClientCame{who}); }
   void receive(const Bytes& bytes, const Peer& from = client) {
     step(BytesReceived{from, SharedBytes(bytes)});
   }
@@ -54,14 +55,9 @@ class Bench {
   void keep(const Actions& actions) {
     for (const Outgoing& message : actions.send) {
       const Bytes bytes(message.bytes.begin(), message.bytes.end());
-      if (message.to == Outgoing::To::everybody) {
-        statuses.push_back(bytes);
-      } else if (bytes.empty()) {
-        closed.push_back(message.peer);
-      } else {
-        stream.push_back(bytes);
-      }
+      (message.to == Outgoing::To::everybody ? statuses : stream).push_back(bytes);
     }
+    closed.insert(closed.end(), actions.disconnect.begin(), actions.disconnect.end());
     cancelled = actions.cancelled;
     wake_ = actions.wake_at.value();
     ASSERT_GT(wake_, now_);
@@ -97,7 +93,7 @@ TEST(OculusDevice, sends_a_status_of_142_bytes_each_second) {
 
 TEST(OculusDevice, status_follows_the_client_at_once) {
   Bench bench;
-  bench.receive({});
+  bench.connect();
   EXPECT_EQ(decode_status(bench.statuses.back())->client, (std::array<std::uint8_t, 4>{192, 168, 2, 5}));
   bench.step(ClientGone{client});
   EXPECT_EQ(decode_status(bench.statuses.back())->client, (std::array<std::uint8_t, 4>{}));
@@ -106,7 +102,7 @@ TEST(OculusDevice, status_follows_the_client_at_once) {
 
 TEST(OculusDevice, greets_with_a_log_and_then_dummies) {
   Bench bench;
-  bench.receive({});
+  bench.connect();
   EXPECT_EQ(bench.count(MessageId::logs), 1U);
   bench.run_for(milliseconds{5'500});
   EXPECT_EQ(bench.count(MessageId::dummy), 5U);
@@ -116,6 +112,7 @@ TEST(OculusDevice, greets_with_a_log_and_then_dummies) {
 TEST(OculusDevice, one_fire_pings_on_at_its_rate) {
   for (const auto& [rate, pings] : {std::pair{0, 100U}, {1, 150U}, {2, 400U}, {3, 50U}, {4, 20U}}) {
     Bench bench;
+    bench.connect();
     bench.receive(encode(fire_at(static_cast<std::uint8_t>(rate))));
     bench.run_for(milliseconds{9'999});
     EXPECT_NEAR(static_cast<double>(bench.count(MessageId::simple_ping_result)), pings, 1.0) << rate;
@@ -125,6 +122,7 @@ TEST(OculusDevice, one_fire_pings_on_at_its_rate) {
 
 TEST(OculusDevice, the_same_fire_again_changes_nothing) {
   Bench bench;
+  bench.connect();
   for (int i = 0; i < 999; ++i) {
     bench.receive(encode(fire_at(0)));
     bench.run_for(milliseconds{10});
@@ -134,6 +132,7 @@ TEST(OculusDevice, the_same_fire_again_changes_nothing) {
 
 TEST(OculusDevice, standby_stops_pings_with_a_dummy_and_a_fire_resumes) {
   Bench bench;
+  bench.connect();
   bench.receive(encode(fire_at(1)));
   bench.run_for(seconds{1});
   const std::size_t before = bench.count(MessageId::simple_ping_result);
@@ -148,6 +147,7 @@ TEST(OculusDevice, standby_stops_pings_with_a_dummy_and_a_fire_resumes) {
 
 TEST(OculusDevice, ping_ids_count_up_and_the_id_is_that_of_the_status) {
   Bench bench;
+  bench.connect();
   bench.receive(encode(fire_at(1)));
   bench.run_for(seconds{1});
   std::uint32_t before = 0;
@@ -163,8 +163,9 @@ TEST(OculusDevice, ping_ids_count_up_and_the_id_is_that_of_the_status) {
 
 TEST(OculusDevice, a_second_client_is_closed) {
   Bench bench;
-  bench.receive({});
-  bench.receive({}, second_client);
+  bench.connect();
+  bench.connect(second_client);
+  bench.receive(encode(fire_at(5)), second_client);
   EXPECT_EQ(bench.closed, std::vector<Peer>{second_client});
   bench.step(ClientGone{second_client});
   bench.receive(encode(fire_at(0)));
@@ -174,6 +175,7 @@ TEST(OculusDevice, a_second_client_is_closed) {
 
 TEST(OculusDevice, a_command_of_5000_bytes_closes_the_connection) {
   Bench bench;
+  bench.connect();
   Bytes bytes = encode(fire_at(0));
   bytes[11] = 0x20;
   bench.receive(bytes);
@@ -182,6 +184,7 @@ TEST(OculusDevice, a_command_of_5000_bytes_closes_the_connection) {
 
 TEST(OculusDevice, user_config_is_answered_and_remembered) {
   Bench bench;
+  bench.connect();
   bench.receive(sonard::testing::load_hex_fixture("oculus", "user_config_request"));
   EXPECT_EQ(bench.count(MessageId::user_config), 1U);
   const UserConfig other{{10, 0, 0, 9}, {255, 0, 0, 0}, 0};
@@ -192,6 +195,7 @@ TEST(OculusDevice, user_config_is_answered_and_remembered) {
 
 TEST(OculusDevice, a_ping_that_nobody_wants_any_more_is_cancelled) {
   Bench bench(false);
+  bench.connect();
   bench.receive(encode(fire_at(0)));
   bench.receive(encode(fire_at(5)));
   EXPECT_EQ(bench.cancelled, std::optional<std::uint64_t>{0});
