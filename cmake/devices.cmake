@@ -9,5 +9,6 @@
 set(SONARD_DEVICES
   gemini
   micron
+  oculus
   ping360
 )

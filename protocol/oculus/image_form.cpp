@@ -28,6 +28,20 @@ std::size_t row_size(const PingResult& ping) {
   return ping.beams * bytes_per_sample(ping.data_size) + gain;
 }
 
+std::vector<std::uint8_t> eight_bit_samples(const PingResult& ping) {
+  const std::size_t width = bytes_per_sample(ping.data_size);
+  const std::size_t row = row_size(ping);
+  std::vector<std::uint8_t> samples;
+  samples.reserve(std::size_t{ping.ranges} * ping.beams);
+  for (std::size_t range = 0; range < ping.ranges; ++range) {
+    const std::size_t first = (range + 1) * row - ping.beams * width;  // behind the gain, where there is one
+    for (std::size_t beam = 0; beam < ping.beams; ++beam) {
+      samples.push_back(ping.image[first + beam * width + width - 1]);
+    }
+  }
+  return samples;
+}
+
 std::uint32_t usual_image_offset(bool second_version, int beams) {
   constexpr std::size_t step = 2048;
   const std::size_t end =

@@ -22,6 +22,8 @@ DataSize data_size_of(const SimpleFire& fire);
 std::size_t bytes_per_sample(DataSize size);
 /// Bytes of a row: its gain, where there is one, and its samples.
 std::size_t row_size(const PingResult& ping);
+/// The samples of a ping that has its image, row after row, without gains: of wide ones the high byte.
+std::vector<std::uint8_t> eight_bit_samples(const PingResult& ping);
 /// Where the image of a ping begins: the first multiple of 2048 behind the bearings (4.3).
 std::uint32_t usual_image_offset(bool second_version, int beams);
 

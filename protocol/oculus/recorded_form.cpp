@@ -17,21 +17,6 @@ namespace {
 constexpr double gain_step_percent = 1.0;
 constexpr double sound_speed_step_mps = 0.1;
 
-/// The high byte of each sample.
-std::vector<std::uint8_t> samples_of(const PingResult& ping) {
-  const std::size_t width = bytes_per_sample(ping.data_size);
-  const std::size_t row = row_size(ping);
-  std::vector<std::uint8_t> samples;
-  samples.reserve(std::size_t{ping.ranges} * ping.beams);
-  for (std::size_t range = 0; range < ping.ranges; ++range) {
-    const std::size_t first = (range + 1) * row - ping.beams * width;  // behind the gain, where there is one
-    for (std::size_t beam = 0; beam < ping.beams; ++beam) {
-      samples.push_back(ping.image[first + beam * width + width - 1]);
-    }
-  }
-  return samples;
-}
-
 std::vector<double> bearings_rad(const std::vector<std::int16_t>& bearings_cdeg) {
   std::vector<double> bearings;
   std::ranges::transform(bearings_cdeg, std::back_inserter(bearings),
@@ -51,7 +36,7 @@ PingRecord record_of(const PingResult& ping, std::span<const std::uint8_t> messa
   record.settings.frequency_hz = ping.frequency_hz;
   record.bearings_rad = bearings_rad(ping.bearings_cdeg);
   record.sector_rad = record.bearings_rad.back() - record.bearings_rad.front();
-  record.samples = samples_of(ping);
+  record.samples = eight_bit_samples(ping);
   const std::size_t fixed = ping.fire.extension ? result_v2_size : result_v1_size;
   const std::span<const std::uint8_t> wire = message.first(fixed + 2 * ping.bearings_cdeg.size());
   record.wire.assign(wire.begin(), wire.end());

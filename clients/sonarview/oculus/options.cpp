@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clients/sonarview/oculus/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/ip/address_v4.hpp>
+#include <cmath>
+#include <map>
+
+namespace sonard::client {
+namespace {
+
+std::chrono::nanoseconds to_ns(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+/// Rates in hertz and how a fire spells them.
+const std::map<int, std::uint8_t>& rate_codes() {
+  static const std::map<int, std::uint8_t> codes{{10, 0}, {15, 1}, {40, 2}, {5, 3}, {2, 4}};
+  return codes;
+}
+
+}  // namespace
+
+OculusArguments::OculusArguments(CLI::App& app) {
+  options_.fire.version = 2;
+  options_.fire.extension.emplace();
+  options_.fire.fire.sound_speed_mps = 1500.0;
+  declare_link(app);
+  declare_sonar(app);
+  declare_run(app);
+}
+
+void OculusArguments::declare_link(CLI::App& app) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->capture_default_str()->group("Link");
+  };
+  add("--head", options_.head, "Address of the head; default: the one in the first status");
+  add("--port", options_.port, "TCP port of the head")->check(CLI::Range(1, 65535));
+  add("--bind", bind_address_, "Local address on which statuses arrive");
+  add("--status-port", options_.status_port, "and their port")->check(CLI::Range(1, 65535));
+  add("--wait", wait_s_, "Seconds to wait for the first status, and for the connection")
+      ->check(CLI::Range(0.1, 1e6));
+  add("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: no limit")
+      ->check(CLI::Range(0.0, 1e6));
+}
+
+void OculusArguments::declare_sonar(CLI::App& app) {
+  oculus::Fire& fire = options_.fire.fire;
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->capture_default_str()->group("Sonar");
+  };
+  add("--frequency", frequency_, "low: the wide fan; high: the narrow one")
+      ->check(CLI::IsMember({"low", "high"}));
+  add("--range", range_m_, "Metres; the head images as much of it as it can")->check(CLI::Range(0.1, 200.0));
+  add("--beams", beams_, "Beams of the fan")->check(CLI::IsMember({256, 512}));
+  add("--bits", bits_, "Bits of a sample")->check(CLI::IsMember({8, 16, 32}));
+  add("--gain", fire.gain_percent, "Percent")->check(CLI::Range(0.0, 100.0));
+  add("--gamma", fire.gamma, "Samples are the amplitude to the power of this / 255")
+      ->check(CLI::Range(1, 255));
+  add("--rate", rate_hz_, "Pings per second at most")->check(CLI::IsMember({2, 5, 10, 15, 40}));
+  add("--sound-speed", fire.sound_speed_mps, "Metres per second; 0: by salinity, and what the head measures")
+      ->check(CLI::Range(0.0, 1600.0));
+  add("--salinity", fire.salinity_ppt, "Parts per thousand; 0: fresh water")->check(CLI::Range(0.0, 50.0));
+  app.add_flag("--row-gains", row_gains_, "Four bytes of gain before each row of the image")->group("Sonar");
+}
+
+void OculusArguments::declare_run(CLI::App& app) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group("Run");
+  };
+  add("--pings", options_.pings, "End after this many pings; 0: no limit")->capture_default_str();
+  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: no limit")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  add("--out", options_.out, "Folder for pictures: the fan in colour, the samples in grey");
+  add("--every", options_.every, "Pictures of each n-th ping; 0: only of the last")->capture_default_str();
+  add("--size", options_.radius_px, "Pixels from the apex of the fan to its full range")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  app.add_flag("--log-pings", options_.log_pings, "One line of key=value for each ping on standard output")
+      ->group("Run");
+  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+}
+
+OculusOptions OculusArguments::options() const {
+  namespace flags = oculus::fire_flags;
+  OculusOptions options = options_;
+  boost::system::error_code error;
+  options.bind_address = boost::asio::ip::make_address_v4(bind_address_, error).to_uint();
+  if (error) {
+    throw CLI::ValidationError("--bind", "expected an IPv4 address, found '" + bind_address_ + "'");
+  }
+  oculus::Fire& fire = options.fire.fire;
+  fire.master_mode = frequency_ == "low" ? 1 : 2;
+  fire.ping_rate = rate_codes().at(rate_hz_);
+  fire.range = range_m_;
+  const int asked = flags::range_in_metres | flags::simple_result | (beams_ == 512 ? flags::beams_512 : 0) |
+                    (bits_ > 8 ? flags::sixteen_bit : 0) | (row_gains_ ? flags::row_gains : 0);
+  fire.flags = static_cast<std::uint8_t>(asked);
+  options.fire.extension->flags = bits_ == 32 ? oculus::extension_flags::thirty_two_bit : 0;
+  options.duration = to_ns(seconds_);
+  options.wait = to_ns(wait_s_);
+  options.ping_wait = to_ns(ping_wait_s_);
+  return options;
+}
+
+}  // namespace sonard::client

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// An Oculus on its sockets.
+#pragma once
+
+#include <memory>
+
+#include "server/devices/device_kind.hpp"
+
+namespace sonard::server {
+
+/// @throws SocketError
+std::unique_ptr<ConnectedDevice> connect_oculus(const HeadConfig& head, boost::asio::io_context& io,
+                                                const Clock& clock);
+
+}  // namespace sonard::server

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/devices/oculus/kind.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "protocol/oculus/recorded_form.hpp"
+#include "renderer/acoustics/noise.hpp"
+#include "renderer/acoustics/water.hpp"
+#include "server/devices/oculus/config.hpp"
+#include "server/devices/oculus/connected.hpp"
+#include "server/devices/oculus/section.hpp"
+#include "server/devices/oculus/settings.hpp"
+#include "server/devices/oculus/survey.hpp"
+#include "server/net/interfaces.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr Ipv4 loopback_client = 0x7F000001;
+constexpr double degree = std::numbers::pi / 180.0;
+
+class OculusKind final : public DeviceKind {
+ public:
+  std::string_view type() const override { return "oculus"; }
+  std::string_view title() const override { return "Oculus"; }
+  bool scanning() const override { return false; }
+
+  // ---- Configuration
+
+  HeadConfig make_default() const override {
+    HeadConfig head;
+    head.kind = this;
+    auto config = std::make_shared<OculusConfig>();
+    config->modes = oculus_modes(config->device.plan.model);
+    head.device = std::move(config);
+    head.acoustics = oculus_acoustics();
+    return head;
+  }
+
+  HeadConfig read(YamlSection& section, const HeadContext& context) const override {
+    HeadConfig head = make_default();
+    head.device = std::make_shared<OculusConfig>(read_oculus_head(section, context, head));
+    return head;
+  }
+
+  std::uint16_t device_id(const HeadConfig& head) const override { return oculus_config(head).device.id; }
+
+  std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
+    const OculusConfig& config = oculus_config(head);
+    return {{PlannedSocket::Transport::tcp, {config.device.address, config.tcp_port}, "network.address"}};
+  }
+  std::string socket_key() const override { return "network.address"; }
+
+  std::vector<Identity> identities(const HeadConfig& head) const override {
+    const oculus::DeviceConfig& device = oculus_config(head).device;
+    return {{"device_id", std::to_string(device.id)}, {"network.address", address_text(device.address)}};
+  }
+
+  std::string summary(const HeadConfig& head) const override {
+    const OculusConfig& config = oculus_config(head);
+    const oculus::DeviceConfig& device = config.device;
+    return fmt::format("ID {}, part {}, TCP {}, status {}, port {}", device.id, device.plan.model.part_number,
+                       endpoint_text({device.address, config.tcp_port}),
+                       status_text(config.status, device.address, device.netmask), config.status_port);
+  }
+
+  // ---- Serving
+
+  std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
+                                           const Clock& clock) const override {
+    return connect_oculus(head, io, clock);
+  }
+
+  PingJob usual_job(const HeadConfig& head) const override {
+    oculus::SimpleFire fire;
+    fire.fire.master_mode = 1;
+    fire.fire.range = 20.0;
+    fire.fire.sound_speed_mps = 1500.0;
+    fire.fire.flags |= oculus::fire_flags::beams_512;
+    const oculus::PlanConfig& plan = oculus_config(head).device.plan;
+    return oculus::job_of(oculus::plan_ping(fire, plan), plan);
+  }
+
+  render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {
+    return oculus_sonar_settings(job, head);
+  }
+
+  // ---- Playing logs back
+
+  std::optional<std::string> why_not_played(const LoggedHead& logged) const override {
+    const auto told = [](const LoggedPing& ping) { return oculus::recorded_form(ping.wire).has_value(); };
+    if (!std::ranges::all_of(logged.pings, told)) {
+      return fmt::format("pings of device {} do not say how they travelled (expected wire_line)",
+                         logged.device_id);
+    }
+    return std::nullopt;
+  }
+
+  HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const override {
+    HeadConfig head = make_default();
+    auto config = std::make_shared<OculusConfig>(oculus_config(head));
+    config->device.id = std::max<std::uint16_t>(logged.device_id, 1);
+    config->device.address = address;
+    config->device.netmask = 0xFF000000;
+    config->status = {StatusDestination::Mode::unicast, {loopback_client}};
+    config->allow = {{0x7F000000, 8}};
+    head.device = std::move(config);
+    head.name = logged.name.empty() ? fmt::format("oculus-{}", logged.device_id) : logged.name;
+    return head;
+  }
+
+  HeadConfig held_to_recording(HeadConfig head) const override {
+    auto config = std::make_shared<OculusConfig>(oculus_config(head));
+    config->device.plays_back = true;
+    config->device.waits_for_permission = false;
+    head.device = std::move(config);
+    return head;
+  }
+
+  std::unique_ptr<Survey> survey(const HeadConfig& head, const SurveyOptions& options) const override {
+    return survey_of_oculus(head, options);
+  }
+};
+
+}  // namespace
+
+const DeviceKind& oculus_kind() {
+  static const OculusKind kind;
+  return kind;
+}
+
+// Levels are those of the other multibeam head at nearly the same frequency; its recordings and those of an
+// Oculus show the same noise against their echoes.
+render::SonarSettings oculus_acoustics() {
+  render::SonarSettings acoustics;
+  acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
+  acoustics.aperture.fine_beams = 1;  // its beams are narrower than they resolve
+  acoustics.aperture.element_amplitude_sd = 0.12;
+  acoustics.aperture.element_phase_sd_rad = 7 * degree;
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
+  acoustics.physical.multipath.most_bounces = 6;
+  acoustics.physical.pulse = render::PhysicalModel::Pulse::windowed_chirp;
+  acoustics.physical.tvg_log_coefficient = 40.0;
+  acoustics.physical.tvg_max_db = 78.0;
+  acoustics.physical.gain_db = 31.0;
+  acoustics.physical.noise_level_db = -132.5;
+  acoustics.physical.output_noise_db = -46.0;
+  acoustics.physical.texture_nu = 3.0;
+  acoustics.physical.water_clutter.density_per_m3 = 0.1;
+  acoustics.physical.near_field_blank_m = oculus::least_range_m;
+  return acoustics;
+}
+
+// Data sheets: 1.0 and 0.6 degrees, 4 and 2.5 mm of an M750d; 0.6 and 0.4 degrees, 2.5 mm of an M1200d.
+std::array<OculusModeAcoustics, 2> oculus_modes(const oculus::Model& model) {
+  const bool m1200d = model.part_number == oculus::m1200d.part_number;
+  const render::Water water;
+  std::array<OculusModeAcoustics, 2> modes;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const oculus::Mode& of_model = model.modes[i];
+    modes[i].vertical_beamwidth_rad = of_model.vertical_deg * degree;
+    modes[i].absorption_db_per_m =
+        render::francois_garrison_absorption_db_per_m(of_model.frequency_hz, water);
+    modes[i].wavelength_m = render::sound_speed_mps(water) / of_model.frequency_hz;
+    modes[i].noise_db = render::thermal_noise_db(of_model.frequency_hz) -
+                        render::thermal_noise_db(model.modes[0].frequency_hz);
+  }
+  modes[0].receive_beamwidth_rad = (m1200d ? 0.6 : 1.0) * degree;
+  modes[1].receive_beamwidth_rad = (m1200d ? 0.4 : 0.6) * degree;
+  modes[0].range_cell_m = m1200d ? 2.5e-3 : 4.0e-3;
+  modes[1].range_cell_m = 2.5e-3;
+  return modes;
+}
+
+}  // namespace sonard::server

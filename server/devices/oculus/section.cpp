@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/devices/oculus/section.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "protocol/oculus/models.hpp"
+#include "renderer/acoustics/noise.hpp"
+#include "renderer/acoustics/water.hpp"
+#include "server/config/status_section.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr double minute_ms = 60'000.0;
+
+void read_identity(YamlSection& section, oculus::DeviceConfig& device) {
+  enum class Name : std::uint8_t { m750d, m1200d } name = Name::m750d;
+  section.choice("model", name, {{"m750d", Name::m750d}, {"m1200d", Name::m1200d}},
+                 "which says frequencies, apertures and ranges");
+  device.plan.model = name == Name::m750d ? oculus::m750d : oculus::m1200d;
+  section.integer("device_id", device.id, 1, 65535,
+                  "unique; clients drop what does not have the ID of the status");
+}
+
+void read_network(YamlSection& section, OculusConfig& config) {
+  oculus::DeviceConfig& device = config.device;
+  section.require("address", "the address that clients connect to");
+  section.parsed("address", device.address, &parse_ipv4, address_form,
+                 "the address that clients find in the status packets and connect to: one of this machine");
+  if (section.has("address")) {
+    check_host_address(section, "address", device.address);
+  }
+  section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
+  section.parsed("netmask", device.netmask, &parse_ipv4, netmask_form, "of that interface");
+  check_inside_network(section, "address", device.address, device.netmask);
+  section.integer("tcp_port", config.tcp_port, 1, 65535, "the head listens here; clients know no other");
+  section.integer("status_port", config.status_port, 1, 65535, "status packets go to this port");
+  const std::uint16_t id = device.id;
+  device.mac = {
+      0x00, 0x1E, 0x63, 0x00, static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 255U)};
+  section.parsed("mac", device.mac, &parse_mac, mac_form, "reported in the status packets");
+  section.default_is("mac", "00:1e:63:00 and the device ID");
+  read_status_destination(section, "address", device.netmask, config.status);
+  read_allow_list(section, device.address, config.allow, "clients that are served");
+  warn_of_status_without_access(section, config.status, config.allow);
+}
+
+void read_timing(YamlSection& section, oculus::DeviceConfig& device) {
+  section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms),
+                   "from status packet to status packet");
+  section.duration("dummy_period_ms", device.dummy_period, Range::from(10.0, minute_ms),
+                   "how often a client hears of a head that does not ping");
+  section.duration("ping_overhead_ms", device.plan.ping_overhead, Range::above(0.0, 1000.0),
+                   "of each ping, beside the time until the last echo is back");
+}
+
+void read_firmware(YamlSection& section, oculus::DeviceConfig& device) {
+  section.introduce("Where firmware differs, or nobody knows.");
+  section.integer("most_ranges", device.plan.most_ranges, 16, 8192,
+                  "rows of an image; longer ranges have coarser rows");
+  section.boolean("rescales_high_frequency_gain", device.plan.rescales_high_frequency_gain,
+                  "reports 40 + 0.6 times the gain at the high frequency: one driver undoes that, and waits "
+                  "for it");
+  section.boolean("reports_sound_speed_used", device.plan.reports_sound_speed_used,
+                  "where a client sends 0 for the speed of sound, reports the one that is used instead");
+  section.text("log_text", device.log_text, "sent to each client that connects; one driver waits for it");
+  section.default_is("log_text", "two lines that name sonard");
+}
+
+void read_mode(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
+  section.number("aperture_deg", mode.horizontal_deg, Range::from(1.0, 170.0),
+                 "from the first beam to the last");
+  section.angle("vertical_beamwidth_deg", acoustics.vertical_beamwidth_rad, Range::above(0.0, 170.0),
+                "-3 dB full width");
+  section.angle("receive_beamwidth_deg", acoustics.receive_beamwidth_rad, Range::from(0.1, 60.0),
+                "-3 dB width of one beam at broadside");
+  section.number("range_cell_mm", acoustics.range_cell_m, Range::above(0.0, 1000.0),
+                 "c / 2B of the chirp: how far apart two echoes are told apart", 1e3);
+  for (const char* key :
+       {"aperture_deg", "vertical_beamwidth_deg", "receive_beamwidth_deg", "range_cell_mm"}) {
+    section.default_is(key, "that of the model");
+  }
+}
+
+void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig& config) {
+  oculus::Model& model = config.device.plan.model;
+  head.acoustics.aperture.vertical_beamwidth_rad = config.modes[0].vertical_beamwidth_rad;
+  head.acoustics.aperture.receive_beamwidth_rad = config.modes[0].receive_beamwidth_rad;
+  read_acoustics(section, model.modes[0].frequency_hz, head);
+  read_receive_array(section, head.acoustics.aperture);
+  for (const char* key : {"vertical_beamwidth_deg", "receive_beamwidth_deg"}) {
+    section.warn_if_given(key, "`low_frequency` and `high_frequency` have it");
+  }
+  using Pulse = render::PhysicalModel::Pulse;
+  section.choice(
+      "pulse", head.acoustics.physical.pulse,
+      {{"windowed_chirp", Pulse::windowed_chirp}, {"chirp", Pulse::chirp}, {"point", Pulse::point}},
+      "as a matched filter leaves it, under a window or not, or without length");
+  section.number("gain_db_per_percent", config.gain_db_per_percent, Range::from(0.0, 10.0),
+                 "dB per percent of gain; 50 percent are 0 dB");
+  section.section("low_frequency", "beams and pulse at the low frequency",
+                  [&](YamlSection& inner) { read_mode(inner, model.modes[0], config.modes[0]); });
+  section.section("high_frequency", "the same at the high one",
+                  [&](YamlSection& inner) { read_mode(inner, model.modes[1], config.modes[1]); });
+}
+
+render::Water water_of(const WaterConfig& water) {
+  return {water.temperature_c, water.salinity_ppt, water.depth_m, water.ph};
+}
+
+/// What water does at each frequency; `head` has what it does at the low one.
+void apply_water_to_modes(const HeadContext& context, const HeadConfig& head, OculusConfig& config) {
+  const oculus::Model& model = config.device.plan.model;
+  const render::Water water = water_of(context.water);
+  for (std::size_t i = 0; i < config.modes.size(); ++i) {
+    const double frequency_hz = model.modes[i].frequency_hz;
+    OculusModeAcoustics& mode = config.modes[i];
+    mode.absorption_db_per_m = i == 0 || context.absorption_db_per_m >= 0.0
+                                   ? head.acoustics.physical.absorption_db_per_m
+                                   : render::francois_garrison_absorption_db_per_m(frequency_hz, water);
+    mode.wavelength_m = render::sound_speed_mps(water) / frequency_hz;
+  }
+}
+
+}  // namespace
+
+OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
+  section.introduce(
+      "A Blueprint Subsea Oculus ([protocols/oculus.md](protocols/oculus.md)). The x axis of its mount is "
+      "the "
+      "acoustic axis, so the down tilt of the head is part of the mount.");
+  constexpr double surface_bar = 1.013;
+  constexpr double bar_per_m = 0.1;
+  OculusConfig config;
+  read_identity(section, config.device);
+  config.modes = oculus_modes(config.device.plan.model);
+  apply_water(section, context, config.device.plan.model.modes[0].frequency_hz, head);
+  apply_water_to_modes(context, head, config);
+  config.device.plan.temperature_c = context.water.temperature_c;
+  config.device.plan.pressure_bar = surface_bar + bar_per_m * context.water.depth_m;
+  config.device.plan.water_sound_speed_mps = context.water_sound_speed_mps;
+  config.device.waits_for_permission = context.pings_by_source;
+  read_common(section, context, head);
+  section.require("network", "a mapping with address and netmask");
+  section.section("network", "addresses", [&](YamlSection& inner) { read_network(inner, config); });
+  section.section("timing", "rates", [&](YamlSection& inner) { read_timing(inner, config.device); });
+  section.section("firmware", "habits of its firmware",
+                  [&](YamlSection& inner) { read_firmware(inner, config.device); });
+  section.section("acoustics", "how its image is formed",
+                  [&](YamlSection& inner) { read_oculus_acoustics(inner, head, config); });
+  return config;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pings of an Oculus along a trajectory.
+#pragma once
+
+#include <memory>
+
+#include "server/config/config.hpp"
+#include "server/devices/survey.hpp"
+
+namespace sonard::server {
+
+/// The settings of the user go the way of a client's: through a fire, and the head's plan of it. A frame is a
+/// ping, and has its number.
+/// @throws CLI::ValidationError
+std::unique_ptr<Survey> survey_of_oculus(const HeadConfig& head, const SurveyOptions& options);
+
+}  // namespace sonard::server
