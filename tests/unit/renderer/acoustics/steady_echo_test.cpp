@@ -109,5 +109,31 @@ TEST(SteadyEcho, BeamsReceiveAPointThroughTheirPatternAndThePulse) {
   EXPECT_NEAR(sum / expected, 1, 0.02);  // half of an echo of 2; what leaks is left out
 }
 
+// Beams closer than they resolve see nulls of each other's main lobes, below what the errors of the elements
+// leak on the average.
+TEST(SteadyEcho, NoBeamReceivesLessThanNothing) {
+  Aperture aperture;
+  aperture.beam_edges_rad = equal_sine_edges(512, 65 * std::numbers::pi / 180);
+  aperture.azimuth = Aperture::Azimuth::array;
+  aperture.fine_beams = 1;
+  aperture.element_amplitude_sd = 0.12;
+  aperture.element_phase_sd_rad = 7 * std::numbers::pi / 180;
+  const BeamPattern pattern(aperture, {1});
+  EchoImage fine{pattern.fine_beams(), 3, {}, {}};
+  bool some_would_be_below = false;
+  for (int at = 1; at < 511; at += 15) {
+    fine.intensity.assign(static_cast<std::size_t>(fine.beams * fine.lines), 0.0F);
+    cell(fine, at, 1) = 1;
+    for (int beam = 0; beam < 512; ++beam) {
+      some_would_be_below |= pattern.share(beam, at) < pattern.share(beam, (at + 256) % 512);
+    }
+    const SteadyEcho steady = receive_points({{at, 1, 1.0F}}, fine, pattern, nullptr, 512);
+    for (int beam = 0; beam < 512; ++beam) {
+      EXPECT_GE(steady.line(1, 512)[beam], 0.0F) << at << " " << beam;
+    }
+  }
+  EXPECT_TRUE(some_would_be_below);
+}
+
 }  // namespace
 }  // namespace sonard::render
