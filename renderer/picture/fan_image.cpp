@@ -3,12 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "renderer/picture/amber.hpp"
 #include "renderer/picture/polar_grid.hpp"
 
 namespace sonard::picture {
+namespace {
+
+/// The ends of a fan of 120 degrees are named too, where its last beams lie a little inside of them.
+std::vector<int> bearing_lines_deg(const SectorGeometry& geometry) {
+  constexpr double wide_rad = 110.0 * std::numbers::pi / 180.0;
+  return geometry.starboard_edge_rad() - geometry.port_edge_rad() > wide_rad
+             ? std::vector<int>{-60, -30, 0, 30, 60}
+             : round_bearings_deg(geometry);
+}
+
+}  // namespace
 
 cv::Mat raw_polar_image(const cv::Mat& polar) {
   cv::Mat upwards;
@@ -22,7 +35,7 @@ FanImage::FanImage(const FanShape& shape, const FanStyle& style)
       mapped_lines_(std::min(shape.lines, style.radius_px)) {
   map_pixels();
   if (style.grid) {
-    grid_ = polar_grid(geometry_, {-60, -30, 0, 30, 60});
+    grid_ = polar_grid(geometry_, bearing_lines_deg(geometry_));
   }
 }
 

@@ -163,6 +163,26 @@ TEST(FanImage, TheGridIsDrawnAtWholeRanges) {
   }
 }
 
+TEST(FanImage, TheGridOfANarrowFanIsFinerAndHasNoBearingsOutsideOfIt) {
+  const auto drawn_at = [](double half_deg, double bearing_deg) {
+    FanShape fan{{}, lines, line_step_m};
+    for (int beam = 0; beam < beams; ++beam) {
+      fan.bearings_rad.push_back((2.0 * beam / (beams - 1) - 1) * half_deg * std::numbers::pi / 180);
+    }
+    const FanImage image(fan, {.radius_px = radius_px});
+    const cv::Mat empty = image.draw(cv::Mat::zeros(lines, beams, CV_8UC1), "");
+    const cv::Point at = image.geometry().pixel(16.0, bearing_deg * std::numbers::pi / 180);
+    const cv::Mat around = empty(cv::Rect(at.x - 1, at.y - 1, 3, 3)).clone();
+    const cv::Mat ground = amber::paint(cv::Mat::zeros(3, 3, CV_8UC1), amber::Samples::amplitudes,
+                                        cv::Mat(3, 3, CV_8UC1, cv::Scalar(255)));
+    return cv::norm(around, ground, cv::NORM_INF) > 0;
+  };
+  EXPECT_TRUE(drawn_at(35, 20));
+  EXPECT_FALSE(drawn_at(35, 25));
+  EXPECT_FALSE(drawn_at(65, 20));
+  EXPECT_TRUE(drawn_at(65, 60));
+}
+
 TEST(Palette, GrowsBrighterWithTheEcho) {
   const cv::Mat palette = amber::palette(amber::Samples::decibels);
   double last = -1.0;
