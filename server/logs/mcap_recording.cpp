@@ -101,7 +101,7 @@ bool McapRecording::add_image(std::span<const std::uint8_t> bytes) {
   }
   head.pings.push_back({.time_ns = image->transmit_time_ns(),
                         .settings = settings_of(*image),
-                        .wire = {},
+                        .wire = bytes_of(image->wire_head()),
                         .place = messages_.size()});
   return true;
 }

@@ -89,6 +89,7 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
     }
   }
 
+  bool is_open() const { return socket_.is_open(); }
   /// Pending handlers find the socket closed.
   void close() {
     error_code ignored;
@@ -161,10 +162,15 @@ void TcpTransport::Impl::admit(tcp::socket socket, const Endpoint& remote) {
   ++connections;
   const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), remote);
   sessions.push_back(session);
-  if (events.came) {
-    events.came({session->peer()});
-  }
-  session->read();
+  // Behind what has happened already: who has left makes room for who comes.
+  asio::post(io, [self = shared_from_this(), session] {
+    if (session->is_open()) {
+      if (self->events.came) {
+        self->events.came({session->peer()});
+      }
+      session->read();
+    }
+  });
 }
 
 void TcpTransport::Impl::left(const std::shared_ptr<Session>& session) {

@@ -211,6 +211,23 @@ TEST_F(TcpTransportTest, MayBeToldToDisconnectWhoIsBeingHeard) {
   EXPECT_EQ(gone_.size(), 1U);
 }
 
+TEST_F(TcpTransportTest, WhoHasLeftBeforeAnotherCameIsToldFirst) {
+  for (int i = 0; i < 20; ++i) {
+    const std::size_t before = came_.size();
+    Client one = client();
+    one.close();
+    Client two = Client::tcp(transport_.local_endpoint());
+    std::size_t gone_when_it_came = 0;
+    ASSERT_TRUE(run_until([&] {
+      gone_when_it_came = came_.size() < before + 2 ? gone_.size() : gone_when_it_came;
+      return came_.size() == before + 2 && gone_.size() == before + 1;
+    }));
+    two.close();
+    ASSERT_TRUE(run_until([&] { return gone_.size() == before + 2; }));
+    EXPECT_EQ(gone_when_it_came, before + 1);
+  }
+}
+
 TEST_F(TcpTransportTest, AnotherAddressThanThoseAllowedIsRefused) {
   TcpTransport closed(io_, {{localhost, 0}, {{0x0A000000, 8}}});
   TransportEvents events;
