@@ -12,21 +12,28 @@ namespace {
 
 using oculus::MessageId;
 
-constexpr std::array<std::pair<MessageId, std::string_view>, 6> messages{
-    {{MessageId::status, "status"},
-     {MessageId::simple_fire, "simple_fire"},
-     {MessageId::simple_ping_result, "simple_ping_result"},
-     {MessageId::user_config, "user_config"},
-     {MessageId::logs, "logs"},
-     {MessageId::dummy, "dummy"}}};
+using Names = std::pair<MessageId, std::string_view>;
+constexpr std::array commands{Names{MessageId::simple_fire, "simple_fire"},
+                              Names{MessageId::user_config, "user_config"}};
+constexpr std::array reports{Names{MessageId::status, "status"},
+                             Names{MessageId::simple_ping_result, "simple_ping_result"},
+                             Names{MessageId::user_config, "user_config"}, Names{MessageId::logs, "logs"},
+                             Names{MessageId::dummy, "dummy"}};
+
+template <class Messages>
+void append_types(std::string& lua, const Messages& messages) {
+  for (const auto& [id, name] : messages) {
+    append_type(lua, static_cast<unsigned>(id), name);
+  }
+}
 
 }  // namespace
 
 std::string oculus_field_tables() {
-  std::string lua = table_head("oculus") + "  types = {\n";
-  for (const auto& [id, name] : messages) {
-    append_type(lua, static_cast<unsigned>(id), name);
-  }
+  std::string lua = table_head("oculus") + "  commands = {\n";
+  append_types(lua, commands);
+  lua += "  },\n  reports = {\n";
+  append_types(lua, reports);
   lua += "  },\n  messages = {\n";
   append_message<oculus::HeaderLayout>(lua, "header");
   append_message<oculus::FireLayout>(lua, "fire");

@@ -1,9 +1,12 @@
 -- Made by wireshark_fields from protocol/oculus/layout.hpp; not to be edited.
 -- A field is { offset, size in bytes, name, number of values if there are several }, little-endian.
 return {
-  types = {
-    [0] = "status",
+  commands = {
     [21] = "simple_fire",
+    [85] = "user_config",
+  },
+  reports = {
+    [0] = "status",
     [35] = "simple_ping_result",
     [85] = "user_config",
     [128] = "logs",

@@ -8,7 +8,7 @@ local most_values = 8
 
 local integers = { [1] = ProtoField.uint8, [2] = ProtoField.uint16, [4] = ProtoField.uint32, [8] = ProtoField.uint64 }
 
--- The field of Wireshark for one entry. `format`: "hex", "ipv4", or nil for decimal.
+-- The field of Wireshark for one entry. `format`: "hex", "ipv4", "double", or nil for decimal.
 local function make_field(abbreviation, entry, format)
   local size, name, count = entry[2], entry[3], entry[4] or 1
   if not integers[size] or (size == 1 and count > most_values) then
@@ -16,6 +16,9 @@ local function make_field(abbreviation, entry, format)
   end
   if format == "ipv4" then
     return ProtoField.ipv4(abbreviation, name)
+  end
+  if format == "double" then
+    return ProtoField.double(abbreviation, name)
   end
   return integers[size](abbreviation, name, format == "hex" and base.HEX or base.DEC)
 end

@@ -48,6 +48,10 @@ TEST(HostileBytes, micron) {
   expect_no_failure("micron", 4002);
 }
 
+TEST(HostileBytes, oculus) {
+  expect_no_failure("oculus", 52'102);
+}
+
 TEST(HostileBytes, ping360) {
   expect_no_failure("ping360", 12'345);
 }
@@ -70,6 +74,20 @@ TEST(HostileBytes, ping360_stream) {
       payload.insert(payload.end(), frame.begin(), frame.end());
     }
     packets.push_back(pcapng::udp_packet({0x7F000001, 50'000}, {0x7F000001, 9092}, payload));
+  }
+  expect_no_failure(packets);
+}
+
+// The same broken messages in one stream, whose pieces Wireshark puts together.
+TEST(HostileBytes, oculus_stream) {
+  const auto names = hex_fixture_names("oculus");
+  std::mt19937 random{3};
+  pcapng::TcpConversation line{{0x7F000001, 50'000}, {0x7F000001, 52'100}};
+  std::vector<pcapng::Bytes> packets;
+  for (int i = 0; i < packet_count; ++i) {
+    const Bytes message = broken(load_hex_fixture("oculus", names[random() % names.size()]), random);
+    const auto sent = random() % 2 == 0 ? line.from_server(message) : line.from_client(message);
+    packets.insert(packets.end(), sent.begin(), sent.end());
   }
   expect_no_failure(packets);
 }
