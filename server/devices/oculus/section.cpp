@@ -70,30 +70,39 @@ void read_firmware(YamlSection& section, oculus::DeviceConfig& device) {
   section.default_is("log_text", "two lines that name sonard");
 }
 
-void read_mode(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
+void read_aperture(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
   section.number("aperture_deg", mode.horizontal_deg, Range::from(1.0, 170.0),
                  "from the first beam to the last");
+  section.number("range_cell_mm", acoustics.range_cell_m, Range::above(0.0, 1000.0),
+                 "c / 2B of the chirp: how far apart two echoes are told apart", 1e3);
+  section.default_is("aperture_deg", "that of the model");
+  section.default_is("range_cell_mm", "that of the model");
+}
+
+void read_high_frequency(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
+  read_aperture(section, mode, acoustics);
   section.angle("vertical_beamwidth_deg", acoustics.vertical_beamwidth_rad, Range::above(0.0, 170.0),
                 "-3 dB full width");
   section.angle("receive_beamwidth_deg", acoustics.receive_beamwidth_rad, Range::from(0.1, 60.0),
                 "-3 dB width of one beam at broadside");
-  section.number("range_cell_mm", acoustics.range_cell_m, Range::above(0.0, 1000.0),
-                 "c / 2B of the chirp: how far apart two echoes are told apart", 1e3);
-  for (const char* key :
-       {"aperture_deg", "vertical_beamwidth_deg", "receive_beamwidth_deg", "range_cell_mm"}) {
-    section.default_is(key, "that of the model");
-  }
+  section.default_is("vertical_beamwidth_deg", "that of the model");
+  section.default_is("receive_beamwidth_deg", "that of the model");
 }
 
 void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig& config) {
+  section.introduce("At the low frequency, and at both where `high_frequency` has no such key.");
   oculus::Model& model = config.device.plan.model;
-  head.acoustics.aperture.vertical_beamwidth_rad = config.modes[0].vertical_beamwidth_rad;
-  head.acoustics.aperture.receive_beamwidth_rad = config.modes[0].receive_beamwidth_rad;
+  OculusModeAcoustics& low = config.modes[0];
+  render::Aperture& aperture = head.acoustics.aperture;
+  aperture.vertical_beamwidth_rad = low.vertical_beamwidth_rad;
+  aperture.receive_beamwidth_rad = low.receive_beamwidth_rad;
   read_acoustics(section, model.modes[0].frequency_hz, head);
-  read_receive_array(section, head.acoustics.aperture);
-  for (const char* key : {"vertical_beamwidth_deg", "receive_beamwidth_deg"}) {
-    section.warn_if_given(key, "`low_frequency` and `high_frequency` have it");
-  }
+  read_receive_array(section, aperture);
+  low.vertical_beamwidth_rad = aperture.vertical_beamwidth_rad;
+  low.receive_beamwidth_rad = aperture.receive_beamwidth_rad;
+  read_aperture(section, model.modes[0], low);
+  section.default_is("vertical_beamwidth_deg", "that of the model");
+  section.default_is("receive_beamwidth_deg", "that of the model");
   using Pulse = render::PhysicalModel::Pulse;
   section.choice(
       "pulse", head.acoustics.physical.pulse,
@@ -101,10 +110,8 @@ void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig&
       "as a matched filter leaves it, under a window or not, or without length");
   section.number("gain_db_per_percent", config.gain_db_per_percent, Range::from(0.0, 10.0),
                  "dB per percent of gain; 50 percent are 0 dB");
-  section.section("low_frequency", "beams and pulse at the low frequency",
-                  [&](YamlSection& inner) { read_mode(inner, model.modes[0], config.modes[0]); });
-  section.section("high_frequency", "the same at the high one",
-                  [&](YamlSection& inner) { read_mode(inner, model.modes[1], config.modes[1]); });
+  section.section("high_frequency", "what differs at the high frequency",
+                  [&](YamlSection& inner) { read_high_frequency(inner, model.modes[1], config.modes[1]); });
 }
 
 render::Water water_of(const WaterConfig& water) {

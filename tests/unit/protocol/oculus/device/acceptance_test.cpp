@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a head has to do for its clients to work with it, one test for each: form of what it sends, its
+// habits, and its rates (docs/protocols/oculus.md 3 to 8).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "protocol/oculus/codec.hpp"
+#include "protocol/oculus/device.hpp"
+#include "protocol/oculus/host.hpp"
+#include "protocol/oculus/recorded_form.hpp"
+#include "tests/support/hex_fixture.hpp"
+
+namespace sonard::oculus {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const Peer client{Device::stream_channel, {0xC0A80205, 40000}, 0};
+
+/// A head with one client, which reads with the code of a client. Images are ready at once.
+class Line {
+ public:
+  explicit Line(const DeviceConfig& config = {}) : device_(config, TimePoint{}) {
+    step(TimePassed{});
+    step(ClientCame{client});
+  }
+
+  void step(const Event& event) {
+    Actions actions = device_.step(now_, event);
+    wake_ = actions.wake_at.value();
+    ASSERT_GT(wake_, now_);
+    next_ping = actions.next_ping;
+    for (const Outgoing& message : actions.send) {
+      if (message.to == Outgoing::To::everybody) {
+        statuses.emplace_back(message.bytes.begin(), message.bytes.end());
+      } else {
+        host.receive(now_, message.bytes);
+        sent.emplace_back(message.bytes.begin(), message.bytes.end());
+      }
+    }
+    for (ReceivedPing& ping : host.take_pings()) {
+      pings.push_back(std::move(ping));
+    }
+    if (actions.record) {
+      records.push_back(std::move(*actions.record));
+    }
+    if (actions.render) {
+      jobs.push_back(*actions.render);
+      render(jobs.back());
+    }
+  }
+  void receive(const Bytes& bytes) { step(BytesReceived{client, SharedBytes(bytes)}); }
+  void run_for(TimePoint duration) {
+    const TimePoint end = now_ + duration;
+    while (wake_ <= end) {
+      now_ = wake_;
+      step(TimePassed{});
+    }
+    now_ = end;
+  }
+
+  Host host;
+  std::vector<ReceivedPing> pings;
+  std::vector<Bytes> sent;
+  std::vector<Bytes> statuses;
+  std::vector<PingRecord> records;
+  std::vector<PingJob> jobs;
+  std::optional<NextPing> next_ping;
+  bool plays_eight_bits = false;
+
+ private:
+  /// Samples that count up, so that each is at its place or is not.
+  void render(const PingJob& job) {
+    const auto count = static_cast<std::size_t>(job.bins()) * static_cast<std::size_t>(job.beams);
+    PingImage image;
+    image.number = job.number;
+    if (job.sixteen_bit && !plays_eight_bits) {
+      image.u16.resize(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        image.u16[i] = static_cast<std::uint16_t>(i * 7919);
+      }
+    } else {
+      image.u8.resize(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        image.u8[i] = static_cast<std::uint8_t>(i * 31);
+      }
+    }
+    step(PingRendered{image});
+  }
+
+  TimePoint now_{};
+  TimePoint wake_{};
+  Device device_;
+};
+
+SimpleFire fire_with(bool second, int bits, bool gains, int beams, int mode) {
+  SimpleFire fire;
+  fire.version = second ? 2 : 0;
+  fire.fire.master_mode = static_cast<std::uint8_t>(mode);
+  fire.fire.range = 4.321;
+  fire.fire.gamma = 200;
+  fire.fire.gain_percent = 30.0;
+  fire.fire.salinity_ppt = 35.0;
+  fire.fire.flags = static_cast<std::uint8_t>(
+      fire_flags::range_in_metres | fire_flags::simple_result | (bits > 8 ? fire_flags::sixteen_bit : 0) |
+      (gains ? fire_flags::row_gains : 0) | (beams == 512 ? fire_flags::beams_512 : 0));
+  if (second) {
+    fire.extension.emplace();
+    fire.extension->flags = bits == 32 ? extension_flags::thirty_two_bit : 0;
+    fire.extension->reserved[3] = 17;
+  }
+  return fire;
+}
+
+// 3.1, as several clients send them; the header of one states no length and that of another a wrong version.
+TEST(OculusAcceptance, fires_of_all_clients_split_at_every_byte_make_it_ping) {
+  for (const char* name : {"fire_vendor", "fire_ensta", "fire_ensta_resume_v2", "fire_liboculus_8_bit",
+                           "fire_liboculus_32_bit"}) {
+    const Bytes bytes = sonard::testing::load_hex_fixture("oculus", name);
+    for (std::size_t cut = 1; cut < bytes.size(); ++cut) {
+      Line line;
+      const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(cut);
+      line.receive({bytes.begin(), middle});
+      EXPECT_TRUE(line.jobs.empty()) << name << " " << cut;
+      line.receive({middle, bytes.end()});
+      ASSERT_EQ(line.jobs.size(), 1U) << name << " " << cut;
+    }
+    Line line;
+    Bytes twice = bytes;
+    twice.insert(twice.end(), bytes.begin(), bytes.end());
+    line.receive(twice);
+    EXPECT_EQ(line.jobs.size(), 1U) << name;
+  }
+}
+
+using Form = std::tuple<bool, int, bool, int, int>;
+class OculusForms : public ::testing::TestWithParam<Form> {};
+
+// 4.1 to 4.4 and 4.7, through the bytes: what vendor code, liboculus and ENSTA's driver check.
+TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
+  const auto [second, bits, gains, beams, mode] = GetParam();
+  if (!second && bits == 32) {
+    return;  // only an extension asks for them
+  }
+  const SimpleFire fire = fire_with(second, bits, gains, beams, mode);
+  Line line;
+  line.receive(encode(fire));
+  line.run_for(milliseconds{300});
+  ASSERT_GE(line.pings.size(), 3U);
+  EXPECT_EQ(line.host.statistics().bad_messages, 0U);
+  const PingResult& ping = line.pings[1].result;
+  EXPECT_EQ(ping.fire.extension, fire.extension);
+  EXPECT_EQ(ping.fire.version, second ? 2 : 0);
+  const Fire& echo = ping.fire.fire;
+  EXPECT_EQ(echo.master_mode, mode);
+  EXPECT_EQ(echo.gamma, 200);
+  EXPECT_EQ(echo.flags, fire.fire.flags);
+  EXPECT_EQ(echo.range, 4.321);
+  EXPECT_EQ(echo.salinity_ppt, 35.0);
+  EXPECT_EQ(echo.gain_percent, mode == 1 ? 30.0 : 40.0 + 0.6 * 30.0);
+  EXPECT_EQ(echo.sound_speed_mps, ping.sound_speed_mps);
+  const std::size_t width = static_cast<std::size_t>(bits) / 8;
+  const std::size_t stride = static_cast<std::size_t>(beams) * width + (gains ? 4 : 0);
+  EXPECT_EQ(ping.beams, beams);
+  EXPECT_EQ(static_cast<std::size_t>(ping.data_size) + 1, width);
+  EXPECT_EQ(ping.image_size, ping.ranges * stride);
+  EXPECT_EQ(ping.image_offset, 2048U);
+  EXPECT_EQ(ping.image_offset + ping.image_size, line.pings[1].message.size());
+  EXPECT_EQ(ping.message_size, line.pings[1].message.size());
+  EXPECT_LE(ping.ranges * ping.range_resolution_m, 4.321);
+  EXPECT_GT((ping.ranges + 1) * ping.range_resolution_m, 4.321);
+  // Samples, with what a row has before them.
+  for (const std::size_t row : {std::size_t{0}, std::size_t{1}, std::size_t{ping.ranges} - 1}) {
+    if (gains) {
+      const auto word = ping.image.subspan(row * stride, 4);
+      EXPECT_EQ(Bytes(word.begin(), word.end()), (Bytes{1, 0, 0, 0}));
+    }
+    for (const std::size_t beam : {std::size_t{0}, std::size_t{5}, static_cast<std::size_t>(beams) - 1}) {
+      const std::size_t i = row * static_cast<std::size_t>(beams) + beam;
+      std::uint32_t sample = 0;
+      for (std::size_t b = 0; b < width; ++b) {
+        sample |= std::uint32_t{ping.image[row * stride + (gains ? 4 : 0) + beam * width + b]} << (8 * b);
+      }
+      const std::uint32_t narrow = static_cast<std::uint8_t>(i * 31);
+      const std::uint32_t wide = static_cast<std::uint16_t>(i * 7919);
+      EXPECT_EQ(sample, bits == 8 ? narrow : bits == 16 ? wide : wide << 16 | wide) << row << " " << beam;
+    }
+  }
+  // 4.5 and 8: the table of the aperture at that frequency of an M750d, its ends exact.
+  const double half_deg = mode == 1 ? 65.0 : 35.0;
+  EXPECT_EQ(ping.bearings_cdeg.front(), -100 * half_deg);
+  EXPECT_EQ(ping.bearings_cdeg.back(), 100 * half_deg);
+  const double quarter =
+      std::asin(std::sin(half_deg * std::numbers::pi / 180) * (2.0 * 64 / (beams - 1) - 1));
+  EXPECT_EQ(ping.bearings_cdeg[64], std::trunc(quarter * 18000 / std::numbers::pi));
+  EXPECT_EQ(ping.frequency_hz, mode == 1 ? 750e3 : 1.2e6);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OculusForms,
+                         ::testing::Combine(::testing::Bool(), ::testing::Values(8, 16, 32),
+                                            ::testing::Bool(), ::testing::Values(256, 512),
+                                            ::testing::Values(1, 2)));
+
+// 8: ranges of the models; what is asked for beyond is echoed, and imaged as far as the head can.
+TEST(OculusAcceptance, models_have_ranges_and_apertures_of_their_own) {
+  struct Case {
+    Model model;
+    int mode;
+    double range_m, half_deg, frequency_hz;
+  };
+  for (const Case& it : {Case{m750d, 1, 120.0, 65.0, 750e3}, Case{m750d, 2, 40.0, 35.0, 1.2e6},
+                         Case{m1200d, 1, 40.0, 65.0, 1.2e6}, Case{m1200d, 2, 10.0, 30.0, 2098880.597}}) {
+    DeviceConfig config;
+    config.plan.model = it.model;
+    Line line(config);
+    SimpleFire fire = fire_with(false, 8, false, 256, it.mode);
+    fire.fire.range = 500.0;
+    line.receive(encode(fire));
+    line.run_for(milliseconds{400});
+    ASSERT_FALSE(line.pings.empty());
+    const PingResult& ping = line.pings[0].result;
+    EXPECT_EQ(ping.fire.fire.range, 500.0);
+    EXPECT_NEAR(ping.ranges * ping.range_resolution_m, it.range_m, ping.range_resolution_m);
+    EXPECT_LE(ping.ranges, 1200);
+    EXPECT_EQ(ping.bearings_cdeg.back(), 100 * it.half_deg);
+    EXPECT_EQ(ping.frequency_hz, it.frequency_hz);
+    EXPECT_EQ(line.pings[0].message[14] | line.pings[0].message[15] << 8, it.model.part_number);
+  }
+}
+
+// 6: 142 bytes once a second, also while a client is connected, with its address in order of the octets.
+TEST(OculusAcceptance, a_status_of_142_bytes_comes_each_second_whatever_else_happens) {
+  Line line;
+  line.receive(encode(fire_with(true, 8, true, 512, 1)));
+  const std::size_t before = line.statuses.size();
+  line.run_for(seconds{20});
+  EXPECT_EQ(line.statuses.size() - before, 20U);
+  for (const Bytes& status : line.statuses) {
+    ASSERT_EQ(status.size(), 142U);
+    EXPECT_EQ(Bytes(status.begin() + 52, status.begin() + 56), (Bytes{127, 0, 0, 1}));
+    EXPECT_EQ(status[16] | status[17] << 8, status[2] | status[3] << 8) << "the ID of the header";
+  }
+  EXPECT_EQ(Bytes(line.statuses.back().begin() + 60, line.statuses.back().begin() + 64),
+            (Bytes{192, 168, 2, 5}));
+  for (const Bytes& message : line.sent) {
+    EXPECT_EQ(message[2] | message[3] << 8, 7892) << "the same in every message of the stream";
+  }
+}
+
+// 7, section by section of the diagram.
+TEST(OculusAcceptance, idle_and_standby_are_told_each_second_and_standby_ends_within_a_period) {
+  Line line;
+  EXPECT_EQ(line.host.take_logs().size(), 1U);
+  line.run_for(milliseconds{3'100});
+  EXPECT_EQ(line.host.statistics().dummies, 3U);
+  line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta"));
+  line.run_for(milliseconds{950});
+  EXPECT_EQ(line.pings.size(), 10U);
+  line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta_standby"));
+  EXPECT_EQ(line.host.statistics().dummies, 4U) << "at once: a client waits for it";
+  line.run_for(seconds{4});
+  EXPECT_LE(line.pings.size(), 11U);
+  EXPECT_EQ(line.host.statistics().dummies, 8U);
+  const std::size_t in_standby = line.pings.size();
+  line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta"));
+  line.run_for(milliseconds{950});
+  EXPECT_GE(line.pings.size(), in_standby + 9);
+  EXPECT_EQ(line.host.statistics().pings_missed, 0U) << "numbers count on";
+}
+
+// 3.3, and 7: the viewer fires after every ping and every status.
+TEST(OculusAcceptance, rates_are_limits_also_where_each_ping_is_answered_by_the_same_fire) {
+  for (const auto& [code, hz] : {std::pair{0, 10}, {1, 15}, {2, 40}, {3, 5}, {4, 2}}) {
+    Line line;
+    SimpleFire fire = fire_with(false, 8, true, 256, 2);
+    fire.fire.range = 2.0;
+    fire.fire.ping_rate = static_cast<std::uint8_t>(code);
+    line.receive(encode(fire));
+    std::size_t answered = 0;
+    for (int i = 0; i < 10'000; ++i) {
+      line.run_for(milliseconds{1});
+      for (; answered < line.pings.size(); ++answered) {
+        line.receive(encode(fire));
+      }
+    }
+    EXPECT_NEAR(static_cast<double>(line.pings.size()), 10 * hz, 1.0) << hz << " Hz";
+  }
+}
+
+// 4.4: a driver waits for its settings in one of the next pings.
+TEST(OculusAcceptance, new_settings_come_with_the_next_ping) {
+  Line line;
+  line.receive(encode(fire_with(false, 8, true, 256, 1)));
+  line.run_for(milliseconds{550});
+  const std::size_t before = line.pings.size();
+  line.receive(encode(fire_with(false, 8, true, 512, 2)));
+  line.run_for(milliseconds{210});
+  ASSERT_GE(line.pings.size(), before + 2);
+  EXPECT_EQ(line.pings[before + 1].result.fire.fire.master_mode, 2);
+  EXPECT_EQ(line.pings[before + 1].result.beams, 512);
+}
+
+// A simulator's clock: no ping but with a grant, and the head says which period it would keep.
+TEST(OculusAcceptance, by_a_simulators_clock_it_waits_for_grants) {
+  DeviceConfig config;
+  config.waits_for_permission = true;
+  Line line(config);
+  EXPECT_FALSE(line.next_ping);
+  line.receive(encode(fire_with(false, 8, false, 256, 2)));
+  line.run_for(seconds{1});
+  EXPECT_TRUE(line.jobs.empty());
+  ASSERT_TRUE(line.next_ping);
+  EXPECT_EQ(line.next_ping->period, milliseconds{100});
+  EXPECT_NEAR(static_cast<double>(line.next_ping->listening.count()), 2 * 4.321 / 1522 * 1e9, 1e5);
+  line.step(PingGranted{});
+  EXPECT_EQ(line.jobs.size(), 1U);
+  line.run_for(seconds{1});
+  EXPECT_EQ(line.pings.size(), 1U);
+}
+
+// ---- Playing back
+
+RecordedPing fed(const PingRecord& record, std::uint64_t number) {
+  return {.record = number,
+          .settings = record.settings,
+          .bearing_rad = 0.0,
+          .bits_per_bin = 8,
+          .wire = record.wire,
+          .due = std::nullopt};
+}
+
+TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
+  Line live;
+  live.receive(encode(fire_with(true, 8, true, 512, 1)));
+  live.run_for(milliseconds{100});
+  ASSERT_GE(live.records.size(), 1U);
+  const PingRecord& record = live.records[0];
+  EXPECT_EQ(record.settings.beams, 512);
+  EXPECT_EQ(record.settings.gain_percent, 30.0);
+  EXPECT_EQ(record.samples.size(), static_cast<std::size_t>(record.settings.bins) * 512);
+  EXPECT_EQ(record.samples[5], static_cast<std::uint8_t>(5 * 31));
+  EXPECT_EQ(record.wire.size(), result_v2_size + 2 * 512);
+
+  DeviceConfig config;
+  config.plays_back = true;
+  Line player(config);
+  player.plays_eight_bits = true;
+  player.receive(encode(fire_with(true, 8, true, 512, 1)));
+  player.run_for(seconds{1});
+  EXPECT_TRUE(player.jobs.empty()) << "nothing was fed";
+  player.step(PingFed{fed(record, 77)});
+  ASSERT_EQ(player.jobs.size(), 1U);
+  EXPECT_EQ(player.jobs[0].record, 77U);
+  EXPECT_TRUE(player.jobs[0].differences.empty());
+  player.run_for(milliseconds{100});
+  ASSERT_EQ(player.pings.size(), 1U);
+  const PingResult& sent = player.pings[0].result;
+  const PingResult& was = live.pings[0].result;
+  EXPECT_EQ(sent.bearings_cdeg, was.bearings_cdeg);
+  EXPECT_EQ(sent.range_resolution_m, was.range_resolution_m);
+  EXPECT_EQ(sent.frequency_hz, was.frequency_hz);
+  EXPECT_TRUE(std::ranges::equal(sent.image, was.image));
+
+  SimpleFire other = fire_with(true, 16, false, 256, 2);
+  other.fire.gain_percent = 80.0;
+  other.fire.sound_speed_mps = 1450.0;
+  player.receive(encode(other));
+  player.step(PingFed{fed(record, 78)});
+  player.run_for(milliseconds{200});
+  ASSERT_EQ(player.pings.size(), 2U);
+  std::string kinds;
+  for (const Difference& difference : player.jobs[1].differences) {
+    kinds += difference.kind + " ";
+  }
+  EXPECT_EQ(kinds, "beams frequency gain sound_speed bits ");
+  const PingResult& held = player.pings[1].result;
+  EXPECT_EQ(held.beams, 512);
+  EXPECT_NE(held.fire.fire.flags & fire_flags::beams_512, 0) << "what is attached";
+  EXPECT_EQ(held.fire.fire.master_mode, 2) << "as the client sent it";
+  EXPECT_EQ(held.data_size, DataSize::bits_16);
+  EXPECT_EQ(eight_bit_samples(held), record.samples);
+}
+
+TEST(OculusPlayback, a_ping_with_a_time_of_its_own_keeps_it) {
+  Line live;
+  live.receive(encode(fire_with(false, 8, false, 256, 1)));
+  live.run_for(milliseconds{100});
+  DeviceConfig config;
+  config.plays_back = true;
+  Line player(config);
+  player.receive(encode(fire_with(false, 8, false, 256, 1)));
+  RecordedPing ping = fed(live.records.at(0), 1);
+  ping.due = milliseconds{730};
+  player.step(PingFed{ping});
+  player.run_for(milliseconds{729});
+  EXPECT_TRUE(player.jobs.empty());
+  player.run_for(milliseconds{1});
+  ASSERT_EQ(player.jobs.size(), 1U);
+  EXPECT_EQ(player.jobs[0].transmit_time, milliseconds{730});
+}
+
+TEST(OculusPlayback, what_no_head_could_send_has_no_recorded_form) {
+  Line live;
+  live.receive(encode(fire_with(false, 8, false, 256, 1)));
+  live.run_for(milliseconds{100});
+  const Bytes& wire = live.records.at(0).wire;
+  EXPECT_TRUE(recorded_form(wire));
+  EXPECT_FALSE(recorded_form({}));
+  for (std::size_t size = 0; size < wire.size(); ++size) {
+    EXPECT_FALSE(recorded_form(std::span(wire).first(size))) << size;
+  }
+  Bytes other = wire;
+  other[6] = 0x55;
+  EXPECT_FALSE(recorded_form(other));
+  EXPECT_FALSE(recorded_form(sonard::testing::load_hex_fixture("oculus", "ping_result_v1"))) << "four beams";
+}
+
+// ---- The client's side
+
+TEST(OculusHost, reads_messages_in_pieces_of_any_size_and_counts_what_is_missing) {
+  Line line;
+  line.receive(encode(fire_with(true, 8, true, 256, 1)));
+  line.run_for(milliseconds{450});
+  Bytes stream{'S', 'S', 'x'};
+  for (std::size_t i = 0; i < line.sent.size(); ++i) {
+    if (i != 2) {  // one ping is lost on the way
+      stream.insert(stream.end(), line.sent[i].begin(), line.sent[i].end());
+    }
+  }
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{4096}, stream.size()}) {
+    Host host;
+    for (std::size_t at = 0; at < stream.size(); at += piece) {
+      host.receive({}, std::span(stream).subspan(at, std::min(piece, stream.size() - at)));
+      if (piece == 1 && at > 5000) {
+        break;  // it takes long enough
+      }
+    }
+    EXPECT_EQ(host.statistics().dropped_bytes, 3U);
+    EXPECT_EQ(host.take_logs().size(), 1U);
+    if (piece > 1) {
+      EXPECT_EQ(host.statistics().pings, line.pings.size() - 1);
+      EXPECT_EQ(host.statistics().pings_missed, 1U);
+      EXPECT_EQ(host.statistics().bad_messages, 0U);
+    }
+  }
+}
+
+TEST(OculusHost, a_length_that_no_message_has_is_skipped) {
+  Host host;
+  Bytes bytes = encode_dummy({7892, 1032});
+  bytes[13] = 0x7F;  // two thousand million bytes
+  const Bytes good = encode_dummy({7892, 1032});
+  bytes.insert(bytes.end(), good.begin(), good.end());
+  host.receive({}, bytes);
+  EXPECT_EQ(host.statistics().dummies, 1U);
+  EXPECT_EQ(host.statistics().dropped_bytes, 16U);
+  Bytes bad = sonard::testing::load_hex_fixture("oculus", "ping_result_v1");
+  bad[106] = 9;
+  host.receive({}, bad);
+  EXPECT_EQ(host.statistics().bad_messages, 1U);
+  EXPECT_TRUE(host.take_pings().empty());
+}
+
+}  // namespace
+}  // namespace sonard::oculus
