@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the loader makes of a head of type oculus, and what it says about bad ones.
+#include "server/devices/oculus/section.hpp"
+
+#include <chrono>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/devices/oculus/kind.hpp"
+#include "tests/unit/server/config/config_text.hpp"
+
+namespace sonard::server {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+class OculusSection : public ConfigFolder {
+ protected:
+  static std::string document(const std::string& head) {
+    return "world: {file: world.sdf}\nwater: {temperature_c: 12, salinity_ppt: 35, depth_m: 30}\nposes:\n"
+           "  initial: {position_m: [1, 2, 3]}\nheads:\n  - {type: oculus, name: bow, " +
+           head + "}\n";
+  }
+  static std::string with_network(const std::string& more = "") {
+    return "network: {address: 127.0.0.3, netmask: 255.0.0.0, status: [127.0.0.1]}" +
+           (more.empty() ? "" : ", " + more);
+  }
+  HeadConfig read(const std::string& head) const { return load(document(head)).config.heads.at(0); }
+};
+
+TEST_F(OculusSection, gives_defaults_for_what_is_left_out) {
+  const LoadedConfig loaded = load(document(with_network()));
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  const HeadConfig& head = loaded.config.heads.at(0);
+  EXPECT_EQ(head.kind, &oculus_kind());
+  const OculusConfig& config = oculus_config(head);
+  EXPECT_EQ(config.device.plan.model.part_number, 1032);
+  EXPECT_EQ(config.device.id, 7892);
+  EXPECT_EQ(address_text(config.device.address), "127.0.0.3");
+  EXPECT_EQ(config.tcp_port, 52100);
+  EXPECT_EQ(config.status_port, 52102);
+  EXPECT_THAT(config.device.mac, ElementsAre(0x00, 0x1E, 0x63, 0x00, 7892 >> 8, 7892 & 0xFF));
+  EXPECT_EQ(config.device.plan.temperature_c, 12.0);
+  EXPECT_NEAR(config.device.plan.pressure_bar, 4.013, 1e-9);
+  EXPECT_NEAR(config.modes[0].receive_beamwidth_rad, 1.0 * degree, 1e-12);
+  EXPECT_EQ(head.kind->summary(head),
+            "ID 7892, part 1032, TCP 127.0.0.3:52100, status to 127.0.0.1, port 52102");
+  const auto sockets = head.kind->sockets(head);
+  ASSERT_EQ(sockets.size(), 1U);
+  EXPECT_EQ(sockets[0].transport, PlannedSocket::Transport::tcp);
+}
+
+TEST_F(OculusSection, reads_what_is_written) {
+  const HeadConfig head = read(
+      "model: m1200d, device_id: 9, network: {address: 127.0.0.4, netmask: 255.0.0.0, tcp_port: 1, "
+      "status_port: 2, "
+      "mac: '00:01:02:03:04:05', status: directed_broadcast, allow: [127.0.0.0/8]}, timing: "
+      "{status_period_ms: "
+      "500, dummy_period_ms: 2000, ping_overhead_ms: 1}, firmware: {most_ranges: 800, "
+      "rescales_high_frequency_gain: false, reports_sound_speed_used: false, log_text: hello}, acoustics: "
+      "{vertical_beamwidth_deg: 19, receive_beamwidth_deg: 0.7, aperture_deg: 120, range_cell_mm: 3, "
+      "gain_db_per_percent: 0.5, high_frequency: {aperture_deg: 50, vertical_beamwidth_deg: 11, "
+      "receive_beamwidth_deg: 0.3, range_cell_mm: 2}}");
+  const OculusConfig& config = oculus_config(head);
+  EXPECT_EQ(config.device.id, 9);
+  EXPECT_EQ(config.tcp_port, 1);
+  EXPECT_EQ(config.status_port, 2);
+  EXPECT_EQ(config.status.mode, StatusDestination::Mode::directed_broadcast);
+  EXPECT_EQ(config.device.status_period, 500ms);
+  EXPECT_EQ(config.device.dummy_period, 2s);
+  EXPECT_EQ(config.device.plan.ping_overhead, 1ms);
+  EXPECT_EQ(config.device.plan.most_ranges, 800);
+  EXPECT_FALSE(config.device.plan.rescales_high_frequency_gain);
+  EXPECT_FALSE(config.device.plan.reports_sound_speed_used);
+  EXPECT_EQ(config.device.log_text, "hello");
+  const oculus::Model& model = config.device.plan.model;
+  EXPECT_EQ(model.part_number, 1042);
+  EXPECT_EQ(model.modes[0].horizontal_deg, 120.0);
+  EXPECT_EQ(model.modes[1].horizontal_deg, 50.0);
+  EXPECT_NEAR(config.modes[0].vertical_beamwidth_rad, 19 * degree, 1e-12);
+  EXPECT_NEAR(config.modes[0].receive_beamwidth_rad, 0.7 * degree, 1e-12);
+  EXPECT_NEAR(config.modes[0].range_cell_m, 3e-3, 1e-12);
+  EXPECT_NEAR(config.modes[1].vertical_beamwidth_rad, 11 * degree, 1e-12);
+  EXPECT_NEAR(config.modes[1].receive_beamwidth_rad, 0.3 * degree, 1e-12);
+  EXPECT_NEAR(config.modes[1].range_cell_m, 2e-3, 1e-12);
+  EXPECT_EQ(config.gain_db_per_percent, 0.5);
+}
+
+TEST_F(OculusSection, an_absorption_that_is_set_holds_at_both_frequencies) {
+  std::string text = document(with_network());
+  text.replace(text.find("depth_m: 30"), 11, "depth_m: 30, absorption_db_per_km: 150");
+  const HeadConfig head = load(text).config.heads.at(0);
+  EXPECT_NEAR(oculus_config(head).modes[0].absorption_db_per_m, 0.15, 1e-12);
+  EXPECT_NEAR(oculus_config(head).modes[1].absorption_db_per_m, 0.15, 1e-12);
+  const OculusConfig computed = oculus_config(read(with_network()));
+  EXPECT_GT(computed.modes[1].absorption_db_per_m, 1.5 * computed.modes[0].absorption_db_per_m);
+}
+
+TEST_F(OculusSection, says_what_is_wrong) {
+  const auto said = [this](const std::string& head) { return complaints(document(head)); };
+  EXPECT_THAT(said("model: m750d"), Contains(HasSubstr("network")));
+  EXPECT_THAT(said("network: {netmask: 255.0.0.0}"), Contains(HasSubstr("address")));
+  EXPECT_THAT(said("network: {address: 127.0.0.0, netmask: 255.0.0.0}"),
+              Contains(HasSubstr("is the first address of its network")));
+  EXPECT_THAT(said("network: {address: 127.0.0.3, netmask: 255.0.255.0}"),
+              Contains(HasSubstr("is not a netmask")));
+  EXPECT_THAT(said(with_network("model: m3000d")), Contains(HasSubstr("m3000d")));
+  EXPECT_THAT(said(with_network("device_id: 0")), Contains(HasSubstr("device_id")));
+  EXPECT_THAT(said(with_network("acoustics: {high_frequency: {aperture_deg: 171}}")),
+              Contains(HasSubstr("aperture_deg")));
+  EXPECT_THAT(said(with_network("firmware: {most_ranges: 9000}")), Contains(HasSubstr("most_ranges")));
+}
+
+}  // namespace
+}  // namespace sonard::server

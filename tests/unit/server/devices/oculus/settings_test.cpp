@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the renderer is asked for by a ping of an Oculus.
+#include "server/devices/oculus/settings.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "protocol/oculus/image_form.hpp"
+#include "protocol/oculus/ping_plan.hpp"
+#include "server/devices/oculus/config.hpp"
+#include "server/devices/oculus/kind.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+oculus::SimpleFire fire_with(int mode, int beams) {
+  oculus::SimpleFire fire;
+  fire.fire.master_mode = static_cast<std::uint8_t>(mode);
+  fire.fire.range = 15.0;
+  fire.fire.sound_speed_mps = 1500.0;
+  fire.fire.flags |= beams == 512 ? oculus::fire_flags::beams_512 : 0;
+  return fire;
+}
+
+render::SonarSettings settings_of(const oculus::SimpleFire& fire,
+                                  const HeadConfig& head = oculus_kind().make_default()) {
+  const oculus::PlanConfig& plan = oculus_config(head).device.plan;
+  return oculus_sonar_settings(oculus::job_of(oculus::plan_ping(fire, plan), plan), head);
+}
+
+// docs/protocols/oculus.md 4.5: positive to starboard, where the renderer counts to port; in the sine each
+// bearing is the middle of its beam.
+TEST(OculusSettings, beams_hold_the_bearings_of_the_table_at_both_frequencies) {
+  for (const auto& [mode, half_deg] : {std::pair{1, 65.0}, {2, 35.0}}) {
+    for (const int beams : {256, 512}) {
+      const std::vector<double> edges = settings_of(fire_with(mode, beams)).aperture.beam_edges_rad;
+      ASSERT_EQ(edges.size(), static_cast<std::size_t>(beams) + 1);
+      const auto bearings = oculus::bearings_cdeg(beams, half_deg);
+      for (std::size_t beam = 0; beam < bearings.size(); ++beam) {
+        const double middle = std::asin((std::sin(edges[beam]) + std::sin(edges[beam + 1])) / 2);
+        EXPECT_NEAR(-middle / degree, bearings[beam] / 100.0, 0.0101) << beam;
+      }
+    }
+  }
+}
+
+TEST(OculusSettings, rows_are_those_of_the_ping) {
+  const render::SonarSettings settings = settings_of(fire_with(1, 512));
+  EXPECT_EQ(settings.range.count, 1048);  // 15 m in rows of 5 samples at 262 237.76 Hz
+  EXPECT_NEAR(settings.range.step_m, 5 * 1500.0 / (2 * 37.5e6 / 143), 1e-12);
+  EXPECT_EQ(settings.range.output_count(), 1048);
+}
+
+TEST(OculusSettings, rows_keep_their_time_in_water_of_another_speed) {
+  HeadConfig head = oculus_kind().make_default();
+  auto config = std::make_shared<OculusConfig>(oculus_config(head));
+  config->device.plan.water_sound_speed_mps = 1450.0;
+  head.device = config;
+  EXPECT_NEAR(settings_of(fire_with(1, 512), head).range.step_m, 5 * 1450.0 / (2 * 37.5e6 / 143), 1e-12);
+}
+
+TEST(OculusSettings, frequencies_have_beams_water_and_noise_of_their_own) {
+  const render::SonarSettings low = settings_of(fire_with(1, 256));
+  const render::SonarSettings high = settings_of(fire_with(2, 256));
+  EXPECT_NEAR(low.aperture.receive_beamwidth_rad, 1.0 * degree, 1e-12);
+  EXPECT_NEAR(high.aperture.receive_beamwidth_rad, 0.6 * degree, 1e-12);
+  EXPECT_NEAR(low.physical.range_cell_m, 4e-3, 1e-12);
+  EXPECT_NEAR(high.physical.range_cell_m, 2.5e-3, 1e-12);
+  EXPECT_NEAR(low.physical.multipath.wavelength_m / high.physical.multipath.wavelength_m, 1200.0 / 750.0,
+              1e-9);
+  EXPECT_GT(high.physical.absorption_db_per_m, 1.5 * low.physical.absorption_db_per_m);
+  // The head knows its water at both.
+  EXPECT_NEAR(high.physical.tvg_absorption_db_per_m - low.physical.tvg_absorption_db_per_m,
+              high.physical.absorption_db_per_m - low.physical.absorption_db_per_m, 1e-12);
+  // Thermal noise: 20 log10 of the frequency.
+  EXPECT_NEAR(high.physical.noise_level_db - low.physical.noise_level_db, 20 * std::log10(1200.0 / 750.0),
+              1e-9);
+}
+
+TEST(OculusSettings, gamma_and_gain_are_the_clients) {
+  oculus::SimpleFire fire = fire_with(1, 256);
+  fire.fire.gamma = 127;
+  const render::SonarSettings settings = settings_of(fire);
+  EXPECT_EQ(settings.output_scale, render::OutputScale::power);
+  EXPECT_NEAR(settings.output_exponent, 127.0 / 255.0, 1e-12);
+  fire.fire.gamma = 0;
+  fire.fire.gain_percent = 60.0;
+  EXPECT_EQ(settings_of(fire).output_exponent, 1.0);
+  EXPECT_NEAR(settings_of(fire).physical.gain_db - settings.physical.gain_db, 6.0, 1e-12);
+  fire.fire.flags |= oculus::fire_flags::sixteen_bit;
+  EXPECT_TRUE(settings_of(fire).sixteen_bit);
+}
+
+}  // namespace
+}  // namespace sonard::server
