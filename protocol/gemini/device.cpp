@@ -75,6 +75,14 @@ std::vector<std::uint8_t> block_bytes(const Block& block) {
   return bytes;
 }
 
+/// Reads and changes nothing, so that it may come from anybody (docs/security.md).
+bool only_reads(const Command& command) {
+  return std::holds_alternative<StatusRequest>(command) || std::holds_alternative<FlashRead>(command) ||
+         std::holds_alternative<InfoBlockRead>(command) ||
+         std::holds_alternative<TestResultRequest>(command) || std::holds_alternative<GpioRead>(command) ||
+         std::holds_alternative<DiagnosticRequest>(command) || std::holds_alternative<RetryRequest>(command);
+}
+
 /// A healthy head in cool water; only the values that clients show (3.3).
 Status healthy_status() {
   Status status;
@@ -136,7 +144,9 @@ class Device::Impl {
   /// Everything that arrives while the head reboots falls on deaf ears.
   bool rebooting(TimePoint now) const { return now < boot_time_; }
   std::optional<TimePoint> next_deadline() const;
-  void connect(TimePoint now, const Peer& from);
+  bool locked_against(Ipv4 sender) const;
+  Ipv4 holder() const;
+  void connect(TimePoint now);
   void notice_topside();
   void check_topside(TimePoint now);
   void send_status(TimePoint now);
@@ -144,14 +154,14 @@ class Device::Impl {
 
   // One for each command; those that need no answer and change nothing share the last.
   void handle(TimePoint now, const StatusRequest& command);
-  void handle(TimePoint now, const PingConfig& command) { pinger_.configure(now, command); }
+  void handle(TimePoint now, const PingConfig& command);
   void handle(TimePoint now, const FlashWrite& command);
   void handle(TimePoint now, const FlashRead& command);
   void handle(TimePoint now, const InfoBlockWrite& command);
   void handle(TimePoint now, const InfoBlockRead& command);
   void handle(TimePoint now, const Reboot& command);
   void handle(TimePoint, const TestResultRequest&) { reply(TestResult{}); }
-  void handle(TimePoint now, const RetryRequest& command) { pinger_.on_retry(now, command); }
+  void handle(TimePoint now, const RetryRequest& command);
   void handle(TimePoint now, const NetworkConfig& command);
   void handle(TimePoint, const MdioCommands&) { reply(MdioAcknowledge{}); }
   void handle(TimePoint, const TxDriveTest&) { reply(GpiData{}); }
@@ -174,7 +184,9 @@ class Device::Impl {
   template <class Message>
   void reply(Message message) {
     message.header.sonar_id = config_.sonar_id;
-    send_to_topside(SharedBytes(encode(Report{message})));
+    actions_.send.push_back({Outgoing::To::peer,
+                             {0, {asker_.remote.address, config_.topside_port}, asker_.local},
+                             SharedBytes(encode(Report{message}))});
   }
   void send_to_topside(SharedBytes bytes) {
     actions_.send.push_back(
@@ -196,7 +208,9 @@ class Device::Impl {
 
   Ipv4 topside_ = 0;
   Ipv4 noticed_topside_ = 0;  ///< that the last notice was about
-  Ipv4 reply_from_ = 0;
+  Ipv4 paused_for_ = 0;       ///< whose programme is paused, while Pinger::paused()
+  Ipv4 reply_from_ = 0;       ///< pings come from here
+  Peer asker_;                ///< who has sent the command that is being done
   TimePoint last_command_{};
 
   FlashStore flash_;
@@ -232,8 +246,16 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
     ++counters_.unknown_type;  // taken in silence: it says nothing, not even that a topside is there
     return;
   }
+  if (locked_against(datagram.from.remote.address)) {
+    ++counters_.locked_out;
+    return;
+  }
   ++counters_.commands;
-  connect(now, datagram.from);
+  asker_ = datagram.from;
+  const bool of_another = holder() != 0 && holder() != asker_.remote.address;
+  if (!of_another || !only_reads(*command)) {
+    connect(now);
+  }
   std::visit([&](const auto& message) { handle(now, message); }, *command);
 }
 
@@ -248,14 +270,26 @@ void Device::Impl::take(TimePoint, const WaterChanged& water) {
   pinger_.set_out_of_water(water.out_of_water);
 }
 
-void Device::Impl::connect(TimePoint now, const Peer& from) {
-  if (topside_ != 0 && topside_ != from.remote.address) {
+bool Device::Impl::locked_against(Ipv4 sender) const {
+  return config_.lock_to_first && topside_ != 0 && topside_ != sender;
+}
+
+/// To whom pings go, or would once it speaks again; 0: nobody.
+Ipv4 Device::Impl::holder() const {
+  return topside_ == 0 && pinger_.paused() ? paused_for_ : topside_;
+}
+
+void Device::Impl::connect(TimePoint now) {
+  const Ipv4 sender = asker_.remote.address;
+  if (topside_ != 0 && topside_ != sender) {
     ++counters_.topside_changes;  // the newest wins; what is on the wire goes on to it
   }
-  topside_ = from.remote.address;
-  reply_from_ = from.local;
+  topside_ = sender;
+  reply_from_ = asker_.local;
   last_command_ = now;
-  pinger_.resume(now);
+  if (!pinger_.paused() || paused_for_ == sender) {
+    pinger_.resume(now);
+  }
   notice_topside();
 }
 
@@ -264,6 +298,21 @@ void Device::Impl::handle(TimePoint now, const StatusRequest&) {
   acknowledge.receipt_us = clock_us(now);
   acknowledge.reply_us = acknowledge.receipt_us;  // at once
   reply(acknowledge);
+}
+
+void Device::Impl::handle(TimePoint now, const PingConfig& command) {
+  pinger_.resume(now);  // a paused programme of another is replaced
+  pinger_.configure(now, command);
+}
+
+/// The last ping was the topside's alone.
+void Device::Impl::handle(TimePoint now, const RetryRequest& command) {
+  if (asker_.remote.address == topside_) {
+    pinger_.on_retry(now, command);
+  } else {
+    ++counters_.retries_received;
+    ++counters_.retries_dropped;
+  }
 }
 
 void Device::Impl::handle(TimePoint, const NetworkConfig& command) {
@@ -340,6 +389,9 @@ std::uint64_t Device::Impl::clock_us(TimePoint now) const {
 void Device::Impl::check_topside(TimePoint now) {
   if (topside_ != 0 && now - last_command_ >= config_.topside_timeout) {
     ++counters_.topside_timeouts;
+    if (!pinger_.paused()) {
+      paused_for_ = topside_;
+    }
     topside_ = 0;
     reply_from_ = 0;
     pinger_.suspend();
@@ -456,6 +508,8 @@ std::vector<Counter> Device::counts() const {
           {"unknown_type", count.unknown_type},
           {"unsupported_data", count.unsupported_data, Shown::warns,
            "{} ping configurations asked for data that is not made here (I/Q, channels) or for run mode 3"},
+          {"locked_out", count.locked_out, Shown::warns,
+           "{} commands were dropped: another topside has the head (lock_to_first)"},
           {"topside_changes", count.topside_changes},
           {"topside_timeouts", count.topside_timeouts},
           {"reboots", count.reboots}};

@@ -34,6 +34,8 @@ struct DeviceConfig {
   std::chrono::nanoseconds min_ping_period{33'300'000};               ///< start to start, > 0 (8.4)
   std::chrono::nanoseconds topside_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
   std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};      ///< of silence, >= 0 (3.9)
+  /// While a topside is connected the commands of all other addresses are dropped (docs/security.md).
+  bool lock_to_first = false;
 
   std::chrono::nanoseconds line_period{27'000};     ///< least mean distance of ping datagrams, > 0 (8.5)
   int burst_lines = 32;                             ///< most ping datagrams sent back to back, 1..1024

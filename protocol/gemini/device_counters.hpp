@@ -8,10 +8,11 @@ namespace sonard::gemini {
 
 /// They only grow, also across reboots of the head.
 struct DeviceCounters {
-  std::uint64_t commands = 0;         ///< understood and for this head
-  std::uint64_t bad_datagrams = 0;    ///< too short, or with contents that mean nothing
-  std::uint64_t wrong_id = 0;         ///< for another head
-  std::uint64_t unknown_type = 0;     ///< for this head, of a type it does not know
+  std::uint64_t commands = 0;       ///< understood and for this head
+  std::uint64_t bad_datagrams = 0;  ///< too short, or with contents that mean nothing
+  std::uint64_t wrong_id = 0;       ///< for another head
+  std::uint64_t unknown_type = 0;   ///< for this head, of a type it does not know
+  std::uint64_t locked_out = 0;     ///< of another than the topside, where DeviceConfig::lock_to_first is set
   std::uint64_t topside_changes = 0;  ///< a command came from another address while one was connected
   std::uint64_t topside_timeouts = 0;
   std::uint64_t reboots = 0;

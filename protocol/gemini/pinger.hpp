@@ -49,6 +49,8 @@ class Pinger {
   /// The topside has gone silent: sends nothing more; a continuous or triggered programme waits for resume().
   void suspend();
   void resume(TimePoint now);
+  /// A programme waits for resume().
+  bool paused() const { return suspended_ && programme_; }
   /// The head reboots: forgets everything but the job that is still to be answered, and the count of pings.
   void reset(TimePoint boot_time);
 

@@ -43,6 +43,8 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   require(config.idle_timeout >= zero, "idle_timeout must not be negative");
   require(config.reset_silence >= zero, "reset_silence must not be negative");
   require(config.bootloader_silence >= zero, "bootloader_silence must not be negative");
+  require(!config.lock_to_first || config.idle_timeout > zero,
+          "idle_timeout must be positive where lock_to_first is set");
   require(config.queue_length >= 1, "queue_length must be at least 1");
   require(config.max_clients >= 2, "max_clients must be at least 2");
   return config;
@@ -80,7 +82,14 @@ class Device::Impl {
     TimePoint heard{};
   };
 
+  /// The address that has the head, where it is locked to the first.
+  struct Holder {
+    Ipv4 address = 0;  ///< 0: the serial line
+    TimePoint heard{};
+  };
+
   // Clients.
+  bool locked_against(TimePoint now, const Peer& peer);
   Client& client_of(TimePoint now, const Peer& peer);
   void make_room();
   void forget(TimePoint now, std::size_t index, std::string_view why);
@@ -122,6 +131,7 @@ class Device::Impl {
   std::uint8_t id_;
   TimePoint silent_until_ = TimePoint::min();  ///< in the future while it restarts
   std::vector<Client> clients_;
+  std::optional<Holder> holder_;
 
   // Of the step that is under way.
   std::vector<Outgoing> outgoing_;
@@ -129,6 +139,20 @@ class Device::Impl {
 };
 
 // ---- Clients
+
+bool Device::Impl::locked_against(TimePoint now, const Peer& peer) {
+  if (holder_ && now - holder_->heard >= config_.idle_timeout) {
+    holder_.reset();
+  }
+  if (!config_.lock_to_first || !holder_) {
+    return false;
+  }
+  if (holder_->address == peer.remote.address) {
+    holder_->heard = now;
+    return false;
+  }
+  return true;
+}
 
 Device::Impl::Client& Device::Impl::client_of(TimePoint now, const Peer& peer) {
   auto found = std::ranges::find_if(clients_, [&](const Client& it) { return same_client(it.peer, peer); });
@@ -200,6 +224,10 @@ void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
     counters_.unheard_bytes += piece.bytes.size();
     return;
   }
+  if (locked_against(now, piece.from)) {
+    ++counters_.locked_out;
+    return;
+  }
   Client& client = client_of(now, piece.from);
   if (piece.bytes.size() > 0) {
     client.input.append(now, {piece.bytes.data(), piece.bytes.size()});
@@ -210,6 +238,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
   }
   if (now < silent_until_) {
     clients_.clear();  // it was told to restart
+    holder_.reset();
   }
 }
 
@@ -246,6 +275,7 @@ void Device::Impl::take_frame(TimePoint now, const Peer& asker, std::span<const 
     return;
   }
   counters_.commands += std::holds_alternative<Unknown>(*command) ? 0 : 1;
+  holder_ = Holder{asker.remote.address, now};
   std::visit([&](const auto& message) { handle(now, asker, message); }, *command);
 }
 
@@ -456,6 +486,8 @@ std::vector<Counter> Device::counts() const {
       {"other_destinations", count.other_destinations, Shown::warns, "{} commands were for another device"},
       {"clients_dropped", count.clients_dropped, Shown::warns,
        "{} clients were forgotten: there were too many at a time"},
+      {"locked_out", count.locked_out, Shown::warns,
+       "{} datagrams were dropped: another client has the head (lock_to_first)"},
       {"unheard_bytes", count.unheard_bytes},
       {"resets", count.resets},
   };

@@ -53,6 +53,9 @@ struct DeviceConfig {
       32;  ///< told apart; beyond that the one that was silent longest is forgotten; >= 2
   /// Bytes of a datagram; longer frames are split. 0: one frame, one datagram (4.1).
   std::size_t max_datagram = 0;
+  /// Of the first address that sends a command, until it is silent for `idle_timeout`, which then is > 0;
+  /// what others send is dropped (docs/security.md).
+  bool lock_to_first = false;
   int serial_channel = -1;  ///< the Peer::channel that is a serial line; -1: none (4.4)
 
   /// The head sends the pings that it is fed (PingFed), and no others.

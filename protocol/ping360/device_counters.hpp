@@ -16,6 +16,7 @@ struct DeviceCounters {
   std::uint64_t unheard_bytes = 0;       ///< came while it restarted
   std::uint64_t commands_dropped = 0;    ///< the queue was full
   std::uint64_t clients_dropped = 0;     ///< there were too many
+  std::uint64_t locked_out = 0;          ///< datagrams of others while DeviceConfig::lock_to_first holds
   std::uint64_t resets = 0;
 
   std::uint64_t pings_started = 0;  ///< handed out for rendering

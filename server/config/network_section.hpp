@@ -45,6 +45,10 @@ void report_if_taken(YamlSection& section, const Endpoint& bind, const std::vect
 /// @param folder of the configuration file, which links to ptys are relative to
 SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder);
 
+/// The key `lock_to_first`.
+/// @param free_again when the next client may have the head, in words
+void read_lock_to_first(YamlSection& section, bool& lock_to_first, std::string_view free_again);
+
 /// The keys `seed`, `to_surface` and `from_surface`.
 void read_link_faults(YamlSection& section, LinkConfig& link);
 

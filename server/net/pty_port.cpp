@@ -170,7 +170,7 @@ void PtyPort::Impl::on_readable() {
     leave();
     return;
   }
-  if (length > 0) {
+  if (length > 0 && events.takes(0)) {
     counters.bytes_in += length;
     if (events.passed) {
       events.passed(ends(), /*to_client=*/false, {buffer.data(), length});

@@ -35,10 +35,17 @@ std::optional<TimePoint> earlier(const std::optional<TimePoint>& one, const std:
 }  // namespace
 
 struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
+  /// The address that has the line.
+  struct Holder {
+    Ipv4 address = 0;
+    TimePoint newest_bytes{};
+  };
+
   Impl(asio::io_context& io, const SerialLinkConfig& config, const Clock& used_clock);
 
   void start();
   void stop();
+  bool takes_from(Ipv4 address);
   void send(Frame frame);
   bool connected() const;
   void take(Incoming incoming);
@@ -47,6 +54,8 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
   void schedule();
 
   const Clock& clock;
+  const bool lock_to_first;
+  std::optional<Holder> holder;
   std::vector<std::unique_ptr<TcpPort>> tcp;
   std::vector<std::unique_ptr<UdpPort>> udp;
   std::vector<std::unique_ptr<PtyPort>> pty;
@@ -65,6 +74,7 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
 
 SerialLink::Impl::Impl(asio::io_context& io, const SerialLinkConfig& config, const Clock& used_clock)
     : clock(used_clock),
+      lock_to_first(config.lock_to_first),
       to_clients(config.baud, most_waiting_bytes),
       from_clients(config.baud, most_waiting_bytes),
       timer(io) {
@@ -86,7 +96,11 @@ SerialLink::Impl::Impl(asio::io_context& io, const SerialLinkConfig& config, con
 void SerialLink::Impl::start() {
   running = true;
   const std::weak_ptr<Impl> weak = weak_from_this();
-  const SerialPortEvents events{[weak](std::span<const std::uint8_t> bytes, const std::string& peer) {
+  const SerialPortEvents events{[weak](Ipv4 address) {
+                                  const auto self = weak.lock();
+                                  return self && self->takes_from(address);
+                                },
+                                [weak](std::span<const std::uint8_t> bytes, const std::string& peer) {
                                   if (const auto self = weak.lock()) {
                                     self->take({peer, {bytes.begin(), bytes.end()}});
                                   }
@@ -111,6 +125,19 @@ void SerialLink::Impl::stop() {
   to_clients.clear();
   from_clients.clear();
   timer.cancel();
+}
+
+bool SerialLink::Impl::takes_from(Ipv4 address) {
+  if (!lock_to_first) {
+    return true;
+  }
+  const TimePoint now = clock.now();
+  if (holder && holder->address != address && now - holder->newest_bytes < lock_timeout) {
+    ++counters.locked_out;
+    return false;
+  }
+  holder = Holder{address, now};
+  return true;
 }
 
 bool SerialLink::Impl::connected() const {

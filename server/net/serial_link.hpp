@@ -2,6 +2,7 @@
 // The serial line of a device, with every way by which clients reach it.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -25,6 +26,7 @@ struct SerialLinkCounters {
   std::uint64_t frames_unheard = 0;     ///< discarded: no client was connected
   std::uint64_t frames_overflowed = 0;  ///< dropped: SerialLink::most_waiting_bytes were waiting for the line
   std::uint64_t bytes_overrun = 0;      ///< from clients, dropped for the same reason
+  std::uint64_t locked_out = 0;         ///< reads of clients that were dropped: another had the line
 };
 
 /// Where clients reach a link. In the order of its configuration, with the ports that the kernel chose.
@@ -43,6 +45,10 @@ struct SerialAddresses {
 /// of 14 bytes and 38.6 ms for a reply of 445 bytes at 115200 baud, and it bounds the rate. Without it
 /// nothing is added.
 ///
+/// With SerialLinkConfig::lock_to_first the first address that sends has the line, until it is silent for
+/// lock_timeout: what others send is dropped, and they still receive every frame of the line. All pseudo
+/// terminals are one address.
+///
 /// Nothing here blocks or grows: a client that reads too slowly loses whole frames (SerialPort::send()), and
 /// what a line cannot carry in time is dropped and counted.
 ///
@@ -53,6 +59,7 @@ class SerialLink {
  public:
   /// Waiting for the line in one direction: five of the longest frames, 0.7 s at 115200 baud.
   static constexpr std::size_t most_waiting_bytes = 8192;
+  static constexpr std::chrono::seconds lock_timeout{10};
 
   /// One read of one client: any piece of a command, or several. `peer` tells clients apart.
   using Receive = std::function<void(std::span<const std::uint8_t> bytes, const std::string& peer)>;

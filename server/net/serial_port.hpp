@@ -39,6 +39,7 @@ struct SerialLinkConfig {
   std::vector<SerialUdpConfig> udp;
   std::vector<SerialPtyConfig> pty;
   int baud = 0;  ///< bits per second of the line, ten to a byte; 0: bytes pass as fast as they go
+  bool lock_to_first = false;  ///< see SerialLink
 };
 
 /// "TCP 127.0.0.1:4001, a pty at /tmp/sonar"
@@ -65,6 +66,8 @@ struct SerialPortReport {
 
 /// Events of a port. `peer` names one as long as it is there, "tcp 127.0.0.1:50312".
 struct SerialPortEvents {
+  /// Whether bytes from this address are taken now (0: of a pseudo terminal). What is not is dropped.
+  std::function<bool(Ipv4 address)> takes;
   std::function<void(std::span<const std::uint8_t> bytes, const std::string& peer)> received;
   /// The client is gone; the rest of a message that it had begun will not come.
   std::function<void(const std::string& peer)> left;

@@ -35,6 +35,8 @@ std::vector<Counter> SerialTransport::counts() const {
       {"connections", ports.connections},
       {"refused", ports.refused, Shown::warns,
        "{} clients or datagrams were turned away: not in `allow`, too many, or too long"},
+      {"locked_out", link.locked_out, Shown::warns,
+       "{} reads were dropped: another client has the line (lock_to_first)"},
       {"bytes_in", ports.bytes_in},
       {"bytes_out", ports.bytes_out},
       {"frames_dropped", ports.frames_dropped},

@@ -87,14 +87,20 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
       port_->events.left(peer_);
       return;
     }
-    port_->counters.bytes_in += length;
-    if (port_->events.passed) {
-      port_->events.passed(ends_, /*to_client=*/false, {buffer_.data(), length});
+    if (port_->events.takes(ends_.client.address)) {
+      take({buffer_.data(), length});
     }
-    port_->events.received({buffer_.data(), length}, peer_);
     if (socket_.is_open()) {
       read();
     }
+  }
+
+  void take(std::span<const std::uint8_t> bytes) {
+    port_->counters.bytes_in += bytes.size();
+    if (port_->events.passed) {
+      port_->events.passed(ends_, /*to_client=*/false, bytes);
+    }
+    port_->events.received(bytes, peer_);
   }
 
   std::shared_ptr<Impl> port_;

@@ -45,6 +45,9 @@ void UdpPort::Impl::on_datagram(const Datagram& datagram) {
     }
     return;
   }
+  if (running && !events.takes(datagram.remote.address)) {
+    return;
+  }
   if (peer != datagram.remote) {
     meet(datagram);
   }

@@ -152,6 +152,9 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   if (config.udp.empty() && !section.has("serial")) {
     section.report("udp", "no client could reach the head (expected udp with at least one item, or serial)");
   }
+  read_lock_to_first(section, config.device.lock_to_first,
+                     "it is silent for `timing.idle_timeout_ms`, which then must not be 0");
+  config.serial.lock_to_first = config.device.lock_to_first;
   section.section("discovery", "answers those who look for heads on the network; without it none is found",
                   [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
   warn_if_found_in_vain(section, config);
@@ -161,6 +164,9 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
   section.section("acoustics", "how its pings are formed",
                   [&](YamlSection& inner) { read_ping360_acoustics(inner, head, config); });
+  if (config.device.lock_to_first && config.device.idle_timeout.count() == 0) {
+    section.report("lock_to_first", "would hold for ever (expected timing.idle_timeout_ms above 0 with it)");
+  }
   if (section.has("serial")) {
     config.device.serial_channel = static_cast<int>(config.udp.size());
   }

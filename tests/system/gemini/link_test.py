@@ -22,8 +22,8 @@ import unittest
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 import glf_writer
 import wire
-from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, TOPSIDE_ADDRESS, Deadline, Lab, need,
-                 receive)
+from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, SECOND_TOPSIDE_ADDRESS, TOPSIDE_ADDRESS, Deadline,
+                 Lab, need, receive)
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
@@ -269,11 +269,12 @@ class Topsides(LinkTest):
 class RawTopside:
     """A topside made of two sockets and the bytes of the document."""
 
-    def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS):
+    def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS, topside=0):
         self.sonar_id = sonar_id
         self.head = head
-        self.reports = lab.topside.udp_socket("0.0.0.0", REPORT_PORT)
-        self.commands = lab.topside.udp_socket(TOPSIDE_ADDRESS, COMMAND_PORT)
+        self.reports = lab.topsides[topside].udp_socket("0.0.0.0", REPORT_PORT)
+        address = [TOPSIDE_ADDRESS, SECOND_TOPSIDE_ADDRESS][topside]
+        self.commands = lab.topsides[topside].udp_socket(address, COMMAND_PORT)
 
     def close(self):
         self.reports.close()
@@ -431,6 +432,50 @@ class Wire(LinkTest):
             self.assertEqual(sender, (address, COMMAND_PORT))
         _, sender = topside.next_of(wire.STATUS)
         self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
+
+
+class SecondTopside(LinkTest):
+    """A second topside on the wire of a head that has one (docs/security.md)."""
+
+    def start(self, lock_to_first):
+        lab = self.make_lab(topsides=2)
+        daemon = self.start_daemon(lab, self.head_config(more="    lock_to_first: true\n" if lock_to_first else ""))
+        self.first, self.second = (RawTopside(lab, topside=i) for i in range(2))
+        for topside in (self.first, self.second):
+            self.addCleanup(topside.close)
+        self.first.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.first.next_ping()
+        return daemon
+
+    def ask_as_both(self, rounds):
+        """Both keep asking for a sign of life. Returns the types of what the second hears, but for the status."""
+        heard = set()
+        for _ in range(rounds):
+            self.first.send(wire.status_request(513))
+            self.second.send(wire.status_request(513))
+            self.first.next_ping()
+            while got := receive(self.second.reports, 0.0):
+                heard.add(wire.message_type(got[0]))
+        return heard - {wire.STATUS}
+
+    def test_a_reading_is_answered_and_diverts_no_ping(self):
+        self.start(lock_to_first=False)
+        self.assertEqual(self.ask_as_both(rounds=20), {wire.ACKNOWLEDGE})
+
+    def test_the_newest_configuration_has_the_head(self):
+        self.start(lock_to_first=False)
+        self.second.send(wire.ping_config(513, lines=128))
+        self.second.next_ping()
+
+    def test_a_locked_head_is_the_firsts_until_it_is_silent(self):
+        daemon = self.start(lock_to_first=True)
+        self.second.send(wire.ping_config(513, lines=128))
+        self.assertEqual(self.ask_as_both(rounds=20), set())
+        daemon.wait_for_line(f"topside {TOPSIDE_ADDRESS} lost", PATIENCE_S)  # it says no more
+        self.second.send(wire.ping_config(513, lines=128))
+        self.second.next_ping()
+        self.end_daemon(daemon)
+        self.assertRegex(daemon.output(), "head=bow ends: .* locked_out=21 ")
 
 
 class StalePoses(LinkTest):

@@ -11,12 +11,6 @@ using std::chrono::milliseconds;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class SteppedClock final : public Clock {
- public:
-  TimePoint now() const override { return time; }
-  TimePoint time{milliseconds{1}};  // long past for the timers, which so ask at once whenever they are set
-};
-
 /// A byte per millisecond, with one client.
 class LineSpeed : public LinkTest {
  protected:

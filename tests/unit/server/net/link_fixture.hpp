@@ -51,6 +51,14 @@ inline std::vector<int> frame_numbers(const Bytes& stream, std::size_t size) {
   return numbers;
 }
 
+/// A clock that the test moves.
+class SteppedClock final : public Clock {
+ public:
+  TimePoint now() const override { return time; }
+  /// Long past for the timers, which so ask at once whenever they are set.
+  TimePoint time{std::chrono::milliseconds{1}};
+};
+
 class LinkTest : public testing::Test {
  protected:
   static constexpr Ipv4 localhost = 0x7F000001;

@@ -41,7 +41,7 @@ TEST(Notices, TellOfATopsideThatComesAndGoes) {
 TEST(Notices, TellOfTheNewestTopside) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.command(to_head<StatusRequest>(), other_topside);
+  bench.command(to_head<NetworkConfig>(), other_topside);
   EXPECT_EQ(texts(bench.notices), (Texts{"topside 192.168.2.5 connected", "topside 192.168.2.6 connected"}));
 }
 

@@ -265,7 +265,7 @@ TEST(Commands, TrailingBytesAreIgnored) {
 TEST(Commands, NewestTopsideGetsTheAnswers) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.command(to_head<StatusRequest>(), other_topside);
+  bench.command(to_head<GpoWrite>(), other_topside);
   ASSERT_EQ(bench.sent.size(), 3U);
   EXPECT_EQ(bench.sent[1].topside, topside_address);
   EXPECT_EQ(bench.sent[2].topside, other_topside);

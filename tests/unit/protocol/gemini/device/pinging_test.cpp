@@ -332,7 +332,7 @@ TEST(Pinging, DataFollowTheNewestTopside) {
   bench.command(ping_of(100, RunMode::continuous, 100ms));
   bench.run_until(250ms);
   const std::size_t before = bench.sent.size();
-  bench.command(to_head<StatusRequest>(), other_topside);
+  bench.command(to_head<NetworkConfig>(), other_topside);
   bench.run_until(500ms);
   EXPECT_GT(bench.ping_datagrams(before).size(), 100U);
   for (const auto& datagram : bench.ping_datagrams(before)) {

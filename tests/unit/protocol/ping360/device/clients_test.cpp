@@ -322,5 +322,46 @@ TEST(Ping360Clients, blueos_asks_ten_times_at_each_speed_and_hears_nothing_at_wr
   }
 }
 
+// ---- A head that is locked to the first (docs/security.md)
+
+const Peer other_host{0, {0x7F000003, 4000}, 0};
+
+DeviceConfig locked_config() {
+  DeviceConfig config = with_serial_line();
+  config.lock_to_first = true;
+  config.idle_timeout = 30s;
+  return config;
+}
+
+TEST(Ping360Lock, drops_what_others_send_until_the_first_is_silent_for_its_timeout) {
+  Bench bench(locked_config());
+  bench.command(scan_of(0, 399));
+  for (const Peer& other : {other_host, serial_client}) {
+    EXPECT_TRUE(bench.ask(GeneralRequest{5}, other).empty());
+    EXPECT_TRUE(bench.ask(MotorOff{}, other).empty());
+    bench.raw({}, other);  // a break
+  }
+  EXPECT_EQ(bench.device.counters().locked_out, 6U);
+  const std::size_t before = bench.heard.size();
+  bench.run_until(29s);
+  EXPECT_GT(bench.all<AutoDeviceData>(before).size(), 100U) << "the scan goes on";
+  bench.raw(fixture("request_protocol_version"),
+            {0, {client_a.remote.address, 4999}, 0});  // its host speaks again
+  bench.run_until(58s);
+  EXPECT_TRUE(bench.ask(GeneralRequest{5}, other_host).empty());
+  bench.run_until(59s);
+  EXPECT_EQ(bench.ask(GeneralRequest{5}, other_host).size(), 1U);
+  EXPECT_TRUE(bench.ask(GeneralRequest{5}).empty()) << "now the other has it";
+}
+
+TEST(Ping360Lock, is_not_taken_by_noise_and_ends_with_a_reset) {
+  Bench bench(locked_config());
+  bench.raw({'B', 'R', 0, 1, 2, 3}, other_host);
+  EXPECT_EQ(bench.ask(GeneralRequest{5}).size(), 1U);
+  bench.command(Reset{});
+  bench.run_for(2s);
+  EXPECT_EQ(bench.ask(GeneralRequest{5}, other_host).size(), 1U);
+}
+
 }  // namespace
 }  // namespace sonard::ping360

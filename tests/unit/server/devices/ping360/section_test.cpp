@@ -50,6 +50,7 @@ TEST_F(Ping360Section, reads_what_is_written) {
       "discovery: {bind: 0.0.0.0:30303, allow: [192.168.2.0/24], address: 192.168.2.4, mac: "
       "'54:10:ec:79:7d:c5'}, "
       "device: {id: 7, firmware_minor: 2, bearing_offset: 200, fan_out: all, max_datagram: 1000}, "
+      "lock_to_first: true, "
       "timing: {ping_overhead_ms: 1.5, gradian_ms: 2, scale: 0.5, idle_timeout_ms: 30000}");
   ASSERT_EQ(config.udp.size(), 2U);
   EXPECT_EQ(config.device.serial_channel, 2) << "behind the sockets";
@@ -65,6 +66,8 @@ TEST_F(Ping360Section, reads_what_is_written) {
   EXPECT_EQ(config.device.time_per_gradian, 2ms);
   EXPECT_EQ(config.device.time_scale, 0.5);
   EXPECT_EQ(config.device.idle_timeout, 30s);
+  EXPECT_TRUE(config.device.lock_to_first);
+  EXPECT_TRUE(config.serial.lock_to_first);
 }
 
 TEST_F(Ping360Section, a_beamwidth_is_that_of_the_one_beam) {
@@ -86,6 +89,8 @@ TEST_F(Ping360Section, says_what_is_wrong) {
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], discovery: {bind: 127.0.0.1:30303, "
                                   "address: 127.0.0.1, mac: 5}")),
               ElementsAre(HasSubstr("expected six hexadecimal octets")));
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], lock_to_first: true")),
+              ElementsAre(HasSubstr("lock_to_first: would hold for ever")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], device: {id: 255}")),
               ElementsAre(HasSubstr("device.id")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], devise: {id: 5}")),

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands from an address that is not the topside (docs/security.md).
+#include <vector>
+
+#include "bench.hpp"
+
+namespace sonard::gemini {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Each command that reads and changes nothing, with its answer.
+const std::vector<std::pair<Command, MessageType>> readings{
+    {to_head<StatusRequest>(), MessageType::acknowledge},
+    {to_head<FlashRead>(), MessageType::flash_readback},
+    {to_head<InfoBlockRead>(), MessageType::flash_readback},
+    {to_head<TestResultRequest>(), MessageType::test_result},
+    {to_head<GpioRead>(), MessageType::gpi_data},
+    {to_head<DiagnosticRequest>(), MessageType::diagnostic}};
+
+/// What was sent to an address from index `from` on.
+std::vector<Bench::Sent> to_address(const Bench& bench, Ipv4 address, std::size_t from = 0) {
+  std::vector<Bench::Sent> found;
+  for (std::size_t i = from; i < bench.sent.size(); ++i) {
+    if (bench.sent[i].to == Outgoing::To::peer && bench.sent[i].topside == address) {
+      found.push_back(bench.sent[i]);
+    }
+  }
+  return found;
+}
+
+DeviceConfig locked_config() {
+  DeviceConfig config = example_config();
+  config.lock_to_first = true;
+  return config;
+}
+
+TEST(OtherTopside, DivertsNoPingsByReading) {
+  for (const auto& [command, answer] : readings) {
+    Bench bench;
+    bench.command(ping_of(100, RunMode::continuous, 100ms));
+    for (int i = 0; i < 20; ++i) {
+      bench.run_for(50ms);
+      bench.command(command, other_topside);
+    }
+    const auto heard = to_address(bench, other_topside);
+    ASSERT_EQ(heard.size(), 20U);
+    for (const Bench::Sent& datagram : heard) {
+      EXPECT_EQ(datagram.type(), static_cast<std::uint8_t>(answer));
+    }
+    EXPECT_EQ(bench.device.topside(), topside_address);
+    EXPECT_EQ(bench.count(MessageType::ping_head), 11U);
+    EXPECT_EQ(to_address(bench, topside_address).size(), bench.ping_datagrams().size());
+  }
+}
+
+TEST(OtherTopside, DoesNotKeepTheTopsideConnectedByReading) {
+  Bench bench;
+  bench.command(ping_of(100, RunMode::continuous, 100ms));
+  for (int i = 0; i < 5; ++i) {
+    bench.run_for(1s);
+    bench.command(to_head<StatusRequest>(), other_topside);
+  }
+  EXPECT_EQ(bench.device.counters().topside_timeouts, 1U);
+}
+
+TEST(OtherTopside, DoesNotMakeAPausedProgrammeGoOnByReading) {
+  for (const auto& [command, answer] : readings) {
+    Bench bench;
+    bench.command(ping_of(100, RunMode::continuous, 100ms));
+    bench.run_until(10s);
+    const std::size_t before = bench.sent.size();
+    bench.command(command, other_topside);
+    bench.run_for(2s);
+    const auto heard = to_address(bench, other_topside, before);
+    ASSERT_EQ(heard.size(), 1U);
+    EXPECT_EQ(heard[0].type(), static_cast<std::uint8_t>(answer));
+    EXPECT_TRUE(bench.ping_datagrams(before).empty());
+
+    bench.command(command);  // of the topside whose programme it is
+    bench.run_for(1s);
+    EXPECT_EQ(bench.device.topside(), topside_address);
+    EXPECT_FALSE(bench.ping_datagrams(before).empty());
+    EXPECT_EQ(to_address(bench, other_topside, before).size(), 1U);
+  }
+}
+
+TEST(OtherTopside, DoesNotMakeAPausedProgrammeGoOnByAnOrder) {
+  Bench bench;
+  bench.command(ping_of(100, RunMode::continuous, 100ms));
+  bench.run_until(10s);
+  const std::size_t before = bench.sent.size();
+  bench.command(to_head<NetworkConfig>(), other_topside);
+  bench.run_for(10s);  // it falls silent, too
+  EXPECT_TRUE(bench.ping_datagrams(before).empty());
+  bench.command(to_head<StatusRequest>());
+  bench.run_for(1s);
+  EXPECT_FALSE(bench.ping_datagrams(before).empty());
+  EXPECT_TRUE(to_address(bench, other_topside, before).empty());
+}
+
+TEST(OtherTopside, ReplacesAPausedProgrammeByAConfiguration) {
+  Bench bench;
+  bench.command(ping_of(100, RunMode::continuous, 100ms));
+  bench.run_until(10s);
+  const std::size_t before = bench.sent.size();
+  bench.command(ping_of(150), other_topside);
+  bench.run_for(1s);
+  const auto heads = bench.all<PingHead>(before);
+  ASSERT_EQ(heads.size(), 1U);
+  EXPECT_EQ(heads[0].second.end_range, 150);
+  EXPECT_EQ(to_address(bench, other_topside, before).size(), bench.ping_datagrams(before).size());
+}
+
+TEST(OtherTopside, GetsNoLinesOfPingsThatWereNotItsOwn) {
+  Bench bench;
+  bench.command(ping_of(100));
+  bench.run_for(1s);
+  const std::size_t before = bench.sent.size();
+  bench.command(retry_of(RetryKind::lines, 0, 10), other_topside);
+  bench.run_for(1s);
+  EXPECT_TRUE(bench.ping_datagrams(before).empty());
+  EXPECT_EQ(bench.device.topside(), topside_address);
+  EXPECT_EQ(bench.device.counters().retries_dropped, 1U);
+}
+
+TEST(OtherTopside, FindsALockedHeadDumb) {
+  Bench bench(locked_config());
+  bench.command(ping_of(100, RunMode::continuous, 100ms));
+  for (int i = 0; i < 10; ++i) {
+    bench.run_for(100ms);
+    bench.command(ping_of(200, RunMode::continuous, 50ms), other_topside);
+    bench.command(to_head<GoingOffline>(), other_topside);
+    bench.command(to_head<Reboot>(), other_topside);
+    bench.command(to_head<StatusRequest>(), other_topside);
+  }
+  EXPECT_TRUE(to_address(bench, other_topside).empty());
+  EXPECT_EQ(bench.count(MessageType::ping_head), 11U);
+  EXPECT_EQ(bench.device.counters().locked_out, 40U);
+  EXPECT_EQ(bench.device.counters().reboots, 0U);
+}
+
+TEST(OtherTopside, TakesALockedHeadWhenTheFirstIsSilentForItsTimeout) {
+  Bench bench(locked_config());
+  bench.command(to_head<StatusRequest>());
+  bench.run_until(2999ms);
+  bench.command(ping_of(100), other_topside);
+  EXPECT_EQ(bench.device.topside(), topside_address);
+  bench.run_until(3s);
+  bench.command(ping_of(100), other_topside);
+  EXPECT_EQ(bench.device.topside(), other_topside);
+  bench.command(to_head<StatusRequest>());  // now it is the other
+  EXPECT_EQ(bench.device.counters().locked_out, 2U);
+}
+
+TEST(OtherTopside, DoesNotLockAHeadByNoise) {
+  Bench bench(locked_config());
+  bench.raw(from_hex("20 01 5a 02 00 00 00 00"), other_topside);  // for another head
+  bench.raw(from_hex("ff ff"), other_topside);
+  bench.command(to_head<StatusRequest>());
+  EXPECT_EQ(bench.device.topside(), topside_address);
+}
+
+}  // namespace
+}  // namespace sonard::gemini
