@@ -83,7 +83,7 @@ SerialLink::Impl::Impl(asio::io_context& io, const SerialLinkConfig& config, con
     list.push_back(std::move(port));
   };
   for (const SerialTcpConfig& item : config.tcp) {
-    open(tcp, std::make_unique<TcpPort>(io, item));
+    open(tcp, std::make_unique<TcpPort>(io, item, clock));
   }
   for (const SerialUdpConfig& item : config.udp) {
     open(udp, std::make_unique<UdpPort>(io, item));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp_listener.hpp"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
 #include <bit>
 #include <chrono>
 #include <utility>
@@ -18,6 +21,24 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::seconds accept_retry{1};
+// A silent peer is asked after half a minute and given up half a minute later.
+constexpr int keepalive_idle_s = 30;
+constexpr int keepalive_interval_s = 10;
+constexpr int keepalive_probes = 3;
+// For as long the kernel repeats what a peer does not acknowledge; else it does so for a quarter of an hour.
+constexpr int unacknowledged_ms = 30'000;
+
+template <int Name>
+using TcpOption = boost::asio::detail::socket_option::integer<IPPROTO_TCP, Name>;
+
+void notice_a_vanished_peer(tcp::socket& socket) {
+  error_code ignored;  // the peer may be gone already
+  socket.set_option(tcp::socket::keep_alive{true}, ignored);
+  socket.set_option(TcpOption<TCP_KEEPIDLE>{keepalive_idle_s}, ignored);
+  socket.set_option(TcpOption<TCP_KEEPINTVL>{keepalive_interval_s}, ignored);
+  socket.set_option(TcpOption<TCP_KEEPCNT>{keepalive_probes}, ignored);
+  socket.set_option(TcpOption<TCP_USER_TIMEOUT>{unacknowledged_ms}, ignored);
+}
 
 Endpoint to_endpoint(const tcp::endpoint& endpoint) {
   return {endpoint.address().to_v4().to_uint(), endpoint.port()};
@@ -67,6 +88,7 @@ void TcpListener::on_accepted(const error_code& error, tcp::socket socket) {
     error_code gone;
     const Endpoint peer = to_endpoint(socket.remote_endpoint(gone));
     if (!gone && allows(allow_, peer.address)) {
+      notice_a_vanished_peer(socket);
       accepted_(std::move(socket), peer);
     } else if (!gone) {
       refuse(peer, "not in the allow list");

@@ -15,6 +15,9 @@
 
 namespace sonard::server {
 
+/// A client whose machine or network is gone without a word is given up: a silent one within a minute, one
+/// that something is sent to within half a minute.
+///
 /// Belongs to the I/O thread. Shared with the handlers that are queued for it, which find it closed once it
 /// is.
 class TcpListener : public std::enable_shared_from_this<TcpListener> {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp_port.hpp"
 
+#include <algorithm>
 #include <array>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
@@ -28,14 +30,17 @@ constexpr int send_buffer_bytes = 16 << 10;
 struct TcpPort::Impl : std::enable_shared_from_this<TcpPort::Impl> {
   class Session;
 
-  Impl(asio::io_context& io, const SerialTcpConfig& config)
-      : listener(std::make_shared<TcpListener>(io, "serial tcp", config.bind, config.allow)) {}
+  Impl(asio::io_context& io, const SerialTcpConfig& config, const Clock& used_clock)
+      : listener(std::make_shared<TcpListener>(io, "serial tcp", config.bind, config.allow)),
+        clock(used_clock) {}
 
   void admit(tcp::socket socket, const Endpoint& peer);
+  bool make_room();
   void stop();
   std::string description() const { return "tcp " + endpoint_text(listener->local()); }
 
   std::shared_ptr<TcpListener> listener;
+  const Clock& clock;
   SerialPortEvents events;
   std::set<std::shared_ptr<Session>> sessions;
   SerialPortCounters counters;
@@ -50,6 +55,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
         socket_(std::move(socket)),
         writer_(socket_),
         peer_("tcp " + endpoint_text(peer)),
+        newest_bytes_(port_->clock.now()),
         ends_{WireTransport::tcp, peer, port_->listener->local(), {}} {}
 
   void read() {
@@ -66,10 +72,25 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
     }
   }
 
+  /// When it last sent something; when it came, if it has not.
+  TimePoint newest_bytes() const { return newest_bytes_; }
+
   /// Pending handlers find the socket closed.
   void close() {
     error_code ignored;
     socket_.close(ignored);
+  }
+
+  /// Closes it and tells the link.
+  void leave(std::string_view why) {
+    const auto self = shared_from_this();
+    close();
+    port_->sessions.erase(self);
+    port_->log.info("serial {}: {} {}", port_->description(), peer_, why);
+    if (port_->events.ended) {
+      port_->events.ended(ends_);
+    }
+    port_->events.left(peer_);
   }
 
  private:
@@ -78,15 +99,10 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
       return;
     }
     if (error) {
-      close();
-      port_->sessions.erase(shared_from_this());
-      port_->log.info("serial {}: {} left", port_->description(), peer_);
-      if (port_->events.ended) {
-        port_->events.ended(ends_);
-      }
-      port_->events.left(peer_);
+      leave("left");
       return;
     }
+    newest_bytes_ = port_->clock.now();
     if (port_->events.takes(ends_.client.address)) {
       take({buffer_.data(), length});
     }
@@ -107,12 +123,27 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
   tcp::socket socket_;
   FrameWriter<tcp::socket> writer_;
   std::string peer_;
+  TimePoint newest_bytes_;
   WireEnds ends_;
   std::array<std::uint8_t, serial_read_bytes> buffer_{};
 };
 
+/// False where all speak.
+bool TcpPort::Impl::make_room() {
+  if (sessions.size() < most_clients) {
+    return true;
+  }
+  const auto silent = *std::ranges::min_element(
+      sessions, {}, [](const std::shared_ptr<Session>& session) { return session->newest_bytes(); });
+  if (clock.now() - silent->newest_bytes() < most_silence) {
+    return false;
+  }
+  silent->leave("is closed: it is silent, and another client wants its place");
+  return true;
+}
+
 void TcpPort::Impl::admit(tcp::socket socket, const Endpoint& peer) {
-  if (sessions.size() >= most_clients) {
+  if (!make_room()) {
     listener->refuse(peer, "too many clients");
     return;
   }
@@ -132,8 +163,8 @@ void TcpPort::Impl::stop() {
   sessions.clear();
 }
 
-TcpPort::TcpPort(asio::io_context& io, const SerialTcpConfig& config)
-    : impl_(std::make_shared<Impl>(io, config)) {
+TcpPort::TcpPort(asio::io_context& io, const SerialTcpConfig& config, const Clock& clock)
+    : impl_(std::make_shared<Impl>(io, config, clock)) {
   impl_->listener->open();
 }
 

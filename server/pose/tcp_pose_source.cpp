@@ -200,9 +200,6 @@ void TcpPoseSource::Impl::admit(tcp::socket socket, const Endpoint& peer) {
     listener->refuse(peer, "too many publishers");
     return;
   }
-  // A publisher whose machine is gone without a word gives its place back in the end.
-  error_code ignored;
-  socket.set_option(tcp::socket::keep_alive{true}, ignored);
   ++counters.connections;
   log.info("{}: {} connected", listener->description(), endpoint_text(peer));
   const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), peer);

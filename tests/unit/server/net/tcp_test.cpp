@@ -94,6 +94,8 @@ TEST_F(TcpLink, small_frames_do_not_wait_and_vanished_clients_are_noticed) {
   const int gives_up_after_s = option(fd, IPPROTO_TCP, TCP_KEEPIDLE) +
                                option(fd, IPPROTO_TCP, TCP_KEEPINTVL) * option(fd, IPPROTO_TCP, TCP_KEEPCNT);
   EXPECT_LE(gives_up_after_s, 60);
+  // The same where frames for it are on their way, for which the kernel else tries for a quarter of an hour.
+  EXPECT_EQ(option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT), 30'000);
 }
 
 TEST_F(TcpLink, clients_may_drop_at_any_byte) {
@@ -215,6 +217,55 @@ TEST_F(TcpLink, refuses_one_too_many) {
   ASSERT_TRUE(run_until_left(1));
   Client next = tcp_client();
   EXPECT_TRUE(run_until_connections(17));
+}
+
+/// Sixteen clients on a clock that the test moves.
+class FullTcpLink : public LinkTest {
+ protected:
+  FullTcpLink() {
+    open({{any_tcp}, {}, {}, 0}, stepped_);
+    for (int i = 0; i < 16; ++i) {
+      clients_.push_back(std::make_unique<Client>(tcp_client()));
+      EXPECT_TRUE(run_until_connections(static_cast<std::uint64_t>(i) + 1));
+    }
+  }
+
+  SteppedClock stepped_;
+  std::vector<std::unique_ptr<Client>> clients_;
+};
+
+TEST_F(FullTcpLink, the_client_that_is_silent_longest_gives_its_place_to_the_next) {
+  stepped_.time += std::chrono::seconds{10};
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    if (i != 1) {
+      clients_[i]->write(send_version);
+    }
+  }
+  ASSERT_TRUE(run_until([&] { return heard_.size() == 15 * send_version.size(); }));
+  stepped_.time += std::chrono::seconds{20} - TimePoint{1};
+  Client too_early = tcp_client();
+  EXPECT_TRUE(run_until([&] { return too_early.closed_by_peer(); }));
+  EXPECT_THAT(left_, IsEmpty());
+
+  stepped_.time += TimePoint{1};
+  const std::string longest_silent = "tcp " + endpoint_text(clients_[1]->endpoint());
+  Client next = tcp_client();
+  ASSERT_TRUE(run_until_connections(17));
+  EXPECT_TRUE(run_until([&] { return clients_[1]->closed_by_peer(); }));
+  EXPECT_THAT(left_, ElementsAre(longest_silent));
+  next.write(send_version);
+  EXPECT_TRUE(run_until([&] { return heard_.size() == 16 * send_version.size(); }));
+  link_->send(alive);
+  EXPECT_TRUE(run_until_hears(next, alive));
+  EXPECT_TRUE(run_until_hears(*clients_[0], alive)) << "who speaks stays";
+}
+
+TEST_F(FullTcpLink, silence_alone_ends_no_connection) {
+  stepped_.time += std::chrono::hours{24};
+  link_->send(alive);
+  for (const auto& client : clients_) {
+    EXPECT_TRUE(run_until_hears(*client, alive));
+  }
 }
 
 /// No descriptor is left for this process until the end of the scope.
