@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 /// What is to be done with a file.
 struct Mending {
   std::uint64_t keep_size = 0;
-  std::vector<std::uint8_t> end;  ///< to be put behind that
+  std::vector<std::uint8_t> end;  ///< to be put behind that; it may repeat what whole records were there
+  std::uint64_t lost_size = 0;    ///< bytes that go: of a record that was being written
   bool damaged = false;           ///< there is more behind keep_size than a record that was being written
 };
 
@@ -62,6 +63,17 @@ void keep_as_damaged(const fs::path& path, std::uint64_t whole_size) {
                damaged.string());
 }
 
+void tell_recovered(const fs::path& path, std::uint64_t lost_size) {
+  if (lost_size == 0) {
+    spdlog::info("recording: recovered {}: all of it is kept", path.string());
+  } else {
+    spdlog::info(
+        "recording: recovered {}: all whole records are kept; {} bytes of one that was being written are "
+        "gone",
+        path.string(), lost_size);
+  }
+}
+
 void mend(const fs::path& path, const Mending& mending) {
   if (mending.damaged) {
     keep_as_damaged(path, mending.keep_size);
@@ -71,7 +83,6 @@ void mend(const fs::path& path, const Mending& mending) {
   }
   std::error_code error;
   AppendFile file = AppendFile::open(path, error);
-  const std::uint64_t before = file.size();
   if (!error) {
     error = file.truncate(mending.keep_size);
   }
@@ -83,8 +94,9 @@ void mend(const fs::path& path, const Mending& mending) {
     return;
   }
   file.sync();
-  spdlog::info("recording: recovered {}: {} bytes of an unfinished record cut off", path.string(),
-               mending.damaged ? 0 : before - mending.keep_size);
+  if (!mending.damaged) {
+    tell_recovered(path, mending.lost_size);
+  }
 }
 
 std::optional<Mending> mending_of_mcap(std::span<const std::uint8_t> file) {
@@ -93,10 +105,10 @@ std::optional<Mending> mending_of_mcap(std::span<const std::uint8_t> file) {
   }
   const auto recovery = mcap::recover(file);
   if (!recovery) {
-    return Mending{0, {}, true};
+    return Mending{0, {}, 0, true};
   }
   const auto section = mcap::scan_data_section(file);
-  return Mending{recovery->keep_size, recovery->end, section && section->error};
+  return Mending{recovery->keep_size, recovery->end, recovery->lost_size, section && section->error};
 }
 
 // Every block ends with its length, so the last one tells whether the file ends with a whole one.
@@ -123,13 +135,16 @@ std::optional<Mending> mending_of_pcapng(std::span<const std::uint8_t> file) {
   }
   const auto recovery = pcapng::recover(file);
   if (!recovery) {
-    return Mending{0, {}, true};
+    return Mending{0, {}, 0, true};
   }
   if (recovery->keep_size == file.size()) {
     return std::nullopt;
   }
   // An error, not just an end: what follows is no block.
-  return Mending{recovery->keep_size, {}, !pcapng::block_at(file, recovery->keep_size)};
+  return Mending{recovery->keep_size,
+                 {},
+                 file.size() - recovery->keep_size,
+                 !pcapng::block_at(file, recovery->keep_size)};
 }
 
 // True when the .glf of a .dat is there, and the .dat was only not removed any more.
@@ -162,8 +177,7 @@ bool recover_dat(const fs::path& path) {
   if (!cut || (index.records.empty() && !begins_like_a_record(path))) {
     keep_as_damaged(path, index.whole_size);
   } else {
-    spdlog::info("recording: recovered {}: {} records, {} bytes of an unfinished one cut off", path.string(),
-                 index.records.size(), index.tail_size);
+    tell_recovered(path, index.tail_size);
   }
   std::error_code ignored;
   return fs::exists(path, ignored);

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/recovery.hpp"
 
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include "protocol/glf/dat_index.hpp"
 #include "protocol/mcap/reader.hpp"
@@ -16,6 +23,7 @@ namespace sonard::server {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr int pings = 3;
@@ -23,6 +31,16 @@ constexpr int pings = 3;
 // Three pings with a datagram each, as a daemon leaves them that is killed. An MCAP file has two chunks that
 // are closed and one that is open.
 struct RecoveryTest : testing::Test {
+  /// What the program's log says of a recovery.
+  std::string told() {
+    std::ostringstream text;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::ostream_sink_mt>(text)));
+    recover_logs(folder.path());
+    spdlog::set_default_logger(before);
+    return text.str();
+  }
   test::TemporaryFolder folder;
   RecordingConfig config;
   std::vector<HeadToRecord> heads = test::one_head();
@@ -65,6 +83,24 @@ TEST_F(RecoveryTest, EndsAnMcapFile) {
   EXPECT_TRUE(recover_logs(folder.path()).empty());
   EXPECT_EQ(messages_in(test::contents(path)), 2U * pings);
   EXPECT_EQ(folder.names(), std::vector<std::string>{"log_stem.mcap"});
+}
+
+// The chunk that was growing is written again behind its true length: none of it is lost.
+TEST_F(RecoveryTest, TellsThatNothingIsLostOfALogWithoutEnd) {
+  killed<McapLog>();
+  EXPECT_THAT(told(), HasSubstr("log_stem.mcap: all of it is kept"));
+  killed<GlfLog>(0);
+  EXPECT_THAT(told(), HasSubstr(".dat: all of it is kept"));
+}
+
+TEST_F(RecoveryTest, TellsTheSizeOfTheRecordThatWasBeingWritten) {
+  Bytes whole = killed<McapLog>();
+  whole.insert(whole.end(), {5, 200, 0, 0, 0, 0, 0, 0, 0, 1, 2});  // the first 11 bytes of a message
+  test::write_file(path, whole);
+  EXPECT_THAT(
+      told(),
+      HasSubstr(
+          "log_stem.mcap: all whole records are kept; 11 bytes of one that was being written are gone"));
 }
 
 TEST_F(RecoveryTest, CutsAnMcapFileAnywhere) {
