@@ -156,6 +156,7 @@ class Daemon {
   std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
   asio::steady_timer stream_timer_{io_};
+  bool io_stopped_ = false;     // of the I/O thread: no timer is set again
   std::set<std::string> told_;  // codes of findings on poses that were logged, by input
   std::filesystem::path recorded_into_;
   std::string ready_line_;
@@ -304,8 +305,12 @@ void Daemon::poses_changed() {
   }
 }
 
-// Every two seconds; a finding is logged when it is new.
+// Every two seconds; a finding is logged when it is new. A timer that has run out may call once more after
+// stop_io() has cancelled it.
 void Daemon::look_at_streams() {
+  if (io_stopped_) {
+    return;
+  }
   std::set<std::string> told;
   for (std::size_t i = 0; i < inputs_->size(); ++i) {
     for (const Finding& finding : look_at_stream(*inputs_, i, clock_.now())) {
@@ -398,9 +403,9 @@ void Daemon::reload() {
   wait_for_signal();
 }
 
-// Checks now and then: a replay may end a little late.
+// Checks now and then: a replay may end a little late. For its timer the same holds.
 void Daemon::end_when_played() {
-  if (playback_ == nullptr) {
+  if (playback_ == nullptr || io_stopped_) {
     return;
   }
   if (playback_->finished(clock_.now())) {
@@ -427,6 +432,7 @@ void Daemon::run_io() {
 }
 
 void Daemon::stop_io() {
+  io_stopped_ = true;
   playback_timer_.cancel();
   stream_timer_.cancel();
   inputs_->stop();

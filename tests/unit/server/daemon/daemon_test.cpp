@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/daemon/daemon.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -21,6 +24,7 @@
 #include "server/devices/gemini/kind.hpp"
 #include "server/devices/micron/config.hpp"
 #include "server/devices/micron/kind.hpp"
+#include "server/devices/playback.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "tests/support/fake_renderer.hpp"
 #include "tests/support/loopback.hpp"
@@ -253,6 +257,35 @@ TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
     ASSERT_EQ(code, exit_clean) << "life " << life;
     ASSERT_LT(std::chrono::steady_clock::now() - started, std::chrono::seconds{10}) << "life " << life;
   }
+}
+
+/// A recording without pings that has no end, and an I/O thread that is busy while the order to end comes.
+class BusyPlayback final : public Playback {
+ public:
+  std::optional<RecordedPing> next_ping(int, TimePoint now) override {
+    first_ = std::min(first_, now);
+    if (!ended_ && now - first_ > std::chrono::milliseconds{500}) {
+      ended_ = true;
+      kill(getpid(), SIGTERM);
+      // Long enough for the daemon's timers to run out: they call after the order to end is carried out.
+      std::this_thread::sleep_for(std::chrono::milliseconds{2500});
+    }
+    return std::nullopt;
+  }
+  void started(int, const PingJob&) override {}
+  void progress(int, TimePoint, const PingProgress&) override {}
+  bool finished(TimePoint) const override { return false; }
+
+ private:
+  TimePoint first_ = TimePoint::max();
+  bool ended_ = false;
+};
+
+TEST_F(DaemonTest, EndsThoughTimersHaveRunOutMeanwhile) {
+  BusyPlayback playback;
+  alarm(60);  // ends the test where the daemon does not end
+  EXPECT_EQ(serve(config, {}, test::fake_renderer_factory(renderer), &playback), exit_clean);
+  alarm(0);
 }
 
 }  // namespace
