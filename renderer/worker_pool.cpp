@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <utility>
 
 namespace sonard::render {
 
@@ -46,12 +48,21 @@ WorkerPool::WorkerPool(unsigned threads) {
     threads = cores;
   }
   may_spin_ = threads <= cores;  // else spinning would keep a thread with work from running
-  for (unsigned i = 1; i < threads; ++i) {
-    threads_.emplace_back([this] { work(); });
+  try {
+    for (unsigned i = 1; i < threads; ++i) {
+      threads_.emplace_back([this] { work(); });
+    }
+  } catch (...) {
+    end_threads();
+    throw;
   }
 }
 
 WorkerPool::~WorkerPool() {
+  end_threads();
+}
+
+void WorkerPool::end_threads() {
   {
     const std::lock_guard lock(mutex_);
     unclaimed_ = stopped;
@@ -86,6 +97,20 @@ void WorkerPool::run(int count, const std::function<void(int)>& job) {
   if (unfinished_ != 0) {
     sleep_until_done();
   }
+  if (thrown_) {
+    std::rethrow_exception(std::exchange(thrown_, nullptr));
+  }
+}
+
+void WorkerPool::do_job(int number) {
+  try {
+    (*job_)(number);
+  } catch (...) {  // memory has run out, most likely; the other jobs still use what the caller owns
+    const std::lock_guard lock(mutex_);
+    if (!thrown_) {
+      thrown_ = std::current_exception();
+    }
+  }
 }
 
 void WorkerPool::take_jobs() {
@@ -93,7 +118,7 @@ void WorkerPool::take_jobs() {
   int unclaimed = unclaimed_.load();
   while (unclaimed > 0) {
     if (unclaimed_.compare_exchange_weak(unclaimed, unclaimed - 1)) {
-      (*job_)(count_ - unclaimed);
+      do_job(count_ - unclaimed);
       ++done;
       unclaimed = unclaimed_.load();
     }

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -21,6 +22,7 @@ namespace sonard::render {
 class WorkerPool {
  public:
   /// @param threads total number of threads including the caller; 0: one per core.
+  /// @throws std::system_error when a thread cannot be started
   explicit WorkerPool(unsigned threads = 0);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -29,12 +31,15 @@ class WorkerPool {
   /// Threads that share the jobs, the caller included; >= 1.
   unsigned size() const { return static_cast<unsigned>(threads_.size()) + 1; }
 
-  /// Calls job(0) ... job(count - 1), each once, and returns when all are done. Jobs must not throw.
+  /// Calls job(0) ... job(count - 1), each once, and returns when all are done.
+  /// @throws what a job has thrown, the first one where several have
   void run(int count, const std::function<void(int)>& job);
 
  private:
+  void end_threads();
   void work();
   void take_jobs();
+  void do_job(int number);
   void sleep_until_jobs();
   void sleep_until_done();
 
@@ -46,6 +51,7 @@ class WorkerPool {
   int count_ = 0;
   std::atomic<int> unclaimed_{0};   ///< jobs of this run that are not claimed; `stopped` at the end
   std::atomic<int> unfinished_{0};  ///< jobs of this run that are not done
+  std::exception_ptr thrown_;       ///< by a job of this run; under the mutex until all are done
 
   // For sleeping only. A thread about to sleep says so under the mutex before it reads the numbers above a
   // last time; a thread that changes them checks whether a thread said so after. In one order of all these

@@ -20,6 +20,7 @@
 #include "server/check.hpp"
 #include "server/config/loader.hpp"
 #include "server/daemon/daemon.hpp"
+#include "server/daemon/exhaustion.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
 #include "server/demo.hpp"
@@ -48,7 +49,8 @@ constexpr const char* exit_code_help =
     "  4   the engine is not available or failed its self-test, or the renderer failed while serving\n"
     "  5   a file or folder to write to cannot be used\n"
     "  64  wrong command line\n"
-    "  70  a defect of this program";
+    "  70  a defect of this program\n"
+    "  71  file descriptors, threads or memory have run out";
 
 struct CommandLine {
   std::filesystem::path config;
@@ -220,6 +222,10 @@ int guarded(const Command& command) {
     print_error(fmt::format("renderer: {}", error.what()));
     return exit_renderer;
   } catch (const std::exception& error) {
+    if (const auto sentence = exhausted(error)) {
+      print_error(*sentence);
+      return exit_exhausted;
+    }
     print_error(fmt::format("defect: {}", error.what()));
     return exit_internal;
   }
@@ -358,5 +364,6 @@ int main_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   sonard::server::open_standard_descriptors();
+  sonard::server::end_by_sentence_when_exhausted();
   return sonard::server::main_program(argc, argv);
 }

@@ -23,8 +23,13 @@ namespace {
 
 enum class Outcome : char { returned = 'R', threw = 'T' };
 
-std::string failed(const std::string& call) {
-  return call + ": " + std::generic_category().message(errno);
+/// @throws IsolatedFailure; std::system_error where it is a limit of the process, and not the file
+[[noreturn]] void throw_failed(const std::string& call) {
+  const int error = errno;
+  if (error == EMFILE || error == ENFILE || error == ENOMEM || error == EAGAIN) {
+    throw std::system_error(error, std::generic_category(), call);
+  }
+  throw IsolatedFailure(call + ": " + std::generic_category().message(error));
 }
 
 /// A file in memory that parent and child share.
@@ -32,7 +37,7 @@ class MemoryFile {
  public:
   explicit MemoryFile(const char* name) : fd_(::memfd_create(name, MFD_CLOEXEC)) {
     if (fd_ < 0) {
-      throw IsolatedFailure(failed("memfd_create"));
+      throw_failed("memfd_create");
     }
   }
   ~MemoryFile() { ::close(fd_); }
@@ -116,7 +121,7 @@ int wait_for(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) {
-      throw IsolatedFailure(failed("waitpid"));
+      throw_failed("waitpid");
     }
   }
   return status;
@@ -132,7 +137,7 @@ IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned i
   std::fflush(nullptr);
   const pid_t child = ::fork();
   if (child < 0) {
-    throw IsolatedFailure(failed("fork"));
+    throw_failed("fork");
   }
   if (child == 0) {
     run_child(work, result, log.fd(), processor_limit_s);

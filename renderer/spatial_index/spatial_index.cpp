@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -145,15 +146,17 @@ struct SpatialIndex::Impl {
     choose_packets();
   }
 
-  /// @throws RendererError when Embree has met an error since the last call.
+  /// @throws RendererError when Embree has met an error since the last call; std::bad_alloc where that is
+  /// memory
   void check(const char* action) const {
     const RTCError error = rtcGetDeviceError(device.get());
+    if (error == RTC_ERROR_OUT_OF_MEMORY) {
+      throw std::bad_alloc();
+    }
     if (error != RTC_ERROR_NONE || !device) {
       throw RendererError(fmt::format("Embree could not {}: {}", action,
-                                      error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory"
-                                      : error == RTC_ERROR_UNSUPPORTED_CPU
-                                          ? "it does not support this CPU"
-                                          : "error " + std::to_string(error)));
+                                      error == RTC_ERROR_UNSUPPORTED_CPU ? "it does not support this CPU"
+                                                                         : "error " + std::to_string(error)));
     }
   }
 

@@ -7,7 +7,9 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -22,6 +24,7 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "server/clock/clock.hpp"
+#include "server/daemon/exhaustion.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
 #include "server/daemon/resolve_mounts.hpp"
@@ -425,9 +428,10 @@ void Daemon::run_io() {
   try {
     io_.run();
   } catch (const std::exception& error) {
-    // No handler throws: bytes from outside cannot make one, so this is a defect.
-    spdlog::critical("the I/O thread failed: {}", error.what());
-    end(exit_internal);
+    // No handler throws: bytes from outside cannot make one, so this is a defect, or something has run out.
+    const std::optional<std::string> sentence = exhausted(error);
+    spdlog::critical("the I/O thread failed: {}", sentence.value_or(error.what()));
+    end(sentence ? exit_exhausted : exit_internal);
   }
 }
 

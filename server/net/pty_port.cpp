@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -34,14 +35,10 @@ using boost::system::error_code;
 
 constexpr std::string_view slave_folder = "/dev/pts/";
 
-[[noreturn]] void fail(const std::string& operation, int error) {
-  throw SocketError(fmt::format("cannot {}: {}", operation, std::generic_category().message(error)));
-}
-
 int open_master() {
   const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (master < 0) {
-    fail("open a pseudo terminal", errno);
+    throw_socket_error("open a pseudo terminal", errno);
   }
   return master;
 }
@@ -49,7 +46,7 @@ int open_master() {
 std::string unlock_slave(int master) {
   std::array<char, 64> path{};
   if (grantpt(master) != 0 || unlockpt(master) != 0 || ptsname_r(master, path.data(), path.size()) != 0) {
-    fail("unlock a pseudo terminal", errno);
+    throw_socket_error("unlock a pseudo terminal", errno);
   }
   return path.data();
 }
@@ -58,7 +55,7 @@ std::string unlock_slave(int master) {
 void reset_slave(const std::string& path) {
   const int slave = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (slave < 0) {
-    fail("open " + path, errno);
+    throw_socket_error("open " + path, errno);
   }
   termios settings{};
   const bool done = tcgetattr(slave, &settings) == 0 &&
@@ -67,7 +64,7 @@ void reset_slave(const std::string& path) {
   const int error = errno;
   ::close(slave);
   if (!done) {
-    fail("set up " + path, error);
+    throw_socket_error("set up " + path, error);
   }
 }
 
@@ -188,7 +185,7 @@ void PtyPort::Impl::leave() {
   log.info("serial {}: closed", description());
   try {
     reset_slave(path);
-  } catch (const SocketError& error) {  // the next client may find what this one did not read
+  } catch (const std::runtime_error& error) {  // the next client may find what this one did not read
     log.warn("serial {}: {}", description(), error.what());
   }
   if (events.ended) {

@@ -50,8 +50,7 @@ void TcpListener::open() {
   error_code error;
   const auto check = [&](const char* operation) {
     if (error) {
-      throw SocketError(
-          fmt::format("cannot {} TCP {}: {}", operation, endpoint_text(local_), error.message()));
+      throw_socket_error(fmt::format("{} TCP {}", operation, endpoint_text(local_)), error.value());
     }
   };
   acceptor_.open(tcp::v4(), error);

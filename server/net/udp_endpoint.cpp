@@ -48,9 +48,21 @@ Endpoint from_sockaddr(const sockaddr_in& address) {
   return {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
 }
 
+}  // namespace
+
+void throw_socket_error(const std::string& operation, int error) {
+  const std::string what = "cannot " + operation;
+  if (error == EMFILE || error == ENFILE || error == ENOMEM || error == ENOBUFS) {
+    throw std::system_error(error == ENOBUFS ? ENOMEM : error, std::generic_category(), what);
+  }
+  throw SocketError(what + ": " + std::generic_category().message(error));
+}
+
+namespace {
+
 void set_option(int fd, int level, int name, int value, const char* what) {
   if (setsockopt(fd, level, name, &value, sizeof value) != 0) {
-    throw SocketError(fmt::format("cannot set {}: {}", what, std::generic_category().message(errno)));
+    throw_socket_error(fmt::format("set {}", what), errno);
   }
 }
 
@@ -162,7 +174,7 @@ void UdpEndpoint::Impl::open(const Endpoint& bind, Sharing sharing) {
   boost::system::error_code error;
   socket.open(udp::v4(), error);
   if (error) {
-    throw SocketError("cannot open a UDP socket: " + error.message());
+    throw_socket_error("open a UDP socket", error.value());
   }
   const int fd = socket.native_handle();
   set_option(fd, SOL_SOCKET, SO_BROADCAST, 1, "SO_BROADCAST");
@@ -175,12 +187,12 @@ void UdpEndpoint::Impl::open(const Endpoint& bind, Sharing sharing) {
   }
   socket.bind({asio::ip::address_v4(bind.address), bind.port}, error);
   if (error) {
-    throw SocketError(fmt::format("cannot bind UDP {}: {}", endpoint_text(bind), error.message()));
+    throw_socket_error("bind UDP " + endpoint_text(bind), error.value());
   }
   socket.native_non_blocking(true, error);
   const udp::endpoint bound = error ? udp::endpoint() : socket.local_endpoint(error);
   if (error) {
-    throw SocketError(fmt::format("cannot use UDP {}: {}", endpoint_text(bind), error.message()));
+    throw_socket_error("use UDP " + endpoint_text(bind), error.value());
   }
   local = {bound.address().to_v4().to_uint(), bound.port()};
 }

@@ -23,6 +23,11 @@ struct SocketError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// "cannot bind UDP 127.0.0.1:5: Address already in use", where `operation` is "bind UDP 127.0.0.1:5".
+/// @throws SocketError; std::system_error where descriptors or memory have run out, which no other address
+/// would change
+[[noreturn]] void throw_socket_error(const std::string& operation, int error);
+
 /// Counters, which only grow.
 struct UdpEndpointCounters {
   std::uint64_t received = 0;

@@ -7,6 +7,7 @@
 #include <exception>
 #include <future>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -228,6 +229,8 @@ RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob
     result.statistics = renderer.last_statistics();
   } catch (const render::RequestError& error) {
     result.error = error.what();
+  } catch (const std::bad_alloc&) {  // one client's wish does not end the others
+    result.error = "memory has run out for this ping; a shorter range or fewer bins take less";
   }
   return result;
 }

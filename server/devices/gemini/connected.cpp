@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/devices/gemini/connected.hpp"
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,7 +70,7 @@ class ConnectedGemini final : public ConnectedDevice {
   void move_from(Ipv4 before) {
     try {
       transport_.rebind({addresses_.alternate, config_.command_port});
-    } catch (const SocketError& error) {
+    } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is left
       log_.error("head={} cannot change its address, stays on {}: {}", name_, address_text(before),
                  error.what());
     }

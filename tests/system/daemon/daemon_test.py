@@ -10,7 +10,9 @@ Frames of the Micron are those of tests/data/micron, which says where each is fr
 import argparse
 import os
 import re
+import resource
 import select
+import shutil
 import signal
 import socket
 import subprocess
@@ -315,6 +317,58 @@ class Descriptors(DaemonCase):
         self.lines(client, 5)
         daemon.send_signal(signal.SIGTERM)
         self.assertEqual(daemon.wait(PATIENCE_S), 0)
+
+
+class Exhaustion(DaemonCase):
+    """Where descriptors, threads or memory run out at the start a sentence says so; where they last, it serves."""
+
+    def outcome(self, command, sentence, **popen):
+        """'ready', or 'out' where it has ended with the sentence."""
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **popen)
+        self.processes.append(process)
+        self.addCleanup(process.stdout.close)
+        output = ""
+        for line in process.stdout:
+            output += line
+            if "sonard ready" in line:
+                process.kill()
+                process.wait(PATIENCE_S)
+                return "ready"
+        self.assertEqual(process.wait(PATIENCE_S), 71, output)
+        self.assertRegex(output, sentence)
+        self.assertNotIn("defect", output)
+        return "out"
+
+    def outcomes(self, command, name, limits, sentence, **popen):
+        found = [self.outcome(command, sentence, preexec_fn=lambda n=n: resource.setrlimit(name, (n, n)), **popen)
+                 for n in limits]
+        self.assertIn("out", found, "no limit was low enough for this test to mean something")
+        self.assertIn("ready", found, "no limit was high enough")
+
+    def test_of_descriptors(self):
+        self.outcomes(self.configuration(heads=GEMINI.format(topside_port=free_port())), resource.RLIMIT_NOFILE,
+                      (*range(6, 20), 64), "(?m)^out of file descriptors .*ulimit -n")
+
+    def test_of_threads(self):
+        if os.geteuid() != 0:
+            raise RuntimeError("needs root, to start the program as a user that has no processes")
+        # Where that user may read it.
+        program = shutil.copy(os.path.join(PROGRAMS, "sonard"), self.folder.name)
+        shutil.copy(WORLD, self.folder.name)
+        os.chmod(self.folder.name, 0o755)
+        _, run, config = self.configuration()
+        with open(config, encoding="utf-8") as file:
+            text = file.read().replace(WORLD, os.path.basename(WORLD))
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(text)
+        nobody = 1_700_000_000 + os.getpid()
+        self.outcomes([program, run, config], resource.RLIMIT_NPROC, (*range(2, 9), 64), "(?m)^out of threads .*ulimit -u",
+                      user=nobody, group=nobody, extra_groups=[], env={**os.environ, "HOME": self.folder.name})
+
+    def test_of_memory(self):
+        # Below 400 MiB the loader finds no room for the libraries.
+        self.outcomes(self.configuration(), resource.RLIMIT_AS, [n << 20 for n in (400, 450, 500, 550, 600, 8000)],
+                      "(?m)^out of (memory|threads) .*ulimit -v")
 
 
 class Micron(DaemonCase):

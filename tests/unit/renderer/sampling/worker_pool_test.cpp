@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <new>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -66,6 +67,28 @@ TEST(WorkerPool, LongJobsAreWaitedFor) {
     done[static_cast<std::size_t>(i)] = 1;
   });
   EXPECT_EQ(done, std::vector<int>({1, 1, 1}));
+}
+
+// Memory may run out in any of them, at the caller's or at a worker's.
+TEST(WorkerPool, HandsOnWhatAJobThrowsWhenAllAreDone) {
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    WorkerPool pool(threads);
+    for (int repeat = 0; repeat < 100; ++repeat) {
+      std::atomic<int> done = 0;
+      EXPECT_THROW(pool.run(64,
+                            [&](int i) {
+                              if (i % 3 == 0) {
+                                throw std::bad_alloc();
+                              }
+                              ++done;
+                            }),
+                   std::bad_alloc);
+      const int before = done;
+      EXPECT_TRUE(threads == 1 || before == 42);
+      pool.run(64, [&](int) { ++done; });
+      EXPECT_EQ(done, before + 64) << "it goes on as if nothing had been";
+    }
+  }
 }
 
 TEST(WorkerPool, EndsRightAfterWork) {

@@ -7,6 +7,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -181,6 +182,26 @@ TEST_F(RenderServiceTest, RequestErrorFailsOnePingOnly) {
     ASSERT_TRUE(inbox.run_until([&] { return errors.size() == number; }));
   }
   EXPECT_EQ(errors, (std::vector<std::string>{"range is not positive", ""}));
+  EXPECT_EQ(failure, "");
+}
+
+TEST_F(RenderServiceTest, MemoryThatRunsOutFailsOnePingOnly) {
+  control->before_ping = [](const render::PingRequest& request, int) {
+    if (request.ping_number == 1) {
+      throw std::bad_alloc();
+    }
+  };
+  RenderService service(fake_renderer_factory(control), 2, hooks());
+  std::vector<std::string> errors(2, "none yet");
+  for (const int stream : {0, 1}) {
+    service.submit(small_job(static_cast<std::uint64_t>(1 + stream), stream),
+                   [&errors, stream](const RenderResult& result) {
+                     errors[static_cast<std::size_t>(stream)] = result.error;
+                   });
+  }
+  ASSERT_TRUE(inbox.run_until([&] { return errors[1] != "none yet"; }));
+  EXPECT_NE(errors[0].find("memory has run out for this ping"), std::string::npos) << errors[0];
+  EXPECT_EQ(errors[1], "");
   EXPECT_EQ(failure, "");
 }
 
