@@ -1,4 +1,4 @@
--- SPDX-License-Identifier: Apache-2.0
+-- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the messages of a Gemini 720i, both directions (docs/protocols/gemini.md; sections named
 -- below are its own). Put all sonard_*.lua files into the folder for personal Lua plugins, or name this one:
 --   tshark -X lua_script:sonard_gemini.lua -r capture.pcapng

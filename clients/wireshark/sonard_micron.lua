@@ -1,4 +1,4 @@
--- SPDX-License-Identifier: Apache-2.0
+-- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the serial protocol of a Micron DST, carried over TCP or UDP, both directions
 -- (docs/protocols/micron.md; sections named below are its own). Put all sonard_*.lua files into the folder for
 -- personal Lua plugins, or name this one:

@@ -1,4 +1,4 @@
--- SPDX-License-Identifier: Apache-2.0
+-- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for an Oculus: fires and pings over TCP, status datagrams over UDP (docs/protocols/oculus.md;
 -- sections named below are its own). Put all sonard_*.lua files into the folder for personal Lua plugins, or name this one:
 --   tshark -X lua_script:sonard_oculus.lua -r capture.pcapng

@@ -1,4 +1,4 @@
--- SPDX-License-Identifier: Apache-2.0
+-- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the Ping protocol of a Ping360, over UDP or TCP, both directions, and for the text by which
 -- such heads are found (docs/protocols/ping360.md; sections named below are its own). Put all sonard_*.lua files into
 -- the folder for personal Lua plugins, or name this one:

@@ -1,4 +1,4 @@
--- SPDX-License-Identifier: Apache-2.0
+-- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- What the dissectors of all sonars share: fields of Wireshark from a table of fields, and a message shown by it.
 -- The tables (sonard_DEVICE_fields.lua) say how each message is laid out; the dissectors load this file themselves.
 local tables = {}

@@ -5,6 +5,7 @@ from tree import CPP, DATA, matches
 
 MARK = "SPDX-License-Identifier:"
 LICENCE = "Apache-2.0"
+LICENCE_OF_DISSECTORS = "Apache-2.0 OR GPL-2.0-or-later"  # as Wireshark's programming interface asks for
 SLASHES = (*CPP, ".proto", ".cs", ".js")
 
 # Written by clients/wireshark's program, whose output a test compares.
@@ -30,7 +31,8 @@ def missing(tree):
         mark = comment(tree, path)
         if not mark:
             continue
-        line = f"{mark} {MARK} {LICENCE}"
+        licence = LICENCE_OF_DISSECTORS if matches(path, ("clients/wireshark/*.lua",)) else LICENCE
+        line = f"{mark} {MARK} {licence}"
         if line not in tree.text(path).splitlines()[:3]:
             yield path, line
 

@@ -132,10 +132,9 @@ class LinkTest(unittest.TestCase):
             at = written.index(crc, at) + 1
 
     def start_viewer(self, lab, *options, topside=None, range_m=4):
-        namespace = topside or lab.topside
-        address = TOPSIDE_ADDRESS if namespace is lab.topside else "10.61.19.11"
-        return lab.start(namespace, os.path.join(PROGRAMS, "sonarview"), "--surface-address", address, "--log-pings",
-                         "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S), "--range", str(range_m), *options)
+        """One that finds out for itself from which of its addresses commands go to the head."""
+        return lab.start(topside or lab.topside, os.path.join(PROGRAMS, "sonarview"), "--log-pings", "--wait", str(PATIENCE_S),
+                         "--ping-wait", str(PATIENCE_S), "--range", str(range_m), *options)
 
     # ---- Checks ----
 
