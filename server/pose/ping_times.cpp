@@ -75,9 +75,21 @@ void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
 
 void PingTimes::follow_restart() {
   if (restarts_ != poses_.counters().clock_restarts) {
+    const std::optional<TimePoint> first = first_of_new_life();
     restarts_ = poses_.counters().clock_restarts;
     rest();
+    next_ = first;
   }
+}
+
+// In lock-step it follows from the stamps alone, however long the head is busy with its last ping.
+std::optional<TimePoint> PingTimes::first_of_new_life() const {
+  const auto oldest = poses_.oldest();
+  const bool wanted = next_ || last_;
+  if (!wanted || !oldest || poses_.ping_clock() != PingClock::lock_step) {
+    return std::nullopt;
+  }
+  return whole_periods(*oldest, period_);
 }
 
 void PingTimes::rest() {
@@ -88,10 +100,11 @@ void PingTimes::rest() {
 std::optional<nanoseconds> PingTimes::lead() const {
   const auto newest = poses_.newest();
   const bool of_this_clock = restarts_ == poses_.counters().clock_restarts;
-  if (!newest || !of_this_clock || !(next_ || last_)) {
+  const auto next = !of_this_clock ? first_of_new_life() : last_ ? std::optional{*last_ + period_} : next_;
+  if (!newest || !next) {
     return std::nullopt;
   }
-  return *newest - listening_ - (next_ ? *next_ : *last_ + period_);
+  return *newest - listening_ - *next;
 }
 
 }  // namespace sonard::server

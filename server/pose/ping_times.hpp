@@ -43,6 +43,8 @@ class PingTimes {
 
  private:
   void follow_restart();
+  /// nullopt: the first ping is that of the newest pose when it is asked for.
+  std::optional<TimePoint> first_of_new_life() const;
   void leave_out(std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
 
   const PoseHistory& poses_;

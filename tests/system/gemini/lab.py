@@ -238,6 +238,9 @@ class Program:
                     raise AssertionError(f"{self.name} {why} before line {count} of '{pattern}'; {self.tail()}")
                 self._news.wait(deadline.left())
 
+    def running(self):
+        return self._process.poll() is None
+
     def wait(self, seconds):
         """The exit code."""
         try:

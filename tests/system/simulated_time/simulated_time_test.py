@@ -19,6 +19,7 @@ sys.path[:0] = [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "
 
 import link_test  # noqa: E402
 import wire  # noqa: E402
+from lab import Deadline  # noqa: E402
 from link_test import PATIENCE_S, key_values  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -106,8 +107,17 @@ class SimulatedTime(link_test.LinkTest):
     def simulate(self, lab, steps, transport):
         publisher = lab.start(lab.head, sys.executable, os.path.join(HERE, "publish_stamps.py"), "--modules", MODULES, "--to",
                               "127.0.0.1:14601", *(["--udp"] if transport == "udp" else []), "stand:1.5", *steps)
+        self.wait_while_pinging(publisher)
         self.assertEqual(publisher.wait(PATIENCE_S), 0, publisher.tail())
         self.wait_for_last_ping()
+
+    def wait_while_pinging(self, publisher):
+        """A slow machine takes as long as it takes; one that makes no ping for a long time has stopped."""
+        deadline, seen = Deadline(PATIENCE_S), 0
+        while publisher.running() and not deadline.over():
+            time.sleep(0.2)
+            if len(self.pings()) != seen:
+                deadline, seen = Deadline(PATIENCE_S), len(self.pings())
 
     def wait_for_last_ping(self):
         """The publisher is done when its last pose is taken; a few pings may be on their way."""

@@ -120,6 +120,16 @@ TEST_F(PingTimesTest, AResetBeginsAnew) {
   EXPECT_THAT(begun(), ElementsAre(100, 200));
 }
 
+TEST_F(PingTimesTest, TheFirstOfANewLifeIsThatOfItsFirstStampHoweverLateItIsAskedFor) {
+  pose(0);
+  EXPECT_THAT(begun(), IsEmpty());
+  poses_every(10, 10, 340);
+  EXPECT_THAT(begun(), ElementsAre(0, 100, 200, 300));
+  poses_every(10, 40, 540);  // while the head is busy with the ping of 300
+  EXPECT_EQ(times.lead(), milliseconds(540 - 30 - 100));
+  EXPECT_THAT(begun(), ElementsAre(100, 200, 300, 400, 500));
+}
+
 TEST_F(PingTimesTest, NoPingIsInAGapOfTheSource) {
   pose(1000);
   begun();
