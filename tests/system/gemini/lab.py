@@ -73,17 +73,26 @@ class Namespace:
     def udp_socket(self, address, port, reuse=False):
         """A socket of this process that lives in this namespace: a socket keeps the one it was made in. With `reuse` it
         shares its port with others that share theirs."""
+        def make():
+            made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            # Beyond net.core.rmem_max: Python reads slower than a head sends.
+            made.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, 16 << 20)
+            made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(reuse))
+            made.bind((address, port))
+            return made
+        return self._inside(make)
+
+    def tcp_socket(self):
+        """The same of TCP, not connected."""
+        return self._inside(lambda: socket.socket(socket.AF_INET, socket.SOCK_STREAM))
+
+    def _inside(self, make):
         own = os.open("/proc/self/ns/net", os.O_RDONLY)
         there = os.open(f"/run/netns/{self.name}", os.O_RDONLY)
         try:
             _enter(there)
             try:
-                made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-                # Beyond net.core.rmem_max: Python reads slower than a head sends.
-                made.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, 16 << 20)
-                made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(reuse))
-                made.bind((address, port))
-                return made
+                return make()
             finally:
                 _enter(own)
         finally:
