@@ -22,7 +22,7 @@ void Host::connected() {
 
 std::optional<std::size_t> Host::front_size() {
   while (true) {
-    auto begin = std::ranges::search(bytes_, start).begin();
+    auto begin = std::search(bytes_.begin(), bytes_.end(), start.begin(), start.end());
     if (begin == bytes_.end() && !bytes_.empty() && bytes_.back() == start[0]) {
       --begin;  // perhaps the first half of one
     }

@@ -147,7 +147,7 @@ SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage&
         const auto of_pulse = static_cast<float>(pulse != nullptr ? pulse->share(std::abs(line - k)) : 1.0);
         float* row = row_at(line);
         for (int b = lobes.begin; b < lobes.end; ++b) {
-          // In the nulls of the main lobe an array hears less than its errors leak everywhere: nothing steady.
+          // In the nulls of the main lobe an array receives less than its errors leak everywhere.
           row[b] += of_pulse * std::max(received[static_cast<std::size_t>(b)], 0.0F);
         }
       }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <numbers>
+#include <utility>
+
 #include "tests/bench/plans.hpp"
 
 namespace sonard::bench {
@@ -57,6 +60,14 @@ std::vector<PlannedReceiver> receivers() {
       {1000, "receiver_with_ring_down_ms", many, [](PhysicalModel& model) { model.ring_down.on = true; }}};
 }
 
+/// What configs/demo-oculus.yaml asks for: 512 beams over 130 degrees, 20 m in 1165 rows.
+test::Scene with_512_beams(test::Scene scene) {
+  scene.name += "@beams=512";
+  scene.settings.aperture.beam_edges_rad = render::equal_sine_edges(512, 65 * std::numbers::pi / 180);
+  scene.settings.range = {1165, 0.01716, 0, false};
+  return scene;
+}
+
 }  // namespace
 
 void run_quick(Campaign& campaign) {
@@ -84,6 +95,7 @@ void run_quick(Campaign& campaign) {
     }
   }
   campaign.run(test::make_scene("docking"), demo);
+  campaign.run(with_512_beams(test::make_scene("docking")), demo);
   for (const char* name : {"msis_swell", "msis_ripple"}) {
     campaign.run(test::make_scene(name), presets(name, many));
   }

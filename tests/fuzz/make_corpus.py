@@ -8,6 +8,8 @@ gemini/topside/    scripts for fuzz_gemini_topside: what a head sends to a topsi
 micron/frames/     one example each, and streams of some
 micron/device/     scripts for fuzz_micron_device: what a host sends to a head
 micron/host/       scripts for fuzz_micron_host: what a head sends to a host
+oculus/device/     scripts for fuzz_oculus_device: what clients send to a head
+oculus/host/       streams of a head
 ping360/           the same three for the Ping360
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
@@ -36,6 +38,8 @@ START_8_BIT, START_4_BIT, STOP_SCAN, GAIN, REVERSE = range(1, 6)
 P360_A, P360_B, P360_SERIAL, P360_GONE, P360_IMAGE, P360_FAILED, P360_FEED, P360_GRANT = range(8)
 P360_BYTES, P360_TURN, P360_SCAN, P360_STOP = range(4)
 PLAYS_BACK, WAITS, FAN_OUT, UNSCALED, SPLITS, SIGNED, CLAMPS, TWO_CLIENTS = (1 << bit for bit in range(8))
+# And for the Oculus: bytes of two clients, then these.
+OCULUS, OCULUS_OTHER, OCULUS_CLIENT, OCULUS_SECOND, OCULUS_IMAGE, OCULUS_FAILED, OCULUS_FEED, OCULUS_GRANT = range(8)
 AS_IS = 0x80
 
 
@@ -161,6 +165,38 @@ def micron_host_scripts():
     yield "changes", meet(START_8_BIT) + event(GAIN) + event(REVERSE) + micron_frame("head_data") + event(STOP_SCAN)
     yield "silent_head", event(START_8_BIT) + event(PAUSE, delay=250)
     yield "small_talk", micron_frame("fpga_cal_data") + micron_frame("fpga_version_data") + micron_frame("aux_data")
+
+
+def oculus_device_scripts():
+    def script(flags, *events):
+        return bytes([flags]) + event(OCULUS_CLIENT) + b"".join(events)
+
+    def fire(name, delay=2):
+        return event(AS_IS | OCULUS, example(name, "oculus"), delay)
+
+    image = event(OCULUS_IMAGE, delay=32)
+    for name in ("vendor", "ensta", "ensta_resume_v2", "liboculus_8_bit", "liboculus_32_bit"):
+        yield name, script(0, 2 * (fire(f"fire_{name}") + image), event(OCULUS_IMAGE, delay=100))
+    yield "standby", script(4, fire("fire_ensta"), image, fire("fire_ensta_standby"), event(OCULUS_FAILED, delay=200),
+                            fire("fire_ensta"), image)
+    yield "user_config", script(0, fire("user_config_request"), fire("user_config"), fire("fire_vendor"), image)
+    yield "second_client", script(8, fire("fire_ensta"), event(OCULUS_SECOND), event(OCULUS_OTHER, b"", 10), image,
+                                  event(OCULUS_CLIENT), event(OCULUS_CLIENT), fire("fire_vendor"), image)
+    whole = example("fire_liboculus_8_bit", "oculus")
+    yield "split", script(0, event(AS_IS | OCULUS, b"SxS" + whole[:30]), event(AS_IS | OCULUS, whole[30:]), image)
+    yield "too_long", script(0, event(AS_IS | OCULUS, whole[:10] + b"\0\0\1\0" + whole[14:]), fire("fire_vendor"))
+    yield "granted", script(PLAYS_BACK << 1, fire("fire_ensta"), 3 * (event(OCULUS_GRANT) + image))
+    yield "played", script(PLAYS_BACK, fire("fire_liboculus_32_bit"), 3 * (event(OCULUS_FEED) + image))
+    body = example("fire_ensta", "oculus")[16:]
+    yield "bodies", script(0x10, event(OCULUS, body), image, event(OCULUS, b"\1\2\1\0\xff" + body[5:]), image)
+
+
+def oculus_streams():
+    names = ("ping_result_v1", "ping_result_v2", "dummy", "user_config")
+    for name in names:
+        yield name, example(name, "oculus")
+    yield "stream", b"S\0SO".join(example(name, "oculus") for name in names)
+    yield "log", example("dummy", "oculus")[:6] + b"\x80\0\0\0\5\0\0\0\0\0ready"
 
 
 def ping360_message(name, kind=P360_A, as_is=False, delay=2):
@@ -358,6 +394,7 @@ def main():
         if path.stat().st_size < 100))
     for folder, scripts in (("gemini/device", device_scripts()), ("gemini/topside", topside_scripts()),
                             ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
+                            ("oculus/device", oculus_device_scripts()), ("oculus/host", oculus_streams()),
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
                             ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),

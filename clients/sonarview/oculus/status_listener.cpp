@@ -14,8 +14,8 @@ namespace sonard::client {
 using boost::asio::ip::udp;
 using boost::system::error_code;
 
-StatusListener::StatusListener(boost::asio::io_context& io, const Endpoint& bind, Heard heard)
-    : socket_(io), heard_(std::move(heard)) {
+StatusListener::StatusListener(boost::asio::io_context& io, const Endpoint& bind, Received received)
+    : socket_(io), received_(std::move(received)) {
   error_code error;
   socket_.open(udp::v4(), error);
   if (!error) {
@@ -37,7 +37,7 @@ void StatusListener::receive() {
       return;
     }
     if (const auto status = oculus::decode_status(std::span(buffer_).first(length))) {
-      heard_(*status);
+      received_(*status);
     }
     if (socket_.is_open()) {
       receive();

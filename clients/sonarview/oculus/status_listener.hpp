@@ -16,17 +16,17 @@ namespace sonard::client {
 /// Belongs to the thread that runs the io_context, and outlives its handlers.
 class StatusListener {
  public:
-  using Heard = std::function<void(const oculus::Status& status)>;
+  using Received = std::function<void(const oculus::Status& status)>;
 
   /// Others may listen to the same port. @throws std::runtime_error naming it
-  StatusListener(boost::asio::io_context& io, const Endpoint& bind, Heard heard);
+  StatusListener(boost::asio::io_context& io, const Endpoint& bind, Received received);
   void close();
 
  private:
   void receive();
 
   boost::asio::ip::udp::socket socket_;
-  Heard heard_;
+  Received received_;
   std::array<std::uint8_t, 2048> buffer_{};
 };
 

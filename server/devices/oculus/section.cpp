@@ -52,7 +52,7 @@ void read_timing(YamlSection& section, oculus::DeviceConfig& device) {
   section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms),
                    "from status packet to status packet");
   section.duration("dummy_period_ms", device.dummy_period, Range::from(10.0, minute_ms),
-                   "how often a client hears of a head that does not ping");
+                   "how often a head that does not ping tells its client that it is there");
   section.duration("ping_overhead_ms", device.plan.ping_overhead, Range::above(0.0, 1000.0),
                    "of each ping, beside the time until the last echo is back");
 }
