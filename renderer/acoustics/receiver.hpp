@@ -26,6 +26,9 @@ class Receiver {
   /// would go on only where there is an echo.
   bool pass(const PingRequest& request, int stream, WorkerPool& workers);
 
+  /// Gives the memory of a stream back; its next ping is as its first one.
+  void forget(int stream) { streams_.erase(stream); }
+
   /// What the last receive() left out.
   const SkipCounts& skipped() const { return skipped_; }
 

@@ -29,9 +29,10 @@ SpeckleField::SpeckleField(int beams) : beams_(beams), stride_(aligned_stride(be
 
 void SpeckleField::ensure_lines(int lines) {
   const auto count = static_cast<std::size_t>(lines);
+  // Last the one that is asked: where memory runs out before, all are looked at again.
   if (count > evolved_at_.size()) {
-    evolved_at_.resize(count, -std::numeric_limits<double>::infinity());
     field_.resize(at(lines), 0.0F);
+    evolved_at_.resize(count, -std::numeric_limits<double>::infinity());
   }
 }
 

@@ -405,6 +405,11 @@ PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
   return samples;
 }
 
+void SonarRenderer::forget(int stream) {
+  impl_->cached_echoes.erase(stream);
+  impl_->receiver.forget(stream);
+}
+
 bool SonarRenderer::pass_ping(const PingRequest& request, int stream) {
   check(request.settings);
   impl_->statistics = {};

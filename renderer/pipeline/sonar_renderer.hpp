@@ -52,8 +52,11 @@ class SonarRenderer {
 
   /// Renders the samples of a ping. The bytes depend on the history of requests of this stream; with speckle
   /// `frozen` or `per_ping` on this request alone.
-  /// @throws RequestError, RendererError
+  /// @throws RequestError, RendererError; std::bad_alloc, and the stream is to be forgotten
   PingSamples render_ping(const PingRequest& request, int stream = 0);
+
+  /// Gives back what is kept of this stream; its next ping is as its first one.
+  void forget(int stream);
 
   /// Advances all that this stream keeps from ping to ping as render_ping() would, in a fraction of its time:
   /// rendering every n-th ping of a run gives the bytes of the whole run.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdlib>
 #include <deque>
 #include <exception>
 #include <future>
@@ -20,6 +22,20 @@ namespace sonard::server {
 namespace {
 
 constexpr std::size_t most_unknown_bodies = 16;
+
+/// Room for what becomes of a ping on other threads, which cannot give it up half done: its messages, records
+/// and pictures.
+/// @throws std::bad_alloc
+void make_sure_of_room(const render::PingSamples& samples) {
+  constexpr std::size_t at_least_bytes = 4 << 20;
+  constexpr std::size_t copies = 12;
+  const std::size_t bytes = at_least_bytes + copies * (samples.u8.size() + 2 * samples.u16.size());
+  void* volatile room = std::malloc(bytes);  // volatile: so that it is really asked for
+  if (room == nullptr) {
+    throw std::bad_alloc();
+  }
+  std::free(room);
+}
 
 }  // namespace
 
@@ -226,10 +242,13 @@ RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob
       renderer.begin_pings(next);
     }
     result.samples = renderer.render_ping(job.request, job.stream);
+    make_sure_of_room(result.samples);
     result.statistics = renderer.last_statistics();
   } catch (const render::RequestError& error) {
     result.error = error.what();
   } catch (const std::bad_alloc&) {  // one client's wish does not end the others
+    result.samples = {};
+    renderer.forget(job.stream);
     result.error = "memory has run out for this ping; a shorter range or fewer bins take less";
   }
   return result;

@@ -26,8 +26,11 @@ class PingRenderer {
   virtual std::string description() const = 0;
   /// @return false when the world has no such body.
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
-  /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can)
+  /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can);
+  /// std::bad_alloc, and the stream is to be forgotten
   virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
+  /// Gives back what is kept of this stream; its next ping is as its first one.
+  virtual void forget(int /*stream*/) {}
   /// Prepares what pings like these need: the engine, trees, shaders, memory. Called once, before the first
   /// ping.
   /// @throws as render_ping()

@@ -35,6 +35,8 @@ class WorldRenderer final : public PingRenderer {
     return renderer_.render_ping(request, stream);
   }
 
+  void forget(int stream) override { renderer_.forget(stream); }
+
   void warm_up(const std::vector<render::StreamPing>& first_pings) override {
     if (options_.engine == render::EngineKind::automatic && measure_engines(first_pings)) {
       return;

@@ -23,8 +23,9 @@ struct FakeRendererControl {
   std::function<void(const render::PingRequest&, int stream)> warming_up;
   /// Streams of the pings that came next, each time; to be read when the service has ended.
   std::vector<std::vector<int>> begun;
-  std::atomic<int> attempts{0};  ///< pings asked for
-  std::atomic<int> pings{0};     ///< pings rendered
+  std::atomic<int> attempts{0};   ///< pings asked for
+  std::atomic<int> pings{0};      ///< pings rendered
+  std::atomic<int> forgotten{0};  ///< streams that were to be forgotten
   std::atomic<bool> destroyed{false};
 
   void record(const render::PingRequest& request) {
@@ -73,6 +74,8 @@ class FakeRenderer final : public server::PingRenderer {
     control_->record_body(body, T_world_body);
     return true;
   }
+
+  void forget(int) override { ++control_->forgotten; }
 
   render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
     ++control_->attempts;

@@ -35,9 +35,10 @@ inline float facets(float c2, float strength, float variance) {
 
 void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std::vector<PartSurface>& parts,
                           bool everywhere) {
+  // Last the one that is asked: where memory runs out before, all are looked at again.
   if (visible.size() > responds_.size()) {
-    for (auto* array : {&strength_, &variance_, &least_cosine_, &responds_, &slopes_per_t_, &slopes_across_,
-                        &mean_, &moment_, &gradient_}) {
+    for (auto* array : {&strength_, &variance_, &least_cosine_, &slopes_per_t_, &slopes_across_, &mean_,
+                        &moment_, &gradient_, &responds_}) {
       array->resize(visible.size() + visible.size() / 2);
     }
   }

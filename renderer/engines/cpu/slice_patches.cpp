@@ -154,14 +154,16 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
 
 void SlicePatcher::lay_out(const Request& request) {
   seen_.lay_out(*visible_);
+  // Last the one that is asked: where memory runs out before, all are looked at again.
   if (seen_.size() > plain_.size()) {
     for (auto* array :
          {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
-          &response_, &plain_, &range_gradient_, &cosine_gradient_, &cosine_mid_, &echo_gradient_,
-          &displaced_, &by_azimuth_low_, &by_azimuth_high_, &centroid_offset_, &response_without_facets_}) {
+          &response_, &range_gradient_, &cosine_gradient_, &cosine_mid_, &echo_gradient_, &displaced_,
+          &by_azimuth_low_, &by_azimuth_high_, &centroid_offset_, &response_without_facets_}) {
       array->resize(seen_.size());
     }
     mapped_.resize(seen_.size());
+    plain_.resize(seen_.size());
   }
   const bool as_cosine = request.surface.model == Model::physical;
   for (std::size_t i = 0; i < seen_.count; ++i) {

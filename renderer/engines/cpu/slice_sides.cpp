@@ -70,10 +70,11 @@ void SideExpectation::find(const std::vector<VisibleSegment>& visible, float wid
 
 void SideExpectation::lay_out(const std::vector<VisibleSegment>& visible) {
   seen_.lay_out(visible);
+  // Last the one that is asked: where memory runs out before, all are looked at again.
   if (seen_.size() > w_by_azimuth_.size()) {
-    w_by_azimuth_.resize(seen_.size());
     first_probe_.resize(seen_.size());
     last_probe_.resize(seen_.size());
+    w_by_azimuth_.resize(seen_.size());
   }
 }
 

@@ -5,9 +5,10 @@ namespace sonard::render {
 
 void VisibleArrays::lay_out(const std::vector<VisibleSegment>& visible) {
   count = visible.size();
+  // Last the one that is asked: where memory runs out before, all are looked at again.
   if (count > size()) {
-    for (auto* array : {&low, &high, &low_slope, &high_slope, &low_reach, &high_reach, &w_at_0, &w_slope,
-                        &normal_h, &normal_s, &normal_z}) {
+    for (auto* array : {&high, &low_slope, &high_slope, &low_reach, &high_reach, &w_at_0, &w_slope, &normal_h,
+                        &normal_s, &normal_z, &low}) {
       array->resize(count + count / 2);
     }
   }

@@ -47,9 +47,10 @@ void VisibleEnds::limit(float width_rad, float tan_limit, VisibleArrays& seen) {
 SONARD_SIMD_CLONES
 void VisibleEnds::find_surfaces(const std::vector<VisibleSegment>& visible, const VisibleArrays& seen) {
   const std::size_t count = seen.count;
+  // Last the one that is asked: where memory runs out before, all are looked at again.
   if (count > part_.size()) {
-    part_.resize(seen.size());
     goes_on_.resize(seen.size());
+    part_.resize(seen.size());
   }
   for (std::size_t i = 0; i < count; ++i) {
     part_[i] = visible[i].triangle->part;

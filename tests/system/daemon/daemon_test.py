@@ -23,6 +23,7 @@ import unittest
 import unittest.mock
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
+import wire
 from lab import Deadline, Program
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
@@ -369,6 +370,64 @@ class Exhaustion(DaemonCase):
         # Below 400 MiB the loader finds no room for the libraries.
         self.outcomes(self.configuration(), resource.RLIMIT_AS, [n << 20 for n in (400, 450, 500, 550, 600, 8000)],
                       "(?m)^out of (memory|threads) .*ulimit -v")
+
+    def pings_of_two_heads(self, limit_bytes):
+        """The heads that pinged when one was asked for 100 m and the other for 2 m, and what the log says; None: it was not
+        ready."""
+        topside_port = free_port()
+        second = GEMINI.replace("bow", "second").replace("513", "514").replace("127.0.77.2", "127.0.77.3")
+        command = self.configuration(heads=(GEMINI + second).format(topside_port=topside_port))
+        log = os.path.join(self.folder.name, "log")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as topside, open(log, "w+", encoding="utf-8") as output:
+            topside.bind(("127.0.0.1", topside_port))
+            topside.settimeout(0.1)
+            daemon = subprocess.Popen(command, stderr=output,
+                                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit_bytes,) * 2))
+            self.processes.append(daemon)
+            deadline = Deadline(START_S)
+            said = ""
+            while "sonard ready" not in said:
+                time.sleep(0.05)
+                if daemon.poll() is not None or deadline.over():
+                    return None
+                output.seek(0)
+                said = output.read()
+            heads = set()
+            for lines, sonar_id, address in ((12060, 513, "127.0.77.2"), (241, 514, "127.0.77.3")):
+                topside.sendto(wire.ping_config(sonar_id, lines=lines, continuous_ms=100), (address, 52901))
+            deadline = Deadline(PATIENCE_S)
+            while not deadline.over() and daemon.poll() is None:
+                try:
+                    datagram = topside.recv(4096)
+                except TimeoutError:
+                    continue
+                if wire.message_type(datagram) == wire.PING_HEAD:
+                    heads.add(int.from_bytes(datagram[2:4], "little"))
+                output.seek(0)
+                said = output.read()
+                if 514 in heads and (513 in heads or "memory has run out" in said):
+                    break
+            alive = daemon.poll() is None
+            daemon.kill()
+            daemon.wait(PATIENCE_S)
+            return (heads if alive else set()), said
+
+    def test_one_clients_wish_for_memory_ends_no_other_head(self):
+        limit = 400 << 20
+        while self.pings_of_two_heads(limit) is None:
+            limit += 32 << 20
+            self.assertLess(limit, 8 << 30, "it is never ready")
+        failed = 0
+        for more in range(8):
+            outcome = self.pings_of_two_heads(limit + (more * 24 << 20))
+            if outcome is None:
+                continue
+            heads, said = outcome
+            self.assertIn(514, heads, said)
+            if 513 not in heads:
+                failed += 1
+                self.assertIn("head=bow cannot render: memory has run out for this ping", said)
+        self.assertGreater(failed, 0, "memory was never short enough for this test to mean something")
 
 
 class Micron(DaemonCase):
