@@ -15,6 +15,7 @@ import select
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -412,7 +413,7 @@ class Exhaustion(DaemonCase):
             daemon.wait(PATIENCE_S)
             return (heads if alive else set()), said
 
-    def test_one_clients_wish_for_memory_ends_no_other_head(self):
+    def test_memory_that_ends_at_one_head_ends_no_other(self):
         limit = 400 << 20
         while self.pings_of_two_heads(limit) is None:
             limit += 32 << 20
@@ -428,6 +429,74 @@ class Exhaustion(DaemonCase):
                 failed += 1
                 self.assertIn("head=bow cannot render: memory has run out for this ping", said)
         self.assertGreater(failed, 0, "memory was never short enough for this test to mean something")
+
+
+class Faults(DaemonCase):
+    """What befalls a daemon from its machine (docs/reliability.md)."""
+
+    def ended(self, command):
+        """Exit code and output of one that does not come to serve."""
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=START_S)
+        return done.returncode, done.stdout
+
+    def test_a_port_that_is_taken_is_named(self):
+        with socket.socket() as other:
+            other.bind(("127.0.0.1", self.port))
+            other.listen()
+            code, output = self.ended(self.configuration())
+        self.assertEqual(code, 3, output)
+        self.assertRegex(output, rf"sonard.yaml:\d+:\d+: heads\[0\].serial: cannot bind TCP 127.0.0.1:{self.port}: Address already")
+
+    def test_the_second_of_two_daemons_with_one_address_ends_and_the_first_goes_on(self):
+        head = GEMINI.format(topside_port=free_port())
+        first = self.start(heads=head)
+        client = self.client()
+        self.configured(client)
+        self.port = free_port()
+        code, output = self.ended(self.configuration(heads=head))
+        self.assertEqual(code, 3, output)
+        self.assertRegex(output, r"heads\[1\].network.bind: cannot bind UDP 127.0.77.2:52901: Address already")
+        self.lines(client, 20)
+        self.assertEqual(first.terminate(PATIENCE_S)[0], 0)
+
+    def test_stopped_for_ten_seconds_it_goes_on_where_time_is_then(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as topside:
+            topside.bind(("127.0.0.1", 0))
+            topside.settimeout(0.1)
+            daemon = self.start(heads=GEMINI.format(topside_port=topside.getsockname()[1]))
+            client = self.client()
+            self.configured(client)
+            topside.sendto(wire.ping_config(513, lines=64, continuous_ms=100), ("127.0.77.2", 52901))
+            before = self.ping_heads(topside, 1.0)
+            daemon.signal(signal.SIGSTOP)
+            self.ping_heads(topside, 10.0)
+            daemon.signal(signal.SIGCONT)
+            after = self.ping_heads(topside, 3.0)
+        self.assertGreater(len(before), 3)
+        self.assertGreater(len(after), 3)
+        self.assertLess(len(after), 60, "it made up for pings that it had missed")
+        times_us = [time_us for _, time_us in before + after]
+        self.assertEqual(times_us, sorted(set(times_us)))
+        numbers = [number for number, _ in after[1:]]
+        self.assertEqual(numbers, [(numbers[0] + i) % 256 for i in range(len(numbers))])
+        self.assertGreater(after[1][1] - before[-1][1], 9_500_000, "the clock of the head stood still")
+        self.lines(client, 20)
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def ping_heads(self, topside, seconds):
+        """Number and time of each ping that comes, while the topside keeps saying that it is there."""
+        heads, said, deadline = [], Deadline(0), Deadline(seconds)
+        while not deadline.over():
+            if said.over():
+                topside.sendto(wire.status_request(513), ("127.0.77.2", 52901))
+                said = Deadline(0.5)
+            try:
+                datagram = topside.recv(4096)
+            except TimeoutError:
+                continue
+            if wire.message_type(datagram) == wire.PING_HEAD:
+                heads.append(struct.unpack_from("<HxxQ", datagram, 8))
+        return heads
 
 
 class Micron(DaemonCase):

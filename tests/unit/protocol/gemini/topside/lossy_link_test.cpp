@@ -248,6 +248,7 @@ constexpr LinkFaults lossy{.loss = 0.05};
 constexpr LinkFaults rough{.loss = 0.05, .duplicate = 0.05, .jitter = 400us};
 constexpr LinkFaults distant{.loss = 0.05, .duplicate = 0.01, .delay = 2ms, .jitter = 500us};
 constexpr LinkFaults very_lossy{.loss = 0.25};
+constexpr LinkFaults bad{.loss = 0.3, .duplicate = 0.1, .jitter = 400us};
 
 std::string case_name(const testing::TestParamInfo<std::tuple<Case, int>>& info) {
   return std::string(std::get<0>(info.param).name) + "_seed" + std::to_string(std::get<1>(info.param));
@@ -261,6 +262,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Case{"rough", rough, std::nullopt, 30ms, 603},
                                      Case{"distant", distant, std::nullopt, 30ms, 603},
                                      Case{"very_lossy", very_lossy, std::nullopt, 30ms, 603},
+                                     Case{"bad", bad, std::nullopt, 30ms, 603, 60},
                                      Case{"slow_renderer", lossy, std::nullopt, 350ms, 300},
                                      Case{"rendered_ahead", lossy, std::nullopt, 20ms, 1205, 200, false, 0, 0,
                                           20ms},
