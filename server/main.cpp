@@ -247,7 +247,8 @@ int main_program(int argc, char** argv) {
   CLI::App* demo_command = app.add_subcommand(
       "demo", "Show sonard at work: the daemon, moving poses, a client, and a page in the browser");
   demo_command
-      ->add_option("NAME", arguments.demo.name, "gemini, oculus, micron, ping360: an entry of configs/demo/list.yaml")
+      ->add_option("NAME", arguments.demo.name,
+                   "gemini, oculus, micron, ping360: an entry of configs/demo/list.yaml")
       ->capture_default_str();
   demo_command->add_option("--out", arguments.demo.out, "Folder for pictures and the programs' lines");
   demo_command->add_option("--seconds", arguments.demo_s, "End after this time; default: at Ctrl-C")

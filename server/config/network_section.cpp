@@ -107,10 +107,11 @@ SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::p
 }
 
 void read_lock_to_first(YamlSection& section, bool& lock_to_first, std::string_view free_again) {
-  section.boolean("lock_to_first", lock_to_first,
-                  fmt::format("the first address whose commands come has the head, and those of all others "
-                              "are dropped, until {} ([security.md](security.md))",
-                              free_again));
+  section.choice(
+      "lock_to_first", lock_to_first, {{"off", false}, {"on", true}},
+      fmt::format("`on`: the first address whose commands come has the head, and those of all others "
+                  "are dropped, until {} ([security.md](security.md))",
+                  free_again));
 }
 
 void read_link_faults(YamlSection& section, LinkConfig& link) {

@@ -438,7 +438,7 @@ class SecondTopside(LinkTest):
 
     def start(self, lock_to_first):
         lab = self.make_lab(topsides=2)
-        daemon = self.start_daemon(lab, self.head_config(more="    lock_to_first: true\n" if lock_to_first else ""))
+        daemon = self.start_daemon(lab, self.head_config(more="    lock_to_first: on\n" if lock_to_first else ""))
         self.first, self.second = (RawTopside(lab, topside=i) for i in range(2))
         for topside in (self.first, self.second):
             self.addCleanup(topside.close)

@@ -50,7 +50,7 @@ TEST_F(Ping360Section, reads_what_is_written) {
       "discovery: {bind: 0.0.0.0:30303, allow: [192.168.2.0/24], address: 192.168.2.4, mac: "
       "'54:10:ec:79:7d:c5'}, "
       "device: {id: 7, firmware_minor: 2, bearing_offset: 200, fan_out: all, max_datagram: 1000}, "
-      "lock_to_first: true, "
+      "lock_to_first: on, "
       "timing: {ping_overhead_ms: 1.5, gradian_ms: 2, scale: 0.5, idle_timeout_ms: 30000}");
   ASSERT_EQ(config.udp.size(), 2U);
   EXPECT_EQ(config.device.serial_channel, 2) << "behind the sockets";
@@ -89,7 +89,7 @@ TEST_F(Ping360Section, says_what_is_wrong) {
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], discovery: {bind: 127.0.0.1:30303, "
                                   "address: 127.0.0.1, mac: 5}")),
               ElementsAre(HasSubstr("expected six hexadecimal octets")));
-  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], lock_to_first: true")),
+  EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], lock_to_first: on")),
               ElementsAre(HasSubstr("lock_to_first: would hold for ever")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], device: {id: 255}")),
               ElementsAre(HasSubstr("device.id")));
