@@ -165,7 +165,7 @@ TEST_F(PingTimesTest, TellsWhatPosesThereAreToSpare) {
   ASSERT_TRUE(times.begin(period, listening));
   EXPECT_EQ(times.lead(), milliseconds{270}) << "the next one is at 1200";
   pose(0);
-  EXPECT_FALSE(times.lead()) << "that ping will not be";
+  EXPECT_EQ(times.lead(), -listening) << "that ping will not be; the first of the new life is at 0";
   times.rest();
   EXPECT_FALSE(times.lead());
 }
