@@ -83,7 +83,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
   if (pings.front().request.settings.aperture.beam_count() >= fewest_beams_of_fan) {
     rounds(middle_beams(pings), 2);
     if (trial.gpu_ms > trial.cpu_ms) {
-      trial.gpu_problem = "for a sixteenth of the beams";
+      trial.gpu_problem = "for one beam in sixteen alone";
       return;
     }
   }

@@ -93,7 +93,7 @@ export class Head {
     this.stages = make("div", { class: "stages" });
     this.clients = make("div", { class: "clients" });
     this.lists = {};
-    for (const [name, title] of [["skipped", "Left out, and why"], ["settings", "Settings"], ["counters", "Counters"]]) {
+    for (const [name, title] of [["skipped", "Work that was not needed"], ["settings", "Settings"], ["counters", "Counters"]]) {
       const list = make("dl", { class: name === "skipped" ? "rules" : "pairs" });
       const summary = make("summary", { text: title });
       this[name] = make("details", { class: "more", hidden: true }, summary, list);
