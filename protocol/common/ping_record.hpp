@@ -19,6 +19,8 @@ struct RecordedSettings {
   bool sound_speed_from_config = true;  ///< a client had set it; false: the head measured it
   double gain_percent = -1.0;           ///< 0..100; below 0: the log does not say
   double frequency_hz = 0.0;            ///< of the sound; 0: the log does not say
+  /// Samples are in proportion to the amplitude to this power, > 0; of those that are decibels it is 1.
+  double amplitude_exponent = 1.0;
 
   double range_m() const { return bins * bin_m; }
   bool operator==(const RecordedSettings&) const = default;

@@ -68,6 +68,7 @@ class Device::Impl {
     PingPlan plan;
     TimePoint transmit_time{};
     double gain_percent = 0.0;        ///< for logs
+    double amplitude_exponent = 1.0;  ///< likewise
     std::vector<std::uint8_t> image;  ///< empty: it is still being rendered
   };
 
@@ -249,7 +250,12 @@ void Device::Impl::begin_ping(TimePoint now) {
   }
   granted_ = false;
   const std::optional<RecordedPing> fed = std::exchange(fed_, std::nullopt);
-  ping_ = Ping{next_number_++, fed ? held_to(*fed, *plan_) : *plan_, now, plan_->asked.fire.gain_percent, {}};
+  ping_ = Ping{next_number_++,
+               fed ? held_to(*fed, *plan_) : *plan_,
+               now,
+               plan_->asked.fire.gain_percent,
+               gamma_exponent(plan_->asked.fire.gamma),
+               {}};
   const PingPlan& plan = ping_->plan;
   // Keeps the phase; of what a late caller has missed, one period at most is made up for.
   next_ping_ = std::max(std::max(next_ping_, now - plan.period) + plan.period, now + plan.listening);
@@ -260,6 +266,7 @@ void Device::Impl::begin_ping(TimePoint now) {
   if (fed) {
     job.record = fed->record;
     job.differences = differences(*plan_, plan, fed->settings);
+    ping_->amplitude_exponent = fed->settings.amplitude_exponent;
     if (fed->settings.gain_percent >= 0.0) {
       ping_->gain_percent = fed->settings.gain_percent;
     }
@@ -282,6 +289,7 @@ void Device::Impl::send_ping(TimePoint now) {
   actions_.record->number = ping_->number;
   actions_.record->transmit_time = ping_->transmit_time;
   actions_.record->settings.gain_percent = ping_->gain_percent;
+  actions_.record->settings.amplitude_exponent = ping_->amplitude_exponent;
   send(std::move(message));
   ++sent_;
   ping_.reset();

@@ -16,6 +16,7 @@ namespace {
 // What is smaller is a difference between two ways of rounding.
 constexpr double gain_step_percent = 1.0;
 constexpr double sound_speed_step_mps = 0.1;
+constexpr double gamma_step = 1e-6;
 
 std::vector<double> bearings_rad(const std::vector<std::int16_t>& bearings_cdeg) {
   std::vector<double> bearings;
@@ -34,6 +35,7 @@ PingRecord record_of(const PingResult& ping, std::span<const std::uint8_t> messa
   record.settings.sound_speed_mps = ping.sound_speed_mps;
   record.settings.sound_speed_from_config = ping.fire.fire.sound_speed_mps != 0.0;
   record.settings.frequency_hz = ping.frequency_hz;
+  record.settings.amplitude_exponent = gamma_exponent(ping.fire.fire.gamma);
   record.bearings_rad = bearings_rad(ping.bearings_cdeg);
   record.sector_rad = record.bearings_rad.back() - record.bearings_rad.front();
   record.samples = eight_bit_samples(ping);
@@ -104,6 +106,11 @@ std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,
   if (std::abs(want.sound_speed_mps - recorded.sound_speed_mps) > sound_speed_step_mps) {
     found.push_back({"sound_speed", fmt::format("sound speed {:.1f} m/s asked for, {:.1f} m/s sent",
                                                 want.sound_speed_mps, recorded.sound_speed_mps)});
+  }
+  const double exponent = gamma_exponent(asked.asked.fire.gamma);
+  if (std::abs(exponent - recorded.amplitude_exponent) > gamma_step) {
+    found.push_back({"gamma", fmt::format("gamma {:.0f} asked for, {:.0f} sent", 255.0 * exponent,
+                                          255.0 * recorded.amplitude_exponent)});
   }
   if (want.data_size != DataSize::bits_8) {
     found.push_back({"bits", fmt::format("{} bits asked for, 8 sent in their place",

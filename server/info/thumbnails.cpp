@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include "protocol/common/linear_samples.hpp"
 #include "renderer/picture/fan_image.hpp"
 #include "server/info/recorded_sweeps.hpp"
 
@@ -63,6 +64,7 @@ std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, con
       fan.emplace(shape, thumbnail_style);
     }
     std::vector<std::uint8_t> pixels = recording.samples(image);
+    make_linear(pixels, image.settings.amplitude_exponent);
     const cv::Mat polar(image.settings.bins, image.settings.beams, CV_8UC1, pixels.data());
     write_picture(folder / file_name(head, ping),
                   fan->draw(polar, fmt::format("{} ping {}", head.device_id, ping)));

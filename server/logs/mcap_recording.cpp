@@ -38,6 +38,8 @@ RecordedSettings settings_of(const log::SonarImage& image) {
   settings.sound_speed_mps = image.sound_speed_mps();
   settings.gain_percent = image.gain_percent();
   settings.frequency_hz = image.frequency_hz();
+  const double exponent = image.amplitude_exponent();
+  settings.amplitude_exponent = std::isfinite(exponent) && exponent > 0.0 ? exponent : 1.0;
   return settings;
 }
 

@@ -7,6 +7,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "protocol/common/linear_samples.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -65,7 +67,8 @@ std::string PingPicture::draw(const PingRecord& ping, const std::string& extensi
   if (!fan_ || fan_->geometry().shape() != shape) {
     fan_.emplace(shape, style);
   }
-  auto& samples = const_cast<std::vector<std::uint8_t>&>(ping.samples);  // cv::Mat reads them only
+  std::vector<std::uint8_t> samples = ping.samples;
+  make_linear(samples, settings.amplitude_exponent);
   return encoded(fan_->draw(cv::Mat(settings.bins, settings.beams, CV_8UC1, samples.data()), ""), extension);
 }
 

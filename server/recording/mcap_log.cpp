@@ -38,6 +38,7 @@ log::SonarImage image_message(const PingSent& sent, const HeadToRecord& head, st
     image.add_bearings_rad(-bearing_rad);  // devices count to starboard
   }
   image.set_wire_head(text(ping.wire));
+  image.set_amplitude_exponent(ping.settings.amplitude_exponent);
   image.set_metres_per_line(ping.settings.bin_m);
   image.set_sound_speed_mps(ping.settings.sound_speed_mps);
   image.set_gain_percent(ping.settings.gain_percent);

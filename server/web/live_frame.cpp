@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "protocol/common/linear_samples.hpp"
 #include "server/web/json.hpp"
 #include "server/web/little_endian.hpp"
 
@@ -43,6 +44,7 @@ nlohmann::json header_of(const ShownPing& newest, std::size_t lines, int step) {
 void append_samples(std::string& out, const PingRecord& record, int step) {
   const auto beams = static_cast<std::size_t>(record.settings.beams);
   const std::size_t rows = record.samples.size() / beams;
+  const std::size_t begin = out.size();
   for (std::size_t first = 0; first < rows; first += static_cast<std::size_t>(step)) {
     const std::size_t end = std::min(rows, first + static_cast<std::size_t>(step));
     const std::size_t at = out.size();
@@ -56,6 +58,8 @@ void append_samples(std::string& out, const PingRecord& record, int step) {
       }
     }
   }
+  make_linear({reinterpret_cast<std::uint8_t*>(out.data()) + begin, out.size() - begin},
+              record.settings.amplitude_exponent);
 }
 
 }  // namespace

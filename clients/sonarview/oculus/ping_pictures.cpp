@@ -3,33 +3,23 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <utility>
 
+#include "protocol/common/linear_samples.hpp"
 #include "protocol/oculus/image_form.hpp"
 
 namespace sonard::client {
 namespace {
 
-cv::Mat polar_of(const oculus::PingResult& ping) {
+/// @param exponent that is taken out of the samples; 1: they stay as they came
+cv::Mat polar_of(const oculus::PingResult& ping, double exponent = 1.0) {
   std::vector<std::uint8_t> samples = oculus::eight_bit_samples(ping);
+  make_linear(samples, exponent);
   return cv::Mat(ping.ranges, ping.beams, CV_8UC1, samples.data()).clone();
-}
-
-/// Samples in proportion to the amplitude, from those of a gamma.
-cv::Mat without_gamma(const cv::Mat& polar, std::uint8_t gamma) {
-  cv::Mat table(1, 256, CV_8UC1);
-  for (int code = 0; code < 256; ++code) {
-    table.at<std::uint8_t>(code) = static_cast<std::uint8_t>(
-        std::lround(255.0 * std::pow(code / 255.0, 1.0 / oculus::gamma_exponent(gamma))));
-  }
-  cv::Mat linear;
-  cv::LUT(polar, table, linear);
-  return linear;
 }
 
 picture::FanShape shape_of(const oculus::PingResult& ping) {
@@ -57,7 +47,7 @@ class OculusPictures::Painter {
     const std::string caption =
         fmt::format("Oculus  {:.0f} kHz   ping {}   {} beams   {:.1f} m", ping.frequency_hz * 1e-3,
                     ping.ping_id, ping.beams, shape.range_m());
-    return fan_->draw(without_gamma(polar_of(ping), ping.fire.fire.gamma), caption);
+    return fan_->draw(polar_of(ping, oculus::gamma_exponent(ping.fire.fire.gamma)), caption);
   }
 
  private:

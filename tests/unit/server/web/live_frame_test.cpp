@@ -45,6 +45,13 @@ std::shared_ptr<const ShownPing> ping(int beams, int bins, std::vector<std::uint
   return shown;
 }
 
+TEST(LiveFrame, ShowsAmplitudesWhereSamplesAreTheirSquareRoots) {
+  auto roots = std::make_shared<ShownPing>(*ping(2, 2, {0, 16, 128, 255}, {-0.25, 0.25}));
+  roots->record.settings.amplitude_exponent = 0.5;
+  const std::array<std::shared_ptr<const ShownPing>, 1> pings{roots};
+  EXPECT_EQ(decoded(live_frame(pings, 600), 2).samples, (std::vector<int>{0, 1, 64, 255}));
+}
+
 TEST(LiveFrame, CarriesAFanRowByRow) {
   const Decoded frame =
       decoded(live_frame(std::array{ping(2, 3, {1, 2, 3, 4, 5, 255}, {-0.25, 0.25})}, 600), 2);

@@ -349,6 +349,7 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   const PingRecord& record = live.records[0];
   EXPECT_EQ(record.settings.beams, 512);
   EXPECT_EQ(record.settings.gain_percent, 30.0);
+  EXPECT_NEAR(record.settings.amplitude_exponent, 200.0 / 255, 1e-12);
   EXPECT_EQ(record.samples.size(), static_cast<std::size_t>(record.settings.bins) * 512);
   EXPECT_EQ(record.samples[5], static_cast<std::uint8_t>(5 * 31));
   EXPECT_EQ(record.wire.size(), result_v2_size + 2 * 512);
@@ -375,6 +376,7 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
 
   SimpleFire other = fire_with(true, 16, false, 256, 2);
   other.fire.gain_percent = 80.0;
+  other.fire.gamma = 127;
   other.fire.sound_speed_mps = 1450.0;
   player.receive(encode(other));
   player.step(PingFed{fed(record, 78)});
@@ -384,13 +386,14 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   for (const Difference& difference : player.jobs[1].differences) {
     kinds += difference.kind + " ";
   }
-  EXPECT_EQ(kinds, "beams frequency gain sound_speed bits ");
+  EXPECT_EQ(kinds, "beams frequency gain sound_speed gamma bits ");
   const PingResult& held = player.pings[1].result;
   EXPECT_EQ(held.beams, 512);
   EXPECT_NE(held.fire.fire.flags & fire_flags::beams_512, 0) << "what is attached";
   EXPECT_EQ(held.fire.fire.master_mode, 2) << "as the client sent it";
   EXPECT_EQ(held.data_size, DataSize::bits_16);
   EXPECT_EQ(eight_bit_samples(held), record.samples);
+  EXPECT_NEAR(player.records.at(1).settings.amplitude_exponent, 200.0 / 255, 1e-12) << "of what was recorded";
 }
 
 TEST(OculusPlayback, a_ping_with_a_time_of_its_own_keeps_it) {
