@@ -80,7 +80,7 @@ std::vector<std::string> PoseInputs::publishers(std::size_t index, TimePoint now
   for (const auto& [publisher, times] : publishers_[index]) {
     // One that fell silent before another began was started anew, with a port of its own.
     const bool replaced = std::ranges::any_of(
-        publishers_[index], [&](const auto& other) { return other.second.first > times.last; });
+        publishers_[index], [last = times.last](const auto& other) { return other.second.first > last; });
     if (now - times.last <= at_once && !replaced) {
       recent.push_back(publisher);
     }
