@@ -8,6 +8,8 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
 
 #include "renderer/acoustics/water.hpp"
 #include "server/config/head_section.hpp"
@@ -46,15 +48,46 @@ std::string read_file(const std::filesystem::path& file) {
   return text.str();
 }
 
+/// Notes where the documents of a text begin.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  }
+  void OnMapEnd() override {}
+
+  std::vector<YAML::Mark> marks;
+};
+
+/// How many documents there are: 0, 1 or, for more than that, 2. (YAML::LoadAll() finds documents without end
+/// in a text that begins with a comma.)
+/// @throws YAML::Exception
+int count_documents(const std::string& text) {
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  DocumentStarts starts;
+  while (starts.marks.size() < 2 && parser.HandleNextDocument(starts)) {
+  }
+  if (starts.marks.size() == 2 && starts.marks[0].pos == starts.marks[1].pos) {
+    throw YAML::ParserException(starts.marks[1], "nothing can begin with this character");
+  }
+  return static_cast<int>(starts.marks.size());
+}
+
 YAML::Node parse_yaml(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() != 1) {
-      throw ConfigError(file,
-                        {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents.size())}});
+    if (const int documents = count_documents(text); documents != 1) {
+      throw ConfigError(file, {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents)}});
     }
-    return documents.front();
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw ConfigError(file, {yaml_trouble(text, position_of(error.mark), error.msg)});
   }

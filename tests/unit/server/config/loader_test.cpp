@@ -691,6 +691,9 @@ TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
 }
 
 TEST_F(Loader, wants_one_document_that_is_a_mapping) {
+  // yaml-cpp finds documents without end there.
+  EXPECT_THAT(complaints("# a comment\n, world\n"),
+              ElementsAre("config.yaml:2:1: nothing can begin with this character (expected valid YAML)"));
   EXPECT_THAT(complaints(""), ElementsAre("config.yaml: holds 0 YAML documents (expected one)"));
   EXPECT_THAT(complaints(minimal_config + "---\na: 1\n"),
               ElementsAre("config.yaml: holds 2 YAML documents (expected one)"));
