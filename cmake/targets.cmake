@@ -40,6 +40,13 @@ function(sonard_program name)
   target_link_libraries(${name} PRIVATE sonard_flags)
 endfunction()
 
+# sonard_fuzzed(NAME): coverage feedback for libFuzzer, whose main() only the fuzz programs link (tests/fuzz).
+function(sonard_fuzzed name)
+  if(SONARD_FUZZ)
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
 # sonard_proto_library(NAME PROTO IMPORTED...): the generated code of PROTO.proto, a path in the source tree, and the
 # libraries of the files that it imports. It compiles under its own rules, so it stays apart and its header is a
 # SYSTEM one.

@@ -14,6 +14,10 @@ ping360/           the same three for the Ping360
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
 mavlink/           datagrams of each message, signed, among others, broken
+pose/              pose messages, and streams of them
+configuration/     configurations that are good, and those with one mistake each
+sdf/               small worlds
+web/               what a browser sends over one connection
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
 for another reason (inputs that once failed) are left alone.
@@ -21,12 +25,16 @@ for another reason (inputs that once failed) are left alone.
 import io
 import pathlib
 import struct
+import sys
 import zipfile
 import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "data"
 CORPUS = HERE / "corpus"
+CONFIGURATIONS = HERE.parent.parent / "configs"
+sys.path.append(str(HERE.parent / "system" / "gemini"))
+import wire
 
 # Kinds of events, as in the programs for the Gemini.
 FROM_A, FROM_B, TRIGGER, WATER, IMAGE, IMAGE_FAILED = range(6)
@@ -379,6 +387,59 @@ def mavlink_datagrams():
     yield "broken", b"\xfd\x1e\0\xfe\xff" + mavlink_frame(32, 184, position) + mavlink_frame(32, 185, position[:9], 1)
 
 
+def pose_streams():
+    def frame(message):
+        length = len(message)
+        return bytes([length & 127 | 128, length >> 7]) + message if length > 127 else bytes([length]) + message
+
+    alone = wire.pose_update(1_000_000_000, (1.0, -2.0, 3.0))
+    with_body = wire.pose_update(2_000_000_000, (1.0, -2.0, 3.0), bodies=[("rov", (0.5, 0.0, 0.0))])
+    yield "message", alone
+    yield "message_with_body", with_body
+    yield "stream", frame(alone) + frame(with_body) + frame(alone)
+    yield "cut_stream", frame(alone) + frame(with_body)[:9]
+    yield "length_beyond_the_limit", b"\xff\xff\x7f" + alone
+
+
+def configurations():
+    for path in sorted((EXAMPLES / "configs" / "broken").glob("*.yaml")):
+        yield path.stem, path.read_bytes()
+    for name in ("demo", "demo-micron", "demo-ping360", "two-vehicles-a"):
+        yield name.replace("-", "_"), (CONFIGURATIONS / f"{name}.yaml").read_bytes()
+
+
+def sdf_worlds():
+    for path in ("system/two_walls", "system/sphere_to_port", "worlds/harbour/quay/quay", "configs/broken/assets/malformed",
+                 "public_worlds/nested_includes"):
+        yield path.rsplit("/", 1)[1], (EXAMPLES / f"{path}.sdf").read_bytes()
+
+
+def web_connections():
+    def request(line, headers="", body=""):
+        return f"{line} HTTP/1.1\r\nHost: 127.0.0.1:8014\r\n{headers}\r\n{body}".encode()
+
+    def frame(payload, opcode=1):
+        mask = bytes([1, 2, 3, 4])
+        length = bytes([0x80 | len(payload)]) if len(payload) < 126 else struct.pack(">BH", 0x80 | 126, len(payload))
+        return bytes([0x80 | opcode]) + length + mask + bytes(byte ^ mask[i % 4] for i, byte in enumerate(payload))
+
+    upgrade = ("Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n")
+    yield "index", request("GET /")
+    yield "status", request("GET /api/status")
+    yield "metrics_and_health", request("GET /metrics") + request("HEAD /health", "Connection: close\r\n")
+    yield "world", request("GET /api/world?x=1") + request("GET /nothing")
+    yield "recording", request("POST /api/recording", "Content-Length: 12\r\nAuthorization: Bearer x\r\n", '{"on": true}')
+    yield "chunked", request("POST /api/recording", "Transfer-Encoding: chunked\r\n",
+                             '5\r\n{"on"\r\n7\r\n: true}\r\n0\r\n\r\n')
+    yield "another_site", b"GET / HTTP/1.1\r\nHost: example.com\r\nOrigin: http://example.com\r\n\r\n"
+    yield "live", (request("GET /api/live", upgrade) + frame(b'{"type": "want", "head": 0, "max_rows": 200}') +
+                   frame(b'{"type": "want_status"}') + frame(b"{") + frame(b"", 9) + frame(b"", 8))
+    yield "foxglove", (request("GET /", upgrade + "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n") +
+                       frame(b'{"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]}') +
+                       frame(b'{"op":"unsubscribe","subscriptionIds":[1]}') + frame(b"\x01abc", 2) + frame(b"", 8))
+
+
 def write(folder, name, data):
     target = CORPUS / folder
     target.mkdir(parents=True, exist_ok=True)
@@ -398,7 +459,8 @@ def main():
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
                             ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
-                            ("mavlink", mavlink_datagrams())):
+                            ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
+                            ("configuration", configurations()), ("sdf", sdf_worlds()), ("web", web_connections())):
         for name, script in scripts:
             write(folder, name, script)
 

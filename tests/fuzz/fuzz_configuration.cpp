@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes as a configuration.
+// Promises: it is read, or every problem has a line of its own that is not too long; nothing else is thrown.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "server/config/config_error.hpp"
+#include "server/config/loader.hpp"
+#include "server/devices/kinds/kinds.hpp"
+#include "tests/fuzz/file_in_memory.hpp"
+#include "tests/fuzz/require.hpp"
+
+using sonard::fuzz::require;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const sonard::fuzz::FileInMemory file;
+  file.hold(data, size);
+  try {
+    const sonard::server::LoadedConfig loaded = load_config(file.path(), sonard::server::head_kinds());
+    require(!loaded.config.heads.empty(), "a configuration has a head");
+  } catch (const sonard::server::ConfigError& error) {
+    require(!error.lines().empty() && error.lines().size() <= 1001, "problems are listed, and bounded");
+    for (const std::string& line : error.lines()) {
+      require(!line.empty() && line.size() < 4096, "a problem is one line");
+    }
+  }
+  return 0;
+}
