@@ -108,6 +108,9 @@ const SdfReader::Document& SdfReader::open(const fs::path& file) {
                                  std::max(1, document.xml->ErrorLineNum()), name));
   }
   document.root = document.xml->RootElement();
+  if (document.root == nullptr) {
+    throw WorldError(fmt::format("{}: holds no element (expected <sdf version=\"1.9\">)", file.string()));
+  }
   const std::string_view root = document.root->Name();
   if (root != "sdf") {
     throw WorldError(fmt::format("{}:{}: <{}> is no SDF (expected <sdf version=\"1.9\">){}", file.string(),

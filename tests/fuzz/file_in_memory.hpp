@@ -1,38 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that is only in memory, for readers that want a path.
+// A file whose content changes with each input, for readers that want a path.
 #pragma once
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "tests/fuzz/require.hpp"
 
 namespace sonard::fuzz {
 
+/// In a folder of its own, in memory where the machine has a file system for that.
 class FileInMemory {
  public:
-  FileInMemory() : descriptor_(memfd_create("input", MFD_CLOEXEC)) {
-    require(descriptor_ >= 0, "this machine has files in memory");
+  /// @param suffix of its name: readers go by it
+  explicit FileInMemory(const std::string& suffix) {
+    std::string folder =
+        std::string(access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp") + "/sonard-fuzz-XXXXXX";
+    require(mkdtemp(folder.data()) != nullptr, "this machine has a folder for temporary files");
+    folder_ = folder;
+    path_ = folder_ / ("input" + suffix);
   }
-  ~FileInMemory() { close(descriptor_); }
+  ~FileInMemory() { std::filesystem::remove_all(folder_); }
   FileInMemory(const FileInMemory&) = delete;
   FileInMemory& operator=(const FileInMemory&) = delete;
 
   /// Its content from now on.
   void hold(const std::uint8_t* data, std::size_t size) const {
-    require(
-        ftruncate(descriptor_, 0) == 0 && pwrite(descriptor_, data, size, 0) == static_cast<ssize_t>(size),
-        "the input can be written");
+    std::ofstream file(path_, std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+    file.close();
+    require(file.good(), "the input can be written");
   }
-  std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  const std::filesystem::path& path() const { return path_; }
 
  private:
-  int descriptor_;
+  std::filesystem::path folder_, path_;
 };
 
 }  // namespace sonard::fuzz

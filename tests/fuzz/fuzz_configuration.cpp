@@ -14,7 +14,7 @@
 using sonard::fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const sonard::fuzz::FileInMemory file;
+  static const sonard::fuzz::FileInMemory file(".yaml");
   file.hold(data, size);
   try {
     const sonard::server::LoadedConfig loaded = load_config(file.path(), sonard::server::head_kinds());

@@ -13,7 +13,7 @@ using sonard::fuzz::require;
 using namespace sonard::render;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const sonard::fuzz::FileInMemory file;
+  static const sonard::fuzz::FileInMemory file(".sdf");
   file.hold(data, size);
   try {
     const World world = load_world(file.path(), {}, MissingFiles::skip);

@@ -264,6 +264,8 @@ TEST(BadWorldFile, IsNamed) {
   EXPECT_EQ(load_error("/nowhere/w.sdf"), "/nowhere/w.sdf: world file not found");
   EXPECT_THAT(load_error(folder.path()), HasSubstr("world file not found"));
   EXPECT_THAT(load_error(folder.write("empty.sdf", "")), HasSubstr("empty.sdf:1: not well-formed XML"));
+  EXPECT_THAT(load_error(folder.write("bare.sdf", "<?xml version=\"1.0\"?>\n")),
+              HasSubstr("bare.sdf: holds no element"));
   EXPECT_THAT(load_error(folder.write("two.sdf",
                                       "<sdf version=\"1.9\"><world name=\"a\"/><world name=\"b\"/></sdf>")),
               AllOf(HasSubstr("two.sdf"), HasSubstr("2 worlds")));
