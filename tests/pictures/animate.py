@@ -3,7 +3,7 @@
 """Makes a moving picture of the frames that `sonard render` has written (needs python3-pil).
 
     sonard render configs/demo.yaml --trajectory configs/trajectories/docking_demo.csv --out out/demo \\
-        --rate 1 --range 20 --compression 1 --size 420
+        --rate 1 --range 25 --compression 1 --size 420
     tests/pictures/animate.py out/demo docs/images/docking_demo.webp --times 4
 """
 

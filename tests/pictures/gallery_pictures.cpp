@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// gallery_pictures [NAME...]: draws the pictures of docs/gallery.md, each scene with effects off and on.
+// gallery_pictures [NAME...]: draws the pictures of docs/gallery.md, each scene with effects off and as
+// configured.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -16,9 +17,8 @@ std::vector<Halves> halves_of(const std::vector<std::string>& names) {
   for (const GalleryScene& scene : gallery_scenes()) {
     if (std::find(names.begin(), names.end(), scene.name) != names.end()) {
       const View view = view_of(scene);
-      Halves halves{scene.name, view, "effects off", view, "effects on"};
+      Halves halves{scene.name, view, "effects off", view, "as configured"};
       take_effects_off(halves.left);
-      put_effects_on(halves.right);
       all.push_back(std::move(halves));
     }
   }
@@ -30,8 +30,8 @@ std::vector<Halves> halves_of(const std::vector<std::string>& names) {
 int main(int argc, char** argv) {
   PictureProgram program{.name = "gallery_pictures",
                          .description =
-                             "Draws the scenes of docs/gallery.md, each with effects off on the left and on "
-                             "on the right.",
+                             "Draws the scenes of docs/gallery.md, each with effects off on the left and as "
+                             "configured on the right.",
                          .folder = SONARD_SOURCE_DIR "/docs/images/gallery",
                          .names = {},
                          .halves = halves_of};

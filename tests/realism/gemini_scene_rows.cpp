@@ -264,7 +264,8 @@ double most_saturated() {
   return most;
 }
 
-double mean_code(const GeminiImage& image, double from_m, double to_m, double from_deg, double to_deg) {
+std::vector<double> codes_of(const GeminiImage& image, double from_m, double to_m, double from_deg,
+                             double to_deg) {
   std::vector<double> codes;
   for (int line = static_cast<int>(from_m / image.line_m); line < static_cast<int>(to_m / image.line_m);
        ++line) {
@@ -272,14 +273,20 @@ double mean_code(const GeminiImage& image, double from_m, double to_m, double fr
       codes.push_back(image.at(line, beam));
     }
   }
-  return mean_of(codes);
+  return codes;
+}
+double mean_code(const GeminiImage& image, double from_m, double to_m, double from_deg, double to_deg) {
+  return mean_of(codes_of(image, from_m, to_m, from_deg, to_deg));
 }
 
-/// Behind the docking station and its halo, and on the bed to both sides of it, at the same ranges.
+/// From 20 to 22 m behind the docking station, and on the bed to both sides of it: medians, so that neither a
+/// stone nor a ghost counts for the bed or against the shadow.
 double shadow_db() {
-  const GeminiImage image = world_of("demo.yaml", 20);
-  const double beside = (mean_code(image, 17, 19, -26, -14) + mean_code(image, 17, 19, 14, 22)) / 2;
-  return 2 * decibels(beside / mean_code(image, 17, 19, -6, 4));
+  const GeminiImage image = world_of("demo.yaml", 25);
+  const auto median = [&](double from_deg, double to_deg) {
+    return quantile_of(codes_of(image, 20, 22, from_deg, to_deg), 0.5);
+  };
+  return 2 * decibels(std::min(median(-24, -14), median(12, 22)) / median(-12, 4));
 }
 
 /// By how much bounces make it brighter in mid-fan, from `from_m` on, in steps of half a metre.

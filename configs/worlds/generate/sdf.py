@@ -15,7 +15,9 @@ class World:
         self._lines = [_HEAD.format(name=name, about=about).rstrip("\n")]
 
     def model(self, name, visuals, pose="0 0 0 0 0 0", static=True, scale=None, comment=None):
-        """One body: `visuals` are (name, mesh file, acoustic material) and, where there is one, a normal map file."""
+        """One body: `visuals` are (name, mesh file, acoustic material) and, where there is one, a normal map file.
+
+        A material is a name, or (name, mu in dB) where its diffuse backscatter is another."""
         out = self._lines.append
         if comment:
             out(f"    <!-- {comment} -->")
@@ -27,7 +29,8 @@ class World:
             out(f'        <visual name="{visual}">')
             size = f"<scale>{scale}</scale>" if scale else ""
             out(f"          <geometry><mesh><uri>{mesh}</uri>{size}</mesh></geometry>")
-            out(f"          <sonard:material>{material}</sonard:material>")
+            name, mu = (material, "") if isinstance(material, str) else (material[0], f' lambert_mu_db="{material[1]}"')
+            out(f"          <sonard:material{mu}>{name}</sonard:material>")
             for file in normal_map:
                 out(f"          <material><pbr><metal><normal_map>{file}</normal_map></metal></pbr></material>")
             out("        </visual>")

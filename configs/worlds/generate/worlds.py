@@ -90,8 +90,8 @@ def docking_station():
         for sy in (-1, 1):
             seabed.scour((sx * 2.25, 0.6 + sy * 1.75), 0.60, 0.07)
     boulders = [  # name, shape, x, y, scale, yaw
-        ("boulder_1", "d", 7.4, 3.2, 1.0, 0.4), ("boulder_2", "b", 6.1, 4.5, 1.0, 2.0), ("boulder_3", "a", -7.2, 5.6, 1.0, 1.1),
-        ("boulder_4", "c", -5.9, 4.6, 1.0, 0.2), ("boulder_5", "b", -8.8, -7.6, 1.1, 3.0), ("boulder_6", "c", 5.2, -7.4, 1.0, 0.9),
+        ("boulder_1", "d", 8.6, -0.6, 0.8, 0.4), ("boulder_2", "b", 7.2, 0.9, 1.0, 2.0), ("boulder_3", "a", -9.5, 2.4, 0.8, 1.1),
+        ("boulder_4", "c", -8.2, 0.5, 1.0, 0.2), ("boulder_5", "b", -8.8, -7.6, 1.1, 3.0), ("boulder_6", "c", 5.2, -7.4, 1.0, 0.9),
         ("boulder_7", "a", 10.8, -2.2, 0.9, 5.1), ("boulder_8", "c", 1.6, 8.1, 1.2, 4.0), ("boulder_9", "d", -13.5, 2.1, 0.8, 2.5),
         ("boulder_10", "b", 12.9, 9.4, 1.3, 0.7)]
     _scour_boulders(seabed, boulders)
@@ -115,7 +115,8 @@ def docking_station():
         f"{folder}/rov.ply": rov_mesh().ply(),
     }
     world = World("docking_station", "A docking station beside a pipeline on a rippled seabed.")
-    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
+    # Coarse sand with shells: far brighter than fine sand, so that what casts a shadow is seen by it.
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", ("sand", -13)), ("cobbles", f"{folder}/cobbles.ply", "rock")])
     world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled"),
                              ("clamps", f"{folder}/clamps.ply", "steel_fouled")])
     world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])

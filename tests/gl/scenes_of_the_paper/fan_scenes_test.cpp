@@ -123,7 +123,8 @@ TEST(FanScenesOnRay, DockingStationIsBrighterThanTheBedAndCastsAShadow) {
     const double heading = std::atan2(-0.85 + 11.913, x + 2.136);
     const int beam = scene.beam_at(heading - 80 * degree);
     const double face_m = std::sqrt(std::pow(-0.85 + 11.913, 2) + std::pow(x + 2.136, 2) + std::pow(4.12, 2));
-    EXPECT_GT(scene.strongest(beam, face_m - 0.15, face_m + 0.25), 10 * scene.median(beam, 8.8, 9.6)) << x;
+    // Upright steel, mu -15 dB, over sand, -13 dB, at a grazing angle of sine 4.4 / 9.2: 4.4 dB, 2.8 times.
+    EXPECT_GT(scene.strongest(beam, face_m - 0.15, face_m + 0.25), 2.8 * scene.median(beam, 8.8, 9.6)) << x;
     // Behind roof, tunnel and equipment at least half of the bed is in shadow; beside it hardly any.
     const double behind = scene.energy(beam, 16.5, 19.5);
     const double beside = scene.energy(scene.beam_at(-22 * degree), 16.5, 19.5);

@@ -7,7 +7,7 @@ namespace sonard::pictures {
 
 const std::vector<GalleryScene>& gallery_scenes() {
   static const std::vector<GalleryScene> all{
-      {.name = "docking_station", .config = "demo.yaml", .range_m = 20},
+      {.name = "docking_station", .config = "demo.yaml", .range_m = 25},
       {.name = "manifold", .config = "manifold.yaml", .range_m = 25},
       {.name = "ssiv", .config = "ssiv.yaml", .range_m = 20},
       {.name = "tank", .config = "demo-micron.yaml", .range_m = 12},
@@ -36,13 +36,6 @@ void take_effects_off(View& view) {
   physical.pulse = render::PhysicalModel::Pulse::point;
   view.settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
   view.settings.aperture.elevation = render::Aperture::Elevation::top_hat;
-}
-
-void put_effects_on(View& view) {
-  render::PhysicalModel& physical = view.settings.physical;
-  physical.backscatter = render::PhysicalModel::Backscatter::lambert_facet;
-  physical.multipath.level = render::MultipathSettings::Level::full;
-  physical.volume_scattering_db = -65;
 }
 
 }  // namespace sonard::pictures

@@ -25,8 +25,4 @@ View view_of(const GalleryScene& scene);
 /// Geometry and sonar equation alone: smooth echoes in silent water, heard by a beam with sharp edges.
 void take_effects_off(View& view);
 
-/// All that sonard models of a real receiver: what its configuration turns on anyway, and the effects that
-/// are off until asked for, at the levels that recordings show (docs/physics.md 2.16).
-void put_effects_on(View& view);
-
 }  // namespace sonard::pictures
