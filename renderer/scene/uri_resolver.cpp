@@ -35,6 +35,16 @@ std::string list(const std::vector<fs::path>& folders) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Both absolute.
+bool lies_below(const fs::path& path, const fs::path& folder) {
+  const auto differs = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first;
+  return !folder.empty() && differs == folder.end();
+}
+
+bool lies_below_any(const fs::path& path, const std::vector<fs::path>& folders) {
+  return std::ranges::any_of(folders, [&](const fs::path& folder) { return lies_below(path, folder); });
+}
+
 }  // namespace
 
 std::vector<fs::path> model_folders_from_environment() {
@@ -54,17 +64,23 @@ std::vector<fs::path> model_folders_from_environment() {
 
 UriResolver::UriResolver(const fs::path& world_file, const std::vector<fs::path>& model_folders) {
   const fs::path folder = fs::absolute(world_file).parent_path();
-  for (const fs::path& candidate : {folder, folder / "models", folder.parent_path() / "models"}) {
-    add_model_folder(candidate);
+  std::vector<fs::path> candidates{folder, folder / "models", folder.parent_path() / "models"};
+  candidates.insert(candidates.end(), model_folders.begin(), model_folders.end());
+  for (const fs::path& candidate : candidates) {
+    if (const auto found = existing(candidate)) {
+      roots_.push_back(*found);
+      add_model_folder(*found);
+    }
   }
-  for (const fs::path& candidate : model_folders) {
-    add_model_folder(candidate);
+  if (const auto meshes = existing(folder.parent_path() / "meshes")) {
+    roots_.push_back(*meshes);
   }
 }
 
 void UriResolver::add_model_folder(const fs::path& folder) {
   const auto found = existing(folder);
-  if (found && std::find(model_folders_.begin(), model_folders_.end(), *found) == model_folders_.end()) {
+  if (found && lies_below_any(*found, roots_) &&
+      std::find(model_folders_.begin(), model_folders_.end(), *found) == model_folders_.end()) {
     model_folders_.push_back(*found);
   }
 }
@@ -75,17 +91,32 @@ void UriResolver::name_model(const std::string& name, const fs::path& folder) {
 
 fs::path UriResolver::resolve_model(const std::string& uri, std::string_view rest) const {
   const std::size_t end = std::min(rest.find('/'), rest.size());
+  // A model may name its neighbours: "model://NAME/../OTHER/mesh.stl".
   if (const auto named = named_.find(lower_case(rest.substr(0, end))); named != named_.end()) {
-    if (const auto found = existing(named->second / rest.substr(std::min(end + 1, rest.size())))) {
+    const fs::path path = named->second / rest.substr(std::min(end + 1, rest.size()));
+    if (const auto found = existing(path)) {
+      check_place(uri, path, named->second);
       return *found;
     }
   }
   for (const fs::path& folder : model_folders_) {
     if (const auto found = existing(folder / rest)) {
+      check_place(uri, folder / rest, folder);
       return *found;
     }
   }
   throw MissingFile(fmt::format("'{}' not found; looked in {}", uri, list(model_folders_)));
+}
+
+void UriResolver::check_place(const std::string& uri, const fs::path& path,
+                              const fs::path& naming_folder) const {
+  const fs::path place = path.lexically_normal();
+  if (!lies_below(place, naming_folder) && !lies_below_any(place, roots_)) {
+    throw WorldError(
+        fmt::format("'{}' leads out of the folders of this world and its models, to {}; name its folder in "
+                    "GZ_SIM_RESOURCE_PATH if it may be read",
+                    uri, place.string()));
+  }
 }
 
 fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_folder) const {
@@ -109,6 +140,7 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
                     uri));
   }
   const fs::path path = naming_folder / rest;  // an absolute `rest` wins
+  check_place(uri, path, naming_folder);
   if (const auto found = existing(path)) {
     return *found;
   }

@@ -17,15 +17,17 @@ struct MissingFile : WorldError {
   using WorldError::WorldError;
 };
 
-/// Where the files that a world names are looked for. Never touches a network.
+/// Where the files that a world names are looked for. Never touches a network, and never a file that lies
+/// outside of the folders it was given: a world may come from anywhere.
 class UriResolver {
  public:
   /// Looks for `model://NAME/...` in the folder of `world_file`, in `models/` there, beside it (`../models`),
-  /// and then in `model_folders`.
+  /// and then in `model_folders`. Files may lie below these, and in `meshes/` beside the world's folder.
   UriResolver(const std::filesystem::path& world_file,
               const std::vector<std::filesystem::path>& model_folders);
 
-  /// A folder that holds models, found while loading: `model://` is looked for there too.
+  /// A folder that holds models, found while loading: `model://` is looked for there too, if it lies below
+  /// the folders that were given.
   void add_model_folder(const std::filesystem::path& folder);
 
   /// `model://NAME/...` is looked for in this folder of a model, before all others.
@@ -36,12 +38,16 @@ class UriResolver {
   /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), which is looked for in Gazebo's local
   /// cache.
   /// @return an existing file or folder, canonical.
-  /// @throws MissingFile saying where it was looked for; WorldError for a URI that is none
+  /// @throws MissingFile saying where it was looked for; WorldError for a URI that is none, or that leads out
+  /// of `naming_folder` and all folders of models. Links are followed, whoever made them.
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
  private:
   std::filesystem::path resolve_model(const std::string& uri, std::string_view rest) const;
+  void check_place(const std::string& uri, const std::filesystem::path& path,
+                   const std::filesystem::path& naming_folder) const;
 
+  std::vector<std::filesystem::path> roots_;  ///< files may lie below these
   std::vector<std::filesystem::path> model_folders_;
   std::map<std::string, std::filesystem::path, std::less<>> named_;  ///< in lower case
 };

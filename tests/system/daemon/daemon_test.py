@@ -441,6 +441,19 @@ class Faults(DaemonCase):
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=START_S)
         return done.returncode, done.stdout
 
+    def test_it_writes_no_file_that_it_was_not_told_to(self):
+        """Neither into the home folder nor into the one that it was started from, where libraries put their logs."""
+        with tempfile.TemporaryDirectory() as home, tempfile.TemporaryDirectory() as here:
+            environment = {**os.environ, "HOME": home, "TMPDIR": home, "XDG_CACHE_HOME": "", "XDG_CONFIG_HOME": ""}
+            daemon, client = self.start_bare(self.configuration(), env=environment, cwd=here)
+            self.configured(client)
+            self.lines(client, 3)
+            daemon.send_signal(signal.SIGTERM)
+            self.assertEqual(daemon.wait(PATIENCE_S), 0)
+            self.assertEqual(os.listdir(here), [])
+            self.assertEqual(os.listdir(home), [])
+            self.assertEqual(os.listdir(self.folder.name), ["sonard.yaml"])
+
     def test_a_port_that_is_taken_is_named(self):
         with socket.socket() as other:
             other.bind(("127.0.0.1", self.port))

@@ -18,7 +18,7 @@ const std::string shape = "<geometry><sphere><radius>1</radius></sphere></geomet
 
 std::string load_error(const std::filesystem::path& file) {
   try {
-    load_world(file, {});
+    load_world(file, {SONARD_SOURCE_DIR "/tests/data/worlds"});
   } catch (const WorldError& error) {
     return error.what();
   }
@@ -177,6 +177,54 @@ std::vector<std::string> all_errors(const std::filesystem::path& file) {
     return lines;
   }
   return {};
+}
+
+/// A world from somebody else may name any file: those outside of its folders are not even looked for.
+TEST(BadWorldFile, LeadsOutOfItsFolders) {
+  const test::TempFolder folder;
+  folder.write("secret/quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("secret/model.sdf", "<sdf version=\"1.9\"><model name=\"s\"/></sdf>");
+  folder.write("project/models/b/model.config", "<model><sdf version=\"1.9\">model.sdf</sdf></model>");
+  const auto mesh = [](const std::string& uri) {
+    return model("<geometry><mesh><uri>" + uri + "</uri></mesh></geometry>");
+  };
+  const std::string quad = (folder.path() / "secret/quad.obj").string();
+  for (const std::string& content :
+       {mesh(quad), mesh("file://" + quad), mesh("../../secret/quad.obj"), mesh("a/../../../secret/quad.obj"),
+        mesh("model://b/../../../secret/quad.obj"), mesh("../../secret/none.obj"), mesh("/etc/passwd"),
+        std::string("<include><uri>../../secret</uri></include>"),
+        std::string("<include><uri>model://../../secret</uri></include>")}) {
+    const auto file = folder.write(
+        "project/worlds/w.sdf", "<sdf version=\"1.9\">\n<world name=\"w\">\n" + content + "\n</world></sdf>");
+    EXPECT_THAT(load_error(file), HasSubstr("leads out of the folders of this world and its models"))
+        << content;
+  }
+}
+
+TEST(WorldFile, MayBeInItsFoldersModelsAndMeshes) {
+  const test::TempFolder folder;
+  const std::string quad = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string project = (folder.path() / "project").string();
+  for (const char* place : {"worlds/here/quad.obj", "meshes/quad.obj", "models/b/quad.obj"}) {
+    folder.write("project/" + std::string(place), quad);
+  }
+  folder.write("elsewhere/quad.obj", quad);
+  std::filesystem::create_directory_symlink(folder.path() / "elsewhere",
+                                            folder.path() / "project/worlds/link");
+  const auto world = [&](const std::string& uri) {
+    return folder.write("project/worlds/w.sdf",
+                        "<sdf version=\"1.9\">\n<world name=\"w\">\n" +
+                            model("<geometry><mesh><uri>" + uri + "</uri></mesh></geometry>") +
+                            "\n</world></sdf>");
+  };
+  for (const std::string& uri :
+       {std::string("here/quad.obj"), std::string("here/../here/quad.obj"), std::string("../meshes/quad.obj"),
+        std::string("../models/b/quad.obj"), std::string("model://b/quad.obj"),
+        project + "/models/b/quad.obj", std::string("link/quad.obj")}) {
+    EXPECT_EQ(load_error(world(uri)), "no error") << uri;
+  }
+  const auto outside = world((folder.path() / "elsewhere/quad.obj").string());
+  EXPECT_NO_THROW(load_world(outside, {folder.path() / "elsewhere"})) << "named by the operator";
 }
 
 TEST(BadWorldFile, IsToldOfWhole) {

@@ -301,7 +301,7 @@ TEST(SdfWorld, KnowsEveryShape) {
                         visual("h", geometry("<mesh><uri>file://" + (data / "tetrahedron.ply").string() +
                                              "</uri></mesh>")) +
                         visual("i", geometry("<empty/>"))));
-  const World world = load_world(file, {});
+  const World world = load_world(file, {data});
   const auto& parts = world.bodies.at(0).parts;
   ASSERT_EQ(parts.size(), 8U);
   const double pi = 3.14159265358979;
@@ -326,7 +326,7 @@ TEST(SdfWorld, TakesMaterialsInTheDocumentedOrder) {
           visual("retro", ball + "<laser_retro>0.7</laser_retro>") + visual("none", ball) +
           visual("mesh", obj + "<laser_retro>0.7</laser_retro>") +
           visual("mesh_own", obj + "<sonard:material>pvc</sonard:material>")));
-  const World world = load_world(file, {});
+  const World world = load_world(file, {data});
   std::vector<std::string> names;
   for (const BodyPart& part : world.bodies.at(0).parts) {
     names.push_back(part.material.name);
