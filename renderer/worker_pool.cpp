@@ -8,6 +8,8 @@
 #include <exception>
 #include <utility>
 
+#include "renderer/usable_cores.hpp"
+
 namespace sonard::render {
 
 namespace {
@@ -43,7 +45,7 @@ void spin_until(const std::atomic<int>& value, microseconds longest, Wanted want
 }  // namespace
 
 WorkerPool::WorkerPool(unsigned threads) {
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const unsigned cores = usable_cores();
   if (threads == 0) {
     threads = cores;
   }

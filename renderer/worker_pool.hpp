@@ -21,7 +21,7 @@ namespace sonard::render {
 /// nothing: the others have taken its share.
 class WorkerPool {
  public:
-  /// @param threads total number of threads including the caller; 0: one per core.
+  /// @param threads total number of threads including the caller; 0: one per usable core.
   /// @throws std::system_error when a thread cannot be started
   explicit WorkerPool(unsigned threads = 0);
   ~WorkerPool();

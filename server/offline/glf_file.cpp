@@ -75,7 +75,6 @@ void GlfFile::finish() {
     log->write(block);
   }
   log->write(as_text(packer.tail()));
-  log->sync();
   packed_.push_back({glf::log_name(stamp), std::move(log)});
   dat_.reset();
 }

@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* manifest_name = "run.json";
 constexpr const char* part_prefix = ".part-";
+constexpr const char* lock_name = ".part-lock";
 constexpr mode_t file_mode = 0644;  // mkstemp makes files for the owner alone
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& doing) {
@@ -74,13 +75,12 @@ std::string PartFile::read(std::uint64_t offset, std::size_t size) const {
   return bytes;
 }
 
-void PartFile::sync() {
+// Bytes are on the disk, or at the file server, before the name says that they are: a machine that fails
+// leaves no file that looks whole.
+void PartFile::publish(const std::string& name) {
   if (fsync(file_) != 0) {
     fail(folder_, "write a file in it");
   }
-}
-
-void PartFile::publish(const std::string& name) {
   if (rename(path_.c_str(), (folder_ / name).c_str()) != 0) {
     fail(folder_ / name, "make it");
   }
@@ -160,22 +160,43 @@ void OutputFolder::remove_if(bool (*unwanted)(const std::string& name)) const {
   }
 }
 
-// The folder itself is locked, so that no file is left for it.
-OutputFolder::Lock::Lock(const OutputFolder& folder)
-    : folder_(open(folder.path().c_str(), O_RDONLY | O_DIRECTORY)) {
-  if (folder_ < 0) {
-    fail(folder.path(), "open it");
-  }
-  while (flock(folder_, LOCK_EX) != 0) {
-    if (errno != EINTR) {
-      close(folder_);
-      fail(folder.path(), "lock it");
+// A file that is open for writing is locked, and not the folder itself: NFS passes locks of folders to no
+// other machine. Who waited for one that was then removed as a part begins anew.
+OutputFolder::Lock::Lock(const OutputFolder& folder) {
+  const std::filesystem::path path = folder.path() / lock_name;
+  do {
+    close_file();
+    file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, file_mode);
+    if (file_ < 0) {
+      fail(folder.path(), "make a file in it");
     }
-  }
+    while (flock(file_, LOCK_EX) != 0) {
+      if (errno != EINTR) {
+        const int error = errno;
+        close_file();
+        errno = error;
+        fail(folder.path(), "lock it");
+      }
+    }
+  } while (!names(path));
 }
 
 OutputFolder::Lock::~Lock() {
-  close(folder_);
+  close_file();
+}
+
+bool OutputFolder::Lock::names(const std::filesystem::path& path) const {
+  struct stat named {
+  }, locked{};
+  return stat(path.c_str(), &named) == 0 && fstat(file_, &locked) == 0 && named.st_dev == locked.st_dev &&
+         named.st_ino == locked.st_ino;
+}
+
+void OutputFolder::Lock::close_file() {
+  if (file_ >= 0) {
+    close(file_);
+    file_ = -1;
+  }
 }
 
 }  // namespace sonard::server

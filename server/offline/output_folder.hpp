@@ -30,9 +30,7 @@ class PartFile {
   void write(std::string_view bytes);
   /// Reads what was written, from `offset` on, up to `size` bytes of it.
   std::string read(std::uint64_t offset, std::size_t size) const;
-  /// Its bytes are on the disk. @throws OutputError
-  void sync();
-  /// Replaces whatever has that name, at once. @throws OutputError
+  /// Forces its bytes to the disk; then it replaces whatever has that name, at once. @throws OutputError
   void publish(const std::string& name);
 
  private:
@@ -64,7 +62,8 @@ class OutputFolder {
   /// @throws OutputError where it says something else
   void claim(const std::string& manifest, bool overwrite) const;
 
-  /// While it exists no other process has one; the end of a process ends it too.
+  /// While it exists no other process has one, on this machine or another that shares the folder; the end of
+  /// a process ends it too. Its file in the folder is a part: remove_parts() removes it.
   class Lock {
    public:
     explicit Lock(const OutputFolder& folder);
@@ -73,7 +72,10 @@ class OutputFolder {
     Lock& operator=(const Lock&) = delete;
 
    private:
-    int folder_ = -1;
+    bool names(const std::filesystem::path& path) const;
+    void close_file();
+
+    int file_ = -1;
   };
   /// Removes the parts of files left by processes that were killed. Only while no other process writes.
   void remove_parts() const;

@@ -14,7 +14,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -29,6 +28,7 @@
 #include "renderer/pipeline/engine_trial.hpp"
 #include "renderer/pipeline/self_test.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "renderer/usable_cores.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"
@@ -322,7 +322,8 @@ void RenderRun::render_missing() {
       progress.made(SteadyClock().now());
     }
   };
-  const std::size_t writers = std::max(1U, std::thread::hardware_concurrency() / 2);
+  // No fewer than four: most of the time they wait for the disk, and it takes several files in one go.
+  const std::size_t writers = std::max(4U, render::usable_cores() / 2);
   int next = 0;
   for (const int frame : missing) {
     if (interrupted_by != 0) {

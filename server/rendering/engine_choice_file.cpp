@@ -7,11 +7,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "renderer/usable_cores.hpp"
 
 namespace sonard::server {
 namespace {
@@ -160,7 +161,7 @@ std::string situation_of(const render::RendererOptions& options, const render::W
                   "MiB; world {} of "
                   "{} triangles; {}",
                   fs::last_write_time("/proc/self/exe", ignored).time_since_epoch().count(),
-                  std::thread::hardware_concurrency(), processor(), options.threads, listing("/dev/dri", ""),
+                  render::usable_cores(), processor(), options.threads, listing("/dev/dri", ""),
                   listing("/dev", "nvidia"), listing("/usr/share/glvnd/egl_vendor.d", ""), options.gpu.device,
                   options.gpu.memory_mib, world.name, world.triangle_count(), fmt::join(pings, "; ")));
 }

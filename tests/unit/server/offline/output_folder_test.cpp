@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -115,6 +116,36 @@ TEST_F(OutputFolderTest, OneLockAtATime) {
   }
   second.join();
   EXPECT_TRUE(second_had_it);
+}
+
+TEST_F(OutputFolderTest, ALockThatWasRemovedAsAPartIsTakenAnew) {
+  auto first = std::make_unique<OutputFolder::Lock>(folder);
+  std::atomic<bool> second_has_it = false;
+  std::atomic<bool> end = false;
+  std::thread second([&] {
+    const OutputFolder::Lock lock(folder);
+    second_has_it = true;
+    while (!end) {
+      std::this_thread::yield();
+    }
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // most likely it waits for the first by now
+  folder.remove_parts();
+  first.reset();
+  while (!second_has_it) {
+    std::this_thread::yield();
+  }
+  std::atomic<bool> third_had_it = false;
+  std::thread third([&] {
+    const OutputFolder::Lock lock(folder);
+    third_had_it = true;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_FALSE(third_had_it) << "the second held a lock that nobody else sees";
+  end = true;
+  second.join();
+  third.join();
+  EXPECT_TRUE(third_had_it);
 }
 
 TEST(OutputFolder, SaysWhatItCannotMakeOrWrite) {
