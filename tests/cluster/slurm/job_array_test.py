@@ -8,17 +8,15 @@ The truth is what one process makes of the same arguments. Needs Debian's slurm-
 """
 
 import argparse
-import pwd
 import hashlib
-import json
 import os
 import pathlib
+import pwd
 import re
 import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
@@ -27,29 +25,12 @@ import numpy
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.append(str(REPOSITORY / "tests" / "support"))
 import glf_reader  # noqa: E402
+from data_set import FRAMES, Files, frames, sums  # noqa: E402
 
 PROGRAMS = None  # folder of the programs under test
 RENDER = REPOSITORY / "docker" / "slurm" / "render.sh"
 PATIENCE_S = 600
 CORES = 4  # of the node, whatever this machine has
-FRAMES = 60
-CSV = "t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n5.9,1.475,0,0,0,0,0,1\n"
-CONFIG = f"""
-world:
-  file: {REPOSITORY}/tests/data/system/sphere_to_port.sdf
-poses:
-  initial:
-    position_m: [0, 0, 0]
-heads:
-  - name: bow
-    type: gemini_720i
-    sonar_id: 601
-    network:
-      alternate_address: 127.0.0.2
-      netmask: 255.0.0.0
-      status: [127.0.0.1]
-"""
-ARGUMENTS = ["--rate", "10", "--range", "6", "--picture-every", "4"]
 SLURM_CONF = """
 ClusterName=test
 SlurmctldHost=localhost(127.0.0.1)
@@ -112,8 +93,9 @@ class Slurm:
         (self.folder / "munge.key").write_bytes(hashlib.sha512(str(folder).encode()).digest())
         (self.folder / "munge.key").chmod(0o400)
         controller_port, node_port = free_ports(2)
+        self.user = pwd.getpwuid(os.getuid()).pw_name
         (self.folder / "slurm.conf").write_text(SLURM_CONF.format(
-            folder=folder, controller_port=controller_port, node_port=node_port, user=pwd.getpwuid(os.getuid()).pw_name, cores=CORES,
+            folder=folder, controller_port=controller_port, node_port=node_port, user=self.user, cores=CORES,
             host=socket.gethostname()))
         self.environment = os.environ | {"SLURM_CONF": str(self.folder / "slurm.conf"), "SONARD": str(PROGRAMS / "sonard")}
 
@@ -136,6 +118,9 @@ class Slurm:
                                                  env=self.environment | {"PATH": path}))
 
     def stop(self):
+        self.run("scancel", "--signal=KILL", "--full", "--user", self.user, check=False)
+        self.run("scancel", "--user", self.user, check=False)
+        wait_for("the end of all jobs", lambda: not self.run("squeue", "--noheader", check=False).stdout, 120)
         for daemon in reversed(self.daemons):
             daemon.terminate()
             daemon.wait(60)
@@ -165,55 +150,36 @@ class Slurm:
         over = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL")
         return wait_for(f"job {number}", lambda: (jobs := self.jobs(number)) and all(job["JobState"] in over for job in jobs) and jobs)
 
-    def processes(self, job):
-        """[(pid, first word)] of a running job."""
-        found = []
+    def processes(self, array, task):
+        """{name: pid} of what runs of a task."""
+        found = {}
+        marks = {f"SLURM_CONF={self.environment['SLURM_CONF']}".encode(), f"SLURM_ARRAY_JOB_ID={array}".encode(),
+                 f"SLURM_ARRAY_TASK_ID={task}".encode()}
         for folder in pathlib.Path("/proc").glob("[0-9]*"):
             try:
-                if f"SLURM_JOB_ID={job}".encode() in (folder / "environ").read_bytes().split(b"\0"):
-                    found.append((int(folder.name), os.path.basename((folder / "comm").read_text().strip())))
+                if marks <= set((folder / "environ").read_bytes().split(b"\0")):
+                    found[(folder / "comm").read_text().strip()] = int(folder.name)
             except OSError:
                 pass  # it has ended, or belongs to somebody else
         return found
 
 
-def sums(folder):
-    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in pathlib.Path(folder).iterdir()}
-
-
-def frames(folder):
-    """{name: (inode, time)} of the frames that are whole."""
-    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in pathlib.Path(folder).glob("ping_*.json")}
-
-
-class JobArray(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="sonard-cluster-")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        (cls.folder / "way.csv").write_text(CSV)
-        (cls.folder / "config.yaml").write_text(CONFIG)
-        (cls.folder / "slurm").mkdir()
-        cls.slurm = Slurm(cls.folder / "slurm")
-        cls.addClassCleanup(cls.slurm.stop)
-        cls.slurm.begin()
-        subprocess.run([PROGRAMS / "sonard", "render", *cls.arguments("one")], check=True, stdout=subprocess.DEVNULL,
-                       timeout=PATIENCE_S)
-        cls.truth = sums(cls.folder / "one")
-        assert len(frames(cls.folder / "one")) == FRAMES, cls.truth
-
-    @classmethod
-    def arguments(cls, out, *more):
-        return [str(cls.folder / "config.yaml"), "--trajectory", str(cls.folder / "way.csv"), "--out", str(cls.folder / out),
-                *(more or ARGUMENTS)]
+class JobArray(Files):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "slurm").mkdir()
+        self.slurm = Slurm(self.folder / "slurm")
+        self.addCleanup(self.slurm.stop)
+        self.slurm.begin()
 
     def log_of(self, out, task):
         return (self.folder / f"{out}.tasks" / f"{task}.log").read_text()
 
     def expect_whole(self, out):
         """The bytes of one process, all frames once in files and log, and nothing beside them."""
-        self.assertEqual(sums(self.folder / out), self.truth)
+        if not (self.folder / "whole").exists():
+            self.render_whole(PROGRAMS)
+        self.assertEqual(sums(self.folder / out), sums(self.folder / "whole"))
         [log] = (self.folder / out).glob("*.glf")
         images = glf_reader.read(str(log)).images
         self.assertEqual(len(images), FRAMES)
@@ -234,19 +200,24 @@ class JobArray(unittest.TestCase):
                 said = self.slurm.run(RENDER, "progress", self.folder / out).stdout
                 self.assertEqual(said.splitlines()[0], f"{FRAMES} of {FRAMES} frames")
 
-    def signal(self, number, jobs, names):
-        """To the processes of these names, one of each in each of the jobs."""
-        found = [pid for job in jobs for pid, name in self.slurm.processes(job["JobId"]) if name in names]
-        self.assertEqual(len(found), len(jobs) * len(names))
-        for pid in found:
-            os.kill(pid, number)
+    def signal_each(self, number, out, array, tasks, names):
+        """To the processes of these names of each task ({task: its first frame}), as soon as that is there."""
+        todo = dict(tasks)
+
+        def reached_all():
+            there = frames(self.folder / out)
+            for task in [task for task, first in todo.items() if f"ping_{first:06}.json" in there]:
+                running = self.slurm.processes(array, task)
+                for name in names:
+                    os.kill(running[name], number)
+                del todo[task]
+            return not todo
+        wait_for(f"the frames {tasks}", reached_all)
 
     def start_and_kill(self, out, victims):
-        """Two tasks; SIGKILL to these processes of the second when it has rendered a frame, before its last one."""
+        """Two tasks; SIGKILL to these processes of the second, which bears the number of the array, in the middle of its frames."""
         array, log = self.slurm.submit(2, *self.arguments(out))
-        wait_for("a frame", lambda: "ping_000002.json" in frames(self.folder / out))
-        [second] = [job for job in self.slurm.jobs(array) if job["ArrayTaskId"] == "2"]
-        self.signal(signal.SIGKILL, [second], victims)
+        self.signal_each(signal.SIGKILL, out, array, {2: 0}, victims)
         before = frames(self.folder / out)
         self.assertLess(len(before), FRAMES, "it was killed too late to show anything")
         print(f"    killed with {len(before)} of {FRAMES} frames there: {' and '.join(victims)}")
@@ -276,8 +247,8 @@ class JobArray(unittest.TestCase):
 
     def test_a_task_that_is_preempted_goes_on(self):
         array, log = self.slurm.submit(4, *self.arguments("preempted"))
-        wait_for("a frame of each", lambda: {f"ping_{k:06}.json" for k in range(4)} <= set(frames(self.folder / "preempted")))
-        self.signal(signal.SIGSTOP, self.slurm.jobs(array), ["sonard"])  # so that none is done before it is pre-empted
+        # They stop, so that none is done before it is pre-empted.
+        self.signal_each(signal.SIGSTOP, "preempted", array, {1: 1, 2: 2, 3: 3, 4: 0}, ["sonard"])
         urgent = self.slurm.run("sbatch", "--parsable", "--partition=urgent", f"--ntasks={CORES}", "--output=/dev/null",
                                 "--wrap=true").stdout.strip()
         self.assertEqual([job["JobState"] for job in self.slurm.end(urgent)], ["COMPLETED"])
@@ -288,6 +259,16 @@ class JobArray(unittest.TestCase):
         self.assertEqual([job["Restarts"] for job in done], ["1"] * 4)
         self.expect_kept("preempted", before)
         self.expect_whole("preempted")
+
+    def test_a_task_whose_time_is_nearly_up_goes_on_in_a_new_one(self):
+        array, log = self.slurm.submit(2, *self.arguments("late"))
+        self.signal_each(signal.SIGUSR1, "late", array, {2: 0}, ["slurm_script"])  # as Slurm does, by --signal
+        self.assertEqual([job["JobState"] for job in self.slurm.end(log)], ["COMPLETED"])
+        done = {job["ArrayTaskId"]: (job["JobState"], job["Restarts"]) for job in self.slurm.jobs(array)}
+        self.assertEqual(done, {"1": ("COMPLETED", "0"), "2": ("COMPLETED", "1")})
+        self.assertIn("its time is up; queued again", self.log_of("late", 2))
+        self.assertRegex(self.log_of("late", 2), rf"interrupted: \d+ of {FRAMES // 2} frames are there")
+        self.expect_whole("late")
 
     def test_a_mistake_is_not_tried_again(self):
         array, log = self.slurm.submit(2, *self.arguments("wrong", "--range", "6", "--head", "stern"))
