@@ -150,7 +150,7 @@ class RenderRun {
   std::vector<int> wanted_frames() const;
   cv::Mat draw(const Frame& made);
   void write(int frame, const Frame& made);
-  int missing_frames() const;
+  bool all_whole() const;
   void make_glf() const;
 
   DaemonConfig config_;
@@ -345,21 +345,24 @@ void RenderRun::render_missing() {
   }
 }
 
-int RenderRun::missing_frames() const {
-  int missing = 0;
+// Of many processes all but the last soon find a frame that is missing. To count those would be a look at every
+// file of the folder for each process, and over a network that takes longer than to render.
+bool RenderRun::all_whole() const {
   for (int frame = 0; frame < frames_->count(); ++frame) {
-    missing += whole(frame) ? 0 : 1;
+    if (!whole(frame)) {
+      return false;
+    }
   }
-  return missing;
+  return true;
 }
 
 void RenderRun::finish() {
-  const OutputFolder::Lock lock(folder_);
   const std::string out = folder_.path().string();
-  if (const int missing = missing_frames(); missing > 0) {
-    fmt::print("{}: {} of {} frames are there\n", out, frames_->count() - missing, frames_->count());
+  if (!all_whole()) {
+    fmt::print("{}: this share is there; of the {} frames others are missing\n", out, frames_->count());
     return;
   }
+  const OutputFolder::Lock lock(folder_);
   if (frames_->makes_glf()) {
     make_glf();
   }
