@@ -345,8 +345,8 @@ void RenderRun::render_missing() {
   }
 }
 
-// Of many processes all but the last soon find a frame that is missing. To count those would be a look at every
-// file of the folder for each process, and over a network that takes longer than to render.
+// Of many processes all but the last soon find a frame that is missing. To count those would be a look at
+// every file of the folder for each process, and over a network that takes longer than to render.
 bool RenderRun::all_whole() const {
   for (int frame = 0; frame < frames_->count(); ++frame) {
     if (!whole(frame)) {
