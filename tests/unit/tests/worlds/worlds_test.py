@@ -22,7 +22,7 @@ WORLDS = {"docking_station": 40_000, "ssiv": 40_000, "manifold": 20_000, "tank":
 
 
 def generate(*arguments):
-    return subprocess.run([sys.executable, "-B", GENERATOR, *arguments], capture_output=True, text=True, timeout=60)
+    return subprocess.run([sys.executable, "-B", GENERATOR, *arguments], capture_output=True, text=True, timeout=300)
 
 
 @functools.cache
