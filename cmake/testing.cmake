@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# How every test of this project is registered. A label (unit, gl, system, deep, logs, simulators, cluster) is a part of ./test; the target
+# How every test of this project is registered. A label (unit, gl, system, deep, soak, logs, simulators, cluster) is a part of ./test; the target
 # LABEL_tests builds all that the tests of one label start.
 include(GoogleTest)
 
-foreach(label unit gl system deep logs simulators cluster)
+foreach(label unit gl system deep soak logs simulators cluster)
   add_custom_target(${label}_tests)
 endforeach()
 

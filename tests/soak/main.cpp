@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// sonard_soak HEAD PINGS: pings of a head in virtual time, with a new client every 300; what the process
+// holds at each tenth, and exit code 1 where that grows or anything else is wrong.
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "tests/soak/footprint.hpp"
+#include "tests/soak/soak.hpp"
+#include "tests/soak/visitor.hpp"
+
+namespace {
+
+using namespace sonard::soak;
+
+const std::map<std::string, std::function<std::unique_ptr<HeadUnderSoak>()>> kinds{
+    {"gemini", gemini_under_soak},
+    {"micron", micron_under_soak},
+    {"oculus", oculus_under_soak},
+    {"ping360", ping360_under_soak},
+};
+
+double growth_percent(std::size_t before, std::size_t after) {
+  return 100.0 * (static_cast<double>(after) / static_cast<double>(before) - 1.0);
+}
+
+void print(const Soak& soak, const Footprint& held) {
+  using hours = std::chrono::duration<double, std::ratio<3600>>;
+  fmt::print(
+      "{:9} pings {:6} clients {:8.2f} h   resident {:6} KiB  heap {:8} B  threads {}  descriptors {}\n",
+      soak.pings(), soak.visits(), hours(soak.now()).count(), held.resident_bytes / 1024, held.heap_bytes,
+      held.threads, held.descriptors);
+  std::fflush(stdout);
+}
+
+/// What is held at the first tenth is what all later ones are compared with.
+bool run(HeadUnderSoak& head, std::uint64_t pings) {
+  constexpr double most_growth_percent = 1.0;
+  constexpr std::uint64_t parts = 10;
+  Soak soak(head);
+  print(soak, footprint());  // once before it counts: looking takes memory, too
+  Footprint first;
+  bool good = true;
+  for (std::uint64_t part = 1; part <= parts; ++part) {
+    soak.run_until(pings * part / parts);
+    const Footprint held = footprint();
+    first = part == 1 ? held : first;
+    print(soak, held);
+    good = good && growth_percent(first.resident_bytes, held.resident_bytes) < most_growth_percent &&
+           held.threads == first.threads && held.descriptors == first.descriptors;
+    if (part == parts) {
+      fmt::print("resident memory grew by {:.2f} % and the heap by {:.2f} %; {}\n",
+                 growth_percent(first.resident_bytes, held.resident_bytes),
+                 growth_percent(first.heap_bytes, held.heap_bytes), good ? "good" : "NOT GOOD");
+    }
+  }
+  return good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto kind = argc == 3 ? kinds.find(argv[1]) : kinds.end();
+  const std::uint64_t pings = argc == 3 ? std::strtoull(argv[2], nullptr, 10) : 0;
+  if (kind == kinds.end() || pings == 0) {
+    fmt::print(stderr, "Usage: sonard_soak gemini|micron|oculus|ping360 PINGS\n");
+    return 64;
+  }
+  try {
+    return run(*kind->second(), pings) ? 0 : 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", kind->first, error.what());
+    return 1;
+  }
+}
