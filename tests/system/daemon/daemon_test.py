@@ -8,6 +8,7 @@ Frames of the Micron are those of tests/data/micron, which says where each is fr
 """
 
 import argparse
+import contextlib
 import os
 import re
 import resource
@@ -37,7 +38,7 @@ CONFIG = """
 log: {{level: {level}}}
 engine: cpu
 world: {{file: {world}}}
-poses: {{initial: {{position_m: [0, 0, 0]}}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}{poses}}}
 {more}
 heads:
   - name: stern
@@ -128,10 +129,10 @@ class DaemonCase(unittest.TestCase):
         self.addCleanup(client.close)
         return client
 
-    def configuration(self, level="info", more="", heads=""):
+    def configuration(self, level="info", poses="", more="", heads=""):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(level=level, world=WORLD, more=more, heads=heads, port=self.port))
+            file.write(CONFIG.format(level=level, world=WORLD, poses=poses, more=more, heads=heads, port=self.port))
         return [os.path.join(PROGRAMS, "sonard"), "run", path]
 
     def start(self, **settings):
@@ -511,6 +512,43 @@ class Faults(DaemonCase):
             if wire.message_type(datagram) == wire.PING_HEAD:
                 heads.append(struct.unpack_from("<HxxQ", datagram, 8))
         return heads
+
+
+class Leftovers(DaemonCase):
+    """What clients leave behind that have gone."""
+
+    def held(self, daemon):
+        """Descriptors and threads."""
+        return tuple(len(os.listdir(f"/proc/{daemon.pid}/{what}")) for what in ("fd", "task"))
+
+    def come_and_go(self, port, visit):
+        """A client that asks for lines, one that leaves half a command, or one that breaks off."""
+        with (contextlib.suppress(ConnectionError),  # one too many is closed at once
+              socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as client):
+            client.sendall((frame("send_version"), frame("send_data")[:5], b"GET /hea")[visit % 3])
+            if visit % 3 == 0:
+                client.recv(1)
+            elif visit % 3 == 2:
+                client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # a reset
+
+    def wait_to_hold(self, daemon, wanted):
+        deadline = Deadline(PATIENCE_S)
+        while (held := self.held(daemon)) != wanted and not deadline.over():
+            time.sleep(0.1)
+        self.assertEqual(held, wanted)
+
+    def test_of_clients_that_come_and_go_no_descriptor_and_no_thread(self):
+        poses, page = free_port(), free_port()
+        daemon = self.start(poses=f", tcp: {{bind: 127.0.0.1:{poses}}}", more=f"web: {{bind: 127.0.0.1:{page}}}")
+        descriptors, threads = self.held(daemon)
+        with socket.create_connection(("127.0.0.1", self.port)), socket.create_connection(("127.0.0.1", page)):
+            self.wait_to_hold(daemon, (descriptors + 2, threads))
+        for visit in range(200):
+            self.come_and_go(self.port, visit)
+            for port in (poses, page):  # they answer no Micron's host
+                self.come_and_go(port, 1 + visit % 2)
+        self.wait_to_hold(daemon, (descriptors, threads))
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
 
 class Micron(DaemonCase):
