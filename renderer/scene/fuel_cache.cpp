@@ -48,6 +48,11 @@ std::vector<std::string> segments_of(std::string_view path) {
   return segments;
 }
 
+/// A name that would lead out of the folder where it is looked for, "%2F" undone.
+bool leads_up(const std::string& name) {
+  return name == ".." || name.find('/') != std::string::npos;
+}
+
 bool is_number(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
@@ -99,7 +104,8 @@ std::optional<FuelUri> parse_fuel_uri(std::string_view uri) {
       continue;
     }
     std::vector<std::string> parts = segments_of(uri.substr(scheme.size()));
-    if (parts.empty() || std::ranges::find(hosts, parts[0]) == hosts.end()) {
+    if (parts.empty() || std::ranges::find(hosts, parts[0]) == hosts.end() ||
+        std::ranges::any_of(parts, leads_up)) {
       return std::nullopt;
     }
     parts.erase(parts.begin());

@@ -193,7 +193,11 @@ fs::path model_file_in(const fs::path& folder) {
 fs::path SdfReader::included_file(const SdfElement& include) {
   const SdfElement* const uri = include.child("uri");
   const fs::path found = resolver_.resolve(uri == nullptr ? "" : uri->text, include.folder());
-  fs::path file = fs::is_directory(found) ? model_file_in(found) : found;
+  fs::path file = found;
+  if (fs::is_directory(found)) {
+    file = model_file_in(found);
+    resolver_.check_place(uri->text, file, found);
+  }
   std::error_code error;
   const fs::path canonical = fs::canonical(file, error);
   if (error || !fs::is_regular_file(canonical)) {

@@ -42,10 +42,13 @@ class UriResolver {
   /// of `naming_folder` and all folders of models. Links are followed, whoever made them.
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
- private:
-  std::filesystem::path resolve_model(const std::string& uri, std::string_view rest) const;
+  /// @throws WorldError where `path`, which `uri` has led to, is outside of `naming_folder` and all folders
+  /// of models
   void check_place(const std::string& uri, const std::filesystem::path& path,
                    const std::filesystem::path& naming_folder) const;
+
+ private:
+  std::filesystem::path resolve_model(const std::string& uri, std::string_view rest) const;
 
   std::vector<std::filesystem::path> roots_;  ///< files may lie below these
   std::vector<std::filesystem::path> model_folders_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a user gets to read when a world is wrong: always the file, the line and the element.
+#include <cstdlib>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -199,6 +200,39 @@ TEST(BadWorldFile, LeadsOutOfItsFolders) {
     EXPECT_THAT(load_error(file), HasSubstr("leads out of the folders of this world and its models"))
         << content;
   }
+}
+
+/// A model's manifest names its file, as a world names its own.
+TEST(BadWorldFile, LeadsOutOfItsFoldersByAManifest) {
+  const test::TempFolder folder;
+  folder.write("secret/model.sdf", "<sdf version=\"1.9\"><model name=\"s\"/></sdf>");
+  folder.write("project/models/b/model.config",
+               "<model><sdf version=\"1.9\">../../../secret/model.sdf</sdf></model>");
+  const auto file = folder.write(
+      "project/worlds/w.sdf",
+      "<sdf version=\"1.9\">\n<world name=\"w\">\n<include><uri>model://b</uri></include>\n</world></sdf>");
+  EXPECT_THAT(load_error(file), HasSubstr("leads out of the folders of this world and its models"));
+}
+
+TEST(BadWorldFile, LeadsOutOfTheCacheOfFuel) {
+  const test::TempFolder folder;
+  folder.write("secret/quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("cache/fuel.gazebosim.org/me/models/reef/1/quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  setenv("GZ_FUEL_CACHE_PATH", (folder.path() / "cache").c_str(), 1);
+  const auto world = [&](const std::string& rest) {
+    return folder.write("project/worlds/w.sdf",
+                        "<sdf version=\"1.9\">\n<world name=\"w\">\n" +
+                            model("<geometry><mesh><uri>https://fuel.gazebosim.org/1.0/me/models/" + rest +
+                                  "</uri></mesh></geometry>") +
+                            "\n</world></sdf>");
+  };
+  EXPECT_EQ(load_error(world("reef/1/files/quad.obj")), "no error");
+  for (const char* rest : {"reef/1/files/../../../../../../secret/quad.obj",
+                           "reef/1/files/%2e%2e/../../../../../secret/quad.obj",
+                           "reef/1/files/..%2F..%2F..%2F..%2F..%2F..%2Fsecret%2Fquad.obj"}) {
+    EXPECT_THAT(load_error(world(rest)), HasSubstr("nothing is fetched")) << rest;
+  }
+  unsetenv("GZ_FUEL_CACHE_PATH");
 }
 
 TEST(WorldFile, MayBeInItsFoldersModelsAndMeshes) {
