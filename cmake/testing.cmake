@@ -51,6 +51,15 @@ function(sonard_test name label)
   endif()
 endfunction()
 
+# sonard_patience(TEST): sanitized, it may take five times as long.
+function(sonard_patience test)
+  if(SONARD_SANITIZE)
+    get_test_property(${test} TIMEOUT seconds)
+    math(EXPR seconds "5 * ${seconds}")
+    set_tests_properties(${test} PROPERTIES TIMEOUT ${seconds})
+  endif()
+endfunction()
+
 # sonard_python_cases(OUT SCRIPT): the cases of a script of unittest, each as Class.test_method, read from its text. A
 # case that is inherited from a class of another file is not seen.
 function(sonard_python_cases out script)
@@ -85,6 +94,7 @@ function(sonard_python_test prefix label script)
   if(arg_WHOLE)
     add_test(NAME ${prefix} COMMAND ${command})
     set_tests_properties(${prefix} PROPERTIES LABELS ${label} TIMEOUT 120 ${arg_PROPERTIES})
+    sonard_patience(${prefix})
     return()
   endif()
 
@@ -109,6 +119,7 @@ function(sonard_python_test prefix label script)
     endif()
     add_test(NAME ${name} COMMAND ${command} ${case})
     set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 120 ${arg_PROPERTIES})
+    sonard_patience(${name})
   endforeach()
 endfunction()
 
