@@ -203,6 +203,7 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   if (error || !fs::is_regular_file(canonical)) {
     throw WorldError(fmt::format("'{}': there is no file {}", uri->text, file.string()));
   }
+  resolver_.check_place(uri->text, canonical, found);
   resolver_.add_model_folder(canonical.parent_path().parent_path());
   if (const auto fuel = parse_fuel_uri(uri->text)) {
     resolver_.name_model(fuel->name, canonical.parent_path());

@@ -96,12 +96,14 @@ fs::path UriResolver::resolve_model(const std::string& uri, std::string_view res
     const fs::path path = named->second / rest.substr(std::min(end + 1, rest.size()));
     if (const auto found = existing(path)) {
       check_place(uri, path, named->second);
+      check_place(uri, *found, named->second);
       return *found;
     }
   }
   for (const fs::path& folder : model_folders_) {
     if (const auto found = existing(folder / rest)) {
       check_place(uri, folder / rest, folder);
+      check_place(uri, *found, folder);
       return *found;
     }
   }
@@ -142,6 +144,7 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
   const fs::path path = naming_folder / rest;  // an absolute `rest` wins
   check_place(uri, path, naming_folder);
   if (const auto found = existing(path)) {
+    check_place(uri, *found, naming_folder);  // where links lead
     return *found;
   }
   throw MissingFile(fmt::format("'{}' not found; looked for {}", uri, path.lexically_normal().string()));

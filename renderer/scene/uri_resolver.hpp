@@ -39,7 +39,7 @@ class UriResolver {
   /// cache.
   /// @return an existing file or folder, canonical.
   /// @throws MissingFile saying where it was looked for; WorldError for a URI that is none, or that leads out
-  /// of `naming_folder` and all folders of models. Links are followed, whoever made them.
+  /// of `naming_folder` and all folders of models. Links are followed, and where they lead counts.
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
   /// @throws WorldError where `path`, which `uri` has led to, is outside of `naming_folder` and all folders

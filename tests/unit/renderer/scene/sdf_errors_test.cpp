@@ -245,6 +245,8 @@ TEST(WorldFile, MayBeInItsFoldersModelsAndMeshes) {
   folder.write("elsewhere/quad.obj", quad);
   std::filesystem::create_directory_symlink(folder.path() / "elsewhere",
                                             folder.path() / "project/worlds/link");
+  std::filesystem::create_directory_symlink(folder.path() / "project/meshes",
+                                            folder.path() / "project/worlds/inner");
   const auto world = [&](const std::string& uri) {
     return folder.write("project/worlds/w.sdf",
                         "<sdf version=\"1.9\">\n<world name=\"w\">\n" +
@@ -254,9 +256,12 @@ TEST(WorldFile, MayBeInItsFoldersModelsAndMeshes) {
   for (const std::string& uri :
        {std::string("here/quad.obj"), std::string("here/../here/quad.obj"), std::string("../meshes/quad.obj"),
         std::string("../models/b/quad.obj"), std::string("model://b/quad.obj"),
-        project + "/models/b/quad.obj", std::string("link/quad.obj")}) {
+        project + "/models/b/quad.obj", std::string("inner/quad.obj")}) {
     EXPECT_EQ(load_error(world(uri)), "no error") << uri;
   }
+  const auto linked = world("link/quad.obj");
+  EXPECT_THAT(load_error(linked), HasSubstr("leads out of the folders of this world and its models"));
+  EXPECT_NO_THROW(load_world(linked, {folder.path() / "elsewhere"})) << "named by the operator";
   const auto outside = world((folder.path() / "elsewhere/quad.obj").string());
   EXPECT_NO_THROW(load_world(outside, {folder.path() / "elsewhere"})) << "named by the operator";
 }
