@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as an MCAP file.
-// Promises: errors and messages lie inside the file; log times never go back; a file that was recovered is
-// whole and has as many messages as its summary says.
+// Promises: errors and messages lie inside the file; log times never go back; a message is found again at its
+// place; a file that was recovered is whole and has as many messages as its summary says.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -24,6 +24,10 @@ std::uint64_t read_all(const Reader& reader, ByteView file) {
     require(message->data.size() <= file.size(), "a message is no longer than the file");
     require(message->log_time_ns >= last_time_ns, "messages come in the order of their times");
     last_time_ns = message->log_time_ns;
+    if (const auto place = cursor.place()) {
+      const auto again = reader.data_at(*place);
+      require(again && std::ranges::equal(*again, message->data), "a message is found again at its place");
+    }
     ++count;
   }
   require(!cursor.error() || cursor.error()->offset <= file.size(), "an error lies inside the file");

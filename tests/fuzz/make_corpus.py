@@ -313,21 +313,31 @@ def mcap_string(text):
     return struct.pack("<I", len(text)) + text
 
 
+def zstd_frame(data):
+    """One raw block, by RFC 8878: nothing is saved, but it is a frame."""
+    return struct.pack("<IBH", 0xFD2FB528, 0x60, len(data) - 256) + struct.pack("<I", len(data) << 3 | 1)[:3] + data
+
+
 def mcap_files():
     """Laid out by the MCAP specification, as tests/unit/protocol/mcap/bytes_test.cpp is."""
     magic = b"\x89MCAP0\r\n"
     head = magic + mcap_record(1, mcap_string(b"") + mcap_string(b"w"))
     schema = mcap_record(3, struct.pack("<H", 1) + mcap_string(b"S") + mcap_string(b"pb") + mcap_string(b"\7"))
     channel = mcap_record(4, struct.pack("<HH", 1, 1) + mcap_string(b"/c") + mcap_string(b"pb") + struct.pack("<I", 0))
-    chunks = b""
+    chunks = packed_chunks = b""
     for times in ((50, 10), (30, 60)):
         records = schema + channel
         entries = b""
         for sequence, time in enumerate(times):
             entries += struct.pack("<QQ", time, len(records))
             records += mcap_record(5, struct.pack("<HIQQ", 1, sequence, time, time) + b"data")
-        chunks += mcap_record(6, struct.pack("<QQQI", min(times), max(times), len(records), zlib.crc32(records)) +
-                              mcap_string(b"") + struct.pack("<Q", len(records)) + records)
+        times_and_size = struct.pack("<QQQI", min(times), max(times), len(records), zlib.crc32(records))
+        chunks += mcap_record(6, times_and_size + mcap_string(b"") + struct.pack("<Q", len(records)) + records)
+        # A text that readers skip, so that the chunk is long enough for the form of the frame.
+        padded = records + mcap_record(99, bytes(256))
+        packed = zstd_frame(padded)
+        packed_chunks += mcap_record(6, struct.pack("<QQQI", min(times), max(times), len(padded), zlib.crc32(padded)) +
+                                     mcap_string(b"zstd") + struct.pack("<Q", len(packed)) + packed)
         chunks += mcap_record(7, struct.pack("<HI", 1, len(entries)) + entries)
     data = head + chunks
     end = mcap_record(15, struct.pack("<I", zlib.crc32(data)))
@@ -335,6 +345,7 @@ def mcap_files():
     summary = schema + channel
     yield "no_end", data
     yield "cut", data[:-40]
+    yield "compressed", head + packed_chunks
     growing = mcap_record(6, struct.pack("<QQQI", 70, 70, 35, 0) + mcap_string(b"") + struct.pack("<Q", 35) +
                           mcap_record(5, struct.pack("<HIQQ", 1, 2, 70, 70) + b"data"))
     yield "growing", data + growing + mcap_record(5, struct.pack("<HIQQ", 1, 3, 80, 80) + b"data")
