@@ -244,9 +244,8 @@ class CheckedWorld : public testing::Test {
   ProcessResult check(const std::string& models, const std::string& more = "") const {
     write("world.sdf",
           "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\">\n" + models + "</world></sdf>");
-    // Half of what a world that includes itself once took.
     return run_process(
-        {"prlimit", "--as=2500000000", SONARD_PROGRAM, "check", "--no-network",
+        {"prlimit", "--as=" SONARD_ADDRESS_SPACE, SONARD_PROGRAM, "check", "--no-network",
          write("sonard.yaml", "world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\n" + more +
                                   "heads:\n  - name: bow\n    type: gemini_720i\n    sonar_id: 513\n"
                                   "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n")});
