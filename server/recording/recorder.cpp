@@ -151,13 +151,15 @@ void Recorder::Impl::run() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice_value);
   for (bool last = false; !last;) {
     queue.wait(packings.empty() ? look_again : std::chrono::milliseconds{0});
-    last = stopping;  // before the queue is looked at: what was pushed before stop() is in it
+    // Both before the queue is looked at: what was pushed before stop() and turn(false) is in it.
+    last = stopping;
+    const bool off = !on;
     for (RecordingEvent& event : queue.take()) {
       record(event);
       queue.done(event);
       event.what = StreamEnded{};  // gives its memory back now
     }
-    if (!on) {
+    if (off) {
       end_set();
     }
     look_after_logs();
@@ -174,6 +176,9 @@ void Recorder::Impl::record(const RecordingEvent& event) {
     end_set();
   }
   if (!set) {
+    if (!on) {  // pushed by a thread that saw it turned on just before: no log is made for it
+      return;
+    }
     begin_set(event.time);
   }
   set->write(event);

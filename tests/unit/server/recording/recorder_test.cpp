@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/recorder.hpp"
 
+#include <atomic>
 #include <cstdlib>
 #include <ctime>
 #include <set>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -168,6 +171,39 @@ TEST_F(RecorderTest, DropsAndCountsWhatDoesNotFitTheQueue) {
   EXPECT_GE(recorder.counters().dropped.images, 1U);
   EXPECT_EQ(recorder.counters().images + recorder.counters().dropped.images, pushed + 1);
   EXPECT_EQ(mcap_pings().size(), recorder.counters().images);
+}
+
+// A thread that saw the recorder turned on may push after the logs were closed. No further logs are made for
+// that.
+TEST_F(RecorderTest, WritesOneLogForEachTimeItIsTurnedOn) {
+  constexpr std::uint64_t times = 300;
+  config.glf = config.pcapng = false;
+  config.queue_bytes = 100000;  // so few events that the recorder is soon done with them
+  Recorder recorder(config, test::one_head());
+  std::atomic<bool> ends{false};
+  const auto push_pings = [&] {
+    while (!ends) {
+      recorder.push(test::ping_event(0, 1, clock.now()));
+    }
+  };
+  std::vector<std::thread> heads;
+  for (int head = 0; head < 4; ++head) {  // more than most machines of tests have processors
+    heads.emplace_back(push_pings);
+  }
+  for (std::uint64_t time = 1; time <= times; ++time) {
+    const std::uint64_t images = recorder.counters().images;
+    recorder.turn(true);
+    EXPECT_TRUE(test::wait_for([&] { return recorder.counters().images > images; }));
+    recorder.turn(false);
+    EXPECT_TRUE(test::wait_for([&] { return recorder.counters().logs_written >= time; }));
+  }
+  ends = true;
+  for (std::thread& head : heads) {
+    head.join();
+  }
+  recorder.stop();
+  EXPECT_EQ(recorder.counters().logs_written, times);
+  EXPECT_EQ(files(".mcap").size(), times);
 }
 
 // A disk that is full for one file is full for the others a little later.
