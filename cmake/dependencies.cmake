@@ -18,8 +18,10 @@ find_package(Threads REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(ZLIB REQUIRED)
 # These have no CMake package on Ubuntu 22.04.
+pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 
 # Versions 3 and 4 differ in how rays are asked for; renderer/spatial_index knows both.
@@ -30,7 +32,11 @@ endif()
 
 # Debian keeps OpenCVConfig.cmake in libopencv-dev, which drags in the whole desktop; a few libraries are enough.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(part core imgproc imgcodecs features2d)
+set(parts core imgproc features2d)
+if(SONARD_TESTS)
+  list(APPEND parts imgcodecs)  # reads what the programs write; it brings GDAL and a hundred libraries more
+endif()
+foreach(part IN LISTS parts)
   find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
   add_library(opencv_${part} UNKNOWN IMPORTED)
   set_target_properties(opencv_${part} PROPERTIES

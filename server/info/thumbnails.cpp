@@ -2,14 +2,15 @@
 #include "server/info/thumbnails.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "protocol/common/linear_samples.hpp"
 #include "renderer/picture/fan_image.hpp"
+#include "renderer/picture/picture_file.hpp"
 #include "server/info/recorded_sweeps.hpp"
 
 namespace sonard::server {
@@ -45,7 +46,10 @@ std::string file_name(const LoggedHead& head, std::uint64_t number) {
 }
 
 void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
-  if (!cv::imwrite(path.string(), picture)) {
+  const std::string png = picture::png_file(picture, 1);
+  if (!std::ofstream(path, std::ios::binary)
+           .write(png.data(), static_cast<std::streamsize>(png.size()))
+           .flush()) {
     throw LogError(fmt::format("{}: cannot be written", path.string()));
   }
 }

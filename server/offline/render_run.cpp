@@ -19,12 +19,12 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "protocol/glf/deflate.hpp"
 #include "protocol/glf/log_time.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
+#include "renderer/picture/picture_file.hpp"
 #include "renderer/pipeline/engine_trial.hpp"
 #include "renderer/pipeline/self_test.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
@@ -45,7 +45,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr int png_compression = 1;  // a twentieth larger than the 3 of sonarview, in two thirds of the time
+constexpr int png_level = 1;
 constexpr const char* app_name = "sonard " SONARD_VERSION;
 
 std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
@@ -293,10 +293,7 @@ void RenderRun::write(int frame, const Frame& made) {
     folder_.write(bodies_name(name), made.bodies_npy);
   }
   if (options_.draws(frame)) {
-    const cv::Mat picture = draw(made);
-    std::vector<std::uint8_t> png;
-    cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, png_compression});
-    folder_.write(picture_name(name), {reinterpret_cast<const char*>(png.data()), png.size()});
+    folder_.write(picture_name(name), picture::png_file(draw(made), png_level));
   }
   folder_.write(sidecar_name(name), made.sidecar);
 }

@@ -5,8 +5,6 @@
 #include <functional>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "protocol/common/linear_samples.hpp"
 
 namespace sonard::server {
@@ -19,12 +17,6 @@ bool make_a_fan(const std::vector<double>& bearings_rad) {
   return bearings_rad.size() >= 2 &&
          std::ranges::adjacent_find(bearings_rad, std::ranges::greater_equal{}) == bearings_rad.end() &&
          bearings_rad.front() > -quarter_turn_rad && bearings_rad.back() < quarter_turn_rad;
-}
-
-std::string encoded(const cv::Mat& picture, const std::string& extension) {
-  std::vector<std::uint8_t> file;
-  cv::imencode(extension, picture, file, {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_JPEG_QUALITY, 80});
-  return {file.begin(), file.end()};
 }
 
 /// The commonest distance between neighbours.
@@ -50,7 +42,7 @@ void PingPicture::keep(const PingRecord& line) {
   lines_[bearing] = {bearing, line.samples};
 }
 
-std::string PingPicture::draw(const PingRecord& ping, const std::string& extension) {
+cv::Mat PingPicture::draw(const PingRecord& ping) {
   const RecordedSettings& settings = ping.settings;
   if (settings.beams == 1) {
     std::vector<picture::SweepLine> lines;
@@ -58,18 +50,18 @@ std::string PingPicture::draw(const PingRecord& ping, const std::string& extensi
       lines.push_back(line);
     }
     const picture::SweepShape shape{.step = step_of(lines_), .bins = bins_, .bin_m = bin_m_};
-    return encoded(picture::SweepImage(shape, style).draw(lines, ""), extension);
+    return picture::SweepImage(shape, style).draw(lines, "");
   }
   const picture::FanShape shape{ping.bearings_rad, settings.bins, settings.bin_m};
   if (!make_a_fan(shape.bearings_rad)) {
-    return "";
+    return {};
   }
   if (!fan_ || fan_->geometry().shape() != shape) {
     fan_.emplace(shape, style);
   }
   std::vector<std::uint8_t> samples = ping.samples;
   make_linear(samples, settings.amplitude_exponent);
-  return encoded(fan_->draw(cv::Mat(settings.bins, settings.beams, CV_8UC1, samples.data()), ""), extension);
+  return fan_->draw(cv::Mat(settings.bins, settings.beams, CV_8UC1, samples.data()), "");
 }
 
 }  // namespace sonard::server

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <map>
+#include <opencv2/core/mat.hpp>
 #include <optional>
-#include <string>
 
 #include "protocol/common/ping_record.hpp"
 #include "renderer/picture/fan_image.hpp"
@@ -18,10 +18,9 @@ class PingPicture {
  public:
   /// A line of a scanning head, for later pictures. Lines of another size begin anew.
   void keep(const PingRecord& line);
-  /// A fan, or all lines that were kept, 400 pixels from the apex to the full range, as a picture file; ""
+  /// A fan, or all lines that were kept, 400 pixels from the apex to the full range (CV_8UC3, BGR); empty
   /// where beams make no fan.
-  /// @param extension ".png" or ".jpg"
-  std::string draw(const PingRecord& ping, const std::string& extension);
+  cv::Mat draw(const PingRecord& ping);
 
  private:
   std::optional<picture::FanImage> fan_;

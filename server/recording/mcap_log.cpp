@@ -7,6 +7,7 @@
 
 #include "protocol/log/log_messages.hpp"
 #include "protocol/pose/pose_message.hpp"
+#include "renderer/picture/picture_file.hpp"
 #include "server/recording/foxglove_messages.hpp"
 #include "server/recording/log_names.hpp"
 
@@ -124,8 +125,9 @@ void McapLog::add_for_foxglove(int head, TimePoint time, const PingSent& sent) {
     }
     drawn->second = time;
   }
-  if (std::string jpeg = picture.draw(sent.ping, ".jpg"); !jpeg.empty()) {
-    add_message(topic + "/picture", time, transmit_ns, foxglove_image(std::move(jpeg), name, transmit_ns));
+  if (const cv::Mat drawn = picture.draw(sent.ping); !drawn.empty()) {
+    add_message(topic + "/picture", time, transmit_ns,
+                foxglove_image(picture::jpeg_file(drawn, 80), name, transmit_ns));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
+#include "renderer/picture/picture_file.hpp"
 #include "server/web/assets.hpp"
 #include "server/web/json.hpp"
 #include "server/web/little_endian.hpp"
@@ -221,7 +222,8 @@ void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
   if (!has_room() || (last != shown_.end() && site().now() - last->second < 2 * site().interval())) {
     return;
   }
-  if (const std::string png = picture.draw(ping->record, ".png"); !png.empty()) {
+  if (const cv::Mat drawn = picture.draw(ping->record); !drawn.empty()) {
+    const std::string png = picture::png_file(drawn, 1);
     send_on({head, Kind::image}, text_of({{"timestamp", timestamp},
                                           {"frame_id", heads_[head]},
                                           {"data", base64(png)},

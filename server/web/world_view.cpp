@@ -9,8 +9,8 @@
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <opencv2/imgcodecs.hpp>
 
+#include "renderer/picture/picture_file.hpp"
 #include "server/web/json.hpp"
 
 namespace sonard::server {
@@ -151,9 +151,7 @@ class Relief {
         }
       }
     }
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(".png", picture, bytes);
-    return {bytes.begin(), bytes.end()};
+    return picture::png_file(picture, 1);
   }
 
  private:

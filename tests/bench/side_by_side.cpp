@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <fstream>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "renderer/picture/fan_image.hpp"
+#include "renderer/picture/picture_file.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "tests/bench/image_error.hpp"
 #include "tests/bench/reference.hpp"
@@ -113,7 +114,10 @@ void draw(const std::string& name, const std::string& references, const std::str
               fan.draw(differences(gpu, cpu), "|gpu - cpu| / cpu"), rows[2]);
   cv::Mat all;
   cv::vconcat(rows, all);
-  if (!cv::imwrite(file, all)) {
+  const std::string png = picture::png_file(all, 9);
+  if (!std::ofstream(file, std::ios::binary)
+           .write(png.data(), static_cast<std::streamsize>(png.size()))
+           .flush()) {
     throw std::runtime_error(file + ": cannot be written");
   }
 }

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/common/image_writer.hpp"
+#include "renderer/picture/picture_file.hpp"
 
 #include <fmt/format.h>
+#include <exception>
 
-#include <opencv2/imgcodecs.hpp>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <utility>
 
 namespace sonard::client {
 namespace {
 
+constexpr int png_level = 3;
 constexpr std::size_t most_waiting = 64;  // 20 MB of usual pings
 
 }  // namespace
@@ -89,9 +93,11 @@ bool ImageWriter::save(const Picture& picture) {
   bool saved = false;
   std::error_code error;
   try {
-    saved = cv::imwrite(part.string(), picture.draw(), {cv::IMWRITE_PNG_COMPRESSION, 3});
-  } catch (const cv::Exception&) {
-    saved = false;  // no encoder, no memory
+    const std::string png = picture::png_file(picture.draw(), png_level);
+    std::ofstream out(part, std::ios::binary);
+    saved = out.write(png.data(), static_cast<std::streamsize>(png.size())).flush().good();
+  } catch (const std::exception&) {
+    saved = false;  // no memory
   }
   if (saved) {
     std::filesystem::rename(part, path, error);

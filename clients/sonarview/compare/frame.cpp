@@ -8,14 +8,16 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 
 #include "clients/sonarview/compare/glf_image.hpp"
 #include "clients/sonarview/compare/sweep_file.hpp"
 #include "protocol/npy/npy_file.hpp"
 #include "renderer/picture/fan_image.hpp"
+#include "renderer/picture/picture_file.hpp"
 
 namespace sonard::client {
 namespace {
@@ -73,16 +75,22 @@ cv::Mat scaled(const cv::Mat& samples) {
   return frame;
 }
 
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 cv::Mat read_picture(const std::filesystem::path& file) {
   cv::Mat picture;
   try {
-    picture = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+    picture = picture::from_picture_file(contents(file));
   } catch (const cv::Exception&) {
-    picture.release();  // larger than OpenCV is willing to read
+    picture.release();  // no memory
   }
   if (picture.empty()) {
-    throw std::runtime_error(fmt::format("{}: is not a picture", file.string()));
+    throw std::runtime_error(fmt::format("{}: is not a picture, PNG or JPEG", file.string()));
   }
+  cv::cvtColor(picture, picture, cv::COLOR_BGR2GRAY);
   return picture;
 }
 

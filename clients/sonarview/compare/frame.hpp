@@ -9,7 +9,7 @@ namespace sonard::client {
 
 /// Reads one side of a comparison.
 ///
-///     FILE.png          a picture, whatever OpenCV reads; colours as brightness
+///     FILE.png          a picture, PNG or JPEG by its contents; colours as brightness
 ///     FILE.npy          a ping of sonard's `dump`
 ///     FILE.csv#NUMBER   the ping of that number of such a dump, by its index
 ///     FILE.jsonl#TURN   a turn of a scanning head, by `sonarview --raw`

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/picture/picture_file.hpp"
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+#include <zlib.h>
+
+#include <csetjmp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+namespace sonard::picture {
+namespace {
+
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
+
+using Turbo = std::unique_ptr<std::remove_pointer_t<tjhandle>, int (*)(tjhandle)>;
+
+int png_colour_type(const cv::Mat& picture) {
+  switch (picture.type()) {
+    case CV_8UC1:
+      return PNG_COLOR_TYPE_GRAY;
+    case CV_8UC3:
+      return PNG_COLOR_TYPE_RGB;
+    case CV_8UC4:
+      return PNG_COLOR_TYPE_RGBA;
+    default:
+      throw std::invalid_argument(fmt::format("pictures of type {} are not written", picture.type()));
+  }
+}
+
+void append(png_structp png, png_bytep bytes, std::size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), size);
+}
+
+/// Owns nothing but `file`, which is the caller's, for libpng leaves it by longjmp().
+bool write_png(const cv::Mat& picture, int colour_type, int level, std::string& file) {
+  png_structp png = png_create_write_struct(
+      PNG_LIBPNG_VER_STRING, nullptr, [](png_structp failed, png_const_charp) { png_longjmp(failed, 1); },
+      [](png_structp, png_const_charp) {});
+  if (png == nullptr) {
+    return false;
+  }
+  png_infop info = png_create_info_struct(png);
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, &info);
+    return false;
+  }
+  png_set_write_fn(png, &file, append, nullptr);
+  png_set_compression_level(png, level);
+  png_set_compression_mem_level(png, MAX_MEM_LEVEL);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(picture.cols), static_cast<png_uint_32>(picture.rows), 8,
+               colour_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  png_set_bgr(png);
+  for (int row = 0; row < picture.rows; ++row) {
+    png_write_row(png, picture.ptr(row));
+  }
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  return true;
+}
+
+cv::Mat from_png(std::string_view bytes) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  cv::Mat picture;
+  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) != 0 &&
+      std::uint64_t{image.width} * image.height <= most_pixels) {
+    image.format = PNG_FORMAT_BGRA;
+    image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
+    cv::Mat with_alpha(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC4);
+    if (png_image_finish_read(&image, nullptr, with_alpha.data, 0, nullptr) != 0) {
+      cv::cvtColor(with_alpha, picture, cv::COLOR_BGRA2BGR);
+    }
+  }
+  png_image_free(&image);
+  return picture;
+}
+
+cv::Mat from_jpeg(std::string_view bytes) {
+  const Turbo turbo(tjInitDecompress(), tjDestroy);
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  int width = 0;
+  int height = 0;
+  int subsampling = 0;
+  int colours = 0;
+  if (!turbo ||
+      tjDecompressHeader3(turbo.get(), data, bytes.size(), &width, &height, &subsampling, &colours) != 0 ||
+      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > most_pixels) {
+    return {};
+  }
+  cv::Mat picture(height, width, CV_8UC3);
+  const int failed = tjDecompress2(turbo.get(), data, bytes.size(), picture.data, width, 0, height, TJPF_BGR,
+                                   TJFLAG_ACCURATEDCT);
+  return failed != 0 ? cv::Mat() : picture;
+}
+
+}  // namespace
+
+std::string png_file(const cv::Mat& picture, int level) {
+  std::string file;
+  if (!write_png(picture, png_colour_type(picture), level, file)) {
+    throw std::runtime_error(fmt::format("{} x {} pixels make no PNG", picture.cols, picture.rows));
+  }
+  return file;
+}
+
+std::string jpeg_file(const cv::Mat& picture, int quality) {
+  const Turbo turbo(tjInitCompress(), tjDestroy);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;  // NOLINT(google-runtime-int): the library's type
+  const int failed =
+      tjCompress2(turbo.get(), picture.data, picture.cols, static_cast<int>(picture.step[0]), picture.rows,
+                  TJPF_BGR, &bytes, &size, TJSAMP_420, quality, TJFLAG_ACCURATEDCT);
+  const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owned(bytes, tjFree);
+  if (failed != 0) {
+    throw std::runtime_error(fmt::format("{} x {} pixels make no JPEG: {}", picture.cols, picture.rows,
+                                         tjGetErrorStr2(turbo.get())));
+  }
+  return {reinterpret_cast<const char*>(bytes), size};
+}
+
+cv::Mat from_picture_file(std::string_view bytes) {
+  return bytes.starts_with("\xFF\xD8") ? from_jpeg(bytes) : from_png(bytes);
+}
+
+}  // namespace sonard::picture
