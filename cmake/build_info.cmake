@@ -13,9 +13,10 @@ if(TARGET sonard_gazebo)
 endif()
 list(JOIN SONARD_FEATURES ", " SONARD_FEATURES)
 
+set(SONARD_COMMIT "" CACHE STRING "The commit that --version names; empty: what git says of the source")
 add_custom_target(sonard_write_build_info
   COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D OUT=${PROJECT_BINARY_DIR}/build_info/sonard_build_info.hpp
-          -D VERSION=${PROJECT_VERSION} -D "FEATURES=${SONARD_FEATURES}" -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
+          -D VERSION=${PROJECT_VERSION} -D COMMIT=${SONARD_COMMIT} -D "FEATURES=${SONARD_FEATURES}" -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
   BYPRODUCTS ${PROJECT_BINARY_DIR}/build_info/sonard_build_info.hpp
   VERBATIM)
 add_library(sonard_build_info INTERFACE)

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run at every build: -D SOURCE -D OUT -D VERSION -D FEATURES. Without git, as from a tarball, no commit is named.
-execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
-                OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE result)
-if(result EQUAL 0)
-  set(commit ", commit ${commit}")
-else()
-  set(commit "")
+# Run at every build: -D SOURCE -D OUT -D VERSION -D COMMIT -D FEATURES. Without git, as from a tarball, no commit is named.
+if(NOT COMMIT)
+  execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
+                  OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+set(commit "")
+if(COMMIT)
+  set(commit ", commit ${COMMIT}")
 endif()
 if(FEATURES)
   set(FEATURES ", with ${FEATURES}")

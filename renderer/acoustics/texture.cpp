@@ -25,6 +25,12 @@ constexpr double least_log2_nu = -4.0;
 constexpr double most_log2_nu = 10.0;
 constexpr int tables_per_octave = 8;
 
+/// std::lgamma() writes the sign into a variable of the whole process, which is a race.
+double log_gamma(double a) {
+  int sign = 0;
+  return lgamma_r(a, &sign);
+}
+
 struct Tails {
   double below, above;
 };
@@ -38,7 +44,7 @@ Tails gamma_tails(double a, double x) {
     term *= x / (a + n);
     sum += term;
   }
-  const double below = sum * std::exp(a * std::log(x) - x - std::lgamma(a + 1));
+  const double below = sum * std::exp(a * std::log(x) - x - log_gamma(a + 1));
   return {below, 1 - below};
 }
 
@@ -52,7 +58,7 @@ double gamma_quantile(double a, double normal, double first_guess) {
     const double x = std::exp(log_x);
     const Tails tails = gamma_tails(a, x);
     const double tail = std::max(lower ? tails.below : tails.above, 1e-300);
-    const double density = std::exp(a * log_x - x - std::lgamma(a));  // per ln x
+    const double density = std::exp(a * log_x - x - log_gamma(a));  // per ln x
     const double slope = (lower ? density : -density) / tail;
     const double change = std::clamp((wanted - std::log(tail)) / slope, -1.0, 1.0);
     log_x += change;

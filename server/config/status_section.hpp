@@ -12,7 +12,12 @@
 namespace sonard::server {
 
 inline constexpr TextForm address_form{"an IPv4 address such as 127.0.0.2", "address", address_schema};
-inline constexpr TextForm netmask_form{"a netmask such as 255.255.255.0", "netmask", address_schema};
+inline constexpr TextForm own_address_form{
+    "an IPv4 address such as 127.0.0.2, or an interface of this machine such as eth0", "address or interface",
+    R"("type": "string")"};
+inline constexpr TextForm netmask_form{
+    "a netmask such as 255.255.255.0, or an interface of this machine such as eth0", "netmask or interface",
+    R"("type": "string")"};
 inline constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets",
                                    mac_schema};
 

@@ -20,6 +20,12 @@ Ipv4 ipv4_of(const sockaddr* address) {
   return ntohl(ipv4.sin_addr.s_addr);
 }
 
+std::optional<InterfaceAddress> first_of(std::string_view interface) {
+  const std::vector<InterfaceAddress> entries = interface_addresses();
+  const auto found = std::ranges::find(entries, interface, &InterfaceAddress::interface);
+  return found == entries.end() ? std::nullopt : std::optional(*found);
+}
+
 }  // namespace
 
 std::vector<InterfaceAddress> interface_addresses() {
@@ -53,6 +59,18 @@ std::optional<InterfaceAddress> owner_of(Ipv4 address, const std::vector<Interfa
     return std::nullopt;
   }
   return *found;
+}
+
+std::optional<Ipv4> parse_own_address(std::string_view text) {
+  const std::optional<Ipv4> address = parse_ipv4(text);
+  const std::optional<InterfaceAddress> entry = first_of(text);
+  return address || !entry ? address : entry->address;
+}
+
+std::optional<Ipv4> parse_own_netmask(std::string_view text) {
+  const std::optional<Ipv4> netmask = parse_ipv4(text);
+  const std::optional<InterfaceAddress> entry = first_of(text);
+  return netmask || !entry ? netmask : entry->netmask;
 }
 
 }  // namespace sonard::server

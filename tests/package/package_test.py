@@ -19,16 +19,11 @@ import tempfile
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-sys.path.append(str(REPOSITORY / "docker"))
-from prove_in_chroot import apt_mirror  # noqa: E402
+sys.path.append(str(REPOSITORY / "tests" / "support"))
+from fresh_system import make_fresh_system  # noqa: E402
 
 PACKAGE = None
 PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
-
-
-def codename():
-    text = pathlib.Path("/etc/os-release").read_text(encoding="utf-8")
-    return re.search("^VERSION_CODENAME=(.*)$", text, re.MULTILINE).group(1)
 
 
 class System:
@@ -36,12 +31,7 @@ class System:
 
     def __init__(self, root):
         self.root = pathlib.Path(root)
-        name = codename()
-        subprocess.run(["debootstrap", "--variant=minbase", "--include=ca-certificates", name, root, apt_mirror(name)], check=True,
-                       stdout=subprocess.DEVNULL)
-        for file in ("/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs/ca-certificates.crt"):
-            if os.path.exists(file):
-                shutil.copy(file, self.root / file.lstrip("/"))
+        make_fresh_system(root)
 
     def run(self, command, network=True, expected=0, timeout=600):
         """What a shell prints there, both ways together."""

@@ -7,6 +7,7 @@
 #include "server/config/network_section.hpp"
 #include "server/config/status_section.hpp"
 #include "server/net/addresses.hpp"
+#include "server/net/interfaces.hpp"
 
 namespace sonard::server {
 namespace {
@@ -27,14 +28,15 @@ void read_identity(YamlSection& section, GeminiConfig& config) {
 void read_network(YamlSection& section, GeminiConfig& config) {
   gemini::DeviceConfig& device = config.device;
   section.require("alternate_address", "the address that clients find in the status packets");
-  section.parsed(
-      "alternate_address", device.alternate_address, &parse_ipv4, address_form,
-      "the address that clients find in the status packets and send to; the head must be reachable there");
+  section.parsed("alternate_address", device.alternate_address, &parse_own_address, own_address_form,
+                 "the address that clients find in the status packets and send to, or the interface whose "
+                 "address it is; the head must be "
+                 "reachable there");
   if (section.has("alternate_address")) {
     check_host_address(section, "alternate_address", device.alternate_address);
   }
   section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
-  section.parsed("netmask", device.netmask, &parse_ipv4, netmask_form,
+  section.parsed("netmask", device.netmask, &parse_own_netmask, netmask_form,
                  "the true mask of the interface served: some clients send nothing when it is not that of "
                  "their own interface");
   check_inside_network(section, "alternate_address", device.alternate_address, device.netmask);

@@ -130,12 +130,9 @@ class Fleet(OwnMachine):
         folder = pathlib.Path(self.folder.name)
         [configuration] = of_kind("fleet.yaml", "ConfigMap")
         text = configuration["data"]["vehicle.yaml"].replace("/usr/local/share/sonard", str(REPOSITORY))
-        (folder / "vehicle.yaml").write_text(text.replace("10.0.0.0/8", "127.0.0.0/8"))
-        command = [*container["command"], container["args"][0].replace("/etc/vehicle", str(folder))
-                   .replace("/tmp/vehicle.yaml", str(folder / "started.yaml"))]
-        [address] = container["env"]
-        self.assertEqual((address["name"], address["valueFrom"]["fieldRef"]["fieldPath"]), ("POD_IP", "status.podIP"))
-        pod = Program(["env", "POD_IP=127.0.0.2", f"PATH={PROGRAMS}:{os.environ['PATH']}", *command], "sonard")
+        text = text.replace("10.0.0.0/8", "127.0.0.0/8").replace("address: eth0", "address: 127.0.0.2").replace("netmask: eth0", "netmask: 255.0.0.0")
+        (folder / "vehicle.yaml").write_text(text)
+        pod = Program([PROGRAMS / "sonard", *(word.replace("/etc/vehicle", str(folder)) for word in container["args"])], "sonard")
         self.addCleanup(pod.kill)
         pod.wait_for_line("sonard ready", 120)
         ports = {port["name"]: port["containerPort"] for port in container["ports"]}

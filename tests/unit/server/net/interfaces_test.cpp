@@ -31,5 +31,14 @@ TEST(Interfaces, ThisMachineHasLoopback) {
   EXPECT_TRUE(owner_of(0x7F000001, interface_addresses()));
 }
 
+TEST(Interfaces, ANameStandsForTheFirstAddress) {
+  EXPECT_EQ(parse_own_address("10.61.19.200"), 0x0A3D13C8u);
+  EXPECT_EQ(parse_own_netmask("255.255.255.0"), 0xFFFFFF00u);
+  EXPECT_EQ(parse_own_address("lo"), 0x7F000001u);
+  EXPECT_EQ(parse_own_netmask("lo"), 0xFF000000u);
+  EXPECT_FALSE(parse_own_address("no such interface"));
+  EXPECT_FALSE(parse_own_netmask(""));
+}
+
 }  // namespace
 }  // namespace sonard::server

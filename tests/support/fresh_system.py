@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Debian of this machine's release in a folder, from this machine's mirror. Needs root and debootstrap."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+
+def make_fresh_system(root):
+    """Fills the folder `root`, with this machine's way to names and certificates."""
+    name = re.search("^VERSION_CODENAME=(.*)$", pathlib.Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE).group(1)
+    subprocess.run(["debootstrap", "--variant=minbase", "--include=ca-certificates", name, root, apt_mirror(name)], check=True,
+                   stdout=subprocess.DEVNULL)
+    for file in ("/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs/ca-certificates.crt"):
+        if os.path.exists(file):
+            shutil.copy(file, pathlib.Path(root) / file.lstrip("/"))
+
+
+def apt_mirror(codename):
+    """The address from which this machine's apt takes Debian's main packages."""
+    listed = subprocess.run(["apt-get", "indextargets", "--format", "$(CODENAME) $(COMPONENT) $(REPO_URI)", "Created-By: Packages"],
+                            check=True, capture_output=True, text=True).stdout
+    for line in listed.splitlines():
+        name, component, uri = line.split(maxsplit=2)
+        if name == codename and component == "main" and "security" not in uri:
+            return uri
+    raise SystemExit(f"this machine's apt has no source for {codename} main")
