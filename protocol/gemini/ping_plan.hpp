@@ -37,7 +37,9 @@ std::chrono::nanoseconds acoustic_time(int native_lines);
 /// moved inside. Everything not named in PingPlan has no effect on a 720i or on this model of it.
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device);
 
-/// In 0.1 m/s, as the ping head carries it. @param snap to the grid of the device: 1400 + 3.2 k m/s, k =
+/// In 0.1 m/s, as the ping head carries it.
+/// @param speed_mps 1400 to 1588.8
+/// @param snap to the grid of the device: 1400 + 3.2 k m/s, k =
 /// 0..59
 std::uint16_t speed_code(double speed_mps, bool snap);
 

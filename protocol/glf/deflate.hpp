@@ -22,7 +22,8 @@ class Crc32 {
   std::uint32_t value_ = 0;
 };
 
-/// `bytes` as a zlib stream, or nullopt where that would not be shorter.
+/// A zlib stream, or nullopt where that would not be shorter.
+/// @param bytes what is packed
 /// @param level 0 (nothing gets shorter) .. 9; 1 is the fastest that packs
 /// @throws std::invalid_argument for another level
 std::optional<Bytes> deflate_shorter(std::span<const std::uint8_t> bytes, int level);

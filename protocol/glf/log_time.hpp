@@ -10,6 +10,8 @@
 
 namespace sonard::glf {
 
+/// Seconds of a .glf since 1980, in local time.
+/// @param unix_ns nanoseconds since 1970, UTC
 /// @param utc_offset_s of local time, positive east of Greenwich; 0 for logs in UTC
 double glf_time_s(std::int64_t unix_ns, std::int32_t utc_offset_s);
 

@@ -22,8 +22,9 @@ class LogView {
  public:
   static constexpr std::uint64_t default_max_unpacked_size = std::uint64_t{1} << 30;
 
-  /// What `file` is shows by its first bytes. An empty one is a .dat without records. A .dat that ends in the
+  /// What a file is shows by its first bytes. An empty one is a .dat without records. A .dat that ends in the
   /// middle of a record is no error: index() says so. Offsets of errors count from the start of the file.
+  /// @param file the whole of it, a .glf or a .dat
   /// @param max_unpacked_size most bytes to unpack, of an archive that is compressed
   static Result<LogView, WireError> open(std::span<const std::uint8_t> file,
                                          std::uint64_t max_unpacked_size = default_max_unpacked_size);

@@ -30,6 +30,7 @@ class Packer {
  public:
   /// @param stamp what names are made of (log_stamp())
   /// @param config_xml the .cfg, of at most pack_block_size bytes
+  /// @param dat what is packed
   /// @param closed when, on the log's clock
   /// @throws std::invalid_argument where .cfg or .dat are too large
   Packer(const std::string& stamp, std::string config_xml, const DatSummary& dat, const CivilTime& closed);

@@ -55,6 +55,7 @@ class Writer {
  public:
   /// @param library who writes, for those who look into a file: "sonard 0.1.0"
   /// @param chunk_bytes a chunk of this size or more is closed; 1 puts every message into its own
+  /// @param compression of chunks
   Writer(std::string_view library, std::size_t chunk_bytes, Compression compression = Compression::none);
 
   /// @return the id. At most 65535 of each may be added.

@@ -14,7 +14,9 @@ namespace sonard::micron {
 
 inline constexpr double carrier_hz = 700'000.0;  ///< of the sound (docs/protocols/micron.md 10)
 
-/// PingRecord::wire of a line: a frame without data. @param line its data are left out
+/// PingRecord::wire of a line: a frame without data.
+/// @param line its data are left out
+/// @param node the address of the head that sent it
 std::vector<std::uint8_t> recorded_wire(const HeadData& line, std::uint8_t node);
 /// The line in a message; nullopt where it holds none.
 std::optional<HeadData> recorded_line(std::span<const std::uint8_t> wire);

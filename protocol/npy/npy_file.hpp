@@ -24,6 +24,7 @@ struct Table {
 /// What stands before the samples: magic, version, length of the header, and a Python literal padded so that
 /// the samples begin at a multiple of 64.
 /// @param dtype "|u1" or "<u2"
+/// @param rows, columns of the samples that follow, row by row
 std::string header(std::string_view dtype, int rows, int columns);
 
 /// The whole file. Requires rows * columns samples.

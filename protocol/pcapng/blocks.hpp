@@ -30,8 +30,9 @@ class Writer {
   /// most.
   std::uint32_t add_interface(std::string_view name);
 
-  /// @param time_ns since the Unix epoch. Requires an interface that was added and a packet of at most
-  /// max_packet_size bytes.
+  /// @param interface one that was added
+  /// @param time_ns since the Unix epoch
+  /// @param packet of at most max_packet_size bytes
   void add_packet(std::uint32_t interface, std::uint64_t time_ns, ByteView packet);
 
   /// The blocks to append to the file since the last call: whole ones, perhaps none.

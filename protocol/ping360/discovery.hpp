@@ -19,6 +19,7 @@ inline constexpr std::uint16_t discovery_port = 30303;
 bool is_discovery(std::span<const std::uint8_t> datagram);
 
 /// The answer, to be sent to whoever asked: exactly four lines, each ended by CR LF.
+/// @param mac of ours
 /// @param address of ours, where the data port answers
 std::string discovery_reply(const std::array<std::uint8_t, 6>& mac, Ipv4 address);
 

@@ -19,6 +19,8 @@ struct PingForm {
 
 /// The form of a ping that `command` asks for.
 PingForm form_of(const Transducer& command);
+/// The form of the ping at one angle of a scan.
+/// @param command that began it
 /// @param angle where the scan is, 0..399
 PingForm form_of(const AutoTransmit& command, int angle);
 /// The form of a ping that has come; nullopt: it is another message.

@@ -13,6 +13,7 @@ import time
 import commits
 import configurations
 import includes
+import links
 import spdx
 import tools
 import words
@@ -40,6 +41,9 @@ def make_checks(tree, base):
         "layers": lambda: includes.layer_complaints(tree),
         "words": lambda: words.word_complaints(tree, words.read_rows(own("words.yaml")), WORDS),
         "spdx": lambda: spdx.spdx_complaints(tree),
+        "links": lambda: links.link_complaints(tree),
+        "site": lambda: tools.site_complaints(tree),
+        "reference": lambda: tools.reference_complaints(tree),
         "commits": lambda: commits.commit_complaints(tree, base),
         "tidy": lambda: tools.tidy_complaints(tree, changed),
     }

@@ -13,6 +13,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import commits  # noqa: E402
 import configurations  # noqa: E402
 import includes  # noqa: E402
+import links  # noqa: E402
 import spdx  # noqa: E402
 import tools  # noqa: E402
 import words  # noqa: E402
@@ -184,6 +185,24 @@ class Spdx(LintTest):
         self.assertEqual((self.root / "a.cpp").read_text(), "// SPDX-License-Identifier: Apache-2.0\nint a;\n")
         self.assertEqual((self.root / "run").read_text(), "#!/bin/bash\n# SPDX-License-Identifier: Apache-2.0\ntrue\n")
         self.assertEqual(list(spdx.spdx_complaints(Tree(self.root))), [])
+
+
+class Links(LintTest):
+    README = "# A\n[one](docs/one.md#how-it-goes) [picture](docs) `[no](link)`\n```\n[no](link)\n```\n"
+
+    def complaints(self, texts):
+        return list(links.link_complaints(self.write({"README.md": self.README, **texts})))
+
+    def test_what_is_there_passes(self):
+        self.assertEqual(self.complaints({"docs/one.md": "[two](two.md) [out](https://nowhere.example)\n## How it `goes`\n",
+                                          "docs/two.md": "[up](../README.md#a) [self](#b-1)\n# B\n# B\n"}), [])
+
+    def test_what_is_not_there_is_named_with_its_place(self):
+        said = self.complaints({"docs/one.md": "\n[two](two.md)\n", "docs/three.md": "[a](#b)\n"})
+        self.assertEqual(said, ["README.md:2: docs/one.md#how-it-goes: docs/one.md has no heading of that name",
+                                "docs/one.md:2: two.md: there is no docs/two.md",
+                                "docs/three.md:1: #b: docs/three.md has no heading of that name",
+                                "docs/three.md: no way of links leads to it from README.md"])
 
 
 class Configurations(LintTest):

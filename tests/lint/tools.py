@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that are programs of others: clang-format, shellcheck, codespell, clang-tidy."""
+"""Checks that are programs of others: clang-format, shellcheck, codespell, mkdocs, doxygen, clang-tidy."""
 
 import concurrent.futures
 import json
@@ -41,6 +41,25 @@ def spelling_complaints(tree, ignored):
     # Pieces of words make up its patterns.
     texts = [path for path in texts if path != "tests/lint/words.yaml"]
     yield from run(tree, ["codespell", "--ignore-words", ignored], texts, batch=1000)
+
+
+def site_complaints(tree):
+    """The pages of docs/ as a site: strictly, and every page in its contents."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(["mkdocs", "build", "--strict", "--config-file", "packaging/site/mkdocs.yml", "--site-dir", folder],
+                              cwd=tree.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode or "not included in the" in done.stdout:
+        yield done.stdout
+
+
+def reference_complaints(tree):
+    """The reference of the protocol libraries, whose settings make a warning an error."""
+    settings = (tree.root / "packaging/reference/Doxyfile").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(["doxygen", "-"], cwd=tree.root, input=f"{settings}\nOUTPUT_DIRECTORY = {folder}\n", stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
+    if done.returncode:
+        yield done.stdout
 
 
 def singles(entry):
