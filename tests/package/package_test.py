@@ -90,7 +90,7 @@ class Package(unittest.TestCase):
 
     def test_5_pages_and_versions(self):
         pages = {path.name for path in (self.system.root / "usr/share/man").rglob("*.gz")}
-        for command in ("sonard", "sonarview", "posecast"):
+        for command in ("sonard", "sonarview", "posecast", "roscast"):
             self.assertIn(command + ".1.gz", pages)
             self.assertRegex(self.system.run(command + " --version"), rf"^{command} \d+\.\d+\.\d+, commit [0-9a-f]+")
         self.assertIn("sonard.yaml.5.gz", pages)
