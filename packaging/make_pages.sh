@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Pages of the manual, from what the programs print for --help, and the changelog, both compressed.
 #   make_pages.sh PROGRAMS PACKAGING CHANGELOG OUT CONTACT
-# Times are those of the commit, so that the same commit makes the same package.
+# Called by at_commit_time.sh, whose time is that of the pages.
 set -euo pipefail
 programs=$1 packaging=$2 changelog=$3 out=$4 contact=$5
-SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$packaging" log -1 --format=%ct 2>/dev/null || echo 0)}
-export SOURCE_DATE_EPOCH
 rm -rf "$out"
 mkdir -p "$out/man/man1" "$out/man/man5"
 version=$("$programs/sonard" --version | sed -E 's/^sonard ([^,]*).*/\1/')
