@@ -46,11 +46,12 @@ def podman(*arguments, **others):
 
 
 def set_up_engines(folder):
-    """A storage below `folder`, and settings that need neither systemd nor a kernel's overlays."""
+    """A storage and networks below `folder`, and settings that need neither systemd nor a kernel's overlays."""
     (folder / "storage.conf").write_text(f'[storage]\ndriver = "vfs"\ngraphroot = "{folder}/storage"\nrunroot = "{folder}/run"\n')
     (folder / "containers.conf").write_text(
         '[containers]\ndefault_ulimits = ["nofile=1024:1024", "nproc=20000:20000"]\nlog_driver = "k8s-file"\n'
-        '[engine]\nruntime = "runc"\ncgroup_manager = "cgroupfs"\nevents_logger = "file"\n[network]\nnetwork_backend = "netavark"\n')
+        f'[engine]\nruntime = "runc"\ncgroup_manager = "cgroupfs"\nevents_logger = "file"\ntmp_dir = "{folder}/tmp"\n'
+        f'[network]\nnetwork_backend = "netavark"\nnetwork_config_dir = "{folder}/networks"\n')
     os.environ.update(CONTAINERS_CONF=str(folder / "containers.conf"), CONTAINERS_STORAGE_CONF=str(folder / "storage.conf"))
 
 
@@ -79,7 +80,6 @@ class Containers(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         if not KEEP:
-            podman("system", "reset", "--force")
             shutil.rmtree(cls.folder)
 
     def network(self, name="vehicle", description=None):
