@@ -329,9 +329,10 @@ TEST_F(Loader, refuses_addresses_that_are_no_host) {
               ElementsAre(HasSubstr("239.1.2.3 is not the address of one host")));
   EXPECT_THAT(complaints(with_address("127.255.255.255")),
               ElementsAre(HasSubstr("is the broadcast address of its network")));
-  EXPECT_THAT(
-      complaints(with_address("127.0.0.300")),
-      ElementsAre(HasSubstr("'127.0.0.300' is not understood (expected an IPv4 address such as 127.0.0.2)")));
+  EXPECT_THAT(complaints(with_address("127.0.0.300")),
+              ElementsAre(HasSubstr(
+                  "'127.0.0.300' is not understood (expected an IPv4 address such as 127.0.0.2, or an "
+                  "interface of this machine such as eth0)")));
 }
 
 TEST_F(Loader, refuses_masks_with_holes) {
