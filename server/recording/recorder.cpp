@@ -159,7 +159,7 @@ void Recorder::Impl::run() {
       queue.done(event);
       event.what = StreamEnded{};  // gives its memory back now
     }
-    if (off) {
+    if (off && !on) {  // else it was turned on meanwhile, and what was taken may be of new logs
       end_set();
     }
     look_after_logs();
