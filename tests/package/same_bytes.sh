@@ -8,8 +8,11 @@ folder=$(mktemp -d "${TMPDIR:-/tmp}/sonard-same-bytes-XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 export CCACHE_DISABLE=1
 packages=()
-for place in here/it/is elsewhere; do
+places=(here/it/is elsewhere)
+for place in "${places[@]}"; do  # both before the builds, during which somebody may commit
   git clone --quiet "$repository" "$folder/$place"
+done
+for place in "${places[@]}"; do
   cd "$folder/$place"
   cmake --preset release -DSONARD_TESTS=OFF >/dev/null
   cmake --build --preset release --target debian_package
