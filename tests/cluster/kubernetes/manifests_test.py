@@ -8,7 +8,6 @@ No cluster is started. Needs the right to make network namespaces.
 """
 
 import argparse
-import os
 import pathlib
 import subprocess
 import sys
@@ -129,7 +128,7 @@ class Fleet(OwnMachine):
         container = container_of(vehicle)
         folder = pathlib.Path(self.folder.name)
         [configuration] = of_kind("fleet.yaml", "ConfigMap")
-        text = configuration["data"]["vehicle.yaml"].replace("/usr/local/share/sonard", str(REPOSITORY))
+        text = configuration["data"]["vehicle.yaml"].replace("/usr/share/sonard", str(REPOSITORY))
         text = text.replace("10.0.0.0/8", "127.0.0.0/8").replace("address: eth0", "address: 127.0.0.2").replace("netmask: eth0", "netmask: 255.0.0.0")
         (folder / "vehicle.yaml").write_text(text)
         pod = Program([PROGRAMS / "sonard", *(word.replace("/etc/vehicle", str(folder)) for word in container["args"])], "sonard")
