@@ -12,8 +12,8 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
-#include <vector>
 
 namespace sonard::picture {
 namespace {

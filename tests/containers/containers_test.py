@@ -82,9 +82,9 @@ class Containers(unittest.TestCase):
         if not KEEP:
             shutil.rmtree(cls.folder)
 
-    def network(self, name="vehicle", description=None):
+    def network(self, name="vehicle"):
         """By the lines of the compose file: podman-compose 1.0 makes networks without their addresses and their edge."""
-        vehicle = description or yaml.safe_load(COMPOSE.read_text())["networks"]["vehicle"]
+        vehicle = yaml.safe_load(COMPOSE.read_text())["networks"]["vehicle"]
         [addresses] = vehicle["ipam"]["config"]
         podman("network", "create", *(["--internal"] if vehicle["internal"] else []), "--subnet", addresses["subnet"],
                "--gateway", addresses["gateway"], name)

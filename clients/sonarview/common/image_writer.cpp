@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/common/image_writer.hpp"
-#include "renderer/picture/picture_file.hpp"
 
 #include <fmt/format.h>
-#include <exception>
 
+#include <exception>
 #include <fstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include "renderer/picture/picture_file.hpp"
 
 namespace sonard::client {
 namespace {

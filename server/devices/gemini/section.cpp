@@ -30,8 +30,7 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   section.require("alternate_address", "the address that clients find in the status packets");
   section.parsed("alternate_address", device.alternate_address, &parse_own_address, own_address_form,
                  "the address that clients find in the status packets and send to, or the interface whose "
-                 "address it is; the head must be "
-                 "reachable there");
+                 "address it is; the head must be reachable there");
   if (section.has("alternate_address")) {
     check_host_address(section, "alternate_address", device.alternate_address);
   }
