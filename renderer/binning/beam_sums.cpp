@@ -52,30 +52,41 @@ std::vector<EchoPatch>& patches_of_this_beam() {
 
 }  // namespace
 
-BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
-                           const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
-  const Aperture& aperture = *options.cone_aperture;
-  const ConeBearings bearings(aperture, std::move(columns));
+BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+                          WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of) {
+  const auto is_empty = [&](std::size_t beam) {
+    std::vector<EchoPatch>& patches = patches_of_this_beam();
+    patches.clear();
+    patches_of(beam, patches);
+    return options.skip.on(SkipRule::empty_beams) && !options.open_water && patches.empty();
+  };
+  // The bound of a mean's weights, or exactly what the beam sees.
   const double height =
       options.open_water ? aperture.pattern_height() : 2 * std::sin(aperture.elevation_limit_rad());
-  const BeamSource source{[](std::size_t) { return false; },
-                          [&](std::size_t beam) {
-                            std::vector<EchoPatch>& patches = patches_of_this_beam();
-                            bearings.patches_of(static_cast<int>(beam), patches);
-                            double echo = 0.0;
-                            for (const EchoPatch& patch : patches) {
-                              echo += std::isfinite(patch.echo) ? static_cast<double>(patch.echo) : 0.0;
-                            }
-                            return BeamContent{
-                                height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]),
-                                echo};
-                          },
-                          [&](std::size_t, BeamSums& sums) {
-                            for (const EchoPatch& patch : patches_of_this_beam()) {
-                              sums.add(patch);
-                            }
-                          }};
-  return bin_beams(aperture.beam_count(), range, options, workers, std::move(memory), source);
+  // What a beam holds in fact: the echo of a bed at grazing incidence keeps its digits.
+  const auto content = [&](std::size_t beam) {
+    double echo = 0.0;
+    for (const EchoPatch& patch : patches_of_this_beam()) {
+      echo += std::isfinite(patch.echo) ? static_cast<double>(patch.echo) : 0.0;
+    }
+    return BeamContent{height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]), echo};
+  };
+  const auto fill = [](std::size_t, BeamSums& sums) {
+    for (const EchoPatch& patch : patches_of_this_beam()) {
+      sums.add(patch);
+    }
+  };
+  return bin_beams(aperture.beam_count(), range, options, workers, std::move(memory),
+                   {is_empty, content, fill});
+}
+
+BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
+                           const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
+  const ConeBearings bearings(*options.cone_aperture, std::move(columns));
+  return bin_patches(*options.cone_aperture, range, options, workers, std::move(memory),
+                     [&](std::size_t beam, std::vector<EchoPatch>& patches) {
+                       bearings.patches_of(static_cast<int>(beam), patches);
+                     });
 }
 
 }  // namespace sonard::render

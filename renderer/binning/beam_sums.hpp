@@ -119,6 +119,14 @@ struct BeamSource {
 BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
                         WorkerPool& workers, std::vector<float> memory, const BeamSource& source);
 
+/// Puts what a beam receives into `patches`, which are empty. Any thread.
+using PatchesOfBeam = std::function<void(std::size_t beam, std::vector<EchoPatch>& patches)>;
+
+/// Each beam in one job from its patches to its lines: they are summed while they are in the cache.
+/// @param memory as of bin_beams()
+BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+                          WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of);
+
 /// What lies in `columns`, told apart by cones around the array of BinningOptions::cone_aperture.
 BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
                            const BinningOptions& options, WorkerPool& workers, std::vector<float> memory);

@@ -54,8 +54,8 @@ inline double rounded(double value) {
 
 /// Adds what a smeared step makes of eight differences. The step begins `from` lines after the first of them;
 /// before that one, it has none. Written as vectors: left to itself, the compiler makes several of each.
-SONARD_SIMD_CLONES
-void add_smeared_step(double from, double smear, double density, double* difference) {
+[[gnu::always_inline]] inline void add_smeared_step(double from, double smear, double density,
+                                                    double* difference) {
   add_to_four_lines(0.0, from, smear, density, difference);
   add_to_four_lines(4.0, from, smear, density, difference + 4);
 }
@@ -73,8 +73,10 @@ void RangeProfile::reset(std::size_t lines, double largest) {
   open_density_ = 0.0;
 }
 
-void RangeProfile::add(double position_a, float smear_a, double position_b, float smear_b, float amount,
-                       float relative_gradient) {
+// With all that it calls, so that the vectors of a patch are one function's.
+[[gnu::flatten]] SONARD_SIMD_CLONES void RangeProfile::add(double position_a, float smear_a,
+                                                           double position_b, float smear_b, float amount,
+                                                           float relative_gradient) {
   // Two ends become one step where they are the same. The patch then begins where the last one ended, before
   // its spread is taken: moving an end afterwards would change the amount.
   const bool joined = open_density_ != 0.0 && std::abs(open_position_ - position_a) < least_spread &&

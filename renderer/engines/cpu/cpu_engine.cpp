@@ -120,10 +120,12 @@ void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions
                                     slice_accuracy(settings));
   statistics.visibility_s += watch.lap();
   statistics.skipped += slices_.skipped();
-  hand_over(bin_echoes(cells, settings.aperture, settings.range, options, workers_,
-                       std::move(echo.image.intensity)),
+  double shading_s = 0.0;
+  hand_over(bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,
+                       std::move(echo.image.intensity), shading_s),
             echo, statistics);
-  statistics.binning_s += watch.lap();
+  statistics.visibility_s += shading_s;
+  statistics.binning_s += watch.lap() - shading_s;
 }
 
 }  // namespace sonard::render

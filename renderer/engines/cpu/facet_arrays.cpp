@@ -43,7 +43,7 @@ void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std:
     }
   }
   for (std::size_t i = 0; i < visible.size(); ++i) {
-    const PartSurface& part = parts[visible[i].triangle->part];
+    const PartSurface& part = parts[visible[i].part];
     const bool never = part.normal_map || (!everywhere && !(part.backscatter.facet_strength > 0));
     strength_[i] = never ? 0.0F : part.backscatter.facet_strength;
     variance_[i] = std::min(part.backscatter.slope_variance, Backscatter::widest_variance);

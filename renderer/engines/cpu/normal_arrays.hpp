@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/engines/cpu/slice_shading.hpp"
+#include "renderer/engines/cpu/vertex_normals.hpp"
 
 namespace sonard::render {
 

@@ -10,11 +10,12 @@
 
 namespace sonard::render {
 
-/// Sums of slices, which always have footprints.
-/// @param cells from port to starboard
+/// Shades slices and sums what they echo, which always has footprints.
+/// @param cells of `slices`, from port to starboard
 /// @param memory as of bin_beams()
-BinningResult bin_echoes(const std::vector<const SliceCell*>& cells, const Aperture& aperture,
-                         const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
-                         std::vector<float> memory = {});
+/// @param shading_s set to the part of the time in which patches were made
+BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
+                         const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+                         WorkerPool& workers, std::vector<float> memory, double& shading_s);
 
 }  // namespace sonard::render

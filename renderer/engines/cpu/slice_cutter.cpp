@@ -32,6 +32,7 @@ void SliceCutter::load(std::span<const ListedTriangle> triangles, double low_rad
   triangles_.clear();
   for (const ListedTriangle& t : triangles) {
     if (t.high_azimuth_rad >= low && t.low_azimuth_rad <= high) {
+      __builtin_prefetch(t.triangle);  // they lie far apart
       triangles_.push_back(t.triangle);
     }
   }
@@ -45,7 +46,9 @@ void SliceCutter::load(std::span<const ListedTriangle> triangles, double low_rad
       corner[k].resize(padded_);
     }
   }
+  part_.resize(padded_);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    part_[i] = triangles_[i]->part;
     for (int k = 0; k < 3; ++k) {
       x_[k][i] = triangles_[i]->x[k];
       y_[k][i] = triangles_[i]->y[k];

@@ -96,6 +96,7 @@ class SliceCutter {
   void find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const;
 
   const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }
+  std::uint32_t part(int index) const { return part_[static_cast<std::size_t>(index)]; }
   /// Unit normal in the sonar frame; its sign is that of the winding.
   const float* normal_x() const { return normal_x_.data(); }
   const float* normal_y() const { return normal_y_.data(); }
@@ -115,6 +116,7 @@ class SliceCutter {
   std::size_t padded_ = 0;
   std::vector<float> x_[3], y_[3], z_[3];
   std::vector<float> normal_x_, normal_y_, normal_z_;
+  std::vector<std::uint32_t> part_;
   struct ThinThing {
     std::uint32_t part;
     float low_azimuth_rad, high_azimuth_rad;

@@ -49,7 +49,7 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
   int rounds = 0;
   do {
     lay_out(request);
-    ends_.run_straight(*visible_, request.slice.width_rad, request.tan_limit, seen_);
+    ends_.run_straight(request.slice.width_rad, request.tan_limit, seen_);
     measure(request);
     if (!runs_.empty()) {
       measure_shading();
@@ -75,20 +75,35 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
 void SlicePatcher::see_normals(const Request& request) {
   runs_.clear();
   original_.clear();
-  const auto is_shaded = [&](const VisibleSegment& segment) {
-    return request.parts[segment.triangle->part].vertex_normals && !is_mapped(request, segment);
-  };
-  const bool any = std::any_of(visible_->begin(), visible_->end(), is_shaded);
-  for (std::size_t i = 0; (any || request.any_facets) && i < visible_->size(); ++i) {
+  shaded_.clear();
+  vertex_normals_.clear();
+  for (std::size_t i = 0; request.any_vertex_normals && i < visible_->size(); ++i) {
     const VisibleSegment& segment = (*visible_)[i];
-    NormalRun run{{segment.normal_h, segment.normal_s, segment.normal_z}};
-    if (is_shaded(segment)) {
-      const NormalRun shading = interpolated_normals(request.parts[segment.triangle->part], *segment.triangle,
-                                                     request.slice, 0.5F * (segment.low + segment.high));
-      run = shading.is_finite() ? shading : run;
+    const PartSurface& part = request.parts[segment.part];
+    if (part.vertex_normals && !part.mesh->normals.empty() && !is_mapped(request, segment)) {
+      shaded_.push_back(static_cast<std::uint32_t>(i));
+      vertex_normals_.add(part, *segment.triangle);
     }
-    runs_.push_back(run);
+  }
+  if (shaded_.empty() && !request.any_facets) {
+    return;
+  }
+  for (std::size_t i = 0; i < visible_->size(); ++i) {
+    const VisibleSegment& segment = (*visible_)[i];
+    runs_.push_back({{segment.normal_h, segment.normal_s, segment.normal_z}});
     original_.push_back(static_cast<std::uint32_t>(i));
+  }
+  vertex_normals_.interpolate(request.slice);
+  for (std::size_t k = 0; k < shaded_.size(); ++k) {
+    const VisibleSegment& segment = (*visible_)[shaded_[k]];
+    const PartSurface& part = request.parts[segment.part];
+    NormalRun run = vertex_normals_.run(k);
+    if (!part.refraction_in_part.straight()) {
+      refract(part, segment, request.slice, 0.5F * (segment.low + segment.high), run);
+    }
+    if (run.is_finite()) {
+      runs_[shaded_[k]] = run;
+    }
   }
 }
 
@@ -328,7 +343,7 @@ bool SlicePatcher::all_even(float allowed_m) const {
 }
 
 bool SlicePatcher::is_mapped(const Request& request, const VisibleSegment& segment) {
-  const NormalPyramid* map = request.parts[segment.triangle->part].normal_map.get();
+  const NormalPyramid* map = request.parts[segment.part].normal_map.get();
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
@@ -458,7 +473,7 @@ void SlicePatcher::join_gradients() {
 /// What a segment answers without facets.
 float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
   const VisibleSegment& segment = (*visible_)[i];
-  const PartSurface& part = request.parts[segment.triangle->part];
+  const PartSurface& part = request.parts[segment.part];
   float cosine = cosine_[i];
   if (part.normal_map) {
     const float t = 0.5F * (segment.low + segment.high);
@@ -478,7 +493,7 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
 /// @return false where there are none to add.
 bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
   const VisibleSegment& segment = (*visible_)[i];
-  const PartSurface& part = request.parts[segment.triangle->part];
+  const PartSurface& part = request.parts[segment.part];
   if (part.normal_map) {
     if (request.surface.facets != Facets::everywhere && !(part.backscatter.facet_strength > 0)) {
       return false;
@@ -507,7 +522,7 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
 
 FacetSight SlicePatcher::sight_of(const Request& request, std::size_t i) const {
   const VisibleSegment& segment = (*visible_)[i];
-  return {request.parts[segment.triangle->part].backscatter, runs_[original_[i]], request.slice.width_rad,
+  return {request.parts[segment.part].backscatter, runs_[original_[i]], request.slice.width_rad,
           0.5F * (segment.low + segment.high)};
 }
 

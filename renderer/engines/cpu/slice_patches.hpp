@@ -11,6 +11,7 @@
 #include "renderer/engines/cpu/part_surface.hpp"
 #include "renderer/engines/cpu/slice_facets.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
+#include "renderer/engines/cpu/vertex_normals.hpp"
 #include "renderer/engines/cpu/visible_arrays.hpp"
 #include "renderer/engines/cpu/visible_ends.hpp"
 #include "renderer/surface/surface_model.hpp"
@@ -53,7 +54,8 @@ class SlicePatcher {
     bool any_mapped;  ///< whether any of the parts has a normal map
     /// Under one, segments are no longer than this many lines, so that its bumps appear at their ranges.
     float mapped_lines;
-    bool any_facets;  ///< whether any of the parts has facets
+    bool any_vertex_normals;  ///< whether any of the parts is shaded by them
+    bool any_facets;          ///< whether any of the parts has facets
     /// Segments that spread over lines are divided until the direction of their echo, against that of a
     /// mirror, turns by no more than this many rms slopes of their facets.
     float facet_slopes;
@@ -95,7 +97,9 @@ class SlicePatcher {
   /// Normals of each segment of the request; empty where all are shaded by their planes and none has facets.
   std::vector<NormalRun> runs_;
   std::vector<std::uint32_t> original_, divided_original_;  ///< of each segment, its number in `runs_`
-  NormalArrays normals_;                                    ///< `runs_` of each segment, if there are any
+  VertexNormals vertex_normals_;
+  std::vector<std::uint32_t> shaded_;  ///< the segments of the request that it interpolates
+  NormalArrays normals_;               ///< `runs_` of each segment, if there are any
   FacetArrays facets_;
   VisibleArrays seen_;
   VisibleEnds ends_;

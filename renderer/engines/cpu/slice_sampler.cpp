@@ -76,6 +76,8 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSw
   }
 }
 
+SliceSampler::~SliceSampler() = default;
+
 /// Adds a part of the body that is added next.
 void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   PartSurface surface;
@@ -176,35 +178,27 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
                                                    const SliceAccuracy& accuracy) {
   place_parts(T_world_sonar);
   const Fan fan(aperture, sampled_range_m);
-  const Setting setting{
-      fan,
-      ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)),
-      surface,
-      accuracy,
-      surfaces_,
+  setting_ = std::make_unique<const Setting>(Setting{
+      fan, ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)), surface, accuracy, surfaces_,
       any_mapped_,
+      std::any_of(surfaces_.begin(), surfaces_.end(),
+                  [](const PartSurface& part) { return part.vertex_normals; }),
       surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
       static_cast<float>(range.step_m),
-      SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))};
-  triangles_.find(placed_, setting.fan, bend_, workers_, skip_.on(SkipRule::culled_clusters));
-  lay_first_slices(setting);
+      SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))});
+  triangles_.find(placed_, fan, bend_, workers_, skip_.on(SkipRule::culled_clusters));
+  lay_first_slices(*setting_);
   std::vector<std::size_t> fresh = order_;
   do {
-    see(setting, fresh);
-  } while (refine(setting, fresh));
-  make_patches(setting);
+    see(*setting_, fresh);
+  } while (refine(*setting_, fresh));
   std::vector<const SliceCell*> cells;
   for (const std::size_t i : order_) {
     cells.push_back(cells_[i].get());
   }
   skipped_ = skipped_parts_;
   skipped_.add(SkipRule::culled_clusters, triangles_.clusters_culled());
-  skipped_.add(SkipRule::flat_elevation, setting.pattern.flat() ? 1 : 0);
-  if (surface.facets == Facets::near_normal) {
-    for (const SliceCell* cell : cells) {
-      skipped_.add(SkipRule::facet_kernel, cell->without_facets);
-    }
-  }
+  skipped_.add(SkipRule::flat_elevation, setting_->pattern.flat() ? 1 : 0);
   return cells;
 }
 
@@ -249,23 +243,26 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   scratch.expectation.find(cell.visible, cell.slice.width_rad, setting.side_view, cell.sides);
 }
 
-/// Makes the patches of the final slices.
-void SliceSampler::make_patches(const Setting& setting) {
-  constexpr std::size_t cells_per_job = 4;
-  workers_.run(static_cast<int>((order_.size() + cells_per_job - 1) / cells_per_job), [&](int job) {
-    thread_local SlicePatcher patcher;
-    const std::size_t begin = static_cast<std::size_t>(job) * cells_per_job;
-    for (std::size_t i = begin; i < std::min(order_.size(), begin + cells_per_job); ++i) {
-      SliceCell& cell = *cells_[order_[i]];
-      cell.patches.clear();
-      cell.without_facets =
-          patcher.make({cell.slice, cell.visible, setting.parts, setting.surface, setting.pattern,
-                        setting.fan.tan_limit(), setting.accuracy.linearity, setting.any_mapped,
-                        setting.accuracy.mapped_lines, setting.any_facets, setting.accuracy.facet_slopes,
-                        setting.accuracy.facet_lines, setting.line_m, setting.fan.max_range_m()},
-                       cell.patches);
-    }
-  });
+std::uint64_t SliceSampler::make_patches(const SliceCell& cell, std::vector<EchoPatch>& patches) const {
+  thread_local SlicePatcher patcher;
+  const Setting& setting = *setting_;
+  const std::uint64_t without_facets = patcher.make({.slice = cell.slice,
+                                                     .visible = cell.visible,
+                                                     .parts = setting.parts,
+                                                     .surface = setting.surface,
+                                                     .pattern = setting.pattern,
+                                                     .tan_limit = setting.fan.tan_limit(),
+                                                     .linearity = setting.accuracy.linearity,
+                                                     .any_mapped = setting.any_mapped,
+                                                     .mapped_lines = setting.accuracy.mapped_lines,
+                                                     .any_vertex_normals = setting.any_vertex_normals,
+                                                     .any_facets = setting.any_facets,
+                                                     .facet_slopes = setting.accuracy.facet_slopes,
+                                                     .facet_lines = setting.accuracy.facet_lines,
+                                                     .line_m = setting.line_m,
+                                                     .max_range_m = setting.fan.max_range_m()},
+                                                    patches);
+  return setting.surface.facets == Facets::near_normal ? without_facets : 0;
 }
 
 }  // namespace sonard::render

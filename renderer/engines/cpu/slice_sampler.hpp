@@ -59,10 +59,8 @@ struct SliceCell {
   Slice slice;
   int beam = 0;
   std::vector<VisibleSegment> visible;  ///< seen along its azimuth, whatever its width
-  std::vector<EchoPatch> patches;
   SliceSides sides;
   SliceBorder to_starboard;                  ///< between this slice and the next one
-  std::uint64_t without_facets = 0;          ///< patches, see SkipRule::facet_kernel
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
   bool seen = false;                         ///< `visible` is known
   bool fresh = true;                         ///< not yet compared with its neighbours
@@ -76,6 +74,7 @@ struct SliceCell {
 class SliceSampler {
  public:
   SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});
+  ~SliceSampler();
 
   /// Cells from port to starboard; they stay valid until the next call. The result does not depend on the
   /// number of threads.
@@ -83,6 +82,11 @@ class SliceSampler {
   std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture,
                                        const RangeLines& range, double sampled_range_m,
                                        const SurfaceModel& surface, const SliceAccuracy& accuracy);
+
+  /// What one of these cells echoes. Any thread.
+  /// @param patches is appended to.
+  /// @return of how many of them facets were left out (SkipRule::facet_kernel).
+  std::uint64_t make_patches(const SliceCell& cell, std::vector<EchoPatch>& patches) const;
 
   /// See EchoEngine::set_body_pose().
   void set_body_pose(std::size_t body, const Pose& T_world_body) { T_world_body_[body] = T_world_body; }
@@ -114,7 +118,6 @@ class SliceSampler {
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
   static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
-  void make_patches(const Setting& setting);
   std::size_t new_cell(const Slice& slice, int beam);
 
   // slice_refinement.cpp
@@ -142,6 +145,7 @@ class SliceSampler {
   std::size_t cells_used_ = 0;
   std::vector<std::size_t> order_;  ///< cells from port to starboard
   SkipCounts skipped_;
+  std::unique_ptr<const Setting> setting_;  ///< of the last call
 };
 
 }  // namespace sonard::render

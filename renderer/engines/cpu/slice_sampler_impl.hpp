@@ -13,10 +13,11 @@ namespace sonard::render {
 struct SliceSampler::Setting {
   Fan fan;
   ElevationPattern pattern;
-  const SurfaceModel& surface;
-  const SliceAccuracy& accuracy;
+  SurfaceModel surface;
+  SliceAccuracy accuracy;
   const std::vector<PartSurface>& parts;
   bool any_mapped;
+  bool any_vertex_normals;
   bool any_facets;  ///< whether any part has them
   float line_m;
   SideView side_view;

@@ -107,47 +107,6 @@ bool has_plain_facets(const TriangleMesh& mesh) {
   return true;
 }
 
-NormalRun interpolated_normals(const PartSurface& part, const FanTriangle& triangle, const Slice& slice,
-                               float middle_t) {
-  // Rows: the axes of the slice.
-  const glm::vec3 along(slice.cosine, slice.sine, 0), across(-slice.sine, slice.cosine, 0);
-  const auto in_slice = [&](const glm::vec3& v) {
-    return glm::vec3(glm::dot(along, v), glm::dot(across, v), v.z);
-  };
-  const auto normal_of = [&](std::size_t corner) {
-    const std::uint32_t k = part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3 + corner];
-    return in_slice(part.mesh->normals[k] * part.R_part_sonar);
-  };
-  const SurfacePoint surface(triangle, {});
-  const glm::vec3 plane = in_slice(surface.normal);
-  if (part.mesh->normals.empty()) {
-    return {plane};
-  }
-  const glm::vec3 a = normal_of(0), by_b = normal_of(1) - a, by_c = normal_of(2) - a;
-  const float nn = glm::dot(surface.normal, surface.normal);
-  const glm::vec3 grows_to_b = glm::cross(surface.edge_c, surface.normal) / nn;
-  const glm::vec3 grows_to_c = glm::cross(surface.normal, surface.edge_b) / nn;
-  const glm::vec3 b_of = in_slice(grows_to_b), c_of = in_slice(grows_to_c);
-  // At the sonar, which the plane may be continued to.
-  const glm::vec3 at_sonar =
-      a - by_b * glm::dot(grows_to_b, surface.corner) - by_c * glm::dot(grows_to_c, surface.corner);
-  const glm::vec3 depth = plane / glm::dot(surface.normal, surface.corner);
-  NormalRun run{at_sonar * depth.x + by_b * b_of.x + by_c * c_of.x,
-                at_sonar * depth.y + by_b * b_of.y + by_c * c_of.y,
-                at_sonar * depth.z + by_b * b_of.z + by_c * c_of.z};
-  const Refraction& bend = part.refraction_in_part;
-  if (!bend.straight()) {
-    const glm::vec3 up_in_slice = in_slice(bend.up * part.R_part_sonar);
-    const float nearness = depth.x + middle_t * depth.z;
-    const glm::vec3 middle = (run.at + middle_t * run.per_t) / nearness;
-    const float turn = 2 * bend.per_m * glm::dot(middle, up_in_slice);
-    run.at -= turn * (glm::vec3(1, 0, 0) - up_in_slice * up_in_slice.x);
-    run.per_x -= turn * (glm::vec3(0, 1, 0) - up_in_slice * up_in_slice.y);
-    run.per_t -= turn * (glm::vec3(0, 0, 1) - up_in_slice * up_in_slice.z);
-  }
-  return run;
-}
-
 MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
                                  const SegmentPlace& place, float geometric) {
   const SurfacePoint surface(triangle,

@@ -35,19 +35,19 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
   waiting_.clear();
   sort_by_low_end();
   next_ = 0;
-  current_ = nothing;
+  current_ = {};
   crossing_ = never;
   t_ = -limit_;
   run_ = {};
   while (t_ < limit_) {
-    if (current_ == nothing) {
+    if (current_.segment == nothing) {
       if (next_ == count_) {
         break;
       }
       step_to_next_start();
       continue;
     }
-    const float end = std::min(segments.high[static_cast<std::size_t>(current_)], limit_);
+    const float end = std::min(current_.high, limit_);
     const float start = next_start();
     if (crossing_ < start && crossing_ < end) {
       const std::size_t before = visible.size();
@@ -58,7 +58,7 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
       std::swap(current_, waiting_[crosser_]);
       find_next_crossing();
     } else if (start < end) {
-      meet(order_[next_++]);
+      meet(line(order_[next_++]));
     } else {
       step_to_end_of_current();
     }
@@ -177,11 +177,11 @@ void SliceSweep::emit(float until, const EdgeRun& run) {
     if (until - t_ < widest_gap_rad * (1 + t_ * t_)) {
       short_.push_back(visible_->size());
     }
-    const auto s = static_cast<std::size_t>(current_);
+    const auto s = static_cast<std::size_t>(current_.segment);
     const float nx = cutter_->normal_x()[s], ny = cutter_->normal_y()[s];
-    visible_->push_back({t_, until, run_, run, segments_->w_at_0[s], segments_->w_slope[s],
-                         nx * cosine_ + ny * sine_, ny * cosine_ - nx * sine_, cutter_->normal_z()[s],
-                         &cutter_->triangle(current_)});
+    visible_->push_back({t_, until, current_.w_at_0, current_.w_slope, run_, run, nx * cosine_ + ny * sine_,
+                         ny * cosine_ - nx * sine_, cutter_->normal_z()[s], cutter_->part(current_.segment),
+                         &cutter_->triangle(current_.segment)});
     t_ = until;
   }
   run_ = run;
@@ -196,22 +196,21 @@ void SliceSweep::step_to_next_start() {
 }
 
 /// A segment begins while another is seen.
-void SliceSweep::meet(int segment) {
-  const auto s = static_cast<std::size_t>(segment);
-  const auto c = static_cast<std::size_t>(current_);
+void SliceSweep::meet(const Line& line) {
+  const auto s = static_cast<std::size_t>(line.segment);
   const float start = std::max(-limit_, segments_->low[s]);
   float at = never;
-  const bool cross = crosses(segment, current_, start, at);
-  if (is_seen_first(segment, current_, start)) {
+  const bool cross = crosses(line, current_, start, at);
+  if (is_seen_first(line, current_, start)) {
     emit(start, segments_->low_run(s));
-    if (cross || segments_->high[c] > segments_->high[s]) {
+    if (cross || current_.high > line.high) {
       waiting_.push_back(current_);
     }
-    current_ = segment;
+    current_ = line;
     find_next_crossing();
-  } else if (cross || segments_->high[s] > segments_->high[c]) {
+  } else if (cross || line.high > current_.high) {
     // Otherwise it ends behind the current one and is never seen.
-    waiting_.push_back(segment);
+    waiting_.push_back(line);
     if (cross && at < crossing_) {
       crossing_ = at;
       crosser_ = waiting_.size() - 1;
@@ -220,12 +219,12 @@ void SliceSweep::meet(int segment) {
 }
 
 void SliceSweep::step_to_end_of_current() {
-  const auto c = static_cast<std::size_t>(current_);
-  const bool cut_by_limit = segments_->high[c] >= limit_;
-  emit(std::min(segments_->high[c], limit_), cut_by_limit ? EdgeRun{} : segments_->high_run(c));
+  const bool cut_by_limit = current_.high >= limit_;
+  emit(std::min(current_.high, limit_),
+       cut_by_limit ? EdgeRun{} : segments_->high_run(static_cast<std::size_t>(current_.segment)));
   if (waiting_.empty() && next_start() <= t_ && start_after_next() > t_) {
     // The next facet of one surface, with nothing behind it: by far the most common case.
-    current_ = order_[next_++];
+    current_ = line(order_[next_++]);
     crossing_ = never;
     return;
   }
@@ -235,22 +234,22 @@ void SliceSweep::step_to_end_of_current() {
 /// Makes the nearest of all that have begun and not ended the current one.
 void SliceSweep::take_nearest_waiting() {
   while (next_ < count_ && next_start() <= t_) {
-    waiting_.push_back(order_[next_++]);
+    waiting_.push_back(line(order_[next_++]));
   }
   std::size_t kept = 0;
   std::size_t best = 0;
-  for (const std::int32_t segment : waiting_) {
-    if (!(segments_->high[static_cast<std::size_t>(segment)] > t_)) {
+  for (const Line& candidate : waiting_) {
+    if (!(candidate.high > t_)) {
       continue;
     }
-    waiting_[kept] = segment;
-    if (kept > 0 && is_seen_first(segment, waiting_[best], t_)) {
+    waiting_[kept] = candidate;
+    if (kept > 0 && is_seen_first(waiting_[kept], waiting_[best], t_)) {
       best = kept;
     }
     ++kept;
   }
   waiting_.resize(kept);
-  current_ = nothing;
+  current_ = {};
   crossing_ = never;
   if (kept > 0) {
     current_ = waiting_[best];
@@ -260,26 +259,28 @@ void SliceSweep::take_nearest_waiting() {
   }
 }
 
-/// Which of two is seen at and after `from`: compared in the middle of what both span, since ends are shared
-/// by neighbours, but where they cross at `from` itself.
-bool SliceSweep::is_seen_first(int a, int b, float from) const {
-  float at = never;
-  if (crosses(a, b, from, at)) {
-    return segments_->w(a, from) > segments_->w(b, from);
-  }
-  const float until =
-      std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
-  const float middle = 0.5F * (from + until);
-  const float difference = segments_->w(a, middle) - segments_->w(b, middle);
-  return difference > 0 || (difference == 0 && a < b);
+SliceSweep::Line SliceSweep::line(std::int32_t segment) const {
+  const auto s = static_cast<std::size_t>(segment);
+  return {segment, segments_->high[s], segments_->w_at_0[s], segments_->w_slope[s]};
 }
 
-bool SliceSweep::crosses(int a, int b, float from, float& at) const {
-  const float until =
-      std::min(segments_->high[static_cast<std::size_t>(a)], segments_->high[static_cast<std::size_t>(b)]);
-  const float w_from = segments_->w(a, from);
-  const float first = w_from - segments_->w(b, from);
-  const float last = segments_->w(a, until) - segments_->w(b, until);
+/// Which of two is seen at and after `from`: compared in the middle of what both span, since ends are shared
+/// by neighbours, but where they cross at `from` itself.
+bool SliceSweep::is_seen_first(const Line& a, const Line& b, float from) {
+  float at = never;
+  if (crosses(a, b, from, at)) {
+    return a.w(from) > b.w(from);
+  }
+  const float middle = 0.5F * (from + std::min(a.high, b.high));
+  const float difference = a.w(middle) - b.w(middle);
+  return difference > 0 || (difference == 0 && a.segment < b.segment);
+}
+
+bool SliceSweep::crosses(const Line& a, const Line& b, float from, float& at) {
+  const float until = std::min(a.high, b.high);
+  const float w_from = a.w(from);
+  const float first = w_from - b.w(from);
+  const float last = a.w(until) - b.w(until);
   const float margin = touching * std::abs(w_from);
   if (!(first * last < 0) || std::abs(first) < margin || std::abs(last) < margin) {
     return false;
@@ -292,8 +293,7 @@ void SliceSweep::find_next_crossing() {
   crossing_ = never;
   for (std::size_t k = 0; k < waiting_.size(); ++k) {
     float at = never;
-    if (segments_->high[static_cast<std::size_t>(waiting_[k])] > t_ &&
-        crosses(current_, waiting_[k], t_, at) && at < crossing_) {
+    if (waiting_[k].high > t_ && crosses(current_, waiting_[k], t_, at) && at < crossing_) {
       crossing_ = at;
       crosser_ = k;
     }

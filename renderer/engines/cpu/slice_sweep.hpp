@@ -11,10 +11,11 @@ namespace sonard::render {
 
 /// Part of a triangle that the sonar sees in a slice, between two elevations.
 struct VisibleSegment {
-  float low, high;  ///< t at the ends; low < high
+  float low, high;        ///< t at the ends; low < high
+  float w_at_0, w_slope;  ///< see Segments
   EdgeRun low_run, high_run;
-  float w_at_0, w_slope;               ///< see Segments
   float normal_h, normal_s, normal_z;  ///< of the triangle: along the slice, across it to port, and up
+  std::uint32_t part;  ///< of the triangle: most of what is asked of it, without looking it up
   const FanTriangle* triangle;
 };
 
@@ -29,17 +30,27 @@ class SliceSweep {
            std::vector<VisibleSegment>& visible);
 
  private:
+  /// What decides which segment is seen.
+  struct Line {
+    std::int32_t segment = -1;  ///< -1: none
+    float high = 0.0F;
+    float w_at_0 = 0.0F, w_slope = 0.0F;
+
+    float w(float t) const { return w_at_0 + w_slope * t; }
+  };
+
   void follow_crossings();
   void close_gaps();
   void sort_by_low_end();
   void find_buckets(std::int32_t buckets);
   void step_to_next_start();
   void step_to_end_of_current();
-  void meet(int segment);
+  void meet(const Line& line);
   void take_nearest_waiting();
   void emit(float until, const EdgeRun& run);
-  bool is_seen_first(int a, int b, float from) const;
-  bool crosses(int a, int b, float from, float& at) const;
+  Line line(std::int32_t segment) const;
+  static bool is_seen_first(const Line& a, const Line& b, float from);
+  static bool crosses(const Line& a, const Line& b, float from, float& at);
   void find_next_crossing();
   float next_start() const;
   float start_after_next() const;
@@ -55,9 +66,9 @@ class SliceSweep {
   std::vector<float> unsorted_start_;
   std::vector<std::int32_t> bucket_;  ///< of the sort
   std::vector<std::uint32_t> bucket_begin_;
-  std::size_t next_ = 0;               ///< in order_
-  std::vector<std::int32_t> waiting_;  ///< begun, hidden by the current one, and possibly seen later
-  int current_ = -1;
+  std::size_t next_ = 0;       ///< in order_
+  std::vector<Line> waiting_;  ///< begun, hidden by the current one, and possibly seen later
+  Line current_;
   float t_ = 0.0F;         ///< the sweep is here; the current segment began here
   EdgeRun run_;            ///< of that beginning
   float crossing_ = 0.0F;  ///< where a waiting segment comes before the current one

@@ -7,6 +7,7 @@ void VisibleArrays::lay_out(const std::vector<VisibleSegment>& visible) {
   count = visible.size();
   // Last the one that is asked: where memory runs out before, all are looked at again.
   if (count > size()) {
+    part.resize(count + count / 2);
     for (auto* array : {&high, &low_slope, &high_slope, &low_reach, &high_reach, &w_at_0, &w_slope, &normal_h,
                         &normal_s, &normal_z, &low}) {
       array->resize(count + count / 2);
@@ -25,6 +26,7 @@ void VisibleArrays::lay_out(const std::vector<VisibleSegment>& visible) {
     normal_h[i] = segment.normal_h;
     normal_s[i] = segment.normal_s;
     normal_z[i] = segment.normal_z;
+    part[i] = segment.part;
   }
 }
 

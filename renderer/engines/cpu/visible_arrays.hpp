@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "renderer/engines/cpu/slice_sweep.hpp"
@@ -15,6 +16,7 @@ struct VisibleArrays {
   std::size_t count = 0;  ///< of segments
   std::vector<float> low, high, low_slope, high_slope, low_reach, high_reach;
   std::vector<float> w_at_0, w_slope, normal_h, normal_s, normal_z;
+  std::vector<std::uint32_t> part;
 
   /// How long the arrays are.
   std::size_t size() const { return low.size(); }

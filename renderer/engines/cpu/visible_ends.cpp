@@ -15,10 +15,9 @@ constexpr float touching = 1e-4F;
 
 }  // namespace
 
-void VisibleEnds::run_straight(const std::vector<VisibleSegment>& visible, float width_rad, float tan_limit,
-                               VisibleArrays& seen) {
+void VisibleEnds::run_straight(float width_rad, float tan_limit, VisibleArrays& seen) {
   limit(width_rad, tan_limit, seen);
-  find_surfaces(visible, seen);
+  find_surfaces(seen);
   for (std::size_t first = 0; first < seen.count;) {
     std::size_t last = first;
     while (goes_on_[last] != 0) {
@@ -45,17 +44,12 @@ void VisibleEnds::limit(float width_rad, float tan_limit, VisibleArrays& seen) {
 }
 
 SONARD_SIMD_CLONES
-void VisibleEnds::find_surfaces(const std::vector<VisibleSegment>& visible, const VisibleArrays& seen) {
+void VisibleEnds::find_surfaces(const VisibleArrays& seen) {
   const std::size_t count = seen.count;
-  // Last the one that is asked: where memory runs out before, all are looked at again.
-  if (count > part_.size()) {
+  if (count > goes_on_.size()) {
     goes_on_.resize(seen.size());
-    part_.resize(seen.size());
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    part_[i] = visible[i].triangle->part;
-  }
-  const std::uint32_t* __restrict part = part_.data();
+  const std::uint32_t* __restrict part = seen.part.data();
   const float* __restrict low = seen.low.data();
   const float* __restrict high = seen.high.data();
   const float* __restrict w_at_0 = seen.w_at_0.data();

@@ -22,16 +22,13 @@ class VisibleEnds {
   /// an echo. There the ends of the segments nearest to the silhouette meet at the side of the wedge instead,
   /// for which their inner ends turn with it: that moves a border inside a surface, so ranges change in
   /// second order only. No segment has another solid angle for it.
-  /// @param visible what `seen` was laid out from.
-  void run_straight(const std::vector<VisibleSegment>& visible, float width_rad, float tan_limit,
-                    VisibleArrays& seen);
+  void run_straight(float width_rad, float tan_limit, VisibleArrays& seen);
 
  private:
   void limit(float width_rad, float tan_limit, VisibleArrays& seen);
-  void find_surfaces(const std::vector<VisibleSegment>& visible, const VisibleArrays& seen);
+  void find_surfaces(const VisibleArrays& seen);
   static void keep_from_crossing(std::size_t first, std::size_t last, float width_rad, VisibleArrays& seen);
 
-  std::vector<std::uint32_t> part_;
   std::vector<std::int32_t> goes_on_;  ///< whether each segment and the next one are of one surface
 };
 

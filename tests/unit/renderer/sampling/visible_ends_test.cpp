@@ -18,11 +18,12 @@ class VisibleEndsTest : public ::testing::Test {
  protected:
   void add(float low, float high, float w, float low_slope, float high_slope, const FanTriangle& of) {
     constexpr float any = 10.0F;  // longer than the fan is high
-    visible.push_back({low, high, {low_slope, any}, {high_slope, any}, w, 0.0F, 1.0F, 0.0F, 0.0F, &of});
+    visible.push_back(
+        {low, high, w, 0.0F, {low_slope, any}, {high_slope, any}, 1.0F, 0.0F, 0.0F, of.part, &of});
   }
   void run() {
     seen.lay_out(visible);
-    VisibleEnds().run_straight(visible, width_rad, tan_limit, seen);
+    VisibleEnds().run_straight(width_rad, tan_limit, seen);
   }
   /// By how much the ends of a segment are apart at a side of the wedge; negative where they have crossed.
   float least_length(std::size_t i) const {
