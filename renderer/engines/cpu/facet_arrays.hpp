@@ -28,9 +28,9 @@ class FacetArrays {
   /// False only where all facets between both ends and both sides echo less than SkipRule::facet_kernel
   /// allows.
   bool may_respond(std::size_t i) const { return responds_[i] > 0; }
-  /// By how many rms slopes m the direction of the echo, against that of a mirror, changes over a height of 1
-  /// in t.
-  float slopes_per_t(std::size_t i) const { return slopes_per_t_[i]; }
+  /// Of each segment, by how many rms slopes m the direction of the echo, against that of a mirror, changes
+  /// over a height of 1 in t.
+  const float* slopes_per_t() const { return slopes_per_t_.data(); }
   /// By how much that direction changes across the wedge, radians.
   float turn_across_rad(std::size_t i) const { return slopes_across_[i] * std::sqrt(variance_[i]); }
   /// Whether the echo changes more across the wedge than three samples can tell.

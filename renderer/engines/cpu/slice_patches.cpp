@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -18,6 +19,13 @@ constexpr int most_divisions = 16;          // of a segment at once
 constexpr int most_rounds = 6;              // near a foot point the divided segments are divided again
 constexpr float most_gradient = 1.1F;       // of a segment; 1 where the range turns round at one end
 constexpr float most_side_by_side = 16.0F;  // patches of a segment
+constexpr float anything = std::numeric_limits<float>::infinity();
+
+/// Over how much of the fan's half height a segment may reach that is spread over many range bins.
+float share_of_pattern(float linearity) {
+  return 0.36F * std::sqrt(linearity);
+}
+constexpr float share_in_one_place = 0.25F;
 
 /// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
 /// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
@@ -178,6 +186,7 @@ void SlicePatcher::lay_out(const Request& request) {
       array->resize(seen_.size());
     }
     mapped_.resize(seen_.size());
+    parts_.resize(seen_.size());
     plain_.resize(seen_.size());
   }
   const bool as_cosine = request.surface.model == Model::physical;
@@ -331,15 +340,32 @@ void SlicePatcher::find_gradients(const Request& request) {
   }
 }
 
+/// Sets `parts_` to 0 where parts_of() is to be asked, which is for a few of many, else to 1.
+/// @return whether there are any
 SONARD_SIMD_CLONES
-bool SlicePatcher::all_even(float allowed_m) const {
+bool SlicePatcher::mark_uneven(const Request& request) {
   const auto count = visible_->size();
+  const float allowed_m = request.linearity * request.line_m;
+  const float most_height =
+      request.pattern.varies()
+          ? std::min(share_in_one_place, share_of_pattern(request.linearity)) * request.tan_limit
+          : anything;
+  const float most_slopes = request.any_facets ? std::min(1.0F, request.facet_slopes) : anything;
+  const std::int32_t otherwise = request.any_mapped ? 0 : 1;
+  const float* __restrict low = seen_.low.data();
+  const float* __restrict high = seen_.high.data();
   const float* __restrict displaced = displaced_.data();
-  std::int32_t uneven = 0;
+  const float* __restrict slopes_per_t = request.any_facets ? facets_.slopes_per_t() : displaced;
+  std::int32_t* __restrict parts = parts_.data();
+  std::int32_t marked = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    uneven += displaced[i] > allowed_m ? 1 : 0;
+    const float height = high[i] - low[i];
+    const bool is_uneven =
+        (displaced[i] > allowed_m) | (height > most_height) | (slopes_per_t[i] * height > most_slopes);
+    parts[i] = is_uneven ? 0 : otherwise;
+    marked += 1 - parts[i];
   }
-  return uneven == 0;
+  return marked > 0;
 }
 
 bool SlicePatcher::is_mapped(const Request& request, const VisibleSegment& segment) {
@@ -379,7 +405,7 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
 float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
   const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
   const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
-  const float share = one_place ? 0.25F : 0.36F * std::sqrt(request.linearity);  // of the fan's half height
+  const float share = one_place ? share_in_one_place : share_of_pattern(request.linearity);
   return std::ceil((seen_.high[i] - seen_.low[i]) / (share * request.tan_limit));
 }
 
@@ -391,25 +417,29 @@ float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, floa
   }
   const VisibleSegment& segment = (*visible_)[i];
   const float share = span_m < 0.5F * request.line_m ? 1.0F : request.facet_slopes;
-  return std::ceil(facets_.slopes_per_t(i) * (segment.high - segment.low) / share);
+  return std::ceil(facets_.slopes_per_t()[i] * (segment.high - segment.low) / share);
 }
 
 /// Divides the segments whose echo runs otherwise in range than a patch can say.
 bool SlicePatcher::divide_uneven(const Request& request) {
-  if (!request.any_mapped && !request.any_facets && !request.pattern.varies() &&
-      all_even(request.linearity * request.line_m)) {
+  if (!mark_uneven(request)) {
     return false;
   }
   bool any = false;
+  for (std::size_t i = 0; i < visible_->size(); ++i) {
+    parts_[i] = parts_[i] != 1 ? parts_of(request, i) : 1;
+    any = any || parts_[i] != 1;
+  }
+  if (!any) {
+    return false;
+  }
   divided_.clear();
   divided_original_.clear();
   for (std::size_t i = 0; i < visible_->size(); ++i) {
-    const int parts = parts_of(request, i);
-    if (parts == 1) {
+    if (parts_[i] == 1) {
       divided_.push_back((*visible_)[i]);
     } else {
-      divide(i, parts);
-      any = true;
+      divide(i, parts_[i]);
     }
     if (!runs_.empty()) {
       divided_original_.resize(divided_.size(), original_[i]);
@@ -418,7 +448,7 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   whole_.swap(divided_);
   original_.swap(divided_original_);
   visible_ = &whole_;
-  return any;
+  return true;
 }
 
 /// Puts its parts into `divided_`.

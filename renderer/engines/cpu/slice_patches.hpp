@@ -77,7 +77,7 @@ class SlicePatcher {
   void find_gradients(const Request& request);
   bool divide_uneven(const Request& request);
   void divide(std::size_t i, int parts);
-  bool all_even(float allowed_m) const;
+  bool mark_uneven(const Request& request);
   int parts_of(const Request& request, std::size_t i) const;
   static bool is_mapped(const Request& request, const VisibleSegment& segment);
   float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
@@ -111,6 +111,7 @@ class SlicePatcher {
   std::vector<float> cosine_gradient_;  ///< of cosine_, the mean of a segment
   std::vector<float> cosine_mid_;       ///< in its middle
   std::vector<float> echo_gradient_;    ///< of both
+  std::vector<std::int32_t> parts_;     ///< into how many each is divided
   std::vector<float> displaced_;        ///< how far the echo may be from where it is taken to be, metres
   std::vector<float> response_, response_without_facets_;
   std::vector<float> centroid_offset_;   ///< where in its wedge the echo has its middle, 1/2 at the port side
