@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each set of vector instructions is worth: one program for each, in turns on this machine.
 
-    instruction_sets.py [--rounds N] [--scene START]
+    instruction_sets.py [--rounds N] [--built]
 
-Builds sonard_bench with hot loops for sse2, avx2 and avx512f alone (-DSONARD_SIMD, folders build/simd-*) and prints the
-median of the rounds, and beside it the ratio to sse2. Images are the same to the bit whichever is taken:
-tests/images/image_checksums.py says so of any of these builds.
+Builds sonard_bench with hot loops for sse2, avx2 and avx512f alone (-DSONARD_SIMD, folders build/simd-*), runs each with
+--quick and prints the median of the rounds, and beside it the ratio to sse2. `sonard_bench --quick` itself ends with this
+table, of what is built by then. Images are the same to the bit whichever is taken: tests/images/image_checksums.py says
+so of any of these builds.
 """
 
 import argparse
@@ -18,6 +19,7 @@ import tempfile
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 SETS = ("sse2", "avx2", "avx512f")
+METRICS = ("ping_ms", "receiver_ms", "receiver_2411_ms")
 
 
 def supported():
@@ -26,37 +28,55 @@ def supported():
     return [name for name in SETS if name in flags]
 
 
+def folder_of(name):
+    return os.path.join(SOURCE, "build", f"simd-{name}")
+
+
+def program_of(name):
+    return os.path.join(folder_of(name), "bin", "sonard_bench")
+
+
 def build(name):
-    folder = os.path.join(SOURCE, "build", f"simd-{name}")
     quiet = {"stdout": subprocess.DEVNULL, "check": True, "cwd": SOURCE}
-    subprocess.run(["cmake", "--preset", "release", "-B", folder, "-DSONARD_TESTS=ON", f"-DSONARD_SIMD={name}"], **quiet)
-    subprocess.run(["cmake", "--build", folder, "--target", "sonard_bench"], **quiet)
-    return os.path.join(folder, "bin", "sonard_bench")
+    subprocess.run(["cmake", "--preset", "release", "-B", folder_of(name), "-DSONARD_TESTS=ON", f"-DSONARD_SIMD={name}"],
+                   **quiet)
+    subprocess.run(["cmake", "--build", folder_of(name), "--target", "sonard_bench"], **quiet)
 
 
-def measure(program, scene):
+def measure(name):
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "bench.json")
-        subprocess.run([program, "--engine", "cpu", "--scene", scene, "--json", out], stdout=subprocess.DEVNULL, check=True)
+        subprocess.run([program_of(name), "--quick", "--engine", "cpu", "--json", out], stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL, check=True)
         with open(out, encoding="utf-8") as file:
-            return {(m["scene"], m["preset"]): m["value"] for m in json.load(file) if m["metric"] == "ping_ms"}
+            return {(m["scene"], m["preset"], m["metric"]): m["value"] for m in json.load(file) if m["metric"] in METRICS}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--scene", default="flat100k", help="scenes whose names start so [flat100k]")
+    parser.add_argument("--built", action="store_true", help="only what is built; one round")
     args = parser.parse_args()
     names = supported()
-    programs = {name: build(name) for name in names}
+    if args.built:
+        names = [name for name in names if os.path.exists(program_of(name))]
+        if not names:
+            print("\nno program for one set of vector instructions alone: tests/bench/instruction_sets.py builds them")
+            return
+    else:
+        for name in names:
+            build(name)
     rounds = {name: [] for name in names}
-    for _ in range(args.rounds):
-        for name, program in programs.items():
-            rounds[name].append(measure(program, args.scene))
-    print(f"{'scene':28} {'preset':14}" + "".join(f"{name + ', ms':>14} {'ratio':>6}" for name in names))
-    for scene, preset in rounds[names[0]][0]:
-        ms = [statistics.median(times[scene, preset] for times in rounds[name]) for name in names]
-        print(f"{scene:28} {preset:14}" + "".join(f"{value:14.3g} {value / ms[0]:6.2f}" for value in ms))
+    for _ in range(1 if args.built else args.rounds):
+        for name in names:
+            rounds[name].append(measure(name))
+    print(f"\n{'scene':18} {'preset':14} {'metric':17}" + "".join(f"{name + ', ms':>13} {'ratio':>6}" for name in names))
+    for key in rounds[names[0]][0]:
+        scene, preset, metric = key
+        if "@" in scene or scene.endswith("1m"):
+            continue
+        ms = [statistics.median(times[key] for times in rounds[name]) for name in names]
+        print(f"{scene:18} {preset:14} {metric:17}" + "".join(f"{value:13.3g} {value / ms[0]:6.2f}" for value in ms))
 
 
 if __name__ == "__main__":

@@ -56,6 +56,14 @@ std::string vectors_of_program() {
 
 }  // namespace
 
+bool is_for_one_instruction_set() {
+#ifdef SONARD_SIMD_ONLY
+  return true;
+#else
+  return false;
+#endif
+}
+
 std::string describe_machine() {
   utsname system{};
   uname(&system);

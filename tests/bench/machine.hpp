@@ -9,6 +9,9 @@ namespace sonard::bench {
 /// Processor, cores, memory, system, compiler and build type, one line each.
 std::string describe_machine();
 
+/// Whether hot loops were compiled for one set of vector instructions alone (renderer/simd.hpp).
+bool is_for_one_instruction_set();
+
 /// Starts to watch the largest resident memory of this process anew. @return false where the kernel refuses.
 bool reset_peak_memory();
 

@@ -50,13 +50,17 @@ void run_gpu_report(const Options& options) {
   }
 }
 
-/// Does not return: the script goes on in this process.
+/// Does not return: a script of tests/bench goes on in this process.
+[[noreturn]] void go_on_as(const std::string& script, const std::string& argument) {
+  std::fflush(stdout);
+  execlp("python3", "python3", (SONARD_SOURCE_DIR "/tests/bench/" + script).c_str(), argument.c_str(),
+         nullptr);
+  throw std::runtime_error("python3 cannot be run");
+}
+
 [[noreturn]] void run_company() {
   fmt::print("{}", describe_machine());
-  std::fflush(stdout);
-  const std::string programs = std::filesystem::canonical("/proc/self/exe").parent_path();
-  execlp("python3", "python3", SONARD_SOURCE_DIR "/tests/bench/company.py", programs.c_str(), nullptr);
-  throw std::runtime_error("python3 cannot be run");
+  go_on_as("company.py", std::filesystem::canonical("/proc/self/exe").parent_path());
 }
 
 void run(const Options& options) {
@@ -90,6 +94,9 @@ void run(const Options& options) {
   if (!options.json.empty()) {
     write_json(results, options.json);
   }
+  if (options.quick && !is_for_one_instruction_set()) {
+    go_on_as("instruction_sets.py", "--built");
+  }
 }
 
 }  // namespace
@@ -98,7 +105,10 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   sonard::bench::Options options;
   CLI::App app("Measures the time of a ping and the error of its image.");
-  app.add_flag("--quick", options.quick, "Only what the project's targets need, in a minute or two");
+  app.add_flag(
+      "--quick", options.quick,
+      "Only what the project's targets need, in a minute or two, and what each set of vector instructions "
+      "takes (tests/bench/instruction_sets.py)");
   app.add_flag("--company", options.company,
                "Pings a second of the demo beside 0, 1, 2 and 4 busy processes, and of `sonard render`; two "
                "minutes (tests/bench/company.py)")
