@@ -5,8 +5,8 @@
 #include <glm/vec3.hpp>
 
 #include "renderer/engines/cpu/part_surface.hpp"
-#include "renderer/engines/cpu/slice_shading.hpp"
 #include "renderer/engines/cpu/slice_sweep.hpp"
+#include "renderer/engines/cpu/vertex_normals.hpp"
 
 namespace sonard::render {
 
