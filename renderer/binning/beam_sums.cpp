@@ -7,7 +7,7 @@
 namespace sonard::render {
 
 BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
-                        WorkerPool& workers, std::vector<float> memory, const BeamSource& source) {
+                        WorkerPool& workers, std::vector<float> memory, const FillBeam& fill) {
   BinningResult result;
   result.echo = std::move(memory);
   result.beams = beams;
@@ -21,14 +21,11 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
   workers.run(beams, [&](int beam) {
     thread_local BeamSums sums;
     const auto b = static_cast<std::size_t>(beam);
-    if (source.is_empty(b)) {
+    if (!fill(b, sums)) {
       ++empty_beams;
       std::fill_n(&result.echo[b * lines], lines, 0.0F);
       return;  // an empty beam is not asked for its open water
     }
-    const BeamContent most = source.content(b);
-    sums.reset(range, most.solid_angle, most.echo, options);
-    source.fill(b, sums);
     sums.read(lines, &result.echo[b * lines]);
     if (options.open_water) {
       sums.read_open(&result.open_sr[b * lines]);
@@ -42,42 +39,31 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
   return result;
 }
 
-namespace {
-
-/// Memory of the thread for the one beam that it is at.
-std::vector<EchoPatch>& patches_of_this_beam() {
-  thread_local std::vector<EchoPatch> patches;
-  return patches;
-}
-
-}  // namespace
-
 BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
                           WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of) {
-  const auto is_empty = [&](std::size_t beam) {
-    std::vector<EchoPatch>& patches = patches_of_this_beam();
-    patches.clear();
-    patches_of(beam, patches);
-    return options.skip.on(SkipRule::empty_beams) && !options.open_water && patches.empty();
-  };
   // The bound of a mean's weights, or exactly what the beam sees.
   const double height =
       options.open_water ? aperture.pattern_height() : 2 * std::sin(aperture.elevation_limit_rad());
-  // What a beam holds in fact: the echo of a bed at grazing incidence keeps its digits.
-  const auto content = [&](std::size_t beam) {
+  const auto fill = [&](std::size_t beam, BeamSums& sums) {
+    thread_local std::vector<EchoPatch> patches;
+    patches.clear();
+    patches_of(beam, patches);
+    if (options.skip.on(SkipRule::empty_beams) && !options.open_water && patches.empty()) {
+      return false;
+    }
+    // What a beam holds in fact: the echo of a bed at grazing incidence keeps its digits.
     double echo = 0.0;
-    for (const EchoPatch& patch : patches_of_this_beam()) {
+    for (const EchoPatch& patch : patches) {
       echo += std::isfinite(patch.echo) ? static_cast<double>(patch.echo) : 0.0;
     }
-    return BeamContent{height * (aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1]), echo};
-  };
-  const auto fill = [](std::size_t, BeamSums& sums) {
-    for (const EchoPatch& patch : patches_of_this_beam()) {
+    const double width = aperture.beam_edges_rad[beam] - aperture.beam_edges_rad[beam + 1];
+    sums.reset(range, height * width, echo, options);
+    for (const EchoPatch& patch : patches) {
       sums.add(patch);
     }
+    return true;
   };
-  return bin_beams(aperture.beam_count(), range, options, workers, std::move(memory),
-                   {is_empty, content, fill});
+  return bin_beams(aperture.beam_count(), range, options, workers, std::move(memory), fill);
 }
 
 BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,

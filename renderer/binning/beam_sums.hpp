@@ -99,25 +99,16 @@ class BeamSums {
   bool weighs_ = false;  ///< the weights are summed too
 };
 
-/// What a beam may hold at most.
-struct BeamContent {
-  double solid_angle;
-  double echo;
-};
+/// Resets the sums and adds all that a beam receives, in the thread that will read them.
+/// @return false: the beam is empty, has no open water, and the sums are as they were
+using FillBeam = std::function<bool(std::size_t beam, BeamSums& sums)>;
 
-/// How the beams of an image are filled.
-struct BeamSource {
-  std::function<bool(std::size_t beam)> is_empty;  ///< such a beam is not filled, and has no open water
-  std::function<BeamContent(std::size_t beam)> content;
-  std::function<void(std::size_t beam, BeamSums& sums)> fill;  ///< after content(), in the same thread
-};
-
-/// Fills every beam that is not empty, each in one job, and collects what it summed. A beam has one owner, so
-/// nothing depends on the number of threads.
+/// Fills every beam, each in one job, and collects what it summed. A beam has one owner, so nothing depends
+/// on the number of threads.
 /// @param memory for BinningResult::echo, whatever it holds: saves allocating a megabyte for every
 /// ping.
 BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
-                        WorkerPool& workers, std::vector<float> memory, const BeamSource& source);
+                        WorkerPool& workers, std::vector<float> memory, const FillBeam& fill);
 
 /// Puts what a beam receives into `patches`, which are empty. Any thread.
 using PatchesOfBeam = std::function<void(std::size_t beam, std::vector<EchoPatch>& patches)>;

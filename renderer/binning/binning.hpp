@@ -37,6 +37,7 @@ struct BinningResult {
   std::uint64_t invalid_samples = 0;
   std::uint64_t saturated_samples = 0;  ///< of GpuBinner: echoes beyond what its sums hold, taken as that
   SkipCounts skipped;
+  double shading_s = 0.0;  ///< of slices: the part of the time in which patches were made
 };
 
 /// How the image of a request is binned.

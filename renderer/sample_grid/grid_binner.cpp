@@ -123,6 +123,9 @@ BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
   }
   const double legacy_scale = options.legacy_bin_index ? (range.count - 1.0) / range.count : 1.0;
   const auto fill = [&](std::size_t beam, BeamSums& sums) {
+    const double solid_angle = weights.sum(static_cast<std::size_t>(grid.beam_parts[beam]),
+                                           static_cast<std::size_t>(grid.beam_parts[beam + 1]));
+    sums.reset(range, solid_angle, solid_angle * static_cast<double>(options.largest_response), options);
     for (int p = grid.beam_parts[beam]; p < grid.beam_parts[beam + 1]; ++p) {
       const auto index = static_cast<std::size_t>(p);
       const ColumnPart& part = grid.parts[index];
@@ -136,14 +139,9 @@ BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
         add_points(grid, views, part, weights.of(index), legacy_scale / range.step_m, sums);
       }
     }
+    return true;
   };
-  const auto content = [&](std::size_t beam) {
-    const double solid_angle = weights.sum(static_cast<std::size_t>(grid.beam_parts[beam]),
-                                           static_cast<std::size_t>(grid.beam_parts[beam + 1]));
-    return BeamContent{solid_angle, solid_angle * static_cast<double>(options.largest_response)};
-  };
-  return bin_beams(grid.beam_count(), range, options, workers, std::move(memory),
-                   {[](std::size_t) { return false; }, content, fill});
+  return bin_beams(grid.beam_count(), range, options, workers, std::move(memory), fill);
 }
 
 }  // namespace sonard::render

@@ -120,12 +120,11 @@ void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions
                                     slice_accuracy(settings));
   statistics.visibility_s += watch.lap();
   statistics.skipped += slices_.skipped();
-  double shading_s = 0.0;
-  hand_over(bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,
-                       std::move(echo.image.intensity), shading_s),
-            echo, statistics);
-  statistics.visibility_s += shading_s;
-  statistics.binning_s += watch.lap() - shading_s;
+  BinningResult bins = bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,
+                                  std::move(echo.image.intensity));
+  statistics.visibility_s += bins.shading_s;
+  statistics.binning_s += watch.lap() - bins.shading_s;
+  hand_over(std::move(bins), echo, statistics);
 }
 
 }  // namespace sonard::render

@@ -112,14 +112,14 @@ BinningResult bin_slices_by_beam(Shading& shading, std::span<const SliceCell* co
 
 BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
                          const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
-                         WorkerPool& workers, std::vector<float> memory, double& shading_s) {
+                         WorkerPool& workers, std::vector<float> memory) {
   Shading shading(slices);
   BinningResult result =
       options.cone_aperture != nullptr
           ? bin_slices_by_cones(shading, cells, range, options, workers, std::move(memory))
           : bin_slices_by_beam(shading, cells, aperture, range, options, workers, std::move(memory));
   result.skipped.add(SkipRule::facet_kernel, shading.without_facets());
-  shading_s = shading.seconds() / workers.size();
+  result.shading_s = shading.seconds() / workers.size();
   return result;
 }
 

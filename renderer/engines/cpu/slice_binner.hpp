@@ -13,9 +13,8 @@ namespace sonard::render {
 /// Shades slices and sums what they echo, which always has footprints.
 /// @param cells of `slices`, from port to starboard
 /// @param memory as of bin_beams()
-/// @param shading_s set to the part of the time in which patches were made
 BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
                          const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
-                         WorkerPool& workers, std::vector<float> memory, double& shading_s);
+                         WorkerPool& workers, std::vector<float> memory);
 
 }  // namespace sonard::render

@@ -2,11 +2,6 @@
 // What a surface answers at a segment of a slice: normal maps, and the response laws.
 #pragma once
 
-#include <cmath>
-
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
-
 #include "renderer/engines/cpu/fan_triangles.hpp"
 #include "renderer/engines/cpu/part_surface.hpp"
 #include "renderer/engines/cpu/slice_cutter.hpp"

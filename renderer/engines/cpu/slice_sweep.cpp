@@ -12,7 +12,6 @@ namespace sonard::render {
 namespace {
 
 constexpr float never = std::numeric_limits<float>::infinity();
-constexpr int nothing = -1;
 // Relative difference of 1 / h below which two segments touch but do not cross; above the rounding of cuts.
 constexpr float touching = 1e-5F;
 
@@ -40,7 +39,7 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
   t_ = -limit_;
   run_ = {};
   while (t_ < limit_) {
-    if (current_.segment == nothing) {
+    if (current_.segment < 0) {
       if (next_ == count_) {
         break;
       }

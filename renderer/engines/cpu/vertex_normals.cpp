@@ -9,8 +9,7 @@ namespace {
 
 /// In the axes of the slice.
 inline glm::vec3 in_slice(const Slice& slice, const glm::vec3& v) {
-  const glm::vec3 along(slice.cosine, slice.sine, 0), across(-slice.sine, slice.cosine, 0);
-  return {glm::dot(along, v), glm::dot(across, v), v.z};
+  return {slice.cosine * v.x + slice.sine * v.y, -slice.sine * v.x + slice.cosine * v.y, v.z};
 }
 
 }  // namespace
@@ -43,19 +42,14 @@ void VertexNormals::interpolate(const Slice& slice) {
 }
 
 SONARD_SIMD_CLONES
-void VertexNormals::interpolate_lanes(const Slice& slice, const Corners& corners, Runs& runs) {
-  const Corners& __restrict from = corners;
-  Runs& __restrict to = runs;
-  const float cosine = slice.cosine, sine = slice.sine;
+void VertexNormals::interpolate_lanes(const Slice& slice, const Corners& __restrict from,
+                                      Runs& __restrict to) {
   for (std::size_t i = 0; i < lanes; ++i) {
-    const auto turned = [&](const glm::vec3& v) {
-      return glm::vec3(cosine * v.x + sine * v.y, -sine * v.x + cosine * v.y, v.z);
-    };
     const auto position = [&](std::size_t k) {
       return glm::vec3(from.position[k][0][i], from.position[k][1][i], from.position[k][2][i]);
     };
     const auto normal = [&](std::size_t k) {
-      return turned({from.normal[k][0][i], from.normal[k][1][i], from.normal[k][2][i]});
+      return in_slice(slice, {from.normal[k][0][i], from.normal[k][1][i], from.normal[k][2][i]});
     };
     const glm::vec3 corner = position(0), edge_b = position(1) - corner, edge_c = position(2) - corner;
     const glm::vec3 across = glm::cross(edge_b, edge_c);
@@ -63,10 +57,10 @@ void VertexNormals::interpolate_lanes(const Slice& slice, const Corners& corners
     const float nn = glm::dot(across, across);
     const glm::vec3 grows_to_b = glm::cross(edge_c, across) / nn;
     const glm::vec3 grows_to_c = glm::cross(across, edge_b) / nn;
-    const glm::vec3 b_of = turned(grows_to_b), c_of = turned(grows_to_c);
+    const glm::vec3 b_of = in_slice(slice, grows_to_b), c_of = in_slice(slice, grows_to_c);
     // At the sonar, which the plane may be continued to.
     const glm::vec3 at_sonar = a - by_b * glm::dot(grows_to_b, corner) - by_c * glm::dot(grows_to_c, corner);
-    const glm::vec3 depth = turned(across) / glm::dot(across, corner);
+    const glm::vec3 depth = in_slice(slice, across) / glm::dot(across, corner);
     for (int axis = 0; axis < 3; ++axis) {
       to.at[axis][i] = at_sonar[axis] * depth.x + by_b[axis] * b_of.x + by_c[axis] * c_of.x;
       to.per_x[axis][i] = at_sonar[axis] * depth.y + by_b[axis] * b_of.y + by_c[axis] * c_of.y;

@@ -48,7 +48,7 @@ class VertexNormals {
   struct Runs {
     float at[3][lanes], per_x[3][lanes], per_t[3][lanes];
   };
-  static void interpolate_lanes(const Slice& slice, const Corners& corners, Runs& runs);
+  static void interpolate_lanes(const Slice& slice, const Corners& from, Runs& to);
 
   std::vector<Corners> corners_;
   std::vector<Runs> runs_;
