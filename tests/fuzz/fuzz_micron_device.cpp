@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any sequence of bytes, lines, faults and pauses against a Micron head.
+// Any sequence of bytes, lines, faults, recorded lines and pauses against a Micron head.
 // Promises: every frame that leaves is a whole message of a head, from this head; the next deadline lies in
 // the future; no more lines than were asked for; time goes on whatever comes in.
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/device.hpp"
+#include "protocol/micron/recorded_form.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/script.hpp"
 
@@ -28,16 +29,44 @@ using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
 
-/// Kinds of events. The first carries bytes: type and data of a frame, or a piece of stream as it is.
-enum Kind { byte_kinds = 1, host_gone = 1, power_cycle = 2, lose_step = 3, line = 4, line_failed = 5 };
+/// Kinds of events. The first two carry bytes: type and data of a frame, or a piece of stream as it is; and a
+/// recorded line, as the frame that a log keeps or as what is in that of a head.
+enum Kind {
+  byte_kinds = 2,
+  feed = 1,
+  host_gone = 2,
+  power_cycle = 3,
+  lose_step = 4,
+  line = 5,
+  line_failed = 6,
+  grant = 7
+};
+
+/// By the first byte of an input.
+DeviceConfig config_of(unsigned flags) {
+  DeviceConfig config;
+  config.plays_back = (flags & 0x01U) != 0;
+  config.waits_for_permission = (flags & 0x02U) != 0;
+  config.always_reports_scan_right = (flags & 0x04U) != 0;
+  config.requests_survive_head_command = (flags & 0x08U) == 0;
+  return config;
+}
 
 class Bench {
  public:
-  Bench() { step(sonard::TimePassed{}); }
+  explicit Bench(unsigned flags) : config_(config_of(flags)) { step(sonard::TimePassed{}); }
 
   void play(const Event& event) {
     run_until(now_ + event.delay);
     switch (event.kind) {
+      case feed:
+        feed_line(event);
+        break;
+      case grant:
+        if (last_.next_ping && last_.next_ping->from <= now_) {
+          step(sonard::PingGranted{});
+        }
+        break;
       case host_gone:
         step(sonard::ClientGone{});
         break;
@@ -55,14 +84,30 @@ class Bench {
         answer_job(false);
         break;
       default:
-        if (event.kind < byte_kinds) {
-          hear(event);
-        }
+        receive(event);
     }
   }
 
  private:
-  void hear(const Event& event) {
+  /// A line that a replay would not begin with is not fed (DeviceKind::why_not_played()).
+  void feed_line(const Event& event) {
+    sonard::RecordedPing ping;
+    ping.wire = event.datagram;
+    if (!event.as_is) {
+      ping.wire = recorded_wire(HeadData{}, default_head_node);
+      constexpr std::size_t tail = 3;  // count of no data, line feed
+      const std::size_t most = ping.wire.size() - frame_header_size - tail;
+      std::copy_n(event.datagram.begin(), std::min(most, event.datagram.size()),
+                  ping.wire.begin() + frame_header_size);
+    }
+    if (!recorded_line(ping.wire)) {
+      return;
+    }
+    ping.settings = {.bins = 20, .beams = 1, .bin_m = 0.01, .sound_speed_mps = 1500.0};
+    step(sonard::PingFed{std::move(ping)});
+  }
+
+  void receive(const Event& event) {
     const std::span<const std::uint8_t> bytes = event.datagram;
     step(sonard::BytesReceived{
         {},
@@ -73,8 +118,8 @@ class Bench {
 
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;
-    for (int i = 0; i < most_wake_ups && wake_at_ && *wake_at_ <= target; ++i) {
-      now_ = std::max(now_, *wake_at_);
+    for (int i = 0; i < most_wake_ups && last_.wake_at && *last_.wake_at <= target; ++i) {
+      now_ = std::max(now_, *last_.wake_at);
       step(sonard::TimePassed{});
     }
     now_ = target;
@@ -82,8 +127,8 @@ class Bench {
   }
 
   void step(const sonard::Event& event) {
-    const Actions actions = device_.step(now_, event);
-    for (const Outgoing& outgoing : actions.send) {
+    last_ = device_.step(now_, event);
+    for (const Outgoing& outgoing : last_.send) {
       const std::span<const std::uint8_t> frame{outgoing.bytes};
       require(outgoing.to == Outgoing::To::everybody, "all clients share the line");
       require(next_frame(frame, max_report_frame_size) == static_cast<std::ptrdiff_t>(frame.size()),
@@ -94,25 +139,26 @@ class Bench {
       require(report.has_value() && !std::holds_alternative<Unknown>(*report),
               "a head speaks its own protocol");
     }
-    if (actions.render) {
-      const PingJob& job = *actions.render;
+    if (last_.render) {
+      const PingJob& job = *last_.render;
       require(!job_.has_value(), "one job at a time");
       require(job.bins() >= 1 && job.bins() <= max_bins, "a job can be rendered");
       constexpr double half_a_turn = std::numbers::pi + 1e-9;  // and what rounding makes of it
       require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
       require(job.transmit_time <= now_, "a job is not ahead of its time");
+      require(!config_.plays_back || job.record.has_value(), "a player renders nothing");
       job_ = job;
     }
-    if (actions.record) {
-      require(actions.record->samples.size() == static_cast<std::size_t>(actions.record->settings.bins),
+    if (last_.record) {
+      require(last_.record->samples.size() == static_cast<std::size_t>(last_.record->settings.bins),
               "a record holds a whole line");
+      require(recorded_line(last_.record->wire).has_value(), "a record can be played");
     }
-    require(!actions.cancelled || (job_ && job_->number == *actions.cancelled), "what is cancelled is out");
+    require(!last_.cancelled || (job_ && job_->number == *last_.cancelled), "what is cancelled is out");
     const auto& counters = device_.counters();
     require(counters.lines_sent + counters.pings_failed + counters.pings_cancelled <= counters.pings_started,
             "every line has its ping");
-    require(!actions.wake_at || *actions.wake_at > now_, "the next deadline is later than now");
-    wake_at_ = actions.wake_at;
+    require(!last_.wake_at || *last_.wake_at > now_, "the next deadline is later than now");
   }
 
   void answer_job(bool rendered) {
@@ -130,16 +176,20 @@ class Bench {
   }
 
   TimePoint now_{};
-  Device device_{DeviceConfig{}, now_};
-  std::optional<TimePoint> wake_at_;
+  DeviceConfig config_;
+  Device device_{config_, now_};
+  Actions last_;
   std::optional<PingJob> job_;
 };
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Bench bench;
-  for (Script script{{data, size}, byte_kinds}; !script.done();) {
+  if (size == 0) {
+    return 0;
+  }
+  Bench bench(data[0]);
+  for (Script script{{data + 1, size - 1}, byte_kinds}; !script.done();) {
     bench.play(script.next());
   }
   return 0;

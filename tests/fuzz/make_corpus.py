@@ -37,10 +37,10 @@ sys.path.append(str(HERE.parent / "system" / "gemini"))
 import wire
 
 # Kinds of events, as in the programs for the Gemini.
-FROM_A, FROM_B, TRIGGER, WATER, IMAGE, IMAGE_FAILED = range(6)
+FROM_A, FROM_B, FEED, TRIGGER, WATER, IMAGE, IMAGE_FAILED, GRANT = range(8)
 FROM_HEAD, START_SINGLE, START_CONTINUOUS, STOP, PAUSE = 0, 4, 5, 6, 7
 # And for the Micron.
-BYTES, HOST_GONE, POWER_CYCLE, LOSE_STEP, LINE, LINE_FAILED = range(6)
+BYTES, LINE_FED, HOST_GONE, POWER_CYCLE, LOSE_STEP, LINE, LINE_FAILED, LINE_GRANT = range(8)
 START_8_BIT, START_4_BIT, STOP_SCAN, GAIN, REVERSE = range(1, 6)
 # And for the Ping360: bytes of three clients, then these.
 P360_A, P360_B, P360_SERIAL, P360_GONE, P360_IMAGE, P360_FAILED, P360_FEED, P360_GRANT = range(8)
@@ -68,6 +68,24 @@ def patched(name, offset, form, value):
 
 
 def device_scripts():
+    """Of a head that renders, then of one that plays a recording back or waits for its pings to be granted."""
+    for name, script in rendering_device_scripts():
+        yield name, b"\0" + script
+    continuous = bytearray(patched("ping_config", 22, "<H", 40))
+    struct.pack_into("<H", continuous, 16, 1)
+    start = event(FROM_A, bytes(continuous))
+
+    def fed(lines=40, flags=0, step_m=0.05, speed_mps=1500.0, gain_percent=50.0):
+        return event(FEED, struct.pack("<BHddd", flags, lines, step_m, speed_mps, gain_percent)) + event(IMAGE) + event(
+            PAUSE, delay=40)
+
+    yield "played", bytes([PLAYS_BACK]) + start + fed() + fed(flags=2) + fed(lines=300, step_m=0.1, gain_percent=-1.0)
+    yield "played_two_topsides", bytes([PLAYS_BACK | 4]) + start + fed() + event(FROM_B, bytes(continuous)) + fed()
+    yield "not_played", bytes([PLAYS_BACK]) + start + fed(lines=0) + fed(flags=1) + fed(lines=65535) + fed(step_m=1e-300)
+    yield "granted", bytes([WAITS]) + start + 3 * (event(GRANT, delay=40) + event(IMAGE))
+
+
+def rendering_device_scripts():
     single = patched("ping_config", 22, "<H", 40)
     continuous = bytearray(single)
     struct.pack_into("<H", continuous, 16, 1)
@@ -142,6 +160,20 @@ def micron_frame(name, as_is=False, delay=2):
 
 
 def micron_device_scripts():
+    """Of a head that renders, then of one that plays a recording back or waits for its lines to be granted."""
+    for name, script in rendering_micron_device_scripts():
+        yield name, b"\0" + script
+    scan = event(PAUSE, delay=220) + micron_frame("head_command_ros", as_is=True) + micron_frame("send_data") + event(
+        PAUSE, delay=100)
+    whole = example("head_data", "micron")
+    outline = whole[13:42] + struct.pack("<H", 0)
+    line = event(LINE) + event(PAUSE, delay=30)
+    yield "played", bytes([PLAYS_BACK]) + scan + 3 * (event(LINE_FED, outline) + line + micron_frame("send_data"))
+    yield "not_played", bytes([PLAYS_BACK]) + scan + event(AS_IS | LINE_FED, whole) + line + event(LINE_FED, b"\xff") + line
+    yield "granted", bytes([WAITS]) + scan + 3 * (event(LINE_GRANT, delay=40) + line)
+
+
+def rendering_micron_device_scripts():
     up = event(PAUSE, delay=220)
     line = event(LINE) + event(PAUSE, delay=30)
     for driver in ("ros", "rock", "uxv", "gain_block"):
