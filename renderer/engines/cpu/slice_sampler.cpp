@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "renderer/engines/cpu/coplanar_facets.hpp"
+#include "renderer/scene/coplanar_facets.hpp"
 #include "renderer/engines/cpu/slice_sampler_impl.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
 

@@ -2,26 +2,58 @@
 #include "renderer/engines/gpu/gpu_engine.hpp"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <numeric>
 #include <utility>
 
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/raster_part.hpp"
 #include "renderer/engines/gpu/video_memory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
+#include "renderer/scene/coplanar_facets.hpp"
 #include "renderer/scene/refracted_world.hpp"
 #include "renderer/stopwatch.hpp"
 #include "renderer/surface/surface_model.hpp"
 
 namespace sonard::render {
 
+namespace {
+
+/// The world as it is drawn: with facets small enough to bend with the rays where these are bent, else with
+/// few large facets in the place of many in one plane.
+World drawn_world(const World& world, const RendererOptions& options) {
+  if (options.ray_curvature_per_m != 0.0) {
+    return refractable(world, options.ray_curvature_per_m);
+  }
+  World drawn = world;
+  if (!options.skip.on(SkipRule::coplanar_facets)) {
+    return drawn;
+  }
+  std::map<const TriangleMesh*, std::shared_ptr<const TriangleMesh>> merged;
+  for (Body& body : drawn.bodies) {
+    for (BodyPart& part : body.parts) {
+      if (shading_of(part) == Shading::geometric_normal) {
+        std::shared_ptr<const TriangleMesh>& mesh = merged[part.mesh.get()];
+        if (!mesh) {
+          mesh = std::make_shared<const TriangleMesh>(merge_coplanar_facets(*part.mesh));
+        }
+        part.mesh = mesh;
+      }
+    }
+  }
+  return drawn;
+}
+
+}  // namespace
+
 GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOptions& options)
     : skip_(options.skip),
       largest_response_(largest_response(world)),
       workers_(workers),
       images_until_lost_(options.gpu.lose_context_at_image),
-      sampler_(options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m),
-               options.gpu),
+      sampler_(drawn_world(world, options), options.gpu),
       refinement_(sampler_) {
   binner(0);  // so that an OpenGL that cannot build its shaders is found out here
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces that are known in closed form, finely divided, against what they are.
-#include "renderer/engines/cpu/coplanar_facets.hpp"
+#include "renderer/scene/coplanar_facets.hpp"
 
 #include <algorithm>
 #include <array>

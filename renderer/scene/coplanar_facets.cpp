@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/cpu/coplanar_facets.hpp"
+#include "renderer/scene/coplanar_facets.hpp"
 
 #include <algorithm>
 #include <array>
