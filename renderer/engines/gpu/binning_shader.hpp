@@ -38,6 +38,10 @@ enum BinningUniform : int {
 /// What all shaders know.
 inline constexpr char binning_shader_head[] = R"glsl(
 layout(location = 0) uniform int lines;
+// What the shaders read lies in textures, by unit (GpuBinner knows them): a software OpenGL fetches every word of a
+// buffer by itself.
+layout(binding = 12) uniform samplerBuffer line_weight;
+layout(binding = 13) uniform isamplerBuffer parts;
 
 // ColumnPart, the tangent of its column's centre, and its neighbours: parts of the next columns, also where another
 // beam begins, with the distances of the centres in radians; the part itself where there is none.
@@ -48,6 +52,16 @@ struct Part {
   int before, after;
   float to_before, to_after, width_rad;
 };
+
+Part part_at(int p) {
+  ivec4 place = texelFetch(parts, 5 * p);
+  vec4 across = intBitsToFloat(texelFetch(parts, 5 * p + 1));
+  vec4 ends = intBitsToFloat(texelFetch(parts, 5 * p + 2));
+  ivec4 beside = texelFetch(parts, 5 * p + 3);
+  return Part(place.x, place.y, place.z, place.w, across.x, across.y, across.z, across.w, ends.x, ends.y, ends.z, ends.w,
+              beside.x, beside.y, intBitsToFloat(beside.z), intBitsToFloat(beside.w),
+              intBitsToFloat(texelFetch(parts, 5 * p + 4).x));
+}
 
 // A beam of the grid.
 struct Beam {
@@ -86,7 +100,6 @@ uvec2 minus(uvec2 a, uvec2 b) {
 /// What looks at samples.
 inline constexpr char sample_shader_head[] = R"glsl(
 layout(binding = 7) uniform sampler2D view;  // SurfaceSample
-layout(std430, binding = 2) readonly buffer Parts { Part parts[]; };
 
 layout(location = 1) uniform float bottom;        // tangent of the lowest row's centre
 layout(location = 2) uniform vec2 pixel;          // tangent units
@@ -135,7 +148,7 @@ layout(local_size_x = 64) in;
 // spread over many lines costs no more than its ends.
 layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
 layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
-layout(std430, binding = 3) readonly buffer PartsOfView { int parts_of_view[]; };
+layout(binding = 14) uniform isamplerBuffer parts_of_view;
 layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, additions; };
 #if ESTIMATE
 layout(std430, binding = 5) writeonly buffer PartialColumns { vec2 partial_columns[]; };  // [part][invocation]
@@ -203,44 +216,61 @@ uvec2 whole_units(float amount) {
 float echo_units, weight_units;  // of the sample at hand
 uint first_line;                 // of its beam
 
-// To the line `k` the units of `here` that the line before did not have. The two words may be added to by others in
-// between: every carry out of the low word is seen by exactly one of them, so that in the end all are in the high one.
-void step_to(int k, float share, inout uvec2 echo_before, inout uvec2 weight_before) {
-  uint low = 2u * (first_line + uint(k));
-  uvec2 here = whole_units(echo_units * share);
-  uvec2 units = minus(here, echo_before);
-  echo_before = here;
-  if (units.x != 0u) {
-    uint before = atomicAdd(echo_differences[low], units.x);
-    units.y += before + units.x < before ? 1u : 0u;
-    ++own_additions;
-  }
-  if (units.y != 0u) {
-    atomicAdd(echo_differences[low + 1u], units.y);
-    ++own_additions;
-  }
-#if WEIGHED
-    here = whole_units(weight_units * share);
-    units = minus(here, weight_before);
-    weight_before = here;
-    if (units.x != 0u) {
-      uint before = atomicAdd(weight_differences[low], units.x);
-      units.y += before + units.x < before ? 1u : 0u;
-      ++own_additions;
-    }
-    if (units.y != 0u) {
-      atomicAdd(weight_differences[low + 1u], units.y);
-      ++own_additions;
-    }
-#endif
+// What a sample adds to the differences, line after line. Two words make a sum, and what goes into the high one is added
+// in a step of its own: it hardly ever is anything, and a software OpenGL makes every addition that a step may make.
+// The words may be added to by others in between: every carry out of the low word is seen by exactly one of them, so
+// that in the end all are in the high one.
+struct Steps {
+  uvec2 echo_before, weight_before;  // of the line before
+  uint echo_high, weight_high;       // what is left to be added of the line that was added last
+  uint at;                           // its low word
+};
+
+bool carrying(Steps steps) {
+  return (steps.echo_high | steps.weight_high) != 0u;
 }
+
+#define ADD(differences, units_of_sample, before_it, high)                                \
+  {                                                                                       \
+    uvec2 here = whole_units(units_of_sample * share);                                    \
+    uvec2 units = minus(here, steps.before_it);                                           \
+    uint amount = carry ? steps.high : units.x;                                           \
+    uint left = 0u;                                                                       \
+    if (amount != 0u) {                                                                   \
+      uint before = atomicAdd(differences[at], amount);                                   \
+      left = before + amount < before ? 1u : 0u;                                          \
+      ++own_additions;                                                                    \
+    }                                                                                     \
+    steps.high = carry ? 0u : units.y + left;                                             \
+    if (!carry) steps.before_it = here;                                                   \
+  }
+
+// What is left of the line before, or to the line `k` the units of its share that the line before did not have.
+// Returns whether that was done.
+bool step_to(int k, float share, inout Steps steps) {
+  bool carry = carrying(steps);
+  uint at = carry ? steps.at + 1u : 2u * (first_line + uint(k));
+  ADD(echo_differences, echo_units, echo_before, echo_high)
+#if WEIGHED
+  ADD(weight_differences, weight_units, weight_before, weight_high)
+#endif
+  steps.at = at;
+  return !carry;
+}
+
+const Steps no_steps = Steps(uvec2(0u), uvec2(0u), 0u, 0u, 0u);
 
 void add_point(Place place) {
   if (!(place.line >= 0.0 && place.line < float(lines))) return;
   int k = int(place.line);
-  uvec2 echo_before = uvec2(0u), weight_before = uvec2(0u);
-  step_to(k, 1.0, echo_before, weight_before);
-  if (k + 1 < lines) step_to(k + 1, 0.0, echo_before, weight_before);
+  int end = min(k + 1, lines - 1);
+  float share = 1.0;
+  for (Steps steps = no_steps; k <= end || carrying(steps);) {
+    if (step_to(k, share, steps)) {
+      ++k;
+      share = 0.0;
+    }
+  }
 }
 
 float overlap_of_ramp(float from, float to, float ramp) {
@@ -259,8 +289,9 @@ void add_trapezoid(Place centre, float spread, float smear) {
   int last = int(min(end.line, float(lines - 1)));
   // Lines up to here lie wholly within the even middle, if one before them does.
   int last_even = int(min(float(last), end.line - ceil(smear) - 1.0));
-  uvec2 echo_before = uvec2(0u), weight_before = uvec2(0u);
-  for (int k = first; k <= last; ++k) {
+  int end_of_steps = min(last + 1, lines - 1);
+  Steps steps = no_steps;
+  for (int k = first; k <= end_of_steps || carrying(steps);) {
     // From the start on to the two sides of the line, and back from the end.
     float x0 = (float(k) - start.line) - start.part;
     float x1 = x0 + 1.0;
@@ -272,10 +303,10 @@ void add_trapezoid(Place centre, float spread, float smear) {
       float middle = min(min(1.0, spread - smear), min(x1 - smear, y0 - smear));
       held = overlap_of_ramp(x0, x1, smear) + max(0.0, middle) + overlap_of_ramp(y1, y0, smear);
     }
-    step_to(k, held / spread, echo_before, weight_before);
-    if (even) k = max(k, last_even);
+    if (step_to(k, k <= last ? held / spread : 0.0, steps)) {
+      k = even ? max(k, last_even) + 1 : k + 1;
+    }
   }
-  if (last + 1 < lines) step_to(last + 1, 0.0, echo_before, weight_before);
 }
 
 void bin(Part part, int row) {
@@ -295,10 +326,10 @@ void bin(Part part, int row) {
   float per_m = lines_per_m.x + lines_per_m.y + lines_per_m.z;
   float across = abs(plane.y + cell.slope * plane.z) * part.width * per_m;
   float along = abs(plane.z) * cell.height * per_m;
-#if ESTIMATE
-  own_echo += echo_of(seen, t + cell.offset, part.width, cell.height).xy;
-#endif
   float weight = weight_of(t + cell.offset, part.width, cell.height);
+#if ESTIMATE
+  own_echo += echo_of(seen, part.width, cell.height, weight).xy;
+#endif
   float echo = weight * seen.y;
   float all = seen.x + plane.x + across + along + echo;
   if (isnan(all) || isinf(all)) {
@@ -321,8 +352,8 @@ void bin(Part part, int row) {
 }
 
 void main() {
-  int p = parts_of_view[first_part + int(gl_WorkGroupID.x)];
-  Part part = parts[p];
+  int p = texelFetch(parts_of_view, first_part + int(gl_WorkGroupID.x)).x;
+  Part part = part_at(p);
   first_line = uint(part.beam) * uint(lines);
   for (int row = part.row_begin + int(gl_LocalInvocationIndex); row < part.row_end; row += 64) {
     bin(part, row);
@@ -340,18 +371,18 @@ void main() {
 )glsl";
 
 /// One work group per beam: from differences to lines of the image, and how far those of the thinned samples
-/// are off. Leaves sums that begin anew for the next grid.
+/// are off.
 inline constexpr char sum_shader[] = R"glsl(
-layout(local_size_x = 64) in;
+layout(local_size_x = 32) in;
 
-layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
-layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
-layout(std430, binding = 2) buffer ThinnedDifferences { uint thinned_differences[]; };
-layout(std430, binding = 3) buffer ThinnedWeights { uint thinned_weights[]; };
+// [beam][line], low word first
+layout(binding = 8) uniform usamplerBuffer echo_differences;
+layout(binding = 9) uniform usamplerBuffer weight_differences;
+layout(binding = 10) uniform usamplerBuffer thinned_differences;
+layout(binding = 11) uniform usamplerBuffer thinned_weights;
 // The echo [beam][line] as in BinningResult, then open_sr.
 layout(std430, binding = 4) buffer Image { uint counts[4]; float image[]; };
 layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
-layout(std430, binding = 6) readonly buffer LineWeights { float line_weight[]; };
 layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
 
 layout(location = 12) uniform int image_beams;  // of the page
@@ -365,8 +396,8 @@ layout(location = 18) uniform bool estimating;
 layout(location = 19) uniform float least_level;
 layout(location = 20) uniform int first_estimate;
 
-shared uvec2 up_to[2][64];
-shared vec2 gathered[64];
+shared uvec2 up_to[2][32];
+shared vec2 gathered[32];
 
 // What the invocations before this one hold together.
 uvec2 sum_before(uvec2 own) {
@@ -374,7 +405,7 @@ uvec2 sum_before(uvec2 own) {
   int from = 0;
   up_to[from][me] = own;
   barrier();
-  for (uint distance = 1u; distance < 64u; distance *= 2u) {
+  for (uint distance = 1u; distance < 32u; distance *= 2u) {
     uvec2 sum = up_to[from][me];
     if (me >= distance) sum = plus(sum, up_to[from][me - distance]);
     from = 1 - from;
@@ -390,7 +421,7 @@ float strongest_of_all(float own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me].x = own;
   barrier();
-  for (uint half_of = 32u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = 16u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me].x = max(gathered[me].x, gathered[me + half_of].x);
     barrier();
   }
@@ -403,7 +434,7 @@ vec2 sum_of_all(vec2 own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me] = own;
   barrier();
-  for (uint half_of = 32u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = 16u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me] += gathered[me + half_of];
     barrier();
   }
@@ -419,53 +450,48 @@ float line_value(float echo, float weight, float whole) {
   return weight > least_share * whole ? min(1.0, echo / weight) : 0.0;
 }
 
-// What has been added to a sum, and that to those of some lines. take_...() leaves a sum that begins anew.
-#define SUMS(take, sum_of, buffer) \
-  uvec2 sum_of(uint first, uint count) { \
+// By how much a line differs from the one before.
+#define STEP(differences, line) minus(texelFetch(differences, line).xy, uvec2(start_of_sum, 0u))
+
+// What the invocations before this one hold together of `count` lines each.
+#define SUM_BEFORE(differences) \
+  uvec2 sum_before_##differences(int first, int count) { \
     uvec2 sum = uvec2(0u); \
-    for (uint i = first; i < first + count; ++i) { \
-      sum = plus(sum, minus(uvec2(buffer[2u * i], buffer[2u * i + 1u]), uvec2(start_of_sum, 0u))); \
-    } \
-    return sum; \
-  } \
-  uvec2 take(uint line) { \
-    uvec2 units = sum_of(line, 1u); \
-    buffer[2u * line] = start_of_sum; \
-    buffer[2u * line + 1u] = 0u; \
-    return units; \
+    for (int i = first; i < first + count; ++i) sum = plus(sum, STEP(differences, i)); \
+    return sum_before(sum); \
   }
-SUMS(take_echo, sum_of_echo, echo_differences)
-SUMS(take_weight, sum_of_weight, weight_differences)
-SUMS(take_thinned, sum_of_thinned, thinned_differences)
-SUMS(take_thinned_weight, sum_of_thinned_weights, thinned_weights)
+SUM_BEFORE(echo_differences)
+SUM_BEFORE(weight_differences)
+SUM_BEFORE(thinned_differences)
+SUM_BEFORE(thinned_weights)
 
 void main() {
   Beam beam = beams[gl_WorkGroupID.x];
-  int each = (lines + 63) / 64;
+  int each = (lines + 31) / 32;
   int begin = min(int(gl_LocalInvocationIndex) * each, lines);
-  uint count = uint(min(each, lines - begin));
-  uint first = gl_WorkGroupID.x * uint(lines) + uint(begin);
-  uint to = uint(beam.in_image - first_beam) * uint(lines) + uint(begin);
-  uint open_to = to + uint(image_beams) * uint(lines);
+  int count = min(each, lines - begin);
+  int first = int(gl_WorkGroupID.x) * lines + begin;
+  int to = (beam.in_image - first_beam) * lines + begin;
+  int open_to = to + image_beams * lines;
   float whole = beam.solid_angle;
 
-  uvec2 echo_units = sum_before(sum_of_echo(first, count));
+  uvec2 echo_units = sum_before_echo_differences(first, count);
   uvec2 weight_units = uvec2(0u), blocked = uvec2(0u);
-  if (WEIGHED == 1) weight_units = sum_before(sum_of_weight(first, count));
+  if (WEIGHED == 1) weight_units = sum_before_weight_differences(first, count);
   if (open_water) {
     uvec2 here = weight_units;
-    for (uint i = 0u; i < count; ++i) {
-      here = plus(here, sum_of_weight(first + i, 1u));
+    for (int i = 0; i < count; ++i) {
+      here = plus(here, STEP(weight_differences, first + i));
       blocked = plus(blocked, here);
     }
     blocked = sum_before(blocked);
   }
   float strongest = 0.0;
-  for (uint i = 0u; i < count; ++i) {
-    echo_units = plus(echo_units, take_echo(first + i));
+  for (int i = 0; i < count; ++i) {
+    echo_units = plus(echo_units, STEP(echo_differences, first + i));
     float weight = 0.0;
     if (WEIGHED == 1) {
-      weight_units = plus(weight_units, take_weight(first + i));
+      weight_units = plus(weight_units, STEP(weight_differences, first + i));
       weight = steradians(weight_units);
       if (open_water) {
         float open = whole - steradians(blocked) - 0.5 * weight;
@@ -475,23 +501,23 @@ void main() {
     }
     float value = line_value(steradians(echo_units), weight, whole);
     image[to + i] = value;
-    if (estimating) strongest = max(strongest, value * line_weight[uint(begin) + i]);
+    if (estimating) strongest = max(strongest, value * texelFetch(line_weight, begin + i).x);
   }
   if (!estimating) return;
 
   strongest = strongest_of_all(strongest);
-  echo_units = sum_before(sum_of_thinned(first, count));
-  if (mean) weight_units = sum_before(sum_of_thinned_weights(first, count));
+  echo_units = sum_before_thinned_differences(first, count);
+  if (mean) weight_units = sum_before_thinned_weights(first, count);
   vec2 off = vec2(0.0);  // squares, bins
-  for (uint i = 0u; i < count; ++i) {
-    echo_units = plus(echo_units, take_thinned(first + i));
+  for (int i = 0; i < count; ++i) {
+    echo_units = plus(echo_units, STEP(thinned_differences, first + i));
     float weight = 0.0;
     if (mean) {
-      weight_units = plus(weight_units, take_thinned_weight(first + i));
+      weight_units = plus(weight_units, STEP(thinned_weights, first + i));
       weight = steradians(weight_units);
     }
     float value = image[to + i];
-    if (value * line_weight[uint(begin) + i] > least_level * strongest) {
+    if (value * texelFetch(line_weight, begin + i).x > least_level * strongest) {
       float ratio = line_value(steradians(echo_units), weight, whole) / value - 1.0;
       off += vec2(ratio * ratio, 1.0);
     }

@@ -9,10 +9,8 @@ namespace sonard::render {
 
 /// The echo of a sample and its first moment over the range.
 inline constexpr char strip_shader_head[] = R"glsl(
-layout(std430, binding = 6) readonly buffer LineWeights { float line_weight[]; };
-
-// Echo, first moment in lines, share of the pixel that counts.
-vec3 echo_of(vec4 seen, vec2 t, float width, float height) {
+// Echo, first moment in lines, share of the pixel that counts. `weight` is the pixel's.
+vec3 echo_of(vec4 seen, float width, float height, float weight) {
   float per_m = lines_per_m.x + lines_per_m.y + lines_per_m.z;
   float line = seen.x * per_m;
   float half_spread = 0.5 * per_m * (abs(seen.z) * width + abs(seen.w) * height);
@@ -24,7 +22,7 @@ vec3 echo_of(vec4 seen, vec2 t, float width, float height) {
   bool cut = line + half_spread > end;
   float share = cut ? (end - line + half_spread) / (2.0 * half_spread) : 1.0;
   float middle = cut ? (end + line - half_spread) / 2.0 : line;
-  float echo = seen.y * weight_of(t, width, height) * share * line_weight[clamp(int(middle), 0, lines - 1)];
+  float echo = seen.y * weight * share * texelFetch(line_weight, clamp(int(middle), 0, lines - 1)).x;
   if (isnan(echo) || isinf(echo)) return vec3(0.0, 0.0, 1.0);
   return vec3(echo, echo * middle, share);
 }
@@ -40,19 +38,23 @@ struct BeamOfView {
   int had_others;         // views before this one
   float x_begin, x_end;   // tangents of its sides
 };
-layout(std430, binding = 3) readonly buffer BeamsOfView { BeamOfView beams_of_view[]; };
-layout(std430, binding = 0) buffer Rows { vec4 rows[]; };  // [beam][row]: echo, moment, width
+layout(binding = 14) uniform isamplerBuffer beams_of_view;
+layout(std430, binding = 0) writeonly buffer Rows { vec4 rows[]; };  // [beam][row]: echo, moment, width
+layout(binding = 8) uniform samplerBuffer rows_before;              // the same
 layout(location = 5) uniform int first_beam;  // in beams_of_view
 layout(location = 8) uniform int most_rows;   // of any beam
 layout(location = 9) uniform float left;     // tangent of the first column's centre
 layout(location = 10) uniform float tan_limit;
 
 void main() {
-  BeamOfView beam = beams_of_view[first_beam + int(gl_WorkGroupID.x)];
+  int b = 2 * (first_beam + int(gl_WorkGroupID.x));
+  ivec4 place = texelFetch(beams_of_view, b);
+  vec2 sides = intBitsToFloat(texelFetch(beams_of_view, b + 1).xy);
+  BeamOfView beam = BeamOfView(place.x, place.y, place.z, place.w, sides.x, sides.y);
   int row = int(gl_WorkGroupID.y) * 64 + int(gl_LocalInvocationIndex);
   if (row >= most_rows) return;
-  uint at = uint(beam.beam) * uint(most_rows) + uint(row);
-  vec4 sum = beam.had_others == 0 ? vec4(0.0) : rows[at];
+  int at = beam.beam * most_rows + row;
+  vec4 sum = beam.had_others == 0 ? vec4(0.0) : texelFetch(rows_before, at);
   float below = bottom + (float(row) - 0.5) * pixel.y;
   for (int column = beam.column_begin; column < beam.column_end; ++column) {
     float x = left + float(column) * pixel.x;
@@ -64,7 +66,8 @@ void main() {
     float high = min(below + pixel.y, limit);
     if (high > low) {
       vec4 seen = texelFetch(view, ivec2(column, row), 0);
-      vec3 echo = echo_of(seen, vec2(middle, 0.5 * (low + high)), to - from, high - low);
+      float weight = weight_of(vec2(middle, 0.5 * (low + high)), to - from, high - low);
+      vec3 echo = echo_of(seen, to - from, high - low, weight);
       sum += vec4(echo.xy, (to - from) * (high - low) * echo.z, 0.0);
     }
   }
@@ -75,7 +78,7 @@ void main() {
 /// One invocation per part: the sum of what the invocations of splat_shader have found in it.
 inline constexpr char column_shader[] = R"glsl(
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer PartialColumns { vec2 partial_columns[]; };
+layout(binding = 8) uniform samplerBuffer partial_columns;
 layout(std430, binding = 1) writeonly buffer Columns { vec2 columns[]; };
 layout(location = 11) uniform int part_count;
 
@@ -83,17 +86,16 @@ void main() {
   int p = int(gl_GlobalInvocationID.x);
   if (p >= part_count) return;
   vec2 sum = vec2(0.0);
-  for (int i = 64 * p; i < 64 * p + 64; ++i) sum += partial_columns[i];
+  for (int i = 64 * p; i < 64 * p + 64; ++i) sum += texelFetch(partial_columns, i).xy;
   columns[p] = sum;
 }
 )glsl";
 
 /// One work group per beam.
 inline constexpr char estimate_shader[] = R"glsl(
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Columns { vec2 columns[]; };  // echo, moment: of each part
-layout(std430, binding = 1) readonly buffer Rows { vec4 rows[]; };
-layout(std430, binding = 2) readonly buffer Parts { Part parts[]; };
+layout(local_size_x = 32) in;
+layout(binding = 8) uniform samplerBuffer columns;  // echo, moment: of each part
+layout(binding = 9) uniform samplerBuffer rows;
 layout(std430, binding = 3) coherent buffer ColumnMisses { float column_misses[]; };
 layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
 layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
@@ -103,13 +105,13 @@ layout(location = 20) uniform int first_estimate;
 layout(location = 21) uniform vec2 most_error;  // of a beam's total and centroid: the error that counts as 1
 layout(location = 22) uniform float most_rest;  // of a zone: the square of what may lie outside of it
 
-shared vec4 gathered[64];
+shared vec4 gathered[32];
 
 vec4 sum_of_all(vec4 own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me] = own;
   barrier();
-  for (uint half_of = 32u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = 16u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me] += gathered[me + half_of];
     barrier();
   }
@@ -133,21 +135,21 @@ void main() {
   Beam beam = beams[gl_WorkGroupID.x];
   uint me = gl_LocalInvocationIndex;
   vec4 all = vec4(0.0);
-  for (int p = beam.part_begin + int(me); p < beam.part_end; p += 64) all.xy += columns[p];
+  for (int p = beam.part_begin + int(me); p < beam.part_end; p += 32) all.xy += texelFetch(columns, p).xy;
   all = sum_of_all(all);
   float all_at = all.y / all.x;  // the centroid
 
   vec4 by_columns = vec4(0.0);  // squares of total and centroid, thin columns
   if (all.x > 0.0) {
-    for (int p = beam.part_begin + int(me); p < beam.part_end; p += 64) {
-      Part part = parts[p];
+    for (int p = beam.part_begin + int(me); p < beam.part_end; p += 32) {
+      Part part = part_at(p);
       // At the end of what was sampled, as from the column before it.
       bool first = part.before == p, last = part.after == p;
       int middle = first ? part.after : last ? part.before : p;
-      Part here = parts[middle];
-      vec2 a = columns[here.before] / parts[here.before].width_rad;
-      vec2 b = columns[middle] / here.width_rad;
-      vec2 c = columns[here.after] / parts[here.after].width_rad;
+      Part here = part_at(middle);
+      vec2 a = texelFetch(columns, here.before).xy / part_at(here.before).width_rad;
+      vec2 b = texelFetch(columns, middle).xy / here.width_rad;
+      vec2 c = texelFetch(columns, here.after).xy / part_at(here.after).width_rad;
       vec2 error = here.before == middle || here.after == middle
                        ? vec2(0.0)
                        : strip_error(a, b, c, here.to_before, here.to_after, part.width_rad, all.x, all_at);
@@ -159,10 +161,11 @@ void main() {
   by_columns = sum_of_all(by_columns);
 
   vec4 by_rows = vec4(0.0);
-  uint first_row = gl_WorkGroupID.x * uint(most_rows);
+  int first_row = int(gl_WorkGroupID.x) * most_rows;
   if (all.x > 0.0) {
-    for (int j = 1 + int(me); j + 1 < beam.rows; j += 64) {
-      vec4 a = rows[first_row + uint(j - 1)], b = rows[first_row + uint(j)], c = rows[first_row + uint(j + 1)];
+    for (int j = 1 + int(me); j + 1 < beam.rows; j += 32) {
+      vec4 a = texelFetch(rows, first_row + j - 1), b = texelFetch(rows, first_row + j),
+           c = texelFetch(rows, first_row + j + 1);
       // Rows that the elevation limit or the last line leaves little of tell nothing.
       float least = 0.1 * b.z;
       if (b.z > 0.0 && a.z > least && c.z > least) {

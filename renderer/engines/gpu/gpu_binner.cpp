@@ -43,9 +43,20 @@ constexpr double most_units_of_beam = 0x1p62;
 constexpr double least_level = 1e-2;  // of the beam's maximum; errors are taken over bins above it
 constexpr double zone_rest = 0.5;     // of the error that counts as 1, what lies outside of a zone may miss
 // What the shaders know too:
-constexpr std::uint64_t start_of_sum = 0x80000000;
+constexpr std::uint32_t start_of_sum = 0x80000000;
 constexpr std::size_t group_size = 64;
-constexpr unsigned samples_unit = 7;  // of textures; OpenSceneGraph uses the first
+// Units of textures; OpenSceneGraph uses the first. The first four of these are what the shader at hand says.
+enum TextureUnit : unsigned {
+  samples_unit = 7,
+  first_unit,
+  second_unit,
+  third_unit,
+  fourth_unit,
+  line_weight_unit,
+  parts_unit,
+  of_view_unit,
+};
+constexpr GLbitfield written_by_shaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 constexpr std::size_t image_header_bytes = 16;
 constexpr std::size_t most_view_rows = 16384;
 constexpr const char* doing = "binning";
@@ -115,6 +126,9 @@ struct GpuBinner::Impl {
         image_back(gl) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    GLint most_texels = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
+    most = std::min<GLint64>(most, GLint64{most_texels} * sizeof(std::uint64_t));  // sums are the smallest
     // Shaders count words in 32 bits.
     most_bytes = static_cast<std::size_t>(
         std::clamp<GLint64>(most, 0, std::int64_t{4} * std::numeric_limits<std::uint32_t>::max()));
@@ -174,13 +188,10 @@ struct GpuBinner::Impl {
     }
   }
 
-  /// Sums that are as they begin, which is how sum_shader leaves them.
-  void hold_sums(GpuBuffer& buffer, std::size_t bytes) {
-    if (buffer.bytes() < bytes) {
-      check_size(bytes, "beams");
-      buffer.fill(std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t), start_of_sum), GL_DYNAMIC_COPY);
-      traffic.bytes_uploaded += bytes;
-    }
+  /// Sums that are as they begin.
+  void begin_sums(GpuBuffer& buffer, std::size_t bytes) {
+    hold(buffer, bytes, "beams");
+    buffer.clear(bytes, {start_of_sum, 0});
   }
 
   /// What sums are whole multiples of: a power of two of them makes a steradian.
@@ -259,11 +270,11 @@ struct GpuBinner::Impl {
 
   void make_room(const GpuGrid& grid) {
     const std::size_t words = grid.beam_count * static_cast<std::size_t>(lines()) * sizeof(std::uint64_t);
-    hold_sums(echo, words);
-    hold_sums(weight, weighed() ? words : sizeof(std::uint64_t));
+    begin_sums(echo, words);
+    begin_sums(weight, weighed() ? words : sizeof(std::uint64_t));
     if (grid.thinned) {
-      hold_sums(thinned, words);
-      hold_sums(thinned_weight, request->options.mean ? words : sizeof(std::uint64_t));
+      begin_sums(thinned, words);
+      begin_sums(thinned_weight, request->options.mean ? words : sizeof(std::uint64_t));
       hold(partial_columns, grid.part_count * group_size * 2 * sizeof(float), "columns");
       hold(columns, grid.part_count * 2 * sizeof(float), "columns");
       hold(column_misses, grid.part_count * sizeof(float), "columns");
@@ -307,12 +318,12 @@ struct GpuBinner::Impl {
          grid.elevation},
         splatting);
     partial_columns.bind(5);
-    line_weight.bind(6);
+    line_weight.bind_texels(line_weight_unit, GL_R32F);
     set_pattern(grid);
     (is_thinned ? thinned : echo).bind(0);
     (is_thinned ? thinned_weight : weight).bind(1);
-    of.parts.bind(2);
-    of.order.bind(3);
+    of.parts.bind_texels(parts_unit, GL_RGBA32I);
+    of.order.bind_texels(of_view_unit, GL_R32I);
     pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
     gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr(grid)));
     gl.glUniform1f(at_most_units, static_cast<float>(most_units_of_beam / grid.most_samples));
@@ -324,7 +335,7 @@ struct GpuBinner::Impl {
 
   void sum_strips(const GpuGrid& grid, const std::vector<unsigned>& textures) {
     use({}, {column_shader});
-    partial_columns.bind(0);
+    partial_columns.bind_texels(first_unit, GL_RG32F);
     columns.bind(1);
     gl.glUniform1i(at_part_count, static_cast<GLint>(grid.part_count));
     gl.glDispatchCompute(groups_of(grid.part_count), 1, 1);
@@ -332,8 +343,9 @@ struct GpuBinner::Impl {
     use({false, false, false, true, grid.elevation}, row_summing);
     set_pattern(grid);
     rows.bind(0);
-    grid.view_beams.bind(3);
-    line_weight.bind(6);
+    rows.bind_texels(first_unit, GL_RGBA32F);
+    grid.view_beams.bind_texels(of_view_unit, GL_RGBA32I);
+    line_weight.bind_texels(line_weight_unit, GL_R32F);
     gl.glUniform1i(at_most_rows, grid.most_rows);
     gl.glUniform1f(at_tan_limit, grid.tan_limit);
     each_view(grid.columns.views, grid.view_beams_begin, textures,
@@ -341,20 +353,20 @@ struct GpuBinner::Impl {
                 gl.glUniform1i(at_first, first);
                 gl.glUniform1f(at_left, static_cast<float>(-view.tan_half_width + 0.5 * view.pixel_width()));
                 gl.glDispatchCompute(count, groups_of(static_cast<std::size_t>(view.rows)), 1);
-                gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+                gl.glMemoryBarrier(written_by_shaders);
               });
   }
 
   void sum_beams(const GpuGrid& grid) {
     const BinningOptions& options = request->options;
     use({weighed()}, {sum_shader});
-    echo.bind(0);
-    weight.bind(1);
-    thinned.bind(2);
-    thinned_weight.bind(3);
+    echo.bind_texels(first_unit, GL_RG32UI);
+    weight.bind_texels(second_unit, GL_RG32UI);
+    thinned.bind_texels(third_unit, GL_RG32UI);
+    thinned_weight.bind_texels(fourth_unit, GL_RG32UI);
+    line_weight.bind_texels(line_weight_unit, GL_R32F);
     pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
     grid.beams.bind(5);
-    line_weight.bind(6);
     estimates.bind(7);
     gl.glUniform1i(at_image_beams, beams_of_page(page_of(grid)));
     gl.glUniform1i(at_first_beam, page_of(grid) * beams_per_page());
@@ -371,9 +383,9 @@ struct GpuBinner::Impl {
 
   void estimate_beams(const GpuGrid& grid) {
     use({}, {estimate_shader});
-    columns.bind(0);
-    rows.bind(1);
-    grid.columns.parts.bind(2);
+    columns.bind_texels(first_unit, GL_RG32F);
+    rows.bind_texels(second_unit, GL_RGBA32F);
+    grid.columns.parts.bind_texels(parts_unit, GL_RGBA32I);
     column_misses.bind(3);
     grid.beams.bind(5);
     estimates.bind(7);
@@ -390,16 +402,16 @@ struct GpuBinner::Impl {
     splat_views(grid, grid.columns, false, textures);
     if (grid.thinned) {
       splat_views(grid, *grid.thinned, true, textures);
-      gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+      gl.glMemoryBarrier(written_by_shaders);
       sum_strips(grid, textures);
     }
-    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    gl.glMemoryBarrier(written_by_shaders);
     sum_beams(grid);
     if (grid.thinned) {
       estimate_beams(grid);
       estimated += grid.beam_count;
     }
-    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl.glMemoryBarrier(written_by_shaders | GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindTexture(GL_TEXTURE_2D, 0);
     gl.glActiveTexture(GL_TEXTURE0 + context.getState()->getActiveTextureUnit());
     gl.glUseProgram(0);

@@ -2,6 +2,7 @@
 // Memory of the GPU that compute shaders see.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,7 +15,10 @@ namespace sonard::render {
 class GpuBuffer {
  public:
   explicit GpuBuffer(osg::GLExtensions& gl) : gl_(gl) { gl_.glGenBuffers(1, &name_); }
-  ~GpuBuffer() { gl_.glDeleteBuffers(1, &name_); }
+  ~GpuBuffer() {
+    glDeleteTextures(1, &texels_);
+    gl_.glDeleteBuffers(1, &name_);
+  }
   GpuBuffer(const GpuBuffer&) = delete;
   GpuBuffer& operator=(const GpuBuffer&) = delete;
 
@@ -40,6 +44,30 @@ class GpuBuffer {
   /// The next hold() starts over.
   void forget() { bytes_ = 0; }
   void bind(unsigned binding) const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
+  /// For texelFetch(). Nothing is bound while the buffer is empty.
+  /// @param format of a texel
+  void bind_texels(unsigned unit, GLenum format) const {
+    if (bytes_ == 0) {
+      return;
+    }
+    gl_.glActiveTexture(GL_TEXTURE0 + unit);
+    if (texels_ == 0) {
+      glGenTextures(1, &texels_);
+    }
+    glBindTexture(GL_TEXTURE_BUFFER, texels_);
+    gl_.glTexBuffer(GL_TEXTURE_BUFFER, format, name_);
+  }
+  /// Sets the first `bytes` to a pattern of two words.
+  void clear(std::size_t bytes, const std::array<std::uint32_t, 2>& words) {
+    // OpenSceneGraph does not load it.
+    using ClearBufferSubData =
+        void(GL_APIENTRY*)(GLenum, GLenum, GLintptr, GLsizeiptr, GLenum, GLenum, const void*);
+    static const auto clear =
+        reinterpret_cast<ClearBufferSubData>(osg::getGLExtensionFuncPtr("glClearBufferSubData"));
+    select();
+    clear(GL_SHADER_STORAGE_BUFFER, GL_RG32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RG_INTEGER,
+          GL_UNSIGNED_INT, words.data());
+  }
   void bind_to_copy() const { gl_.glBindBuffer(GL_COPY_READ_BUFFER, name_); }
 
  private:
@@ -47,6 +75,7 @@ class GpuBuffer {
 
   osg::GLExtensions& gl_;
   GLuint name_ = 0;
+  mutable GLuint texels_ = 0;
   std::size_t bytes_ = 0;
 };
 

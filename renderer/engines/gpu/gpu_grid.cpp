@@ -17,8 +17,9 @@ struct GpuPart {
   float first_y_offset, first_height, last_y_offset, last_height;
   std::int32_t before, after;
   float to_before, to_after, width_rad;
+  float unused[3] = {};
 };
-static_assert(sizeof(GpuPart) == 17 * 4, "must match std430");
+static_assert(sizeof(GpuPart) == 5 * 4 * 4, "is read as texels of four words");
 
 struct GpuBeam {
   std::int32_t in_image;
@@ -30,8 +31,9 @@ static_assert(sizeof(GpuBeam) == 5 * 4, "must match std430");
 struct BeamOfView {
   std::int32_t beam, column_begin, column_end, had_others;
   float x_begin, x_end;
+  float unused[2] = {};
 };
-static_assert(sizeof(BeamOfView) == 6 * 4, "must match std430");
+static_assert(sizeof(BeamOfView) == 2 * 4 * 4, "is read as texels of four words");
 
 /// The part of the next column to port (-1) or starboard (1), also where another beam begins; the part itself
 /// where there is none.

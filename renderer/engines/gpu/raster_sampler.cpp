@@ -192,7 +192,7 @@ struct RasterSampler::Impl {
     video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());
-    program(Shading::geometric_normal, {});  // so that an OpenGL that cannot build it is found out here
+    program(Shading::geometric_normal, {}, false);  // so that an OpenGL that cannot build it is found out here
     add_bodies(world);
   }
 
@@ -242,8 +242,8 @@ struct RasterSampler::Impl {
   }
 
   /// Built when first asked for.
-  osg::ref_ptr<osg::Program> program(Shading shading, const SurfaceModel& surface) {
-    const std::string head = surface_shader_head(shading, surface);
+  osg::ref_ptr<osg::Program> program(Shading shading, const SurfaceModel& surface, bool bent) {
+    const std::string head = surface_shader_head(shading, surface, bent);
     osg::ref_ptr<osg::Program>& known = programs[head];
     if (!known) {
       known = context->build_program({new osg::Shader(osg::Shader::VERTEX, head + surface_vertex_shader),
@@ -255,7 +255,7 @@ struct RasterSampler::Impl {
 
   void set_surface(const SurfaceModel& surface) {
     for (const Surface& one : surfaces) {
-      one.state->setAttributeAndModes(program(one.shading, surface));
+      one.state->setAttributeAndModes(program(one.shading, surface, bend_per_m != 0.0F));
     }
     osg::StateSet& state = *scene->getStateSet();
     state.getOrCreateUniform("sigmoid", osg::Uniform::FLOAT_VEC2)

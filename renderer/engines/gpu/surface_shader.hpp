@@ -17,11 +17,11 @@ namespace sonard::render {
 /// What of a surface decides which program draws it.
 enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
-/// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere.
-inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface) {
+/// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
+inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
-      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {}\n",
-      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical ? 1 : 0);
+      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define BENT {:d}\n",
+      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
 }
 
 inline constexpr char surface_vertex_shader[] = R"glsl(
@@ -31,7 +31,9 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 mapped_at;
 layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
 #endif
-uniform vec4 refraction;                 // Refraction in eye coordinates: up, per_m
+#if BENT
+uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
+#endif
 out vec3 normal_eye;
 #if SHADING == 2
 out vec4 tangent_eye;
@@ -41,14 +43,14 @@ out vec2 texcoord;
 void main() {
   gl_Position = gl_ModelViewProjectionMatrix * position;
   normal_eye = gl_NormalMatrix * normal;
-  if (refraction.w != 0.0) {  // Refraction::point() and normal(), term by term
-    vec3 p = (gl_ModelViewMatrix * position).xyz;
-    float height = dot(p, refraction.xyz);
-    float squared = dot(p, p);
-    vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
-    gl_Position = gl_ProjectionMatrix * vec4(lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30)), 1.0);
-    normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(normal_eye, refraction.xyz));
-  }
+#if BENT  // Refraction::point() and normal(), term by term
+  vec3 p = (gl_ModelViewMatrix * position).xyz;
+  float height = dot(p, refraction.xyz);
+  float squared = dot(p, p);
+  vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
+  gl_Position = gl_ProjectionMatrix * vec4(lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30)), 1.0);
+  normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(normal_eye, refraction.xyz));
+#endif
 #if SHADING == 2
   tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
   texcoord = mapped_at;
