@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "renderer/engines/gpu/egl_context.hpp"
-#include "renderer/engines/gpu/raster_part.hpp"
 #include "renderer/engines/gpu/video_memory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
@@ -34,7 +33,7 @@ World drawn_world(const World& world, const RendererOptions& options) {
   std::map<const TriangleMesh*, std::shared_ptr<const TriangleMesh>> merged;
   for (Body& body : drawn.bodies) {
     for (BodyPart& part : body.parts) {
-      if (shading_of(part) == Shading::geometric_normal) {
+      if (part.mesh->normals.empty()) {
         std::shared_ptr<const TriangleMesh>& mesh = merged[part.mesh.get()];
         if (!mesh) {
           mesh = std::make_shared<const TriangleMesh>(merge_coplanar_facets(*part.mesh));

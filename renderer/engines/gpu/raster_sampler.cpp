@@ -164,12 +164,17 @@ struct RasterSampler::Impl {
     osg::ref_ptr<osg::MatrixTransform> transform;  // T_sonar_body of the current ping
   };
 
+  struct PartNode {
+    osg::ref_ptr<osg::MatrixTransform> transform;
+    Shading shading;
+  };
+
   osg::ref_ptr<EglContext> context;
   std::string description;
   std::unique_ptr<VideoMemory> video_memory;  // what it holds goes first
   osg::ref_ptr<osg::Group> scene;
   std::vector<BodyNode> bodies;
-  std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
+  std::vector<PartNode> parts;  // of all bodies
   std::vector<Surface> surfaces;
   std::unordered_map<const osg::StateSet*, NormalMapTexture*> normal_maps;  // of the surfaces
   std::map<std::string, osg::ref_ptr<osg::Program>> programs;               // by surface_shader_head()
@@ -192,7 +197,8 @@ struct RasterSampler::Impl {
     video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());
-    program(Shading::geometric_normal, {}, false);  // so that an OpenGL that cannot build it is found out here
+    program(Shading::geometric_normal, {},
+            false);  // so that an OpenGL that cannot build it is found out here
     add_bodies(world);
   }
 
@@ -223,8 +229,8 @@ struct RasterSampler::Impl {
           }
         }
         last = &part;
-        parts.push_back(make_part(part, surfaces.back().state, &max_range_m));
-        node.transform->addChild(parts.back());
+        parts.push_back({make_part(part, surfaces.back().state, &max_range_m), surfaces.back().shading});
+        node.transform->addChild(parts.back().transform);
       }
       scene->addChild(node.transform);
       bodies.push_back(node);
@@ -401,17 +407,17 @@ void RasterSampler::set_body_pose(std::size_t body, const Pose& T_world_body) {
 void RasterSampler::set_part_meshes(std::span<const PartMesh> changes) {
   impl_->context->make_current_or_throw();
   for (const PartMesh& change : changes) {
+    const Impl::PartNode& part = impl_->parts[change.part];
     osg::ref_ptr<osg::Group> chunks;
     if (const auto* known = impl_->replacements.find(change.mesh.get())) {
       chunks = *known;
     } else {
       chunks = new osg::Group;
-      add_chunks(*change.mesh, &impl_->max_range_m, *chunks);
+      add_chunks(*change.mesh, part.shading, &impl_->max_range_m, *chunks);
       impl_->replacements.keep(change.mesh, chunks);
     }
-    osg::MatrixTransform& part = *impl_->parts[change.part];
-    part.removeChildren(0, part.getNumChildren());
-    part.addChild(chunks);
+    part.transform->removeChildren(0, part.transform->getNumChildren());
+    part.transform->addChild(chunks);
   }
 }
 

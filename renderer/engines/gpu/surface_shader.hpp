@@ -14,8 +14,10 @@
 
 namespace sonard::render {
 
-/// What of a surface decides which program draws it.
-enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
+/// What of a surface decides which program draws it. The shader works out the geometric normal from how the inverse depth
+/// changes from pixel to pixel, to about 1e-4 rad, and less exactly the finer the pixels are; where that is not enough,
+/// it is told (with_facet_normals()).
+enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2, facet_normals = 3 };
 
 /// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
@@ -33,6 +35,9 @@ layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
 #endif
 #if BENT
 uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
+#endif
+#if SHADING == 3
+flat
 #endif
 out vec3 normal_eye;
 #if SHADING == 2
@@ -63,6 +68,9 @@ void main() {
 // t: its screen derivatives give the plane, and with it the exact range derivatives (docs/physics.md 2.3,
 // equation 2), without differences of positions and without trouble where the plane is seen edge-on.
 inline constexpr char surface_fragment_shader[] = R"glsl(
+#if SHADING == 3
+flat
+#endif
 in vec3 normal_eye;
 layout(location = 0) out vec4 surface_sample;
 

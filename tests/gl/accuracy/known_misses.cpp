@@ -7,7 +7,7 @@ namespace {
 
 using Limits = AccuracyLimits;
 constexpr auto cpu = render::EngineKind::cpu;
-constexpr auto gpu = render::EngineKind::gpu;
+constexpr auto fast = render::Sampling::Preset::fast;
 constexpr auto normal = render::Sampling::Preset::normal;
 
 struct Miss {
@@ -19,13 +19,8 @@ struct Miss {
 };
 
 constexpr Miss misses[] = {
-    // A column that two beams share is taken by both as in its middle. On the flank of the facets of clean
-    // steel the echo changes by a tenth from column to column; it is a beam 33 dB below the strongest.
-    {"FacetWalls", gpu, normal, &Limits::beam_total, 0.0020},
-    // Two beams hold nothing but the limb of a sphere of steel, in a quarter of their width. It would take a
-    // zone of
-    // fine columns there, which three passes do not come to.
-    {"Spheres", gpu, normal, &Limits::beam_total, 0.0039},
+    // The beam that holds the foot of a wall's perpendicular has up to 0.65 % too much, of 16 walls of steel.
+    {"FacetWalls", cpu, fast, &Limits::beam_total, 0.0087},
     // Of a wall in short pieces, the two beams that hold the foot of its perpendicular have a little too much
     // there.
     {"PatternsOfALineArray", cpu, normal, &Limits::beam_total, 0.0021},
