@@ -22,7 +22,8 @@ namespace {
 
 /// The world as it is drawn: with facets small enough to bend with the rays where these are bent, else with
 /// few large facets in the place of many in one plane.
-World drawn_world(const World& world, const RendererOptions& options) {
+/// @param merged_facets how many are gone
+World drawn_world(const World& world, const RendererOptions& options, std::uint64_t& merged_facets) {
   if (options.ray_curvature_per_m != 0.0) {
     return refractable(world, options.ray_curvature_per_m);
   }
@@ -38,6 +39,7 @@ World drawn_world(const World& world, const RendererOptions& options) {
         if (!mesh) {
           mesh = std::make_shared<const TriangleMesh>(merge_coplanar_facets(*part.mesh));
         }
+        merged_facets += part.mesh->triangle_count() - mesh->triangle_count();
         part.mesh = mesh;
       }
     }
@@ -52,7 +54,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       largest_response_(largest_response(world)),
       workers_(workers),
       images_until_lost_(options.gpu.lose_context_at_image),
-      sampler_(drawn_world(world, options), options.gpu),
+      sampler_(drawn_world(world, options, merged_facets_), options.gpu),
       refinement_(sampler_) {
   binner(0);  // so that an OpenGL that cannot build its shaders is found out here
 }
@@ -135,6 +137,7 @@ void GpuEngine::count(PingStatistics& statistics, Step step) {
 /// Gives the first pass to the GPU.
 void GpuEngine::begin(Making& image) {
   const auto& [request, echo, statistics] = image.job;
+  statistics.skipped.add(SkipRule::coplanar_facets, merged_facets_);
   if (image.options.cone_aperture != nullptr) {
     image_by_cones(request, image.options, echo, statistics);
     return;

@@ -2,6 +2,7 @@
 // The engine that draws with OpenGL and bins where it draws.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -50,6 +51,7 @@ class GpuEngine final : public EchoEngine {
   const float largest_response_;
   WorkerPool& workers_;
   std::uint64_t images_until_lost_;  ///< GpuOptions::lose_context_at_image
+  std::uint64_t merged_facets_ = 0;  ///< SkipRule::coplanar_facets
   RasterSampler sampler_;
   std::vector<std::unique_ptr<GpuBinner>> binners_;  ///< one for each image in the making
   GridCache grid_, cone_grid_;

@@ -28,9 +28,10 @@ struct Comparison {
 /// One ping with the rule on, and with it off.
 /// @param off_in_both rules that depend on this one, and would change the image along with it
 Comparison compare(SkipRule rule, const World& world, const PingRequest& request,
-                   const std::vector<SkipRule>& off_in_both = {}) {
+                   const std::vector<SkipRule>& off_in_both = {}, EngineKind engine = EngineKind::cpu) {
   EXPECT_EQ(entry_of(rule).bound_unit, "of the image's maximum");
   RendererOptions on_options = on_cpu();
+  on_options.engine = engine;
   for (const SkipRule other : off_in_both) {
     on_options.skip.turn_off(other);
   }
@@ -269,6 +270,16 @@ TEST(SliceRules, FacetsInOnePlaneAreMerged) {
     request.settings.model = model;
     EXPECT_EQ(compare(SkipRule::coplanar_facets, mappable_bed(false), request).skipped, 2u * (40 * 40 - 1));
   }
+}
+
+TEST(SliceRules, TheGpuDrawsMergedFacetsToo) {
+  require_gl();
+  const auto skipped = [](const World& world) {
+    return compare(SkipRule::coplanar_facets, world, small_request(), {}, EngineKind::gpu).skipped;
+  };
+  EXPECT_EQ(skipped(divided_bed_and_box()), 2u * (40 * 40 + 6 * 16 * 16 - 7));
+  EXPECT_EQ(skipped(ball_alone(faceted_ball(false))), 0u);
+  EXPECT_EQ(skipped(mappable_bed(false)), 0u);  // it has normals, which the GPU takes as they are
 }
 
 TEST(SliceRules, FacetsInDifferentPlanesAreNotMerged) {
