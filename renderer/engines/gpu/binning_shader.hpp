@@ -454,16 +454,16 @@ float line_value(float echo, float weight, float whole) {
 #define STEP(differences, line) minus(texelFetch(differences, line).xy, uvec2(start_of_sum, 0u))
 
 // What the invocations before this one hold together of `count` lines each.
-#define SUM_BEFORE(differences) \
-  uvec2 sum_before_##differences(int first, int count) { \
+#define SUM_BEFORE(name, differences) \
+  uvec2 name(int first, int count) { \
     uvec2 sum = uvec2(0u); \
     for (int i = first; i < first + count; ++i) sum = plus(sum, STEP(differences, i)); \
     return sum_before(sum); \
   }
-SUM_BEFORE(echo_differences)
-SUM_BEFORE(weight_differences)
-SUM_BEFORE(thinned_differences)
-SUM_BEFORE(thinned_weights)
+SUM_BEFORE(echo_before, echo_differences)
+SUM_BEFORE(weight_before, weight_differences)
+SUM_BEFORE(thinned_before, thinned_differences)
+SUM_BEFORE(thinned_weight_before, thinned_weights)
 
 void main() {
   Beam beam = beams[gl_WorkGroupID.x];
@@ -475,9 +475,9 @@ void main() {
   int open_to = to + image_beams * lines;
   float whole = beam.solid_angle;
 
-  uvec2 echo_units = sum_before_echo_differences(first, count);
+  uvec2 echo_units = echo_before(first, count);
   uvec2 weight_units = uvec2(0u), blocked = uvec2(0u);
-  if (WEIGHED == 1) weight_units = sum_before_weight_differences(first, count);
+  if (WEIGHED == 1) weight_units = weight_before(first, count);
   if (open_water) {
     uvec2 here = weight_units;
     for (int i = 0; i < count; ++i) {
@@ -506,8 +506,8 @@ void main() {
   if (!estimating) return;
 
   strongest = strongest_of_all(strongest);
-  echo_units = sum_before_thinned_differences(first, count);
-  if (mean) weight_units = sum_before_thinned_weights(first, count);
+  echo_units = thinned_before(first, count);
+  if (mean) weight_units = thinned_weight_before(first, count);
   vec2 off = vec2(0.0);  // squares, bins
   for (int i = 0; i < count; ++i) {
     echo_units = plus(echo_units, STEP(thinned_differences, first + i));

@@ -128,6 +128,7 @@ struct GpuBinner::Impl {
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     GLint most_texels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
+    most_texels = std::min(most_texels, 1 << 28);  // which shaders count in integers, twice for open water
     most = std::min<GLint64>(most, GLint64{most_texels} * sizeof(std::uint64_t));  // sums are the smallest
     // Shaders count words in 32 bits.
     most_bytes = static_cast<std::size_t>(
