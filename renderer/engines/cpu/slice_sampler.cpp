@@ -6,9 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include "renderer/scene/coplanar_facets.hpp"
 #include "renderer/engines/cpu/slice_sampler_impl.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
+#include "renderer/scene/coplanar_facets.hpp"
 
 namespace sonard::render {
 

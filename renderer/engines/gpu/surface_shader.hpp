@@ -14,15 +14,16 @@
 
 namespace sonard::render {
 
-/// What of a surface decides which program draws it. The shader works out the geometric normal from how the inverse depth
-/// changes from pixel to pixel, to about 1e-4 rad, and less exactly the finer the pixels are; where that is not enough,
-/// it is told (with_facet_normals()).
+/// What of a surface decides which program draws it. The shader works out the geometric normal from how the
+/// inverse depth changes from pixel to pixel, to about 1e-4 rad, and less exactly the finer the pixels are;
+/// where that is not enough, it is told (with_facet_normals()).
 enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2, facet_normals = 3 };
 
 /// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
-      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define BENT {:d}\n",
+      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
+      "BENT {:d}\n",
       static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
 }
 
