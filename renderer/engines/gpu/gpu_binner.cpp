@@ -319,7 +319,6 @@ struct GpuBinner::Impl {
          grid.elevation},
         splatting);
     partial_columns.bind(5);
-    line_weight.bind_texels(line_weight_unit, GL_R32F);
     set_pattern(grid);
     (is_thinned ? thinned : echo).bind(0);
     (is_thinned ? thinned_weight : weight).bind(1);
@@ -346,7 +345,6 @@ struct GpuBinner::Impl {
     rows.bind(0);
     rows.bind_texels(first_unit, GL_RGBA32F);
     grid.view_beams.bind_texels(of_view_unit, GL_RGBA32I);
-    line_weight.bind_texels(line_weight_unit, GL_R32F);
     gl.glUniform1i(at_most_rows, grid.most_rows);
     gl.glUniform1f(at_tan_limit, grid.tan_limit);
     each_view(grid.columns.views, grid.view_beams_begin, textures,
@@ -365,7 +363,6 @@ struct GpuBinner::Impl {
     weight.bind_texels(second_unit, GL_RG32UI);
     thinned.bind_texels(third_unit, GL_RG32UI);
     thinned_weight.bind_texels(fourth_unit, GL_RG32UI);
-    line_weight.bind_texels(line_weight_unit, GL_R32F);
     pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
     grid.beams.bind(5);
     estimates.bind(7);
@@ -400,6 +397,7 @@ struct GpuBinner::Impl {
 
   void add(const GpuGrid& grid, const std::vector<unsigned>& textures) {
     make_room(grid);
+    line_weight.bind_texels(line_weight_unit, GL_R32F);
     splat_views(grid, grid.columns, false, textures);
     if (grid.thinned) {
       splat_views(grid, *grid.thinned, true, textures);

@@ -12,8 +12,6 @@ namespace {
 // need to be told their normals.
 constexpr double least_rms_slope = 0.15;
 
-}  // namespace
-
 Shading shading_of(const BodyPart& part) {
   if (part.normal_map && part.mesh->can_be_mapped()) {
     return Shading::normal_mapped;
@@ -24,6 +22,8 @@ Shading shading_of(const BodyPart& part) {
   const bool smooth = part.material.pressure_reflection != 0.0 && part.material.rms_slope < least_rms_slope;
   return smooth ? Shading::facet_normals : Shading::geometric_normal;
 }
+
+}  // namespace
 
 osg::Matrixd to_osg(const Pose& T_a_b) {
   const glm::dquat& q = T_a_b.orientation;
@@ -51,11 +51,11 @@ Surface make_surface(const BodyPart& part) {
   return surface;
 }
 
-osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, osg::StateSet* surface,
+osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const Surface& surface,
                                              const float* max_range_m) {
   osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(to_osg(part.T_body_part));
-  node->setStateSet(surface);
-  add_chunks(*part.mesh, shading_of(part), max_range_m, *node);
+  node->setStateSet(surface.state);
+  add_chunks(*part.mesh, surface.shading, max_range_m, *node);
   return node;
 }
 

@@ -18,8 +18,6 @@ namespace sonard::render {
 
 osg::Matrixd to_osg(const Pose& T_a_b);
 
-Shading shading_of(const BodyPart& part);
-
 /// What the shader wants to know of the surface of a part. Parts with the same surface share one.
 struct Surface {
   osg::ref_ptr<osg::StateSet> state;
@@ -30,8 +28,9 @@ struct Surface {
 Surface make_surface(const BodyPart& part);
 bool same_surface(const BodyPart& a, const BodyPart& b);
 
+/// @param surface of this part
 /// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
-osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, osg::StateSet* surface,
+osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const Surface& surface,
                                              const float* max_range_m);
 
 }  // namespace sonard::render

@@ -197,8 +197,7 @@ struct RasterSampler::Impl {
     video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
     scene = new osg::Group;
     set_up_state(*scene->getOrCreateStateSet());
-    program(Shading::geometric_normal, {},
-            false);  // so that an OpenGL that cannot build it is found out here
+    program(Shading::geometric_normal, {}, false);  // an OpenGL that cannot build it is found out here
     add_bodies(world);
   }
 
@@ -229,7 +228,7 @@ struct RasterSampler::Impl {
           }
         }
         last = &part;
-        parts.push_back({make_part(part, surfaces.back().state, &max_range_m), surfaces.back().shading});
+        parts.push_back({make_part(part, surfaces.back(), &max_range_m), surfaces.back().shading});
         node.transform->addChild(parts.back().transform);
       }
       scene->addChild(node.transform);
