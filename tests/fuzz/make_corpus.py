@@ -67,34 +67,37 @@ def patched(name, offset, form, value):
     return bytes(data)
 
 
+def pings_of_40_lines(continuous):
+    data = bytearray(patched("ping_config", 22, "<H", 40))
+    struct.pack_into("<H", data, 16, int(continuous))
+    return bytes(data)
+
+
 def device_scripts():
     """Of a head that renders, then of one that plays a recording back or waits for its pings to be granted."""
     for name, script in rendering_device_scripts():
         yield name, b"\0" + script
-    continuous = bytearray(patched("ping_config", 22, "<H", 40))
-    struct.pack_into("<H", continuous, 16, 1)
-    start = event(FROM_A, bytes(continuous))
+    continuous = pings_of_40_lines(continuous=True)
+    start = event(FROM_A, continuous)
 
     def fed(lines=40, flags=0, step_m=0.05, speed_mps=1500.0, gain_percent=50.0):
         return event(FEED, struct.pack("<BHddd", flags, lines, step_m, speed_mps, gain_percent)) + event(IMAGE) + event(
             PAUSE, delay=40)
 
     yield "played", bytes([PLAYS_BACK]) + start + fed() + fed(flags=2) + fed(lines=300, step_m=0.1, gain_percent=-1.0)
-    yield "played_two_topsides", bytes([PLAYS_BACK | 4]) + start + fed() + event(FROM_B, bytes(continuous)) + fed()
+    yield "played_two_topsides", bytes([PLAYS_BACK | 4]) + start + fed() + event(FROM_B, continuous) + fed()
     yield "not_played", bytes([PLAYS_BACK]) + start + fed(lines=0) + fed(flags=1) + fed(lines=65535) + fed(step_m=1e-300)
     yield "granted", bytes([WAITS]) + start + 3 * (event(GRANT, delay=40) + event(IMAGE))
 
 
 def rendering_device_scripts():
-    single = patched("ping_config", 22, "<H", 40)
-    continuous = bytearray(single)
-    struct.pack_into("<H", continuous, 16, 1)
+    single, continuous = pings_of_40_lines(continuous=False), pings_of_40_lines(continuous=True)
     ping = event(FROM_A, single) + event(IMAGE) + event(PAUSE, delay=20)
     yield "single_ping", event(FROM_A, example("status_request")) + ping
     yield "retries", ping + b"".join(
         event(FROM_A, patched(name, 10, "<H", 5)) for name in ("retry_line", "retry_tail", "observed_retry_lines"))
-    yield "continuous", event(FROM_A, bytes(continuous)) + 4 * (event(IMAGE) + event(PAUSE, delay=40))
-    yield "silence_and_resume", event(FROM_A, bytes(continuous)) + event(IMAGE) + event(PAUSE, delay=200) + event(
+    yield "continuous", event(FROM_A, continuous) + 4 * (event(IMAGE) + event(PAUSE, delay=40))
+    yield "silence_and_resume", event(FROM_A, continuous) + event(IMAGE) + event(PAUSE, delay=200) + event(
         FROM_A, example("status_request")) + event(IMAGE)
     yield "run_length", event(FROM_A, single[:54] + b"\x32\x00" + single[56:]) + event(IMAGE) + event(PAUSE)
     yield "sixteen_bit", event(FROM_A, single[:18] + b"\x00\x02" + single[20:]) + event(IMAGE) + event(PAUSE)
