@@ -199,11 +199,33 @@ void RangeProfile::add_point(double position, float amount) {
   difference_[line + 1] -= units;
 }
 
+// Where the ends of a patch cross, it holds less than nothing on one side and as much too much on the other.
+// Its neighbours make up for that; where they do not, the lines beside it do, so that the beam has all of its
+// echo.
 void RangeProfile::read(float* lines) const {
   const double unit = 1.0 / units_;  // a power of two
+  double missing = 0.0;
+  std::size_t end = 0;  // of the lines before that can give
   const auto write = [&](std::size_t k, double sum) {
-    // Ends that cross within a patch leave a little less than nothing where it is thinnest.
-    lines[k] = sum > 0 ? static_cast<float>(sum * unit) : 0.0F;
+    const double left = sum * unit - missing;
+    missing = 0.0;
+    if (!(left < 0)) {
+      lines[k] = left > 0 ? static_cast<float>(left) : 0.0F;
+      end = k + 1;
+      return;
+    }
+    lines[k] = 0.0F;
+    double taken = 0.0;
+    for (; taken < -left && end > 0 && lines[end - 1] > 0; --end) {
+      const auto has = static_cast<double>(lines[end - 1]);
+      if (has > -left - taken) {
+        lines[end - 1] = static_cast<float>(has + left + taken);
+        return;
+      }
+      taken += has;
+      lines[end - 1] = 0.0F;
+    }
+    missing = sum != 0 ? -left - taken : 0.0;
   };
   double sum = 0.0;
   if (!has_slope_) {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "tests/bench/image_error.hpp"
-#include "tests/gl/accuracy/known_misses.hpp"
 
 namespace sonard::test {
 
@@ -72,11 +71,6 @@ ImageAccuracy measure(const render::EchoImage& image, const render::EchoImage& t
 std::string name_of(const AccuracyCase& one) {
   return std::string(render::name_of(one.engine)) +
          (one.preset == render::Sampling::Preset::fast ? "_fast" : "_default");
-}
-
-AccuracyLimits AccuracyTest::limits() const {
-  const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  return with_known_misses(targets(), test.substr(0, test.find('/')), GetParam());
 }
 
 void AccuracyTest::SetUp() {

@@ -47,8 +47,6 @@ class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
   void SetUp() override;
 
   AccuracyLimits targets() const { return targets_of(GetParam().preset); }
-  /// What is asserted: the targets, but for known misses (known_misses.hpp).
-  AccuracyLimits limits() const;
 
   render::RendererOptions options() const { return {GetParam().engine, 0}; }
   /// The scene's image at the preset.

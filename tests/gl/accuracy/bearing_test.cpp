@@ -66,8 +66,8 @@ TEST_P(BearingAccuracy, T11_StripInTheCentreOfEveryBeam) {
   std::printf("strongest beam off by %.0f, centroid by %.4f beams; %d strips lost\n", worst, worst_centroid,
               lost);
   EXPECT_EQ(lost, 0);
-  EXPECT_LE(worst, limits().bearing_beams);
-  EXPECT_LE(worst_centroid, limits().bearing_centroid);
+  EXPECT_LE(worst, targets().bearing_beams);
+  EXPECT_LE(worst_centroid, targets().bearing_centroid);
 }
 
 }  // namespace

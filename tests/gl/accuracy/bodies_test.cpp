@@ -59,7 +59,7 @@ TEST_P(SphereAccuracy, T4_Sphere) {
     total += static_cast<double>(echo);
   }
   ASSERT_NEAR(total / 1.411161e-4, 1, 1e-5);  // the document's worked value
-  expect_within(limits(), measure(render(scene), expected), "sphere");
+  expect_within(targets(), measure(render(scene), expected), "sphere");
 }
 
 TEST_P(CylinderAccuracy, T5_UprightCylinder) {
@@ -70,7 +70,7 @@ TEST_P(CylinderAccuracy, T5_UprightCylinder) {
   const render::EchoImage expected = image_of_beams(
       scene.settings,
       [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
-  expect_within(limits(), measure(render(scene), expected), "cylinder");
+  expect_within(targets(), measure(render(scene), expected), "cylinder");
 }
 
 }  // namespace

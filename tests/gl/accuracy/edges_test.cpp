@@ -37,7 +37,7 @@ TEST_P(EdgeAccuracy, T6_TwoHalfPlanes) {
   };
   const render::EchoImage truth = image_of_beams(scene.settings, echo);
   const render::EchoImage image = render(scene);
-  expect_within(limits(), measure(image, truth), "two walls");
+  expect_within(targets(), measure(image, truth), "two walls");
   const double farthest = 8 / (std::cos(edges[edge_beam]) * std::cos(limit));
   const double nearest = 12 / std::cos(edges[edge_beam + 1]);
   const double step = scene.settings.range.step_m;
@@ -72,7 +72,7 @@ TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
       scene.settings,
       [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
   const render::EchoImage image = render(scene);
-  expect_within(limits(), measure(image, expected), "wall on a bed");
+  expect_within(targets(), measure(image, expected), "wall on a bed");
   // Along range: the end of the wall's echo (13.0 m on the axis) and of its shadow (17.857 m), in every beam
   // that holds nothing but the wall and in which the shadow ends inside the image.
   const auto& edges = scene.settings.aperture.beam_edges_rad;
@@ -108,8 +108,8 @@ TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
         worst_beams, std::abs(crossing(of(image), 200, -1, level) - crossing(of(expected), 200, -1, level)));
   }
   std::printf("shadow's edge off by %.3f bins, %.3f beams\n", worst_bins, worst_beams);
-  EXPECT_LE(worst_bins, limits().shadow_bins);
-  EXPECT_LE(worst_beams, limits().shadow_beams);
+  EXPECT_LE(worst_bins, targets().shadow_bins);
+  EXPECT_LE(worst_beams, targets().shadow_beams);
 }
 
 /// The strongest bin-by-bin difference to the truth over lines around a range, relative to the truth.
@@ -135,7 +135,7 @@ TEST_P(DihedralAccuracy, T8_DihedralHoldsTheSingleBounce) {
       scene.settings,
       [&](double from, double to, double r1, double r2) { return truth.beam(from, to, r1, r2); });
   const render::EchoImage image = render(scene);
-  expect_within(limits(), measure(image, expected), "dihedral");
+  expect_within(targets(), measure(image, expected), "dihedral");
   const int line = static_cast<int>(std::hypot(wall_m, depth_m) / 0.02);
   for (const int beam : {127, 128}) {
     EXPECT_LE(worst_near(image, expected, beam, line), 4 * targets().bin_rms) << beam;
@@ -158,7 +158,7 @@ TEST_P(EdgeAccuracy, T8_TrihedralHoldsTheSingleBounce) {
   };
   const render::EchoImage expected = image_of_beams(scene.settings, echo);
   const render::EchoImage image = render(scene);
-  expect_within(limits(), measure(image, expected), "trihedral");
+  expect_within(targets(), measure(image, expected), "trihedral");
   const auto& edges = scene.settings.aperture.beam_edges_rad;
   int beam = 0;
   while (edges[static_cast<std::size_t>(beam) + 1] > corner) {

@@ -49,7 +49,7 @@ TEST_P(ElevationAccuracy, PatternsOfALineArray) {
                                         {1150, 0.008, 0, false});
     scene.settings.aperture.beam_edges_rad = render::equal_angle_edges(16, 16 * 120.0 / 256 * degree);
     scene.settings.aperture.elevation = elevation;
-    expect_within(limits(), measure(render(scene), wall_truth(scene, power)),
+    expect_within(targets(), measure(render(scene), wall_truth(scene, power)),
                   power == 1 ? "one-way" : "two-way");
   }
 }

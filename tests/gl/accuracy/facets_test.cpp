@@ -78,7 +78,7 @@ TEST_P(FacetAccuracy, FacetWalls) {
       const Scene scene = scene_of(
           with_law(make_body("wall", make_quad(8.0 * n - 20.0 * a - 20.0 * b, 40.0 * a, 40.0 * b)), law),
           1140, 48);
-      expect_within(limits(), measure(render(scene), wall_truth(scene, law, n, 8.0)),
+      expect_within(targets(), measure(render(scene), wall_truth(scene, law, n, 8.0)),
                     "wall, m = " + std::to_string(law.slope));
     }
   }
@@ -102,7 +102,7 @@ TEST_P(FacetAccuracy, Spheres) {
                                [&](double r) { return law.relative((limb2 - r * r) / r); }, centre_m - 0.5,
                                r1, r2, steps);
         });
-    expect_within(limits(), measure(render(scene), expected), "sphere, m = " + std::to_string(law.slope));
+    expect_within(targets(), measure(render(scene), expected), "sphere, m = " + std::to_string(law.slope));
   }
 }
 

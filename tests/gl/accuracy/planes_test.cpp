@@ -34,20 +34,20 @@ TEST_P(SlopeAccuracy, T1_ObliqueSlope) {
   const auto echo = [&](double from, double to, double r1, double r2) {
     return bench::plane_beam_echo(truth, from, to, r1, r2);
   };
-  expect_within(limits(), measure(render(scene), image_of_beams(scene.settings, echo)), "slope");
+  expect_within(targets(), measure(render(scene), image_of_beams(scene.settings, echo)), "slope");
 }
 
 TEST_P(PlaneAccuracy, T1_BedUnderATiltedSonar) {
-  expect_closed_form("plane", limits());
+  expect_closed_form("plane", targets());
 }
 
 TEST_P(PlaneAccuracy, T2_PerpendicularWall) {
-  expect_closed_form("b1_wall", limits());
+  expect_closed_form("b1_wall", targets());
 }
 
 TEST_P(PlaneAccuracy, T3_FlatSeabed) {
   for (const char* scene : {"b2_seabed_2m", "b2_seabed_5m"}) {
-    expect_closed_form(scene, limits());
+    expect_closed_form(scene, targets());
   }
 }
 

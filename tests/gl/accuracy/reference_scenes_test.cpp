@@ -11,7 +11,7 @@ class ReferenceAccuracy : public AccuracyTest {
   void expect_oracle(const std::string& name) const {
     const Scene scene = make_scene(name);
     const auto reference = bench::find_reference(scene, SONARD_SOURCE_DIR "/tests/data/oracle");
-    expect_within(limits(), measure(render(scene), reference.value().image), name);
+    expect_within(targets(), measure(render(scene), reference.value().image), name);
   }
 };
 

@@ -76,13 +76,13 @@ INSTANTIATE_TEST_SUITE_P(Accuracy, ThinPipe, all_cases(), case_name);
 TEST_P(ThinPipe, Upright) {
   const double share = detected(true);
   std::printf("detected %.3f\n", share);
-  EXPECT_GE(share, limits().pipes_detected);
+  EXPECT_GE(share, targets().pipes_detected);
 }
 
 TEST_P(ThinPipe, Lying) {
   const double share = detected(false);
   std::printf("detected %.3f\n", share);
-  EXPECT_GE(share, limits().pipes_detected);
+  EXPECT_GE(share, targets().pipes_detected);
 }
 
 }  // namespace
