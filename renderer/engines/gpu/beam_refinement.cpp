@@ -10,7 +10,6 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int most_passes = 3;
 constexpr std::size_t most_even_grids = 8;
 constexpr double most_samples_at_once = 0x1p23;  // what is drawn before it is binned
 
@@ -115,21 +114,21 @@ void BeamRefinement::Ping::sample_evenly(const EvenGrids& even) {
 
 bool BeamRefinement::Ping::advance() {
   learn();
+  const Sampling::Preset preset = request_.settings.sampling.preset;
+  const bool is_last = pass_ + 1 == most_passes(preset);
   Stopwatch watch;
-  choices_ =
-      beams_to_refine(request_.settings.aperture, beams_, grid_targets(request_.settings.sampling.preset));
+  choices_ = beams_to_refine(request_.settings.aperture, beams_, grid_targets(preset), is_last);
   statistics_.preparing_s += watch.lap();
   if (choices_.empty()) {
     return false;
   }
   ++pass_;
   ++statistics_.passes;
-  const bool with_estimate = pass_ < most_passes;
-  sample_again(with_estimate);
-  if (with_estimate) {
+  sample_again(!is_last);
+  if (!is_last) {
     binner_.ask_estimates();
   }
-  return with_estimate;
+  return !is_last;
 }
 
 /// Takes what the GPU has estimated of the beams of the last pass.

@@ -26,7 +26,8 @@ constexpr double error_of_distance_refined = 0.2;
 // there is one edge, faster where there are many; and the beam is hardly ever off by more than twice that.
 constexpr double beam_order = 4.0 / 3;
 constexpr double beam_safety = 1.7;
-constexpr double longest_stride = 8;  // in columns or rows; a coarser estimate may do better
+constexpr double longest_stride = 8;      // in columns or rows; a coarser estimate may do better
+constexpr double last_beam_order = 1.12;  // what is too coarse after the last pass stays
 constexpr double zone_stride = 32;
 constexpr double widest_zone = 0.5;  // of what was sampled before; else all of it is sampled again
 constexpr int most_columns_beside = 64;
@@ -121,8 +122,12 @@ double most_bin_rms(const std::vector<BeamState>& beams, double target) {
   return low;
 }
 
-double finer_factor(double miss) {
-  return miss > 1 ? std::min(std::pow(miss, 1 / beam_order), longest_stride) : 1.0;
+double finer_factor(double miss, bool is_last) {
+  if (!(miss > 1)) {
+    return 1.0;
+  }
+  return is_last ? std::pow(miss, 1 / last_beam_order)
+                 : std::min(std::pow(miss, 1 / beam_order), longest_stride);
 }
 
 /// An even number of columns for a part of a beam that had so many.
@@ -185,8 +190,12 @@ void share_views(std::vector<BeamChoice>& choices) {
 /// The density with which a beam is sampled next; unchanged where another pass is not needed or not possible.
 class NextPass {
  public:
-  NextPass(const Aperture& aperture, const std::vector<BeamState>& beams, const GridTargets& targets)
-      : aperture_(aperture), targets_(targets), most_bin_rms_(most_bin_rms(beams, targets.bins)) {
+  NextPass(const Aperture& aperture, const std::vector<BeamState>& beams, const GridTargets& targets,
+           bool is_last)
+      : aperture_(aperture),
+        targets_(targets),
+        is_last_(is_last),
+        most_bin_rms_(most_bin_rms(beams, targets.bins)) {
     for (const BeamState& beam : beams) {
       if (beam.estimate.thin > 0 && !beam.density.has_zone()) {
         least_columns_ = std::max(least_columns_, std::min(4 * beam.density.columns, thinnest_columns));
@@ -202,8 +211,9 @@ class NextPass {
     const double by_rows = miss(estimate.rows_total, estimate.rows_centroid_lines, targets_.beam);
     const double bins = bin_rms(state) / most_bin_rms_;
     const double both = bins > 1 ? std::min(std::pow(bins, 0.5 / bin_order), longest_stride) : 1.0;
-    const int rows = std::min(round_up_to_even(now.rows * round_up(std::max(finer_factor(by_rows), both))),
-                              most_rows(aperture_));
+    const int rows =
+        std::min(round_up_to_even(now.rows * round_up(std::max(finer_factor(by_rows, is_last_), both))),
+                 most_rows(aperture_));
     if (by_columns > 1 && by_rows <= 1 && bins <= 1) {
       const BeamDensity zone = with_zone(aperture_, beam, state);
       if (zone.has_zone() && zone.samples() <= most) {
@@ -214,8 +224,9 @@ class NextPass {
       return now;  // as well as it gets
     }
     BeamDensity wanted = now;
-    wanted.columns = std::max(
-        round_up_to_even(now.columns * round_up(std::max(finer_factor(by_columns), both))), least_columns_);
+    wanted.columns =
+        std::max(round_up_to_even(now.columns * round_up(std::max(finer_factor(by_columns, is_last_), both))),
+                 least_columns_);
     wanted.columns = std::max(now.columns, std::min(wanted.columns, most_columns));
     wanted.rows = std::max(now.rows, rows);
     return capped(wanted, now, most);
@@ -224,6 +235,7 @@ class NextPass {
  private:
   const Aperture& aperture_;
   const GridTargets& targets_;
+  const bool is_last_;
   const double most_bin_rms_;
   int least_columns_ = 0;
 };
@@ -238,6 +250,10 @@ GridTargets grid_targets(Sampling::Preset preset) {
 BeamError most_estimated_error(Sampling::Preset preset) {
   const BeamError target = grid_targets(preset).beam;
   return {target.total / beam_safety, target.centroid_lines / beam_safety};
+}
+
+int most_passes(Sampling::Preset preset) {
+  return preset == Sampling::Preset::fast ? 2 : 3;
 }
 
 BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset) {
@@ -297,8 +313,8 @@ std::vector<BeamRun> thinned(std::vector<BeamRun> runs) {
 }
 
 std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
-                                        const GridTargets& targets) {
-  const NextPass next(aperture, beams, targets);
+                                        const GridTargets& targets, bool for_the_last_time) {
+  const NextPass next(aperture, beams, targets, for_the_last_time);
   std::vector<BeamChoice> choices;
   for (double most = most_beam_samples;; most /= 2) {
     choices.clear();

@@ -35,6 +35,9 @@ GridTargets grid_targets(Sampling::Preset preset);
 /// The estimated error from which on a beam is sampled again.
 BeamError most_estimated_error(Sampling::Preset preset);
 
+/// How often a preset samples at most. Of the last pass no errors are estimated.
+int most_passes(Sampling::Preset preset);
+
 /// The even grid that a preset begins with: fewer samples where it were more than 2^25.
 /// @throws RequestError when the aperture cannot be gridded.
 BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset);
@@ -71,7 +74,8 @@ struct BeamState {
 /// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they
 /// take no more than 2^25 samples.
 /// @param beams all beams of the aperture.
+/// @param for_the_last_time what is too coarse then stays: beams get more
 std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
-                                        const GridTargets& targets);
+                                        const GridTargets& targets, bool for_the_last_time);
 
 }  // namespace sonard::render
