@@ -207,25 +207,21 @@ void RangeProfile::read(float* lines) const {
   double missing = 0.0;
   std::size_t end = 0;  // of the lines before that can give
   const auto write = [&](std::size_t k, double sum) {
-    const double left = sum * unit - missing;
+    double left = sum * unit - missing;
+    lines[k] = left > 0 ? static_cast<float>(left) : 0.0F;
     missing = 0.0;
     if (!(left < 0)) {
-      lines[k] = left > 0 ? static_cast<float>(left) : 0.0F;
       end = k + 1;
       return;
     }
-    lines[k] = 0.0F;
-    double taken = 0.0;
-    for (; taken < -left && end > 0 && lines[end - 1] > 0; --end) {
-      const auto has = static_cast<double>(lines[end - 1]);
-      if (has > -left - taken) {
-        lines[end - 1] = static_cast<float>(has + left + taken);
-        return;
-      }
-      taken += has;
-      lines[end - 1] = 0.0F;
+    while (left < 0 && end > 0 && lines[end - 1] > 0) {
+      left += static_cast<double>(lines[end - 1]);
+      lines[end - 1] = left > 0 ? static_cast<float>(left) : 0.0F;
+      end -= left > 0 ? 0 : 1;
     }
-    missing = sum != 0 ? -left - taken : 0.0;
+    if (left < 0 && sum != 0) {
+      missing = -left;  // the next lines give
+    }
   };
   double sum = 0.0;
   if (!has_slope_) {

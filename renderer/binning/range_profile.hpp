@@ -28,7 +28,7 @@ class RangeProfile {
   /// Adds what the last add() has kept back: an end that the next patch might have continued.
   void finish();
 
-  /// Writes the sum of every line; never negative.
+  /// Writes the sum of every line; never negative. What a line lacks to nothing, the lines beside it give.
   void read(float* lines) const;
 
  private:

@@ -169,9 +169,12 @@ bool is_possible(const Patch& patch) {
   return patch.gradient == 0.0F || (a + b) / 2 <= patch.spread() / 2;
 }
 
-/// How often the amount of a patch stands on one side of it, above what its other side holds below nothing.
+/// Of a patch whose ends cross, how often its amount stands on one side of it, above what the other side
+/// holds below nothing; else 0.
 double crossing_of(const Patch& patch) {
-  return std::abs(static_cast<double>(patch.smear_a - patch.smear_b)) / (8 * std::max(patch.spread(), least));
+  const double difference = std::abs(static_cast<double>(patch.smear_a - patch.smear_b));
+  const double spread = std::max(patch.spread(), least);
+  return difference > 2 * spread ? difference / (8 * spread) : 0.0;
 }
 
 // Also where the ends cross. Lines are floats.
