@@ -313,8 +313,8 @@ std::vector<BeamRun> thinned(std::vector<BeamRun> runs) {
 }
 
 std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
-                                        const GridTargets& targets, bool for_the_last_time) {
-  const NextPass next(aperture, beams, targets, for_the_last_time);
+                                        const GridTargets& targets, bool is_last) {
+  const NextPass next(aperture, beams, targets, is_last);
   std::vector<BeamChoice> choices;
   for (double most = most_beam_samples;; most /= 2) {
     choices.clear();

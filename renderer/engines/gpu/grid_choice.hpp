@@ -74,8 +74,8 @@ struct BeamState {
 /// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they
 /// take no more than 2^25 samples.
 /// @param beams all beams of the aperture.
-/// @param for_the_last_time what is too coarse then stays: beams get more
+/// @param is_last whether they are for the last pass: what is too coarse then stays, so beams get more
 std::vector<BeamChoice> beams_to_refine(const Aperture& aperture, const std::vector<BeamState>& beams,
-                                        const GridTargets& targets, bool for_the_last_time);
+                                        const GridTargets& targets, bool is_last);
 
 }  // namespace sonard::render

@@ -134,8 +134,8 @@ class BeamsToRefine : public ::testing::Test {
     }
     return beams;
   }
-  std::vector<BeamChoice> to_refine(bool for_the_last_time = false) const {
-    return beams_to_refine(aperture_, beams_, one_per_cent, for_the_last_time);
+  std::vector<BeamChoice> to_refine(bool is_last = false) const {
+    return beams_to_refine(aperture_, beams_, one_per_cent, is_last);
   }
 };
 
@@ -288,7 +288,7 @@ class RasterPreset : public ::testing::Test {
       const auto error = bench::compare_images(image, truth->image);
       const PingStatistics statistics = renderer.last_statistics();
       samples.push_back(statistics.samples);
-      EXPECT_LE(statistics.passes, 3U) << name;
+      EXPECT_LE(statistics.passes, static_cast<std::uint64_t>(most_passes(preset))) << name;
       EXPECT_LE(statistics.synchronisations, statistics.passes + 1) << name;
       EXPECT_LE(statistics.bytes_read_back, image.intensity.size() * sizeof(float) + (64U << 10U)) << name;
       std::printf("%s: RMS %.4f, %llu samples\n", name.c_str(), error->bin_rms,
@@ -313,7 +313,7 @@ TEST_F(RasterPreset, MeetsItsTargetOnAFlatBedWithObjects) {
 
 TEST_F(RasterPreset, MeetsItsTargetOnASwellOfFacets) {
   const auto [fast, normal] = expect_targets("swell100k");
-  EXPECT_LT(3 * fast, normal);
+  EXPECT_LT(4 * fast, normal);
 }
 
 TEST_F(RasterPreset, MeetsItsTargetOnABedThatShadowsItselfEverywhere) {
