@@ -22,8 +22,8 @@
 namespace sonard::render {
 namespace {
 
-constexpr std::array<std::string_view, 10> extensions{"png", "jpg", "jpeg", "tif", "tiff",
-                                                      "bmp", "tga", "pgm",  "ppm", "pnm"};
+constexpr std::array<std::string_view, 10> image_extensions{"png", "jpg", "jpeg", "tif", "tiff",
+                                                            "bmp", "tga", "pgm",  "ppm", "pnm"};
 constexpr int max_side_px = 16384;
 
 /// All channels as 16 bit, row 0 at the bottom.
@@ -117,7 +117,7 @@ std::string decode_elevations(const std::filesystem::path& file) {
 template <typename Unpack>
 auto read_isolated(const std::filesystem::path& file, std::string (*decoder)(const std::filesystem::path&),
                    const Unpack& unpack) {
-  require_local_file(file, extensions, "image");
+  require_local_file(file, image_extensions, "image");
   try {
     const IsolatedResult result = run_isolated([&] { return decoder(file); }, reading_limit_s(file));
     BlobReader reader(result.bytes);

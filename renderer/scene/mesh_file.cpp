@@ -27,8 +27,8 @@
 namespace sonard::render {
 namespace {
 
-constexpr std::array<std::string_view, 11> extensions{"obj", "stl",  "ply",  "dae", "glb", "gltf",
-                                                      "fbx", "osgt", "osgb", "ive", "3ds"};
+constexpr std::array<std::string_view, 11> mesh_extensions{"obj", "stl",  "ply",  "dae", "glb", "gltf",
+                                                           "fbx", "osgt", "osgb", "ive", "3ds"};
 constexpr std::size_t many_triangles = 2'000'000;
 constexpr std::size_t max_triangles = 50'000'000;
 /// Beyond this a float coordinate is coarser than 4 mm: half a range cell of a high-frequency sonar.
@@ -256,7 +256,7 @@ MeshFile load_checked(const MeshFileRequest& request) {
 }  // namespace
 
 MeshFile load_mesh_file(const MeshFileRequest& request) {
-  require_local_file(request.file, extensions, "mesh");
+  require_local_file(request.file, mesh_extensions, "mesh");
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(request.scale[axis]) || request.scale[axis] == 0.0) {
       throw WorldError(fmt::format("{}: scale {} {} {}: expected finite numbers other than 0",

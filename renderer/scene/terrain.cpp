@@ -92,8 +92,8 @@ double Terrain::error_of_cell_m(int west, int east, int south, int north) const 
         return 1e9;
       }
       const double u = static_cast<double>(x - west) / (east - west);
-      const double flat_m = u > v ? a + u * (b - a) + v * (d - b) : a + v * (c - a) + u * (d - c);
-      error_m = std::max(error_m, std::abs(height_m(x, y) - flat_m));
+      const double facet_m = u > v ? a + u * (b - a) + v * (d - b) : a + v * (c - a) + u * (d - c);
+      error_m = std::max(error_m, std::abs(height_m(x, y) - facet_m));
     }
   }
   return error_m;

@@ -20,7 +20,7 @@ struct Column {
   const char* unit;
 };
 
-constexpr Column columns[] = {
+constexpr Column cost_columns[] = {
     {"passes", &GpuWork::passes, "count"},       {"synchronisations", &GpuWork::synchronisations, "count"},
     {"views", &GpuWork::views, "count"},         {"draw_calls", &GpuWork::draw_calls, "count"},
     {"triangles", &GpuWork::triangles, "count"}, {"pixels", &GpuWork::pixels, "count"},
@@ -85,7 +85,7 @@ GpuWork work_of(const render::PingStatistics& statistics, double cpu_part_ms) {
 }
 
 void add_work(Measurements& results, const Subject& subject, const GpuWork& work) {
-  for (const Column& column : columns) {
+  for (const Column& column : cost_columns) {
     if (work.passes > 0) {
       results.add(subject, column.metric, work.*column.count, column.unit);
     }
@@ -94,7 +94,7 @@ void add_work(Measurements& results, const Subject& subject, const GpuWork& work
 
 std::optional<GpuWork> find_work(const Measurements& results, const Subject& subject) {
   GpuWork work;
-  for (const Column& column : columns) {
+  for (const Column& column : cost_columns) {
     const auto value = results.find(subject, column.metric);
     if (!value) {
       return std::nullopt;
