@@ -16,6 +16,9 @@ struct Link {
   bool freshly_powered = false;  ///< the driver starts with the head, not long after it
 };
 
+/// As a driver meets it that starts together with the daemon.
+inline constexpr Link fresh{.name = "fresh", .freshly_powered = true};
+
 inline void PrintTo(const Link& link, std::ostream* out) {
   *out << link.name;
 }

@@ -8,7 +8,6 @@ namespace sonard::micron {
 namespace {
 
 constexpr Link steady{"steady"};
-constexpr Link fresh_link{.name = "fresh", .freshly_powered = true};
 
 bool is_alive(const Bytes& frame) {
   return frame[10] == static_cast<std::uint8_t>(MessageType::alive);
@@ -319,7 +318,7 @@ TEST(PublicDrivers, S6_a_client_of_one_second_at_the_start_of_the_daemon) {
   DeviceConfig config;
   config.alive_period = 900ms;
   for (const int phase_ms : {0, 1, 400, 890}) {
-    Driver driver(fresh_link, config);
+    Driver driver(fresh, config);
     driver.sleep(std::chrono::milliseconds{phase_ms});
     ASSERT_TRUE(driver.read(1s));
     driver.write("send_version");

@@ -50,15 +50,15 @@ TEST(Timing, parts_of_a_line_are_those_of_the_table) {
 
 TEST(Timing, lines_of_a_busy_head_come_at_that_pace) {
   for (const Row& row : rows) {
-    for (const bool half : {false, true}) {
+    for (const bool half_duplex : {false, true}) {
       DeviceConfig config;
-      config.half_duplex = half;
+      config.half_duplex = half_duplex;
       Bench bench(config);
       bench.render_time = 5ms;
       bench.make_ready(command_of(row));
       bench.scan(21);
       const auto lines = bench.all<HeadData>();
-      EXPECT_NEAR(ms(lines[20].first - lines[0].first) / 20, half ? row.half_ms : row.full_ms, 0.051);
+      EXPECT_NEAR(ms(lines[20].first - lines[0].first) / 20, half_duplex ? row.half_ms : row.full_ms, 0.051);
       // The first leaves when it has listened; what the link takes comes behind.
       const TimePoint transmitted = bench.jobs[0].transmit_time;
       EXPECT_NEAR(ms(lines[0].first - transmitted), row.listen_ms + 3.0, 0.051);
@@ -91,9 +91,9 @@ TEST(Timing, one_request_for_two_lines_waits_for_the_request) {
 }
 
 TEST(Timing, slow_renderer_slows_the_scan_and_loses_nothing) {
-  for (const bool half : {false, true}) {
+  for (const bool half_duplex : {false, true}) {
     DeviceConfig config;
-    config.half_duplex = half;
+    config.half_duplex = half_duplex;
     Bench bench(config);
     bench.make_ready(command_of(rows[0]));
     bench.render_time = 60ms;
@@ -104,7 +104,7 @@ TEST(Timing, slow_renderer_slows_the_scan_and_loses_nothing) {
     const auto sent = bench.all<HeadData>();
     for (std::size_t i = 1; i < 20; ++i) {
       // The link still has to carry one line before the next.
-      EXPECT_GE(sent[i].first - sent[i - 1].first, half ? 60ms + 21ms : 60ms);
+      EXPECT_GE(sent[i].first - sent[i - 1].first, half_duplex ? 60ms + 21ms : 60ms);
     }
   }
 }
