@@ -99,7 +99,12 @@ uvec2 minus(uvec2 a, uvec2 b) {
 
 /// What looks at samples.
 inline constexpr char sample_shader_head[] = R"glsl(
-layout(binding = 7) uniform sampler2D view;  // SurfaceSample
+layout(binding = 7) uniform sampler2D view;   // SurfaceSample
+layout(binding = 15) uniform sampler2D depth;  // 0 where there is none
+
+vec4 sample_at(ivec2 pixel) {
+  return texelFetch(depth, pixel, 0).x > 0.0 ? texelFetch(view, pixel, 0) : vec4(0.0);
+}
 
 layout(location = 1) uniform float bottom;        // tangent of the lowest row's centre
 layout(location = 2) uniform vec2 pixel;          // tangent units
@@ -310,7 +315,7 @@ void add_trapezoid(Place centre, float spread, float smear) {
 }
 
 void bin(Part part, int row) {
-  vec4 seen = texelFetch(view, (THINNED + 1) * ivec2(part.column, row), 0);
+  vec4 seen = sample_at((THINNED + 1) * ivec2(part.column, row));
   if (!(seen.x > 0.0)) {  // range, response, range derivatives
     if (seen.x < 0.0) ++own_invalid;
     return;

@@ -65,7 +65,7 @@ void main() {
     float low = max(below, -limit);
     float high = min(below + pixel.y, limit);
     if (high > low) {
-      vec4 seen = texelFetch(view, ivec2(column, row), 0);
+      vec4 seen = sample_at(ivec2(column, row));
       float weight = weight_of(vec2(middle, 0.5 * (low + high)), to - from, high - low);
       vec3 echo = echo_of(seen, to - from, high - low, weight);
       sum += vec4(echo.xy, (to - from) * (high - low) * echo.z, 0.0);

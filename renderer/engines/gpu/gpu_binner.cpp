@@ -55,7 +55,9 @@ enum TextureUnit : unsigned {
   line_weight_unit,
   parts_unit,
   of_view_unit,
+  depth_unit,
 };
+using Textures = std::vector<RasterSampler::ViewTextures>;
 constexpr GLbitfield written_by_shaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 constexpr std::size_t image_header_bytes = 16;
 constexpr std::size_t most_view_rows = 16384;
@@ -184,8 +186,7 @@ struct GpuBinner::Impl {
   void hold(GpuBuffer& buffer, std::size_t bytes, const char* what) {
     check_size(bytes, what);
     if (buffer.bytes() < bytes) {
-      buffer.hold(bytes);
-      traffic.bytes_uploaded += bytes;
+      buffer.hold(std::min(bytes + bytes / 4, most_bytes));  // views differ from ping to ping
     }
   }
 
@@ -233,7 +234,7 @@ struct GpuBinner::Impl {
       }
       GpuBuffer& buffer = *pages[static_cast<std::size_t>(page)];
       hold(buffer, bytes_of_page(page), "an image");
-      buffer.write(0, std::vector<ImageHeader>(1));
+      buffer.write(std::vector<ImageHeader>(1));
       traffic.bytes_uploaded += image_header_bytes;
     }
     std::vector<float> weights = what.line_weight;
@@ -293,27 +294,28 @@ struct GpuBinner::Impl {
     gl.glUniform1f(at_pattern_scale, grid.pattern_scale);
   }
 
-  void look_at(const SubView& view, unsigned texture) const {
+  void look_at(const SubView& view, const RasterSampler::ViewTextures& textures) const {
     gl.glUniform1f(at_bottom, static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height()));
     gl.glUniform2f(at_pixel, static_cast<float>(view.pixel_width()), static_cast<float>(view.pixel_height()));
+    gl.glActiveTexture(GL_TEXTURE0 + depth_unit);
+    glBindTexture(GL_TEXTURE_2D, textures.depth);
     gl.glActiveTexture(GL_TEXTURE0 + samples_unit);
-    glBindTexture(GL_TEXTURE_2D, texture);
+    glBindTexture(GL_TEXTURE_2D, textures.samples);
   }
 
-  /// Calls `run` with the first and the number of what a view has.
+  /// Calls `run` with the number of a view, and the first and the number of what it has.
   template <class Run>
-  void each_view(const std::vector<SubView>& views, const std::vector<int>& begin,
-                 const std::vector<unsigned>& textures, Run run) const {
+  void each_view(const std::vector<SubView>& views, const std::vector<int>& begin, const Textures& textures,
+                 Run run) const {
     for (std::size_t v = 0; v < views.size(); ++v) {
       if (const int count = begin[v + 1] - begin[v]; count > 0) {
         look_at(views[v], textures[v]);
-        run(views[v], begin[v], static_cast<GLuint>(count));
+        run(v, begin[v], static_cast<GLuint>(count));
       }
     }
   }
 
-  void splat_views(const GpuGrid& grid, const GpuColumns& of, bool is_thinned,
-                   const std::vector<unsigned>& textures) {
+  void splat_views(const GpuGrid& grid, const GpuColumns& of, bool is_thinned, const Textures& textures) {
     const bool estimating = grid.thinned && !is_thinned;
     use({is_thinned ? request->options.mean : weighed(), is_thinned, estimating, request->options.footprint,
          grid.elevation},
@@ -327,13 +329,13 @@ struct GpuBinner::Impl {
     pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
     gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr(grid)));
     gl.glUniform1f(at_most_units, static_cast<float>(most_units_of_beam / grid.most_samples));
-    each_view(of.views, of.view_begin, textures, [&](const SubView&, int first, GLuint count) {
+    each_view(of.views, of.view_begin, textures, [&](std::size_t, int first, GLuint count) {
       gl.glUniform1i(at_first, first);
       gl.glDispatchCompute(count, 1, 1);
     });
   }
 
-  void sum_strips(const GpuGrid& grid, const std::vector<unsigned>& textures) {
+  void sum_strips(const GpuGrid& grid, const Textures& textures) {
     use({}, {column_shader});
     partial_columns.bind_texels(first_unit, GL_RG32F);
     columns.bind(1);
@@ -348,11 +350,14 @@ struct GpuBinner::Impl {
     gl.glUniform1i(at_most_rows, grid.most_rows);
     gl.glUniform1f(at_tan_limit, grid.tan_limit);
     each_view(grid.columns.views, grid.view_beams_begin, textures,
-              [&](const SubView& view, int first, GLuint count) {
+              [&](std::size_t v, int first, GLuint count) {
+                const SubView& view = grid.columns.views[v];
+                if (grid.continues_beams[v]) {
+                  gl.glMemoryBarrier(written_by_shaders);
+                }
                 gl.glUniform1i(at_first, first);
                 gl.glUniform1f(at_left, static_cast<float>(-view.tan_half_width + 0.5 * view.pixel_width()));
                 gl.glDispatchCompute(count, groups_of(static_cast<std::size_t>(view.rows)), 1);
-                gl.glMemoryBarrier(written_by_shaders);
               });
   }
 
@@ -395,7 +400,7 @@ struct GpuBinner::Impl {
     gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count), 1, 1);
   }
 
-  void add(const GpuGrid& grid, const std::vector<unsigned>& textures) {
+  void add(const GpuGrid& grid, const Textures& textures) {
     make_room(grid);
     line_weight.bind_texels(line_weight_unit, GL_R32F);
     splat_views(grid, grid.columns, false, textures);
@@ -411,6 +416,8 @@ struct GpuBinner::Impl {
       estimated += grid.beam_count;
     }
     gl.glMemoryBarrier(written_by_shaders | GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    gl.glActiveTexture(GL_TEXTURE0 + depth_unit);
     glBindTexture(GL_TEXTURE_2D, 0);
     gl.glActiveTexture(GL_TEXTURE0 + context.getState()->getActiveTextureUnit());
     gl.glUseProgram(0);
@@ -520,7 +527,7 @@ int GpuBinner::beams_per_page() const {
   return impl_->beams_per_page();
 }
 
-void GpuBinner::add(const GpuGrid& grid, const std::vector<unsigned>& textures) {
+void GpuBinner::add(const GpuGrid& grid, const std::vector<RasterSampler::ViewTextures>& textures) {
   impl_->context.make_current_or_throw();
   impl_->add(grid, textures);
 }

@@ -57,7 +57,7 @@ class GpuBinner {
   /// Puts the beams of a grid into the image, in place of what it has of them.
   /// @param textures what RasterSampler::draw() returned for the grid.
   /// @throws RequestError when the buffers of this OpenGL cannot hold what it takes.
-  void add(const GpuGrid& grid, const std::vector<unsigned>& textures);
+  void add(const GpuGrid& grid, const std::vector<RasterSampler::ViewTextures>& textures);
 
   /// Has the estimates of all beams that were added since the last call sent back.
   void ask_estimates();

@@ -31,14 +31,18 @@ class GpuBuffer {
   /// If there are not so many bytes, makes as many, of zeros.
   void hold(std::size_t bytes) {
     if (bytes_ < bytes) {
-      fill(std::vector<std::uint8_t>(bytes), GL_DYNAMIC_COPY);
+      select();
+      bytes_ = bytes;
+      gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_COPY);
+      clear_with(bytes, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
     }
   }
+  /// Over the beginning of what is there.
   template <class T>
-  void write(std::size_t from_byte, const std::vector<T>& values) {
+  void write(const std::vector<T>& values) {
     select();
-    gl_.glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(from_byte),
-                        static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
+    gl_.glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)),
+                        values.data());
   }
   std::size_t bytes() const { return bytes_; }
   /// The next hold() starts over.
@@ -59,18 +63,22 @@ class GpuBuffer {
   }
   /// Sets the first `bytes` to a pattern of two words.
   void clear(std::size_t bytes, const std::array<std::uint32_t, 2>& words) {
+    select();
+    clear_with(bytes, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, words.data());
+  }
+  void bind_to_copy() const { gl_.glBindBuffer(GL_COPY_READ_BUFFER, name_); }
+
+ private:
+  void clear_with(std::size_t bytes, GLenum internal_format, GLenum format, GLenum type,
+                  const void* pattern) {
     // OpenSceneGraph does not load it.
     using ClearBufferSubData =
         void(GL_APIENTRY*)(GLenum, GLenum, GLintptr, GLsizeiptr, GLenum, GLenum, const void*);
     static const auto clear =
         reinterpret_cast<ClearBufferSubData>(osg::getGLExtensionFuncPtr("glClearBufferSubData"));
-    select();
-    clear(GL_SHADER_STORAGE_BUFFER, GL_RG32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RG_INTEGER,
-          GL_UNSIGNED_INT, words.data());
+    clear(GL_SHADER_STORAGE_BUFFER, internal_format, 0, static_cast<GLsizeiptr>(bytes), format, type,
+          pattern);
   }
-  void bind_to_copy() const { gl_.glBindBuffer(GL_COPY_READ_BUFFER, name_); }
-
- private:
   void select() const { gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_); }
 
   osg::GLExtensions& gl_;

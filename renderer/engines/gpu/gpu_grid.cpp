@@ -150,6 +150,11 @@ GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vecto
     const ByView sorted = beams_by_view(grid);
     view_beams.fill(sorted.items);
     view_beams_begin = sorted.begin;
+    for (std::size_t v = 0; v < grid.views.size(); ++v) {
+      continues_beams.push_back(std::any_of(sorted.items.begin() + sorted.begin[v],
+                                            sorted.items.begin() + sorted.begin[v + 1],
+                                            [](const BeamOfView& beam) { return beam.had_others != 0; }));
+    }
   }
   load_beams(grid, in_image);
 }

@@ -30,6 +30,7 @@ struct GpuGrid {
   GpuBuffer beams;
   GpuBuffer view_beams;               ///< beams with columns in a view, view by view
   std::vector<int> view_beams_begin;  ///< in `view_beams`, as above
+  std::vector<bool> continues_beams;  ///< whether a view has columns of beams that views before it have, too
   int first_beam;                     ///< of the image
   std::size_t beam_count, part_count;
   int most_rows = 0;  ///< of any beam

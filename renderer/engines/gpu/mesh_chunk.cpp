@@ -12,8 +12,6 @@
 #include <osg/GLExtensions>
 #include <osgUtil/CullVisitor>
 
-#include "renderer/engines/gpu/facet_normals.hpp"
-
 namespace sonard::render {
 
 namespace {
@@ -186,14 +184,12 @@ void MeshChunk::release(osg::State& state) {
   vertex_array_ = buffer_ = 0;
 }
 
-void add_chunks(const TriangleMesh& mesh, Shading shading, const float* max_range_m, osg::Group& part) {
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part) {
   if (mesh.indices.empty()) {
     return;
   }
-  const bool by_facets = shading == Shading::facet_normals;
-  const TriangleMesh facets = by_facets ? with_facet_normals(mesh) : TriangleMesh{};
   const osg::ref_ptr<RangeCull> range_cull = new RangeCull(max_range_m);
-  ChunkBuilder(by_facets ? facets : mesh).split([&](ChunkBytes content) {
+  ChunkBuilder(mesh).split([&](ChunkBytes content) {
     osg::ref_ptr<MeshChunk> chunk = new MeshChunk(std::move(content));
     chunk->setCullCallback(range_cull);
     part.addChild(chunk);

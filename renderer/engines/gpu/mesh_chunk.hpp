@@ -12,7 +12,6 @@
 #include <osg/Group>
 #include <osg/State>
 
-#include "renderer/engines/gpu/surface_shader.hpp"
 #include "renderer/engines/gpu/video_memory.hpp"
 #include "renderer/scene/world.hpp"
 
@@ -59,8 +58,7 @@ class MeshChunk final : public osg::Drawable, public VideoMemory::Item {
 };
 
 /// Adds the triangles of a mesh to the node of their part.
-/// @param shading by what the part is drawn
 /// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
-void add_chunks(const TriangleMesh& mesh, Shading shading, const float* max_range_m, osg::Group& part);
+void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
 
 }  // namespace sonard::render

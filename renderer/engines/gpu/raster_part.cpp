@@ -8,19 +8,11 @@ namespace sonard::render {
 
 namespace {
 
-// An angle of d off changes the echo of facets by d tan(phi) / m^2. Smoother ones than this (steel: 0.05)
-// need to be told their normals.
-constexpr double least_rms_slope = 0.15;
-
 Shading shading_of(const BodyPart& part) {
   if (part.normal_map && part.mesh->can_be_mapped()) {
     return Shading::normal_mapped;
   }
-  if (!part.mesh->normals.empty()) {
-    return Shading::vertex_normals;
-  }
-  const bool smooth = part.material.pressure_reflection != 0.0 && part.material.rms_slope < least_rms_slope;
-  return smooth ? Shading::facet_normals : Shading::geometric_normal;
+  return part.mesh->normals.empty() ? Shading::geometric_normal : Shading::vertex_normals;
 }
 
 }  // namespace
@@ -55,7 +47,7 @@ osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const Surface
                                              const float* max_range_m) {
   osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(to_osg(part.T_body_part));
   node->setStateSet(surface.state);
-  add_chunks(*part.mesh, surface.shading, max_range_m, *node);
+  add_chunks(*part.mesh, max_range_m, *node);
   return node;
 }
 

@@ -57,11 +57,16 @@ class RasterSampler {
   };
   const Drawn& drawn() const;
 
-  /// Like sample(), but the samples stay on the GPU.
-  /// @return names of textures, one for every view: RGBA32F, a SurfaceSample each texel, row by row upwards.
-  /// They stay valid until the next call of draw() or sample().
-  std::vector<unsigned> draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
-                             double max_range_m);
+  /// Names of the textures of a view.
+  struct ViewTextures {
+    unsigned samples =
+        0;  ///< RGBA32F, a SurfaceSample each texel, row by row upwards: of pixels with a surface
+    unsigned depth = 0;  ///< DEPTH_COMPONENT32F, above 0 where there is one
+  };
+  /// Like sample(), but the samples stay on the GPU, and where there is no surface anything may be.
+  /// @return of every view. They stay valid until the next call of draw() or sample().
+  std::vector<ViewTextures> draw(const Pose& T_world_sonar, const SampleGrid& grid,
+                                 const SurfaceModel& surface, double max_range_m);
   /// Where these textures are, made current.
   /// @throws RendererError when the context is lost.
   EglContext& current_context();

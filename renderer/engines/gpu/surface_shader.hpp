@@ -14,18 +14,33 @@
 
 namespace sonard::render {
 
-/// What of a surface decides which program draws it. The shader works out the geometric normal from how the
-/// inverse depth changes from pixel to pixel, to about 1e-4 rad, and less exactly the finer the pixels are;
-/// where that is not enough, it is told (with_facet_normals()).
-enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2, facet_normals = 3 };
+/// What of a surface decides which program draws it: where the normal comes from that its echo is taken by.
+enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
-/// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
+/// The beginning of all three shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
       "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
       "BENT {:d}\n",
       static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
 }
+
+/// What the vertex shader hands to the geometry shader: both begin with it.
+inline constexpr char surface_corner[] = R"glsl(
+struct Corner {
+  vec3 in_body, in_eye;  // positions
+#if BENT
+  vec3 unbent;           // in_eye, were rays straight
+#endif
+#if SHADING != 0
+  vec3 normal_eye;
+#endif
+#if SHADING == 2
+  vec4 tangent_eye;
+  vec2 texcoord;
+#endif
+};
+)glsl";
 
 inline constexpr char surface_vertex_shader[] = R"glsl(
 layout(location = 0) in vec4 position;  // VertexAttribute
@@ -37,42 +52,98 @@ layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
 #if BENT
 uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
 #endif
-#if SHADING == 3
-flat
+out Corner corner;
+
+void main() {
+  vec3 p = (gl_ModelViewMatrix * position).xyz;
+#if SHADING != 0
+  corner.normal_eye = gl_NormalMatrix * normal;
 #endif
+#if BENT  // Refraction::point() and normal(), term by term
+  corner.unbent = p;
+  float height = dot(p, refraction.xyz);
+  float squared = dot(p, p);
+#if SHADING != 0
+  corner.normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(corner.normal_eye, refraction.xyz));
+#endif
+  vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
+  p = lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30));
+#endif
+  gl_Position = gl_ProjectionMatrix * vec4(p, 1.0);
+  corner.in_body = position.xyz;
+  corner.in_eye = p;
+#if SHADING == 2
+  corner.tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
+  corner.texcoord = mapped_at;
+#endif
+}
+)glsl";
+
+// The plane of a triangle from its corners, once, instead of from what the GPU interpolates between them:
+// that is rounded as the GPU likes (an H200 misses the ranges of a wall by 5e-4 of a bin), and off by per
+// cents where a triangle of a hundred metres passes a metre from the eye and is clipped there.
+inline constexpr char surface_geometry_shader[] = R"glsl(
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 3) out;
+#if BENT
+uniform vec4 refraction;
+#endif
+in Corner corner[];
+flat out vec2 slope;      // of the inverse depth, per tangent
+flat out vec3 anchor;     // tangents of a point of the plane, and its inverse depth
+flat out float plane_distance;  // of the plane from the eye
+#if SHADING != 0
 out vec3 normal_eye;
+#endif
 #if SHADING == 2
 out vec4 tangent_eye;
 out vec2 texcoord;
 #endif
 
 void main() {
-  gl_Position = gl_ModelViewProjectionMatrix * position;
-  normal_eye = gl_NormalMatrix * normal;
-#if BENT  // Refraction::point() and normal(), term by term
-  vec3 p = (gl_ModelViewMatrix * position).xyz;
-  float height = dot(p, refraction.xyz);
-  float squared = dot(p, p);
-  vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
-  gl_Position = gl_ProjectionMatrix * vec4(lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30)), 1.0);
-  normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(normal_eye, refraction.xyz));
+  // Differences of positions in the body have its roundings, not those of how far away it is.
+  vec3 n = mat3(gl_ModelViewMatrix) *
+           cross(corner[1].in_body - corner[0].in_body, corner[2].in_body - corner[0].in_body);
+#if BENT  // as a normal of the vertex shader is, in the middle
+  vec3 middle = (corner[0].unbent + corner[1].unbent + corner[2].unbent) / 3.0;
+  n -= (middle - refraction.xyz * dot(middle, refraction.xyz)) * (2.0 * refraction.w * dot(n, refraction.xyz));
+#endif
+  vec3 p = corner[0].in_eye;  // the corner farthest ahead
+  for (int i = 1; i < 3; ++i) {
+    if (corner[i].in_eye.z < p.z) p = corner[i].in_eye;
+  }
+  float d = dot(n, p);
+  if (d == 0.0 || p.z >= 0.0) return;  // seen edge-on, or behind the eye
+  for (int i = 0; i < 3; ++i) {
+    gl_Position = gl_in[i].gl_Position;
+    slope = n.xy / d;
+    anchor = vec3(p.xy, -1.0) / -p.z;
+    anchor.z = -1.0 / p.z;
+    plane_distance = abs(d) * inversesqrt(dot(n, n));
+#if SHADING != 0
+    normal_eye = corner[i].normal_eye;
 #endif
 #if SHADING == 2
-  tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
-  texcoord = mapped_at;
+    tangent_eye = corner[i].tangent_eye;
+    texcoord = corner[i].texcoord;
 #endif
+    EmitVertex();
+  }
+  EndPrimitive();
 }
 )glsl";
 
 // Eye coordinates: x to starboard, y up, the view axis along -z. The ray of a pixel is q = (t.x, t.y, -1)
-// with tangents t. On the plane n.p = 1 seen along p = depth * q the inverse depth is n.q, so it is affine in
-// t: its screen derivatives give the plane, and with it the exact range derivatives (docs/physics.md 2.3,
-// equation 2), without differences of positions and without trouble where the plane is seen edge-on.
+// with tangents t. On the plane n.p = d seen along p = depth * q the inverse depth is n.q / d, so it is
+// affine in t, and with it come the exact range derivatives (docs/physics.md 2.3, equation 2), without
+// differences of positions and without trouble where the plane is seen edge-on.
 inline constexpr char surface_fragment_shader[] = R"glsl(
-#if SHADING == 3
-flat
-#endif
+flat in vec2 slope;
+flat in vec3 anchor;
+flat in float plane_distance;
+#if SHADING != 0
 in vec3 normal_eye;
+#endif
 layout(location = 0) out vec4 surface_sample;
 
 uniform vec2 tan_half;        // of the view
@@ -134,11 +205,9 @@ float map_level(float inverse_depth, vec2 inverse_depth_step) {
 }
 #endif
 
+#if SHADING != 0
 // Not of unit length where a map averages.
-vec3 shading_normal(vec3 plane, float inverse_depth, vec2 step) {
-#if SHADING == 0
-  return plane;
-#else
+vec3 shading_normal(float inverse_depth, vec2 step) {
   vec3 n = normalize(normal_eye);
 #if SHADING == 2
   vec3 t = normalize(tangent_eye.xyz - n * dot(n, tangent_eye.xyz));
@@ -146,9 +215,9 @@ vec3 shading_normal(vec3 plane, float inverse_depth, vec2 step) {
   vec3 m = mean_normal(texcoord, map_level(inverse_depth, step));
   n = t * m.x + b * m.y + n * m.z;
 #endif
-  return any(isnan(n)) ? plane : n;
-#endif
+  return n;
 }
+#endif
 
 #if FACETS != 0
 // Backscatter::facets() and variance_of_mean_normal(), term by term.
@@ -164,8 +233,7 @@ float variance_of_mean_normal(float mean_length) {
 }
 
 // Facets need a direction; what is missing of the length of a mean normal widens their slopes.
-float facet_response(vec3 n, float cos_phi) {
-  float mean_length = SHADING == 2 ? length(n) : 1.0;
+float facet_response_of_mean(float cos_phi, float mean_length) {
   float cosine = min(cos_phi / mean_length, 1.0);
 #if FACETS == 1
   if (!(SHADING == 2 ? facet_strength > 0.0 : cosine > facets_least_cosine)) return 0.0;
@@ -175,23 +243,30 @@ float facet_response(vec3 n, float cos_phi) {
 #endif
 
 void main() {
-  vec2 t = (gl_FragCoord.xy / pixels * 2.0 - 1.0) * tan_half;
   vec2 pixel = 2.0 * tan_half / pixels;
-  float inverse_depth = gl_FragCoord.w;
-  vec2 step = vec2(dFdx(inverse_depth), dFdy(inverse_depth));
-  vec2 slope = step / pixel;
-  vec3 q = vec3(t, -1.0);
-  float qq = dot(q, q);
-  float range = sqrt(qq) / inverse_depth;
-  vec2 range_d = range * (t / qq - slope / inverse_depth);
+  vec2 t = gl_FragCoord.xy * pixel - tan_half;
+  float inverse_depth = anchor.z + dot(slope, t - anchor.xy);
+  float depth = 1.0 / inverse_depth;
+  float qq = 1.0 + dot(t, t);
+  float per_length = inversesqrt(qq);
+  float range = qq * per_length * depth;
+  vec2 range_d = range * (t / qq - slope * depth);
 
-  vec3 plane = normalize(vec3(slope, dot(slope, t) - inverse_depth));
-  vec3 n = shading_normal(plane, inverse_depth, step);
-  float cos_phi = clamp(abs(dot(n, q)) * inversesqrt(qq), 0.0, 1.0);
+  float cosine = plane_distance * inverse_depth * per_length;
+  float mean_length = 1.0;
+#if SHADING != 0
+  vec3 n = shading_normal(inverse_depth, slope * pixel);
+  float of_normal = dot(n, vec3(t, -1.0)) * per_length;
+  if (!isnan(of_normal)) {
+    cosine = of_normal;
+    mean_length = SHADING == 2 ? length(n) : 1.0;
+  }
+#endif
+  float cos_phi = clamp(abs(cosine), 0.0, 1.0);
 #if PHYSICAL
   float response = lambert_mu * cos_phi;
 #if FACETS != 0
-  response += facet_response(n, cos_phi);
+  response += facet_response_of_mean(cos_phi, mean_length);
 #endif
 #else
   float echo = min(1.0, reflectance * cos_phi * exp(-2.0 * attenuation_per_m * range));

@@ -40,6 +40,18 @@ class BeamEstimateTest : public ::testing::Test {
     thinned_ = of(3 * columns / 2, rows / 2);
   }
 
+  /// Of the size of the view.
+  GLuint make_texture(GLint internal_format, GLenum format, const void* floats) const {
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexImage2D(GL_TEXTURE_2D, 0, internal_format, grid_.views[0].columns, grid_.views[0].rows, 0, format,
+                 GL_FLOAT, floats);
+    return texture;
+  }
+
   /// @param what is seen at an azimuth and the tangent of an elevation.
   BeamEstimate estimate_of(const std::function<SurfaceSample(double psi, double y)>& what,
                            const RangeLines& range = {1000, step_m, 0, false},
@@ -55,20 +67,19 @@ class BeamEstimateTest : public ::testing::Test {
     RasterSampler sampler(World{});
     GpuBinner binner(sampler);
     sampler.current_context();
-    GLuint texture = 0;
-    glGenTextures(1, &texture);
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, view.columns, view.rows, 0, GL_RGBA, GL_FLOAT, samples.data());
+    const std::vector<float> depths(samples.size(), 1.0F);
+    const RasterSampler::ViewTextures textures{
+        make_texture(GL_RGBA32F, GL_RGBA, samples.data()),
+        make_texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, depths.data())};
     const std::vector<float> no_weights;
     const BinningOptions options;
     const auto on_gpu = binner.load(grid_, {0, 1, 2}, &thinned_);
     binner.begin({3, range, options, no_weights, most_error});
-    binner.add(*on_gpu, {texture});
+    binner.add(*on_gpu, std::vector{textures});
     binner.ask_estimates();
     const BeamEstimate found = binner.take_estimates().at(1);
-    glDeleteTextures(1, &texture);
+    glDeleteTextures(1, &textures.samples);
+    glDeleteTextures(1, &textures.depth);
     return found;
   }
 

@@ -73,7 +73,9 @@ TEST_F(WorkCounts, AreThoseOfOnePing) {
   const PingStatistics once = of_a_ping(), again = of_a_ping();
   EXPECT_EQ(once.views, again.views);
   EXPECT_EQ(once.triangles, again.triangles);
-  EXPECT_EQ(once.atomic_additions, again.atomic_additions);
+  // A carry may cancel what would be added to a high word; whose it does depends on who comes first.
+  EXPECT_NEAR(static_cast<double>(again.atomic_additions), static_cast<double>(once.atomic_additions),
+              0.01 * static_cast<double>(once.atomic_additions));
 }
 
 }  // namespace
