@@ -11,17 +11,19 @@
 #include <osg/ClipControl>
 #include <osg/CullFace>
 #include <osg/Depth>
+#include <osg/FrameBufferObject>
+#include <osg/GLExtensions>
 #include <osg/MatrixTransform>
 #include <osg/Program>
+#include <osg/RenderInfo>
 #include <osg/Texture2D>
-#include <osgUtil/RenderBin>
-#include <osgUtil/SceneView>
 
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/engines/gpu/gl_errors.hpp"
 #include "renderer/engines/gpu/mesh_chunk.hpp"
 #include "renderer/engines/gpu/raster_part.hpp"
 #include "renderer/engines/gpu/surface_shader.hpp"
+#include "renderer/engines/gpu/view_culler.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/refraction.hpp"
@@ -31,34 +33,11 @@ namespace sonard::render {
 
 namespace {
 
-/// Sonar frame (x forward, y port, z up) to the eye frame of a view (x starboard, y up, -z forward).
-osg::Matrixd view_matrix(const SubView& view) {
-  const osg::Matrixd turn = osg::Matrixd::rotate(-view.azimuth_rad, osg::Vec3d(0, 0, 1));
-  // OSG multiplies row vectors: row i is the image of axis i.
-  const osg::Matrixd axes(0, 0, -1, 0,  //
-                          -1, 0, 0, 0,  //
-                          0, 1, 0, 0,   //
-                          0, 0, 0, 1);
-  return turn * axes;
-}
-
-/// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative
-/// terms and loses nothing by a small near distance (docs/physics.md 4.2). Visibility only; ranges never come
-/// from the depth buffer.
-osg::Matrixd projection_matrix(const SubView& view) {
-  return osg::Matrixd(1 / view.tan_half_width, 0, 0, 0,   //
-                      0, 1 / view.tan_half_height, 0, 0,  //
-                      0, 0, 0, -1,                        //
-                      0, 0, static_cast<double>(nearest_depth_m), 0);
-}
-
-/// A camera that draws views of one size into a float texture, and the copy that is read back.
+/// Where views of one size are drawn, and the copy that is read back.
 struct ViewTarget {
   int columns = 0, rows = 0;
-  osg::ref_ptr<osgUtil::SceneView> scene_view;
   osg::ref_ptr<osg::Texture2D> samples_texture, depth_texture;
-  osg::ref_ptr<osg::Uniform> tan_half;
-  osg::ref_ptr<osg::Uniform> refraction;
+  osg::ref_ptr<osg::FrameBufferObject> framebuffer;
   std::vector<SurfaceSample> samples;
   std::uint64_t used = 0;  ///< number of the call that used it last
 
@@ -76,84 +55,18 @@ osg::ref_ptr<osg::Texture2D> make_texture(int columns, int rows, GLint internal_
   return texture;
 }
 
-ViewTarget make_target(int columns, int rows, osg::Node* scene, osg::State* state) {
+ViewTarget make_target(int columns, int rows) {
   ViewTarget target;
   target.columns = columns;
   target.rows = rows;
   target.samples_texture = make_texture(columns, rows, GL_RGBA32F_ARB, GL_RGBA);
   target.depth_texture = make_texture(columns, rows, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT);
-
-  target.scene_view = new osgUtil::SceneView;
-  target.scene_view->setDefaults(osgUtil::SceneView::NO_SCENEVIEW_LIGHT);
-  target.scene_view->setState(state);
-  target.scene_view->setSceneData(scene);
-  target.scene_view->setFrameStamp(new osg::FrameStamp);
-  osg::Camera* camera = target.scene_view->getCamera();
-  camera->setViewport(0, 0, columns, rows);
-  camera->setClearColor(osg::Vec4(0, 0, 0, 0));
-  camera->setClearDepth(0.0);
-  camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
-  camera->setDrawBuffer(GL_COLOR_ATTACHMENT0_EXT);
-  camera->setReadBuffer(GL_COLOR_ATTACHMENT0_EXT);
-  camera->attach(osg::Camera::COLOR_BUFFER0, target.samples_texture);
-  camera->attach(osg::Camera::DEPTH_BUFFER, target.depth_texture);
-  camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-  osg::StateSet* state_set = target.scene_view->getGlobalStateSet();
-  target.tan_half = new osg::Uniform("tan_half", osg::Vec2());
-  state_set->addUniform(target.tan_half);
-  target.refraction = new osg::Uniform("refraction", osg::Vec4());
-  state_set->addUniform(target.refraction);
-  state_set->addUniform(
-      new osg::Uniform("pixels", osg::Vec2(static_cast<float>(columns), static_cast<float>(rows))));
-  target.scene_view->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-  camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+  target.framebuffer = new osg::FrameBufferObject;
+  target.framebuffer->setAttachment(osg::Camera::COLOR_BUFFER0,
+                                    osg::FrameBufferAttachment(target.samples_texture.get()));
+  target.framebuffer->setAttachment(osg::Camera::DEPTH_BUFFER,
+                                    osg::FrameBufferAttachment(target.depth_texture.get()));
   return target;
-}
-
-/// @param bend in the sonar frame
-void aim(const ViewTarget& target, const SubView& view, const Refraction& bend) {
-  target.scene_view->getCamera()->setViewMatrix(view_matrix(view));
-  target.scene_view->getCamera()->setProjectionMatrix(projection_matrix(view));
-  target.tan_half->set(
-      osg::Vec2(static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height)));
-  const osg::Vec3 up =
-      osg::Matrixd::transform3x3(osg::Vec3(bend.up.x, bend.up.y, bend.up.z), view_matrix(view));
-  target.refraction->set(osg::Vec4(up, bend.per_m));
-  // Only the sides cull: there is no far plane, and small features are echoes too. Boxes are not bent, so
-  // with refraction none of them is dropped; their ranges stay what they are.
-  const osg::CullSettings::CullingMode culling =
-      bend.straight() ? osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING : osg::CullSettings::NO_CULLING;
-  target.scene_view->setCullingMode(culling);
-  target.scene_view->getCamera()->setCullingMode(culling);
-}
-
-/// What some views draw, culled and sorted front to back.
-struct DrawList {
-  std::vector<VideoMemory::Item*> items;
-  std::uint64_t draw_calls = 0, triangles = 0;
-};
-
-/// Adds what a view draws.
-/// @param normal_maps by the state that asks for them.
-void collect(const osgUtil::RenderBin& bin,
-             const std::unordered_map<const osg::StateSet*, NormalMapTexture*>& normal_maps, DrawList& list) {
-  const osgUtil::StateGraph* last = nullptr;
-  for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList()) {
-    auto& chunk = static_cast<MeshChunk&>(*leaf->_drawable);  // nothing else is drawn
-    list.items.push_back(&chunk);
-    ++list.draw_calls;
-    list.triangles += chunk.triangles();
-    for (const osgUtil::StateGraph* state = leaf->_parent; state != nullptr && leaf->_parent != last;
-         state = state->_parent) {
-      if (const auto map = normal_maps.find(state->getStateSet()); map != normal_maps.end()) {
-        list.items.push_back(map->second);
-      }
-    }
-    last = leaf->_parent;
-  }
-  for (const auto& [number, inner] : bin.getRenderBinList()) {
-    collect(*inner, normal_maps, list);
-  }
 }
 
 // Making a target takes as long as drawing into it, so those of earlier calls are kept: so many pixels in all
@@ -173,6 +86,7 @@ struct RasterSampler::Impl {
   std::string description;
   std::unique_ptr<VideoMemory> video_memory;  // what it holds goes first
   osg::ref_ptr<osg::Group> scene;
+  std::unique_ptr<ViewCuller> culler;
   std::vector<BodyNode> bodies;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
   std::vector<Surface> surfaces;
@@ -188,14 +102,13 @@ struct RasterSampler::Impl {
   int max_texture_px = 0;
 
   Impl(const World& world, const GpuOptions& options) : context(new EglContext(options.device)) {
-    // Near things first: what they hide is not shaded.
-    osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
     context->realize();
     context->make_current_or_throw();
     description = "gpu, " + context->describe();
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
     video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
     scene = new osg::Group;
+    culler = std::make_unique<ViewCuller>(*context->getState(), *scene);
     set_up_state(*scene->getOrCreateStateSet());
     program(Shading::geometric_normal, {}, false);  // an OpenGL that cannot build it is found out here
     add_bodies(world);
@@ -205,7 +118,7 @@ struct RasterSampler::Impl {
     if (context->makeCurrent()) {
       video_memory->release_all();
       for (const ViewTarget& target : targets) {
-        target.scene_view->releaseAllGLObjects();
+        release(target);
       }
       scene->releaseGLObjects(context->getState());
       osg::flushAllDeletedGLObjects(context->getState()->getContextID());
@@ -273,8 +186,8 @@ struct RasterSampler::Impl {
     state.setMode(GL_CULL_FACE, surface.two_sided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
   }
 
-  /// A target for every view, aimed at it.
-  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views, const Refraction& bend) {
+  /// A target for every view.
+  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views) {
     ++calls;
     std::vector<ViewTarget*> found;
     for (const SubView& view : views) {
@@ -283,7 +196,6 @@ struct RasterSampler::Impl {
                            " pixels");
       }
       found.push_back(&target_for(view));
-      aim(*found.back(), view, bend);
     }
     release_unused();
     return found;
@@ -296,23 +208,27 @@ struct RasterSampler::Impl {
     if (free != targets.end()) {
       targets.splice(targets.begin(), targets, free);
     } else {
-      targets.push_front(make_target(view.columns, view.rows, scene, context->getState()));
+      targets.push_front(make_target(view.columns, view.rows));
       target_pixels += targets.front().pixels();
     }
     targets.front().used = calls;
     return targets.front();
   }
 
+  void release(const ViewTarget& target) const {
+    for (osg::Object* object : {static_cast<osg::Object*>(target.samples_texture.get()),
+                                static_cast<osg::Object*>(target.depth_texture.get()),
+                                static_cast<osg::Object*>(target.framebuffer.get())}) {
+      object->releaseGLObjects(context->getState());
+    }
+  }
+
   void release_unused() {
     const std::size_t before = targets.size();
     while (targets.back().used != calls &&
            (target_pixels > most_kept_pixels || targets.size() > most_kept_targets)) {
-      const ViewTarget& target = targets.back();
-      target_pixels -= target.pixels();
-      osg::Camera& camera = *target.scene_view->getCamera();
-      camera.removeChildren(0, camera.getNumChildren());  // the scene, whose programs and maps stay
-      camera.releaseGLObjects(context->getState());
-      target.scene_view->getRenderStage()->releaseGLObjects(context->getState());
+      target_pixels -= targets.back().pixels();
+      release(targets.back());
       targets.pop_back();
     }
     if (targets.size() < before) {
@@ -326,32 +242,85 @@ struct RasterSampler::Impl {
   std::vector<ViewTarget*> draw(const Pose& T_world_sonar, const SampleGrid& grid,
                                 const SurfaceModel& surface, double range_m, GLbitfield clear) {
     context->make_current_or_throw();
-    const Refraction bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
-                          bend_per_m};
-    std::vector<ViewTarget*> views = targets_for(grid.views, bend);
+    const std::vector<ViewTarget*> found = targets_for(grid.views);
     set_surface(surface);
     max_range_m = static_cast<float>(range_m);
     for (const BodyNode& body : bodies) {
       body.transform->setMatrix(to_osg(relative(T_world_sonar, body.T_world_body)));
     }
     Stopwatch watch;
-    DrawList list;
-    for (const ViewTarget* target : views) {
-      target->scene_view->cull();
-      collect(*target->scene_view->getRenderStage(), normal_maps, list);
-      drawn.pixels += static_cast<std::uint64_t>(target->pixels());
+    const std::vector<CulledView> culled = cull(grid.views);
+    drawn.culling_s += watch.lap();
+    const Refraction bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
+                          bend_per_m};
+    osg::State& state = *context->getState();
+    glClearColor(0, 0, 0, 0);
+    glClearDepth(0);
+    state.pushStateSet(scene->getStateSet());
+    state.apply();
+    for (std::size_t v = 0; v < found.size(); ++v) {
+      found[v]->framebuffer->apply(state);
+      // Which makes its textures the first time.
+      state.haveAppliedTextureAttribute(state.getActiveTextureUnit(), osg::StateAttribute::TEXTURE);
+      glViewport(0, 0, found[v]->columns, found[v]->rows);
+      glClear(clear);
+      draw(grid.views[v], culled[v], bend);
+    }
+    state.popStateSet();
+    gl().glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
+    check_gl_errors("drawing the scene");
+    return found;
+  }
+
+  osg::GLExtensions& gl() const { return *context->getState()->get<osg::GLExtensions>(); }
+
+  /// Everything that is drawn is then in video memory.
+  std::vector<CulledView> cull(const std::vector<SubView>& views) {
+    std::vector<CulledView> culled;
+    std::vector<VideoMemory::Item*> items;
+    for (const SubView& view : views) {
+      culled.push_back(culler->cull(view, bend_per_m != 0.0F));
+      const osg::StateSet* last = nullptr;
+      for (const CulledView::Leaf& leaf : culled.back().leaves) {
+        items.push_back(leaf.chunk);
+        drawn.triangles += leaf.chunk->triangles();
+        if (leaf.surface != last) {
+          last = leaf.surface;
+          if (const auto map = normal_maps.find(last); map != normal_maps.end()) {
+            items.push_back(map->second);
+          }
+        }
+      }
+      drawn.draw_calls += culled.back().leaves.size();
+      drawn.pixels += static_cast<std::uint64_t>(view.columns) * static_cast<std::uint64_t>(view.rows);
     }
     drawn.views += views.size();
-    drawn.draw_calls += list.draw_calls;
-    drawn.triangles += list.triangles;
-    drawn.culling_s += watch.lap();
-    video_memory->hold(list.items);
-    for (const ViewTarget* target : views) {
-      target->scene_view->getRenderStage()->setClearMask(clear);
-      target->scene_view->draw();
+    video_memory->hold(items);
+    return culled;
+  }
+
+  /// Into what is bound.
+  void draw(const SubView& view, const CulledView& culled, const Refraction& bend) const {
+    osg::State& state = *context->getState();
+    osg::RenderInfo info(&state, nullptr);
+    const osg::Vec3 up =
+        osg::Matrixd::transform3x3(osg::Vec3(bend.up.x, bend.up.y, bend.up.z), view_matrix(view));
+    const osg::StateSet* surface = nullptr;
+    state.applyProjectionMatrix(culled.projection.get());
+    for (const CulledView::Leaf& leaf : culled.leaves) {
+      if (leaf.surface != surface) {
+        surface = leaf.surface;
+        state.apply(surface);
+        gl().glUniform2f(at_tan_half, static_cast<float>(view.tan_half_width),
+                         static_cast<float>(view.tan_half_height));
+        gl().glUniform2f(at_pixels, static_cast<float>(view.columns), static_cast<float>(view.rows));
+        if (!bend.straight()) {
+          gl().glUniform4f(at_refraction, up.x(), up.y(), up.z(), bend.per_m);
+        }
+      }
+      state.applyModelViewMatrix(leaf.body_to_eye.get());
+      leaf.chunk->drawImplementation(info);
     }
-    check_gl_errors("drawing the scene");
-    return views;
   }
 
   osg::Texture::TextureObject& on_gpu(const osg::Texture2D& texture) const {

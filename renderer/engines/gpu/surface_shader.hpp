@@ -17,6 +17,9 @@ namespace sonard::render {
 /// What of a surface decides which program draws it: where the normal comes from that its echo is taken by.
 enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
+/// Locations of the uniforms that belong to a view; OpenSceneGraph has the others.
+enum ViewUniform : int { at_tan_half, at_pixels, at_refraction };
+
 /// The beginning of all three shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
@@ -50,7 +53,7 @@ layout(location = 2) in vec2 mapped_at;
 layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
 #endif
 #if BENT
-uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
+layout(location = 2) uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
 #endif
 out Corner corner;
 
@@ -80,13 +83,13 @@ void main() {
 )glsl";
 
 // The plane of a triangle from its corners, once, instead of from what the GPU interpolates between them:
-// that is rounded as the GPU likes (an H200 misses the ranges of a wall by 5e-4 of a bin), and off by per
-// cents where a triangle of a hundred metres passes a metre from the eye and is clipped there.
+// that is rounded as the GPU likes, and off by per cents where a triangle of a hundred metres passes a metre
+// from the eye and is clipped there (docs/accuracy.md).
 inline constexpr char surface_geometry_shader[] = R"glsl(
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 #if BENT
-uniform vec4 refraction;
+layout(location = 2) uniform vec4 refraction;
 #endif
 in Corner corner[];
 flat out vec2 slope;      // of the inverse depth, per tangent
@@ -146,8 +149,8 @@ in vec3 normal_eye;
 #endif
 layout(location = 0) out vec4 surface_sample;
 
-uniform vec2 tan_half;        // of the view
-uniform vec2 pixels;
+layout(location = 0) uniform vec2 tan_half;  // of the view
+layout(location = 1) uniform vec2 pixels;
 #if SHADING == 2
 in vec4 tangent_eye;
 in vec2 texcoord;
