@@ -9,7 +9,6 @@
 
 #include <osg/Camera>
 #include <osg/ClipControl>
-#include <osg/CullFace>
 #include <osg/Depth>
 #include <osg/FrameBufferObject>
 #include <osg/GLExtensions>
@@ -153,7 +152,6 @@ struct RasterSampler::Impl {
     state.setAttributeAndModes(
         new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
     state.setAttributeAndModes(new osg::Depth(osg::Depth::GREATER, 0.0, 1.0));
-    state.setAttribute(new osg::CullFace(osg::CullFace::BACK));  // on only when back faces are to be dropped
     state.setMode(GL_LIGHTING, osg::StateAttribute::OFF);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF);
     state.addUniform(new osg::Uniform("normal_map", normal_map_unit));
@@ -183,7 +181,6 @@ struct RasterSampler::Impl {
             osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));
     state.getOrCreateUniform("attenuation_per_m", osg::Uniform::FLOAT)
         ->set(static_cast<float>(surface.attenuation_per_m));
-    state.setMode(GL_CULL_FACE, surface.two_sided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
   }
 
   /// A target for every view.

@@ -21,11 +21,13 @@ enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2
 enum ViewUniform : int { at_tan_half, at_pixels, at_refraction };
 
 /// The beginning of all three shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
+/// TWO_SIDED: back faces are drawn.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
       "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
-      "BENT {:d}\n",
-      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
+      "BENT {:d}\n#define TWO_SIDED {:d}\n",
+      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent,
+      surface.two_sided);
 }
 
 /// What the vertex shader hands to the geometry shader: both begin with it.
@@ -103,7 +105,15 @@ out vec4 tangent_eye;
 out vec2 texcoord;
 #endif
 
+bool outside_of_view() {
+  vec4 a = gl_in[0].gl_Position, b = gl_in[1].gl_Position, c = gl_in[2].gl_Position;
+  vec3 w = vec3(a.w, b.w, c.w), x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y);
+  return all(greaterThan(x, w)) || all(lessThan(x, -w)) || all(greaterThan(y, w)) || all(lessThan(y, -w));
+}
+
 void main() {
+  // What is not handed on costs least.
+  if (outside_of_view()) return;
   // Differences of positions in the body have its roundings, not those of how far away it is.
   vec3 n = mat3(gl_ModelViewMatrix) *
            cross(corner[1].in_body - corner[0].in_body, corner[2].in_body - corner[0].in_body);
@@ -117,6 +127,9 @@ void main() {
   }
   float d = dot(n, p);
   if (d == 0.0 || p.z >= 0.0) return;  // seen edge-on, or behind the eye
+#if !TWO_SIDED
+  if (d > 0.0) return;
+#endif
   for (int i = 0; i < 3; ++i) {
     gl_Position = gl_in[i].gl_Position;
     slope = n.xy / d;
