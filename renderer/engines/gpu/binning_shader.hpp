@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLSL of GpuBinner: what grid_binner and RangeProfile do, for one texture of samples, and the sums of
+// The GLSL of GpuBinner: what grid_binner and RangeProfile do, for the samples of a grid, and the sums of
 // it. Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the
 // same however the work is shared out (docs/physics.md 4.2). What is added up in floating point, for the
 // error estimates, is added in a fixed order.
@@ -10,15 +10,11 @@ namespace sonard::render {
 /// Locations of the uniforms of all these shaders.
 enum BinningUniform : int {
   at_lines,
-  at_bottom,
-  at_pixel,
   at_lines_per_m,
   at_pattern_scale,
-  at_first,
   at_units_per_sr,
   at_most_units,
   at_most_rows,
-  at_left,
   at_tan_limit,
   at_part_count,
   at_image_beams,
@@ -51,6 +47,7 @@ struct Part {
   float first_y_offset, first_height, last_y_offset, last_height;
   int before, after;
   float to_before, to_after, width_rad;
+  int view;
 };
 
 Part part_at(int p) {
@@ -58,9 +55,10 @@ Part part_at(int p) {
   vec4 across = intBitsToFloat(texelFetch(parts, 5 * p + 1));
   vec4 ends = intBitsToFloat(texelFetch(parts, 5 * p + 2));
   ivec4 beside = texelFetch(parts, 5 * p + 3);
+  ivec4 rest = texelFetch(parts, 5 * p + 4);
   return Part(place.x, place.y, place.z, place.w, across.x, across.y, across.z, across.w, ends.x, ends.y, ends.z, ends.w,
               beside.x, beside.y, intBitsToFloat(beside.z), intBitsToFloat(beside.w),
-              intBitsToFloat(texelFetch(parts, 5 * p + 4).x));
+              intBitsToFloat(rest.x), rest.y);
 }
 
 // A beam of the grid.
@@ -68,6 +66,7 @@ struct Beam {
   int in_image;
   float solid_angle;
   int part_begin, part_end;
+  int segment_begin, segment_end;
   int rows;
 };
 
@@ -99,17 +98,33 @@ uvec2 minus(uvec2 a, uvec2 b) {
 
 /// What looks at samples.
 inline constexpr char sample_shader_head[] = R"glsl(
-layout(binding = 7) uniform sampler2D view;   // SurfaceSample
-layout(binding = 15) uniform sampler2D depth;  // 0 where there is none
+layout(binding = 7) uniform sampler2DArray surface_samples;  // SurfaceSample
+layout(binding = 15) uniform sampler2DArray depths;          // 0 where there is none
+layout(binding = 14) uniform isamplerBuffer views;
 
-vec4 sample_at(ivec2 pixel) {
-  return texelFetch(depth, pixel, 0).x > 0.0 ? texelFetch(view, pixel, 0) : vec4(0.0);
+// The view at hand: its lower left pixel, its rows, the tangents of that pixel's centre and of the size of one.
+ivec3 corner;
+int view_rows;
+float left, bottom;
+vec2 pixel;
+
+void look_at(int view) {
+  ivec4 place = texelFetch(views, 2 * view);
+  vec4 tangents = intBitsToFloat(texelFetch(views, 2 * view + 1));
+  corner = place.xyz;
+  view_rows = place.w;
+  left = tangents.x;
+  bottom = tangents.y;
+  pixel = tangents.zw;
 }
 
-layout(location = 1) uniform float bottom;        // tangent of the lowest row's centre
-layout(location = 2) uniform vec2 pixel;          // tangent units
-layout(location = 3) uniform vec3 lines_per_m;    // in three parts, of 12, 12 and 24 bits
-layout(location = 4) uniform float pattern_scale; // of the elevation pattern: sinc(this * sine of the elevation)
+vec4 sample_at(ivec2 at) {
+  ivec3 texel = corner + ivec3(at, 0);
+  return texelFetch(depths, texel, 0).x > 0.0 ? texelFetch(surface_samples, texel, 0) : vec4(0.0);
+}
+
+layout(location = 1) uniform vec3 lines_per_m;    // in three parts, of 12, 12 and 24 bits
+layout(location = 2) uniform float pattern_scale; // of the elevation pattern: sinc(this * sine of the elevation)
 
 // Of a pixel what lies in the part: a parallelogram (Cell in grid_binner).
 struct Cell {
@@ -145,7 +160,7 @@ float weight_of(vec2 t, float width, float height) {
 }
 )glsl";
 
-/// One work group per ColumnPart of a view.
+/// One work group per ColumnPart.
 inline constexpr char splat_shader[] = R"glsl(
 layout(local_size_x = 64) in;
 
@@ -153,16 +168,15 @@ layout(local_size_x = 64) in;
 // spread over many lines costs no more than its ends.
 layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
 layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
-layout(binding = 14) uniform isamplerBuffer parts_of_view;
 layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, additions; };
 #if ESTIMATE
 layout(std430, binding = 5) writeonly buffer PartialColumns { vec2 partial_columns[]; };  // [part][invocation]
 vec2 own_echo = vec2(0.0);
 #endif
 
-layout(location = 5) uniform int first_part;       // in parts_of_view
-layout(location = 6) uniform float units_per_sr;
-layout(location = 7) uniform float most_units;    // of one sample: so many of them cannot overflow
+layout(location = 7) uniform int part_count;
+layout(location = 3) uniform float units_per_sr;
+layout(location = 4) uniform float most_units;    // of one sample: so many of them cannot overflow
 
 const float least_spread = 1e-3;   // lines
 const float widest_smear = 512.0;  // lines
@@ -357,8 +371,10 @@ void bin(Part part, int row) {
 }
 
 void main() {
-  int p = texelFetch(parts_of_view, first_part + int(gl_WorkGroupID.x)).x;
+  int p = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+  if (p >= part_count) return;
   Part part = part_at(p);
+  look_at(part.view);
   first_line = uint(part.beam) * uint(lines);
   for (int row = part.row_begin + int(gl_LocalInvocationIndex); row < part.row_end; row += 64) {
     bin(part, row);
@@ -390,16 +406,16 @@ layout(std430, binding = 4) buffer Image { uint counts[4]; float image[]; };
 layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
 layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
 
-layout(location = 12) uniform int image_beams;  // of the page
-layout(location = 23) uniform int first_beam;   // of the page
-layout(location = 13) uniform float sr_per_unit;
-layout(location = 14) uniform bool mean;
-layout(location = 15) uniform bool open_water;
-layout(location = 16) uniform float least_share;
-layout(location = 17) uniform float least_open;
-layout(location = 18) uniform bool estimating;
-layout(location = 19) uniform float least_level;
-layout(location = 20) uniform int first_estimate;
+layout(location = 8) uniform int image_beams;  // of the page
+layout(location = 19) uniform int first_beam;   // of the page
+layout(location = 9) uniform float sr_per_unit;
+layout(location = 10) uniform bool mean;
+layout(location = 11) uniform bool open_water;
+layout(location = 12) uniform float least_share;
+layout(location = 13) uniform float least_open;
+layout(location = 14) uniform bool estimating;
+layout(location = 15) uniform float least_level;
+layout(location = 16) uniform int first_estimate;
 
 shared uvec2 up_to[2][32];
 shared vec2 gathered[32];

@@ -28,38 +28,25 @@ vec3 echo_of(vec4 seen, float width, float height, float weight) {
 }
 )glsl";
 
-/// One invocation per row of a beam in one view: what the row holds. Cells are worked out here, for what is
-/// in a register need not be fetched for each of them.
+/// One invocation per row of a beam: what the row holds. Cells are worked out here, for what is in a register
+/// need not be fetched for each of them.
 inline constexpr char row_shader[] = R"glsl(
 layout(local_size_x = 64) in;
-struct BeamOfView {
-  int beam;
-  int column_begin, column_end;
-  int had_others;         // views before this one
-  float x_begin, x_end;   // tangents of its sides
-};
-layout(binding = 14) uniform isamplerBuffer beams_of_view;
+// The columns of a beam in a view: GpuSegment.
+layout(binding = 8) uniform isamplerBuffer segments;
 layout(std430, binding = 0) writeonly buffer Rows { vec4 rows[]; };  // [beam][row]: echo, moment, width
-layout(binding = 8) uniform samplerBuffer rows_before;              // the same
-layout(location = 5) uniform int first_beam;  // in beams_of_view
-layout(location = 8) uniform int most_rows;   // of any beam
-layout(location = 9) uniform float left;     // tangent of the first column's centre
-layout(location = 10) uniform float tan_limit;
+layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
+layout(location = 5) uniform int most_rows;   // of any beam
+layout(location = 6) uniform float tan_limit;
 
-void main() {
-  int b = 2 * (first_beam + int(gl_WorkGroupID.x));
-  ivec4 place = texelFetch(beams_of_view, b);
-  vec2 sides = intBitsToFloat(texelFetch(beams_of_view, b + 1).xy);
-  BeamOfView beam = BeamOfView(place.x, place.y, place.z, place.w, sides.x, sides.y);
-  int row = int(gl_WorkGroupID.y) * 64 + int(gl_LocalInvocationIndex);
-  if (row >= most_rows) return;
-  int at = beam.beam * most_rows + row;
-  vec4 sum = beam.had_others == 0 ? vec4(0.0) : texelFetch(rows_before, at);
+// What a row holds of a segment; x_begin and x_end are the tangents of its sides.
+vec4 row_of(int row, int column_begin, int column_end, float x_begin, float x_end) {
+  vec4 sum = vec4(0.0);
   float below = bottom + (float(row) - 0.5) * pixel.y;
-  for (int column = beam.column_begin; column < beam.column_end; ++column) {
+  for (int column = column_begin; column < column_end; ++column) {
     float x = left + float(column) * pixel.x;
-    float from = max(beam.x_begin, x - 0.5 * pixel.x);
-    float to = min(beam.x_end, x + 0.5 * pixel.x);
+    float from = max(x_begin, x - 0.5 * pixel.x);
+    float to = min(x_end, x + 0.5 * pixel.x);
     float middle = 0.5 * (from + to);
     float limit = tan_limit * sqrt(1.0 + middle * middle);
     float low = max(below, -limit);
@@ -71,7 +58,22 @@ void main() {
       sum += vec4(echo.xy, (to - from) * (high - low) * echo.z, 0.0);
     }
   }
-  rows[at] = sum;
+  return sum;
+}
+
+void main() {
+  int row = int(gl_WorkGroupID.y) * 64 + int(gl_LocalInvocationIndex);
+  if (row >= most_rows) return;
+  Beam beam = beams[gl_WorkGroupID.x];
+  vec4 sum = vec4(0.0);
+  for (int s = beam.segment_begin; s < beam.segment_end; ++s) {
+    ivec4 place = texelFetch(segments, 2 * s);
+    look_at(place.x);
+    if (row < view_rows) {
+      sum += row_of(row, place.y, place.z, intBitsToFloat(place.w), intBitsToFloat(texelFetch(segments, 2 * s + 1).x));
+    }
+  }
+  rows[int(gl_WorkGroupID.x) * most_rows + row] = sum;
 }
 )glsl";
 
@@ -80,7 +82,7 @@ inline constexpr char column_shader[] = R"glsl(
 layout(local_size_x = 64) in;
 layout(binding = 8) uniform samplerBuffer partial_columns;
 layout(std430, binding = 1) writeonly buffer Columns { vec2 columns[]; };
-layout(location = 11) uniform int part_count;
+layout(location = 7) uniform int part_count;
 
 void main() {
   int p = int(gl_GlobalInvocationID.x);
@@ -100,10 +102,10 @@ layout(std430, binding = 3) coherent buffer ColumnMisses { float column_misses[]
 layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
 layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
 
-layout(location = 8) uniform int most_rows;
-layout(location = 20) uniform int first_estimate;
-layout(location = 21) uniform vec2 most_error;  // of a beam's total and centroid: the error that counts as 1
-layout(location = 22) uniform float most_rest;  // of a zone: the square of what may lie outside of it
+layout(location = 5) uniform int most_rows;
+layout(location = 16) uniform int first_estimate;
+layout(location = 17) uniform vec2 most_error;  // of a beam's total and centroid: the error that counts as 1
+layout(location = 18) uniform float most_rest;  // of a zone: the square of what may lie outside of it
 
 shared vec4 gathered[32];
 

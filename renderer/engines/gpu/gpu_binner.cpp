@@ -45,6 +45,7 @@ constexpr double zone_rest = 0.5;     // of the error that counts as 1, what lie
 // What the shaders know too:
 constexpr std::uint32_t start_of_sum = 0x80000000;
 constexpr std::size_t group_size = 64;
+constexpr std::size_t most_groups = 65535;  // in a row, as every OpenGL has them
 // Units of textures; OpenSceneGraph uses the first. The first four of these are what the shader at hand says.
 enum TextureUnit : unsigned {
   samples_unit = 7,
@@ -54,10 +55,9 @@ enum TextureUnit : unsigned {
   fourth_unit,
   line_weight_unit,
   parts_unit,
-  of_view_unit,
+  views_unit,
   depth_unit,
 };
-using Textures = std::vector<RasterSampler::ViewTextures>;
 constexpr GLbitfield written_by_shaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 constexpr std::size_t image_header_bytes = 16;
 constexpr std::size_t most_view_rows = 16384;
@@ -103,6 +103,7 @@ struct GpuBinner::Impl {
   GpuBuffer line_weight, partial_columns, columns, rows, column_misses, estimates;
   GpuReadback estimates_back, image_back;
   std::size_t most_bytes = 0;  // of a buffer
+  int most_view_px = 0;
   std::vector<float> line_weights;
 
   std::optional<ImageRequest> request;  // the image at hand
@@ -128,6 +129,7 @@ struct GpuBinner::Impl {
         image_back(gl) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most_view_px);
     GLint most_texels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
     most_texels = std::min(most_texels, 1 << 28);  // which shaders count in integers, twice for open water
@@ -277,9 +279,9 @@ struct GpuBinner::Impl {
     if (grid.thinned) {
       begin_sums(thinned, words);
       begin_sums(thinned_weight, request->options.mean ? words : sizeof(std::uint64_t));
-      hold(partial_columns, grid.part_count * group_size * 2 * sizeof(float), "columns");
-      hold(columns, grid.part_count * 2 * sizeof(float), "columns");
-      hold(column_misses, grid.part_count * sizeof(float), "columns");
+      hold(partial_columns, grid.columns.part_count * group_size * 2 * sizeof(float), "columns");
+      hold(columns, grid.columns.part_count * 2 * sizeof(float), "columns");
+      hold(column_misses, grid.columns.part_count * sizeof(float), "columns");
       hold(rows, grid.beam_count * static_cast<std::size_t>(grid.most_rows) * 4 * sizeof(float), "rows");
     }
     hold(estimates, static_cast<std::size_t>(request->beams) * sizeof(BeamEstimate), "estimates");
@@ -294,28 +296,14 @@ struct GpuBinner::Impl {
     gl.glUniform1f(at_pattern_scale, grid.pattern_scale);
   }
 
-  void look_at(const SubView& view, const RasterSampler::ViewTextures& textures) const {
-    gl.glUniform1f(at_bottom, static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height()));
-    gl.glUniform2f(at_pixel, static_cast<float>(view.pixel_width()), static_cast<float>(view.pixel_height()));
+  void look_at(const RasterSampler::ViewTextures& textures) const {
     gl.glActiveTexture(GL_TEXTURE0 + depth_unit);
-    glBindTexture(GL_TEXTURE_2D, textures.depth);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, textures.depths);
     gl.glActiveTexture(GL_TEXTURE0 + samples_unit);
-    glBindTexture(GL_TEXTURE_2D, textures.samples);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, textures.samples);
   }
 
-  /// Calls `run` with the number of a view, and the first and the number of what it has.
-  template <class Run>
-  void each_view(const std::vector<SubView>& views, const std::vector<int>& begin, const Textures& textures,
-                 Run run) const {
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      if (const int count = begin[v + 1] - begin[v]; count > 0) {
-        look_at(views[v], textures[v]);
-        run(v, begin[v], static_cast<GLuint>(count));
-      }
-    }
-  }
-
-  void splat_views(const GpuGrid& grid, const GpuColumns& of, bool is_thinned, const Textures& textures) {
+  void splat(const GpuGrid& grid, const GpuColumns& of, bool is_thinned) {
     const bool estimating = grid.thinned && !is_thinned;
     use({is_thinned ? request->options.mean : weighed(), is_thinned, estimating, request->options.footprint,
          grid.elevation},
@@ -325,40 +313,32 @@ struct GpuBinner::Impl {
     (is_thinned ? thinned : echo).bind(0);
     (is_thinned ? thinned_weight : weight).bind(1);
     of.parts.bind_texels(parts_unit, GL_RGBA32I);
-    of.order.bind_texels(of_view_unit, GL_R32I);
+    of.views.bind_texels(views_unit, GL_RGBA32I);
     pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
+    gl.glUniform1i(at_part_count, static_cast<GLint>(of.part_count));
     gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr(grid)));
     gl.glUniform1f(at_most_units, static_cast<float>(most_units_of_beam / grid.most_samples));
-    each_view(of.views, of.view_begin, textures, [&](std::size_t, int first, GLuint count) {
-      gl.glUniform1i(at_first, first);
-      gl.glDispatchCompute(count, 1, 1);
-    });
+    const auto in_a_row = static_cast<GLuint>(std::min(of.part_count, most_groups));
+    gl.glDispatchCompute(in_a_row, (static_cast<GLuint>(of.part_count) + in_a_row - 1) / in_a_row, 1);
   }
 
-  void sum_strips(const GpuGrid& grid, const Textures& textures) {
+  void sum_strips(const GpuGrid& grid) {
     use({}, {column_shader});
     partial_columns.bind_texels(first_unit, GL_RG32F);
     columns.bind(1);
-    gl.glUniform1i(at_part_count, static_cast<GLint>(grid.part_count));
-    gl.glDispatchCompute(groups_of(grid.part_count), 1, 1);
+    gl.glUniform1i(at_part_count, static_cast<GLint>(grid.columns.part_count));
+    gl.glDispatchCompute(groups_of(grid.columns.part_count), 1, 1);
 
     use({false, false, false, true, grid.elevation}, row_summing);
     set_pattern(grid);
     rows.bind(0);
-    rows.bind_texels(first_unit, GL_RGBA32F);
-    grid.view_beams.bind_texels(of_view_unit, GL_RGBA32I);
+    grid.beams.bind(5);
+    grid.segments.bind_texels(first_unit, GL_RGBA32I);
+    grid.columns.views.bind_texels(views_unit, GL_RGBA32I);
     gl.glUniform1i(at_most_rows, grid.most_rows);
     gl.glUniform1f(at_tan_limit, grid.tan_limit);
-    each_view(grid.columns.views, grid.view_beams_begin, textures,
-              [&](std::size_t v, int first, GLuint count) {
-                const SubView& view = grid.columns.views[v];
-                if (grid.continues_beams[v]) {
-                  gl.glMemoryBarrier(written_by_shaders);
-                }
-                gl.glUniform1i(at_first, first);
-                gl.glUniform1f(at_left, static_cast<float>(-view.tan_half_width + 0.5 * view.pixel_width()));
-                gl.glDispatchCompute(count, groups_of(static_cast<std::size_t>(view.rows)), 1);
-              });
+    gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count),
+                         groups_of(static_cast<std::size_t>(grid.most_rows)), 1);
   }
 
   void sum_beams(const GpuGrid& grid) {
@@ -400,14 +380,15 @@ struct GpuBinner::Impl {
     gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count), 1, 1);
   }
 
-  void add(const GpuGrid& grid, const Textures& textures) {
+  void add(const GpuGrid& grid, const RasterSampler::ViewTextures& textures) {
     make_room(grid);
+    look_at(textures);
     line_weight.bind_texels(line_weight_unit, GL_R32F);
-    splat_views(grid, grid.columns, false, textures);
+    splat(grid, grid.columns, false);
     if (grid.thinned) {
-      splat_views(grid, *grid.thinned, true, textures);
+      splat(grid, *grid.thinned, true);
       gl.glMemoryBarrier(written_by_shaders);
-      sum_strips(grid, textures);
+      sum_strips(grid);
     }
     gl.glMemoryBarrier(written_by_shaders);
     sum_beams(grid);
@@ -416,9 +397,7 @@ struct GpuBinner::Impl {
       estimated += grid.beam_count;
     }
     gl.glMemoryBarrier(written_by_shaders | GL_BUFFER_UPDATE_BARRIER_BIT);
-    glBindTexture(GL_TEXTURE_2D, 0);
-    gl.glActiveTexture(GL_TEXTURE0 + depth_unit);
-    glBindTexture(GL_TEXTURE_2D, 0);
+    look_at({});
     gl.glActiveTexture(GL_TEXTURE0 + context.getState()->getActiveTextureUnit());
     gl.glUseProgram(0);
     context.getState()->setLastAppliedProgramObject(nullptr);
@@ -512,7 +491,7 @@ GpuBinner::~GpuBinner() {
 std::shared_ptr<const GpuGrid> GpuBinner::load(const SampleGrid& grid, const std::vector<int>& beams,
                                                const SampleGrid* thinned) {
   impl_->context.make_current_or_throw();
-  auto made = std::make_shared<const GpuGrid>(impl_->gl, grid, beams, thinned);
+  auto made = std::make_shared<const GpuGrid>(impl_->gl, grid, beams, thinned, impl_->most_view_px);
   impl_->check_memory("a grid");
   impl_->traffic.bytes_uploaded += made->bytes();
   return made;
@@ -527,7 +506,7 @@ int GpuBinner::beams_per_page() const {
   return impl_->beams_per_page();
 }
 
-void GpuBinner::add(const GpuGrid& grid, const std::vector<RasterSampler::ViewTextures>& textures) {
+void GpuBinner::add(const GpuGrid& grid, const RasterSampler::ViewTextures& textures) {
   impl_->context.make_current_or_throw();
   impl_->add(grid, textures);
 }

@@ -17,7 +17,8 @@ struct GpuPart {
   float first_y_offset, first_height, last_y_offset, last_height;
   std::int32_t before, after;
   float to_before, to_after, width_rad;
-  float unused[3] = {};
+  std::int32_t view;
+  float unused[2] = {};
 };
 static_assert(sizeof(GpuPart) == 5 * 4 * 4, "is read as texels of four words");
 
@@ -25,15 +26,21 @@ struct GpuBeam {
   std::int32_t in_image;
   float solid_angle;
   std::int32_t part_begin, part_end;
+  std::int32_t segment_begin, segment_end;
   std::int32_t rows;
 };
-static_assert(sizeof(GpuBeam) == 5 * 4, "must match std430");
-struct BeamOfView {
-  std::int32_t beam, column_begin, column_end, had_others;
-  float x_begin, x_end;
-  float unused[2] = {};
+static_assert(sizeof(GpuBeam) == 7 * 4, "must match std430");
+struct GpuView {
+  std::int32_t x, y, layer, rows;
+  float left, bottom, pixel_width, pixel_height;
 };
-static_assert(sizeof(BeamOfView) == 2 * 4 * 4, "is read as texels of four words");
+static_assert(sizeof(GpuView) == 2 * 4 * 4, "is read as texels of four words");
+struct GpuSegment {
+  std::int32_t view, column_begin, column_end;
+  float x_begin, x_end;
+  float unused[3] = {};
+};
+static_assert(sizeof(GpuSegment) == 2 * 4 * 4, "is read as texels of four words");
 
 /// The part of the next column to port (-1) or starboard (1), also where another beam begins; the part itself
 /// where there is none.
@@ -72,40 +79,35 @@ std::vector<GpuPart> gpu_parts(const SampleGrid& grid) {
                        part.x_offset, part.width, part.limit_slope, part.first_y_offset, part.first_height,
                        part.last_y_offset, part.last_height, static_cast<std::int32_t>(before),
                        static_cast<std::int32_t>(after), distance(before), distance(after),
-                       static_cast<float>(grid.port_rad(part) - grid.starboard_rad(part))});
+                       static_cast<float>(grid.port_rad(part) - grid.starboard_rad(part)), part.view});
     }
   }
   return parts;
 }
 
-/// What views have, one view after the other, and where each begins.
-template <class Item>
-struct ByView {
-  std::vector<Item> items;
-  std::vector<int> begin{0};
-
-  explicit ByView(const std::vector<std::vector<Item>>& of_view) {
-    for (const std::vector<Item>& some : of_view) {
-      items.insert(items.end(), some.begin(), some.end());
-      begin.push_back(static_cast<int>(items.size()));
-    }
+std::vector<GpuView> gpu_views(const SampleGrid& grid, const ViewLayout& layout) {
+  std::vector<GpuView> views;
+  for (std::size_t v = 0; v < grid.views.size(); ++v) {
+    const SubView& view = grid.views[v];
+    const ViewLayout::Place& place = layout.places[v];
+    views.push_back({place.x, place.y, place.layer, view.rows,
+                     static_cast<float>(-view.tan_half_width + 0.5 * view.pixel_width()),
+                     static_cast<float>(-view.tan_half_height + 0.5 * view.pixel_height()),
+                     static_cast<float>(view.pixel_width()), static_cast<float>(view.pixel_height())});
   }
-};
-
-ByView<std::int32_t> parts_by_view(const SampleGrid& grid) {
-  std::vector<std::vector<std::int32_t>> of_view(grid.views.size());
-  for (std::size_t p = 0; p < grid.parts.size(); ++p) {
-    of_view[static_cast<std::size_t>(grid.parts[p].view)].push_back(static_cast<std::int32_t>(p));
-  }
-  return ByView(of_view);
+  return views;
 }
 
-ByView<BeamOfView> beams_by_view(const SampleGrid& grid) {
-  std::vector<std::vector<BeamOfView>> of_view(grid.views.size());
+struct Segments {
+  std::vector<GpuSegment> all;
+  std::vector<int> begin{0};  ///< those of beam b are [begin[b], begin[b + 1])
+};
+
+Segments segments_of(const SampleGrid& grid) {
+  Segments segments;
   for (int beam = 0; beam < grid.beam_count(); ++beam) {
-    const int first = grid.beam_parts[static_cast<std::size_t>(beam)];
     const int end = grid.beam_parts[static_cast<std::size_t>(beam) + 1];
-    for (int p = first; p < end;) {
+    for (int p = grid.beam_parts[static_cast<std::size_t>(beam)]; p < end;) {
       const int view = grid.parts[static_cast<std::size_t>(p)].view;
       int last = p;
       while (last < end && grid.parts[static_cast<std::size_t>(last)].view == view) {
@@ -113,57 +115,54 @@ ByView<BeamOfView> beams_by_view(const SampleGrid& grid) {
       }
       const ColumnPart& port = grid.parts[static_cast<std::size_t>(p)];
       const ColumnPart& starboard = grid.parts[static_cast<std::size_t>(last - 1)];
-      of_view[static_cast<std::size_t>(view)].push_back(
-          {beam, port.column, starboard.column + 1, p > first ? 1 : 0,
+      segments.all.push_back(
+          {view, port.column, starboard.column + 1,
            static_cast<float>(grid.middle(port) - static_cast<double>(port.width) / 2),
            static_cast<float>(grid.middle(starboard) + static_cast<double>(starboard.width) / 2)});
       p = last;
     }
+    segments.begin.push_back(static_cast<int>(segments.all.size()));
   }
-  return ByView(of_view);
+  return segments;
 }
 
 }  // namespace
 
-GpuColumns::GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid)
-    : views(grid.views), parts(gl), order(gl) {
-  const ByView sorted = parts_by_view(grid);
-  view_begin = sorted.begin;
+GpuColumns::GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid, const ViewLayout& layout)
+    : parts(gl), views(gl), part_count(grid.parts.size()) {
   parts.fill(gpu_parts(grid));
-  order.fill(sorted.items);
+  views.fill(gpu_views(grid, layout));
 }
 
 GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
-                 const SampleGrid* thinned_grid)
-    : columns(gl, grid),
+                 const SampleGrid* thinned_grid, int most_view_px)
+    : GpuGrid(gl, grid, in_image, thinned_grid, lay_out(grid.views, most_view_px)) {}
+
+GpuGrid::GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
+                 const SampleGrid* thinned_grid, const ViewLayout& layout)
+    : columns(gl, grid, layout),
       beams(gl),
-      view_beams(gl),
+      segments(gl),
       first_beam(in_image.front()),
       beam_count(static_cast<std::size_t>(grid.beam_count())),
-      part_count(grid.parts.size()),
       elevation(grid.aperture.elevation),
       pattern_scale(
           static_cast<float>(std::numbers::pi * 0.443 / std::sin(grid.aperture.vertical_beamwidth_rad / 2))),
       tan_limit(static_cast<float>(std::tan(grid.aperture.elevation_limit_rad()))) {
+  const Segments found = segments_of(grid);
   if (thinned_grid != nullptr) {
-    thinned = std::make_unique<GpuColumns>(gl, *thinned_grid);
-    const ByView sorted = beams_by_view(grid);
-    view_beams.fill(sorted.items);
-    view_beams_begin = sorted.begin;
-    for (std::size_t v = 0; v < grid.views.size(); ++v) {
-      continues_beams.push_back(std::any_of(sorted.items.begin() + sorted.begin[v],
-                                            sorted.items.begin() + sorted.begin[v + 1],
-                                            [](const BeamOfView& beam) { return beam.had_others != 0; }));
-    }
+    thinned = std::make_unique<GpuColumns>(gl, *thinned_grid, layout);
+    segments.fill(found.all);
   }
-  load_beams(grid, in_image);
+  load_beams(grid, in_image, found.begin);
 }
 
 std::size_t GpuGrid::bytes() const {
-  return columns.bytes() + (thinned ? thinned->bytes() : 0) + beams.bytes() + view_beams.bytes();
+  return columns.bytes() + (thinned ? thinned->bytes() : 0) + beams.bytes() + segments.bytes();
 }
 
-void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_image) {
+void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_image,
+                         const std::vector<int>& segment_begin) {
   const Aperture& aperture = grid.aperture;
   const double height = aperture.pattern_height();
   std::vector<GpuBeam> all;
@@ -176,8 +175,8 @@ void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_imag
       rows = std::max(rows, grid.views[static_cast<std::size_t>(part.view)].rows);
       samples += part.row_end - part.row_begin;
     }
-    all.push_back(
-        {in_image[b], static_cast<float>(solid_angle), grid.beam_parts[b], grid.beam_parts[b + 1], rows});
+    all.push_back({in_image[b], static_cast<float>(solid_angle), grid.beam_parts[b], grid.beam_parts[b + 1],
+                   segment_begin[b], segment_begin[b + 1], rows});
     most_rows = std::max(most_rows, rows);
     most_samples = std::max(most_samples, samples);
     fullest_beam_sr = std::max(fullest_beam_sr, solid_angle);

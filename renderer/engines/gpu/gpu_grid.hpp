@@ -8,19 +8,20 @@
 #include <osg/GLExtensions>
 
 #include "renderer/engines/gpu/gpu_buffer.hpp"
+#include "renderer/engines/gpu/view_layout.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 
 namespace sonard::render {
 
 /// What lies where in the views of a grid.
 struct GpuColumns {
-  std::vector<SubView> views;
-  GpuBuffer parts;              ///< in the order of the grid
-  GpuBuffer order;              ///< their numbers, view by view
-  std::vector<int> view_begin;  ///< in `order`: parts of view v are [view_begin[v], view_begin[v + 1])
+  GpuBuffer parts;  ///< in the order of the grid
+  GpuBuffer views;
+  std::size_t part_count;
 
-  GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid);
-  std::size_t bytes() const { return parts.bytes() + order.bytes(); }
+  /// @param layout of the grid that is drawn.
+  GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid, const ViewLayout& layout);
+  std::size_t bytes() const { return parts.bytes() + views.bytes(); }
 };
 
 /// Made, used and deleted while its context is current.
@@ -28,11 +29,9 @@ struct GpuGrid {
   GpuColumns columns;
   std::unique_ptr<GpuColumns> thinned;  ///< of every second column and row; null: errors are not estimated
   GpuBuffer beams;
-  GpuBuffer view_beams;               ///< beams with columns in a view, view by view
-  std::vector<int> view_beams_begin;  ///< in `view_beams`, as above
-  std::vector<bool> continues_beams;  ///< whether a view has columns of beams that views before it have, too
-  int first_beam;                     ///< of the image
-  std::size_t beam_count, part_count;
+  GpuBuffer segments;  ///< the columns of a beam in a view, beam by beam
+  int first_beam;      ///< of the image
+  std::size_t beam_count;
   int most_rows = 0;  ///< of any beam
   Aperture::Elevation elevation;
   float pattern_scale;  ///< the elevation pattern is a power of sinc(this * sine of the elevation)
@@ -41,13 +40,17 @@ struct GpuGrid {
   int most_samples = 1;  ///< of any beam
 
   /// @param in_image which beam of the image each beam of the grid is.
+  /// @param most_view_px as of lay_out()
   GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
-          const SampleGrid* thinned_grid);
+          const SampleGrid* thinned_grid, int most_view_px);
 
   std::size_t bytes() const;  ///< of all buffers
 
  private:
-  void load_beams(const SampleGrid& grid, const std::vector<int>& in_image);
+  GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
+          const SampleGrid* thinned_grid, const ViewLayout& layout);
+  void load_beams(const SampleGrid& grid, const std::vector<int>& in_image,
+                  const std::vector<int>& segment_begin);
 };
 
 }  // namespace sonard::render

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <list>
 #include <map>
 #include <unordered_map>
 
@@ -15,7 +14,7 @@
 #include <osg/MatrixTransform>
 #include <osg/Program>
 #include <osg/RenderInfo>
-#include <osg/Texture2D>
+#include <osg/Texture2DArray>
 
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/engines/gpu/gl_errors.hpp"
@@ -23,6 +22,7 @@
 #include "renderer/engines/gpu/raster_part.hpp"
 #include "renderer/engines/gpu/surface_shader.hpp"
 #include "renderer/engines/gpu/view_culler.hpp"
+#include "renderer/engines/gpu/view_layout.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/refraction.hpp"
@@ -32,20 +32,9 @@ namespace sonard::render {
 
 namespace {
 
-/// Where views of one size are drawn, and the copy that is read back.
-struct ViewTarget {
-  int columns = 0, rows = 0;
-  osg::ref_ptr<osg::Texture2D> samples_texture, depth_texture;
-  osg::ref_ptr<osg::FrameBufferObject> framebuffer;
-  std::vector<SurfaceSample> samples;
-  std::uint64_t used = 0;  ///< number of the call that used it last
-
-  double pixels() const { return 1.0 * columns * rows; }
-};
-
-osg::ref_ptr<osg::Texture2D> make_texture(int columns, int rows, GLint internal_format, GLenum format) {
-  osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
-  texture->setTextureSize(columns, rows);
+osg::ref_ptr<osg::Texture2DArray> make_texture(const ViewLayout& size, GLint internal_format, GLenum format) {
+  osg::ref_ptr<osg::Texture2DArray> texture = new osg::Texture2DArray;
+  texture->setTextureSize(size.width, size.height, size.layers);
   texture->setInternalFormat(internal_format);
   texture->setSourceFormat(format);
   texture->setSourceType(GL_FLOAT);
@@ -54,24 +43,72 @@ osg::ref_ptr<osg::Texture2D> make_texture(int columns, int rows, GLint internal_
   return texture;
 }
 
-ViewTarget make_target(int columns, int rows) {
-  ViewTarget target;
-  target.columns = columns;
-  target.rows = rows;
-  target.samples_texture = make_texture(columns, rows, GL_RGBA32F_ARB, GL_RGBA);
-  target.depth_texture = make_texture(columns, rows, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT);
-  target.framebuffer = new osg::FrameBufferObject;
-  target.framebuffer->setAttachment(osg::Camera::COLOR_BUFFER0,
-                                    osg::FrameBufferAttachment(target.samples_texture.get()));
-  target.framebuffer->setAttachment(osg::Camera::DEPTH_BUFFER,
-                                    osg::FrameBufferAttachment(target.depth_texture.get()));
-  return target;
-}
+/// What views are drawn into.
+class ViewTarget {
+ public:
+  /// Makes room, unless there is.
+  void hold(const ViewLayout& layout, osg::State& state) {
+    const bool fits =
+        layout.width <= size_.width && layout.height <= size_.height && layout.layers <= size_.layers;
+    if (fits && pixels(size_) <= std::max(most_kept_pixels, pixels(layout))) {
+      return;
+    }
+    release(state);
+    ViewLayout both = layout;
+    both.width = roomy(std::max(layout.width, size_.width));
+    both.height = roomy(std::max(layout.height, size_.height));
+    both.layers = std::max(layout.layers, size_.layers);
+    size_ = pixels(both) <= most_kept_pixels ? both : layout;
+    size_.places.clear();
+    samples_ = make_texture(size_, GL_RGBA32F_ARB, GL_RGBA);
+    depths_ = make_texture(size_, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT);
+    for (int layer = 0; layer < size_.layers; ++layer) {
+      osg::ref_ptr<osg::FrameBufferObject> framebuffer = new osg::FrameBufferObject;
+      framebuffer->setAttachment(osg::Camera::COLOR_BUFFER0,
+                                 osg::FrameBufferAttachment(samples_.get(), layer));
+      framebuffer->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(depths_.get(), layer));
+      framebuffers_.push_back(framebuffer);
+    }
+  }
 
-// Making a target takes as long as drawing into it, so those of earlier calls are kept: so many pixels in all
-// (36 bytes each), and as many targets.
-constexpr double most_kept_pixels = 0x1p25;
-constexpr std::size_t most_kept_targets = 1024;
+  void release(osg::State& state) {
+    if (samples_) {
+      samples_->releaseGLObjects(&state);
+      depths_->releaseGLObjects(&state);
+      for (const auto& framebuffer : framebuffers_) {
+        framebuffer->releaseGLObjects(&state);
+      }
+      framebuffers_.clear();
+      osg::flushAllDeletedGLObjects(state.getContextID());
+    }
+  }
+
+  /// Draws go into this layer.
+  void bind(int layer, osg::State& state) const {
+    framebuffers_[static_cast<std::size_t>(layer)]->apply(state);
+    // Which makes its textures the first time.
+    state.haveAppliedTextureAttribute(state.getActiveTextureUnit(), osg::StateAttribute::TEXTURE);
+  }
+
+  RasterSampler::ViewTextures textures(const osg::State& state) const {
+    const auto name = [&](const osg::Texture& texture) {
+      return texture.getTextureObject(state.getContextID())->id();
+    };
+    return {name(*samples_), name(*depths_)};
+  }
+
+ private:
+  // Making textures takes as long as drawing, so they are kept from call to call: so many pixels of 20 bytes.
+  static constexpr double most_kept_pixels = 0x1p25;
+
+  /// The next pass hardly differs. What OpenGL has at most is a multiple of this, too.
+  static int roomy(int px) { return (px + 511) / 512 * 512; }
+  static double pixels(const ViewLayout& size) { return 1.0 * size.width * size.height * size.layers; }
+
+  ViewLayout size_;
+  osg::ref_ptr<osg::Texture2DArray> samples_, depths_;
+  std::vector<osg::ref_ptr<osg::FrameBufferObject>> framebuffers_;  // of the layers
+};
 
 }  // namespace
 
@@ -92,9 +129,8 @@ struct RasterSampler::Impl {
   std::unordered_map<const osg::StateSet*, NormalMapTexture*> normal_maps;  // of the surfaces
   std::map<std::string, osg::ref_ptr<osg::Program>> programs;               // by surface_shader_head()
   MeshCache<osg::ref_ptr<osg::Group>> replacements;                         // chunks of meshes
-  std::list<ViewTarget> targets;                                            // the last used first
-  double target_pixels = 0;                                                 // of all of them
-  std::uint64_t calls = 0;                                                  // of sample()
+  ViewTarget target;
+  std::vector<std::vector<SurfaceSample>> read_samples;  // of each view
   float max_range_m = 0.0F;
   Drawn drawn;
   float bend_per_m = 0.0F;
@@ -116,15 +152,12 @@ struct RasterSampler::Impl {
   ~Impl() {
     if (context->makeCurrent()) {
       video_memory->release_all();
-      for (const ViewTarget& target : targets) {
-        release(target);
-      }
+      target.release(*context->getState());
       scene->releaseGLObjects(context->getState());
       osg::flushAllDeletedGLObjects(context->getState()->getContextID());
     } else {
       video_memory->forget_all();
     }
-    targets.clear();
     context->close();
   }
 
@@ -183,63 +216,16 @@ struct RasterSampler::Impl {
         ->set(static_cast<float>(surface.attenuation_per_m));
   }
 
-  /// A target for every view.
-  std::vector<ViewTarget*> targets_for(const std::vector<SubView>& views) {
-    ++calls;
-    std::vector<ViewTarget*> found;
-    for (const SubView& view : views) {
-      if (view.columns > max_texture_px || view.rows > max_texture_px) {
-        throw RequestError("sampling: a view exceeds the GL limit of " + std::to_string(max_texture_px) +
-                           " pixels");
-      }
-      found.push_back(&target_for(view));
-    }
-    release_unused();
-    return found;
-  }
-
-  ViewTarget& target_for(const SubView& view) {
-    const auto free = std::find_if(targets.begin(), targets.end(), [&](const ViewTarget& target) {
-      return target.columns == view.columns && target.rows == view.rows && target.used != calls;
-    });
-    if (free != targets.end()) {
-      targets.splice(targets.begin(), targets, free);
-    } else {
-      targets.push_front(make_target(view.columns, view.rows));
-      target_pixels += targets.front().pixels();
-    }
-    targets.front().used = calls;
-    return targets.front();
-  }
-
-  void release(const ViewTarget& target) const {
-    for (osg::Object* object : {static_cast<osg::Object*>(target.samples_texture.get()),
-                                static_cast<osg::Object*>(target.depth_texture.get()),
-                                static_cast<osg::Object*>(target.framebuffer.get())}) {
-      object->releaseGLObjects(context->getState());
-    }
-  }
-
-  void release_unused() {
-    const std::size_t before = targets.size();
-    while (targets.back().used != calls &&
-           (target_pixels > most_kept_pixels || targets.size() > most_kept_targets)) {
-      target_pixels -= targets.back().pixels();
-      release(targets.back());
-      targets.pop_back();
-    }
-    if (targets.size() < before) {
-      osg::flushAllDeletedGLObjects(context->getState()->getContextID());
-    }
-  }
-
   /// All views of a ping. Does not wait for the drawing to end.
-  /// @param clear what of a view is cleared. On an H200 the samples take two fifths of what a view takes in
-  /// all.
-  std::vector<ViewTarget*> draw(const Pose& T_world_sonar, const SampleGrid& grid,
-                                const SurfaceModel& surface, double range_m, GLbitfield clear) {
+  /// @param clear what of the target is cleared. On an H200 the samples take two fifths of what drawing
+  /// takes.
+  /// @return where the views are.
+  ViewLayout draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+                  double range_m, GLbitfield clear) {
     context->make_current_or_throw();
-    const std::vector<ViewTarget*> found = targets_for(grid.views);
+    osg::State& state = *context->getState();
+    ViewLayout layout = lay_out(grid.views, max_texture_px);
+    target.hold(layout, state);
     set_surface(surface);
     max_range_m = static_cast<float>(range_m);
     for (const BodyNode& body : bodies) {
@@ -250,23 +236,36 @@ struct RasterSampler::Impl {
     drawn.culling_s += watch.lap();
     const Refraction bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
                           bend_per_m};
-    osg::State& state = *context->getState();
-    glClearColor(0, 0, 0, 0);
-    glClearDepth(0);
     state.pushStateSet(scene->getStateSet());
     state.apply();
-    for (std::size_t v = 0; v < found.size(); ++v) {
-      found[v]->framebuffer->apply(state);
-      // Which makes its textures the first time.
-      state.haveAppliedTextureAttribute(state.getActiveTextureUnit(), osg::StateAttribute::TEXTURE);
-      glViewport(0, 0, found[v]->columns, found[v]->rows);
-      glClear(clear);
-      draw(grid.views[v], culled[v], bend);
+    clear_layers(layout, clear);
+    int layer = -1;
+    for (std::size_t v = 0; v < culled.size(); ++v) {
+      const ViewLayout::Place& place = layout.places[v];
+      if (place.layer != layer) {
+        layer = place.layer;
+        target.bind(layer, state);
+      }
+      glViewport(place.x, place.y, grid.views[v].columns, grid.views[v].rows);
+      draw(grid.views[v], place, culled[v], bend);
     }
     state.popStateSet();
     gl().glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
     check_gl_errors("drawing the scene");
-    return found;
+    return layout;
+  }
+
+  /// What of them holds views.
+  void clear_layers(const ViewLayout& layout, GLbitfield clear) const {
+    glClearColor(0, 0, 0, 0);
+    glClearDepth(0);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, layout.width, layout.height);
+    for (int layer = 0; layer < layout.layers; ++layer) {
+      target.bind(layer, *context->getState());
+      glClear(clear);
+    }
+    glDisable(GL_SCISSOR_TEST);
   }
 
   osg::GLExtensions& gl() const { return *context->getState()->get<osg::GLExtensions>(); }
@@ -297,7 +296,8 @@ struct RasterSampler::Impl {
   }
 
   /// Into what is bound.
-  void draw(const SubView& view, const CulledView& culled, const Refraction& bend) const {
+  void draw(const SubView& view, const ViewLayout::Place& place, const CulledView& culled,
+            const Refraction& bend) const {
     osg::State& state = *context->getState();
     osg::RenderInfo info(&state, nullptr);
     const osg::Vec3 up =
@@ -311,6 +311,7 @@ struct RasterSampler::Impl {
         gl().glUniform2f(at_tan_half, static_cast<float>(view.tan_half_width),
                          static_cast<float>(view.tan_half_height));
         gl().glUniform2f(at_pixels, static_cast<float>(view.columns), static_cast<float>(view.rows));
+        gl().glUniform2f(at_corner, static_cast<float>(place.x), static_cast<float>(place.y));
         if (!bend.straight()) {
           gl().glUniform4f(at_refraction, up.x(), up.y(), up.z(), bend.per_m);
         }
@@ -320,17 +321,18 @@ struct RasterSampler::Impl {
     }
   }
 
-  osg::Texture::TextureObject& on_gpu(const osg::Texture2D& texture) const {
-    return *texture.getTextureObject(context->getState()->getContextID());
-  }
-
   /// Waits for the drawing to end.
-  void read(ViewTarget& target) const {
-    target.samples.resize(static_cast<std::size_t>(target.columns) * static_cast<std::size_t>(target.rows));
-    on_gpu(*target.samples_texture).bind();
-    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, target.samples.data());
-    context->getState()->haveAppliedTextureAttribute(context->getState()->getActiveTextureUnit(),
-                                                     osg::StateAttribute::TEXTURE);
+  void read(const std::vector<SubView>& views, const ViewLayout& layout) {
+    read_samples.resize(std::max(read_samples.size(), views.size()));
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const ViewLayout::Place& place = layout.places[v];
+      target.bind(place.layer, *context->getState());
+      read_samples[v].resize(static_cast<std::size_t>(views[v].columns) *
+                             static_cast<std::size_t>(views[v].rows));
+      glReadPixels(place.x, place.y, views[v].columns, views[v].rows, GL_RGBA, GL_FLOAT,
+                   read_samples[v].data());
+    }
+    gl().glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
     check_gl_errors("drawing the scene");
     context->check();
   }
@@ -343,27 +345,20 @@ RasterSampler::~RasterSampler() = default;
 std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                         const SurfaceModel& surface, double max_range_m) {
   static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
+  const ViewLayout layout =
+      impl_->draw(T_world_sonar, grid, surface, max_range_m, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  impl_->read(grid.views, layout);
   std::vector<const SurfaceSample*> samples;
-  // All views are drawn before the first is read.
-  for (ViewTarget* target :
-       impl_->draw(T_world_sonar, grid, surface, max_range_m, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)) {
-    impl_->read(*target);
-    samples.push_back(target->samples.data());
+  for (std::size_t v = 0; v < grid.views.size(); ++v) {
+    samples.push_back(impl_->read_samples[v].data());
   }
   return samples;
 }
 
-std::vector<RasterSampler::ViewTextures> RasterSampler::draw(const Pose& T_world_sonar,
-                                                             const SampleGrid& grid,
-                                                             const SurfaceModel& surface,
-                                                             double max_range_m) {
-  std::vector<ViewTextures> textures;
-  for (const ViewTarget* target :
-       impl_->draw(T_world_sonar, grid, surface, max_range_m, GL_DEPTH_BUFFER_BIT)) {
-    textures.push_back(
-        {impl_->on_gpu(*target->samples_texture).id(), impl_->on_gpu(*target->depth_texture).id()});
-  }
-  return textures;
+RasterSampler::ViewTextures RasterSampler::draw(const Pose& T_world_sonar, const SampleGrid& grid,
+                                                const SurfaceModel& surface, double max_range_m) {
+  impl_->draw(T_world_sonar, grid, surface, max_range_m, GL_DEPTH_BUFFER_BIT);
+  return impl_->target.textures(*impl_->context->getState());
 }
 
 EglContext& RasterSampler::current_context() {

@@ -57,16 +57,16 @@ class RasterSampler {
   };
   const Drawn& drawn() const;
 
-  /// Names of the textures of a view.
+  /// Names of arrays of textures in which the views of a grid are as lay_out() says.
   struct ViewTextures {
     unsigned samples =
-        0;  ///< RGBA32F, a SurfaceSample each texel, row by row upwards: of pixels with a surface
-    unsigned depth = 0;  ///< DEPTH_COMPONENT32F, above 0 where there is one
+        0;  ///< RGBA32F, a SurfaceSample each texel, row by row upwards: where there is a surface
+    unsigned depths = 0;  ///< DEPTH_COMPONENT32F, above 0 where there is one
   };
   /// Like sample(), but the samples stay on the GPU, and where there is no surface anything may be.
-  /// @return of every view. They stay valid until the next call of draw() or sample().
-  std::vector<ViewTextures> draw(const Pose& T_world_sonar, const SampleGrid& grid,
-                                 const SurfaceModel& surface, double max_range_m);
+  /// @return what stays valid until the next call of draw() or sample().
+  ViewTextures draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+                    double max_range_m);
   /// Where these textures are, made current.
   /// @throws RendererError when the context is lost.
   EglContext& current_context();

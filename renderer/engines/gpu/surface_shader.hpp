@@ -18,7 +18,7 @@ namespace sonard::render {
 enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
 /// Locations of the uniforms that belong to a view; OpenSceneGraph has the others.
-enum ViewUniform : int { at_tan_half, at_pixels, at_refraction };
+enum ViewUniform : int { at_tan_half, at_pixels, at_refraction, at_corner };
 
 /// The beginning of all three shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
 /// TWO_SIDED: back faces are drawn.
@@ -164,6 +164,7 @@ layout(location = 0) out vec4 surface_sample;
 
 layout(location = 0) uniform vec2 tan_half;  // of the view
 layout(location = 1) uniform vec2 pixels;
+layout(location = 3) uniform vec2 view_corner;  // its lower left, in pixels
 #if SHADING == 2
 in vec4 tangent_eye;
 in vec2 texcoord;
@@ -260,7 +261,7 @@ float facet_response_of_mean(float cos_phi, float mean_length) {
 
 void main() {
   vec2 pixel = 2.0 * tan_half / pixels;
-  vec2 t = gl_FragCoord.xy * pixel - tan_half;
+  vec2 t = (gl_FragCoord.xy - view_corner) * pixel - tan_half;
   float inverse_depth = anchor.z + dot(slope, t - anchor.xy);
   float depth = 1.0 / inverse_depth;
   float qq = 1.0 + dot(t, t);

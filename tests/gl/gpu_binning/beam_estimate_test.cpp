@@ -9,7 +9,9 @@
 
 #include <GL/gl.h>
 #include <gtest/gtest.h>
+#include <osg/GLExtensions>
 
+#include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/engines/gpu/gpu_binner.hpp"
 #include "tests/support/engine_test.hpp"
 
@@ -41,14 +43,16 @@ class BeamEstimateTest : public ::testing::Test {
   }
 
   /// Of the size of the view.
-  GLuint make_texture(GLint internal_format, GLenum format, const void* floats) const {
+  GLuint make_texture(RasterSampler& sampler, GLint internal_format, GLenum format,
+                      const void* floats) const {
     GLuint texture = 0;
     glGenTextures(1, &texture);
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexImage2D(GL_TEXTURE_2D, 0, internal_format, grid_.views[0].columns, grid_.views[0].rows, 0, format,
-                 GL_FLOAT, floats);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, texture);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    sampler.current_context().getState()->get<osg::GLExtensions>()->glTexImage3D(
+        GL_TEXTURE_2D_ARRAY, 0, internal_format, grid_.views[0].columns, grid_.views[0].rows, 1, 0, format,
+        GL_FLOAT, floats);
     return texture;
   }
 
@@ -69,17 +73,17 @@ class BeamEstimateTest : public ::testing::Test {
     sampler.current_context();
     const std::vector<float> depths(samples.size(), 1.0F);
     const RasterSampler::ViewTextures textures{
-        make_texture(GL_RGBA32F, GL_RGBA, samples.data()),
-        make_texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, depths.data())};
+        make_texture(sampler, GL_RGBA32F, GL_RGBA, samples.data()),
+        make_texture(sampler, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, depths.data())};
     const std::vector<float> no_weights;
     const BinningOptions options;
     const auto on_gpu = binner.load(grid_, {0, 1, 2}, &thinned_);
     binner.begin({3, range, options, no_weights, most_error});
-    binner.add(*on_gpu, std::vector{textures});
+    binner.add(*on_gpu, textures);
     binner.ask_estimates();
     const BeamEstimate found = binner.take_estimates().at(1);
     glDeleteTextures(1, &textures.samples);
-    glDeleteTextures(1, &textures.depth);
+    glDeleteTextures(1, &textures.depths);
     return found;
   }
 
