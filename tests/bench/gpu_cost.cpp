@@ -159,7 +159,8 @@ GpuPrediction predict(const GpuWork& work, const GpuCard& card) {
                 ms(assumed::binning_bytes_per_pixel * work.pixels + summing_bytes, card.memory_bytes_per_s)});
   time.bus_ms = ms(read_back_bytes + uploaded_bytes, card.bus_bytes_per_s);
   time.waiting_ms = ms_per_us * card.wait_us * work.synchronisations;
-  time.submitting_ms = ms_per_us * (assumed::draw_call_us * work.draw_calls + assumed::view_us * work.views);
+  time.submitting_ms = ms_per_us * (assumed::draw_call_us * work.draw_calls + assumed::view_us * work.views +
+                                    assumed::pass_us * work.passes);
   time.cpu_part_ms = work.cpu_part_ms;
   return time;
 }

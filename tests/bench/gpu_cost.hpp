@@ -70,19 +70,21 @@ struct GpuPrediction {
 GpuPrediction predict(const GpuWork& work, const GpuCard& card);
 
 /// What predict() takes for granted of the shaders and of drivers. The counts of operations and bytes are
-/// those of the shaders, by hand; the rest is assumed.
+/// those of the shaders, by hand; times of calls were measured on an H200 (docs/benchmark.md); the rest is
+/// assumed.
 namespace assumed {
 inline constexpr double attained_share = 1.0 / 3;  // of each published rate
 inline constexpr double drawing_flop_per_pixel = 120;
 inline constexpr double binning_flop_per_pixel = 400;
 inline constexpr double drawing_bytes_per_pixel =
-    40;  // cleared and written: 16 of the sample, 4 of its depth
+    24;  // 16 of the sample, and its depth, which is cleared too
 inline constexpr double binning_bytes_per_pixel =
-    36;                                              // read by bins, by those of every second sample, by rows
+    45;                                              // read by bins, by those of every second sample, by rows
 inline constexpr double summing_bytes_per_bin = 40;  // of a pass: two sums read and begun anew, and the image
-inline constexpr double pixel_words = 4;             // of 32 bits, which are written one by one
-inline constexpr double draw_call_us = 3;
-inline constexpr double view_us = 40;  // target, clearing, uniforms, three dispatches
+inline constexpr double pixel_words = 6;             // of 32 bits, which are written one by one: those bytes
+inline constexpr double draw_call_us = 0.7;
+inline constexpr double view_us = 0.5;
+inline constexpr double pass_us = 120;  // a dozen dispatches, clears and copies, one after the other
 }  // namespace assumed
 
 }  // namespace sonard::bench

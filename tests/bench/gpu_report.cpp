@@ -154,11 +154,12 @@ std::string assumptions() {
       "bin it "
       "and to estimate its error. Bytes: {} and {} a pixel, {} a bin and pass. Calls: {} us each that draws, "
       "{} "
-      "us a view. The CPU part is measured: a ping less drawing and binning, but with culling and laying out "
+      "us a view, {} us a pass. The CPU part is measured: a ping less drawing and binning, but with culling "
+      "and laying out "
       "grids. Parts are added up, as if nothing went on beside anything else.\n",
       100 * assumed::attained_share, assumed::drawing_flop_per_pixel, assumed::binning_flop_per_pixel,
       assumed::drawing_bytes_per_pixel, assumed::binning_bytes_per_pixel, assumed::summing_bytes_per_bin,
-      assumed::draw_call_us, assumed::view_us);
+      assumed::draw_call_us, assumed::view_us, assumed::pass_us);
 }
 
 void report_progress(const Measurements& results, const Subject& subject) {

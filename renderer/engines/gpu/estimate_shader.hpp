@@ -63,8 +63,8 @@ vec4 row_of(int row, int column_begin, int column_end, float x_begin, float x_en
 
 void main() {
   int row = int(gl_WorkGroupID.y) * 64 + int(gl_LocalInvocationIndex);
-  if (row >= most_rows) return;
   Beam beam = beams[gl_WorkGroupID.x];
+  if (row >= beam.rows) return;
   vec4 sum = vec4(0.0);
   for (int s = beam.segment_begin; s < beam.segment_end; ++s) {
     ivec4 place = texelFetch(segments, 2 * s);

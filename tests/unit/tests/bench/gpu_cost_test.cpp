@@ -68,6 +68,7 @@ TEST(GpuCost, BytesWaitsCallsAndTheCpuAddUp) {
   work.synchronisations = 3;
   work.draw_calls = 1000;
   work.views = 10;
+  work.passes = 2;
   work.cpu_part_ms = 0.5;
   GpuCard card = instant();
   card.bus_bytes_per_s = 1024e6 / attained;
@@ -75,7 +76,8 @@ TEST(GpuCost, BytesWaitsCallsAndTheCpuAddUp) {
   const GpuPrediction time = predict(work, card);
   EXPECT_NEAR(time.bus_ms, 1, 1e-9);
   EXPECT_NEAR(time.waiting_ms, 0.3, 1e-9);
-  EXPECT_NEAR(time.submitting_ms, assumed::draw_call_us + assumed::view_us / 100, 1e-9);
+  EXPECT_NEAR(time.submitting_ms, assumed::draw_call_us + assumed::view_us / 100 + assumed::pass_us / 500,
+              1e-9);
   EXPECT_NEAR(time.total_ms(), 1 + 0.3 + time.submitting_ms + 0.5, 1e-9);
 }
 
