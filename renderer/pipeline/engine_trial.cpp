@@ -80,8 +80,12 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
     }
     return made;
   };
+  const std::vector<StreamPing> few = middle_beams(pings);
+  // A driver builds shaders, and the world is uploaded, when they are first drawn with: half a second that no
+  // later ping takes.
+  rounds(few, 1);
   if (pings.front().request.settings.aperture.beam_count() >= fewest_beams_of_fan) {
-    rounds(middle_beams(pings), 2);
+    rounds(few, 2);
     if (trial.gpu_ms > trial.cpu_ms) {
       trial.gpu_problem = "for one beam in sixteen alone";
       return;

@@ -23,7 +23,7 @@ struct EngineTrial {
 
 /// Renders these pings with both engines, for a quarter of a second and a ping each, and lets the renderer go
 /// on with the faster one: the GPU only where its bins are those of the CPU within twice the error that the
-/// preset of each ping promises.
+/// preset of each ping promises. The GPU makes some beams of each before that, so that its shaders are built.
 /// @throws RequestError, RendererError when the CPU cannot render them.
 EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings);
 
