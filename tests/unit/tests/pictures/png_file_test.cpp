@@ -9,15 +9,14 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "renderer/picture/amber.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace sonard::pictures {
 namespace {
 
-std::filesystem::path some_file() {
-  return std::filesystem::path(testing::TempDir()) / "picture.png";
-}
-
 TEST(PngFile, KeepsTheColoursOfPictures) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "picture.png";
   // The whole palette, and what lies between ground and labels: within half a step of 6 codes.
   cv::Mat picture(3, 256, CV_8UC3);
   picture::amber::palette(picture::amber::Samples::decibels).copyTo(picture.row(0));
@@ -32,23 +31,23 @@ TEST(PngFile, KeepsTheColoursOfPictures) {
         cv::Vec3b(cv::saturate_cast<uchar>(grid[0]), cv::saturate_cast<uchar>(grid[1]),
                   cv::saturate_cast<uchar>(grid[2]));
   }
-  write_png(some_file(), picture);
-  const cv::Mat read = cv::imread(some_file().string());
+  write_png(file, picture);
+  const cv::Mat read = cv::imread(file.string());
   ASSERT_EQ(read.size(), picture.size());
   EXPECT_LE(cv::norm(read.row(0), picture.row(0), cv::NORM_INF), 12);
   EXPECT_LE(cv::norm(read.rowRange(1, 3), picture.rowRange(1, 3), cv::NORM_INF), 3);
-  std::filesystem::remove(some_file());
 }
 
 TEST(PngFile, WidthsAndHeightsOfAnySize) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "picture.png";
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 3), cv::Size(1, 300), cv::Size(1594, 2)}) {
     cv::Mat picture(size, CV_8UC3, picture::amber::background());
     picture.at<cv::Vec3b>(size.height - 1, size.width - 1) =
         picture::amber::palette(picture::amber::Samples::decibels).at<cv::Vec3b>(0, 254);
-    write_png(some_file(), picture);
-    EXPECT_EQ(cv::norm(cv::imread(some_file().string()), picture, cv::NORM_INF), 0) << size;
+    write_png(file, picture);
+    EXPECT_EQ(cv::norm(cv::imread(file.string()), picture, cv::NORM_INF), 0) << size;
   }
-  std::filesystem::remove(some_file());
 }
 
 TEST(PngFile, NamesAFileThatCannotBeWritten) {
