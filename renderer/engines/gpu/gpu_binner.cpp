@@ -103,7 +103,7 @@ struct GpuBinner::Impl {
   GpuBuffer line_weight, partial_columns, columns, rows, column_misses, estimates;
   GpuReadback estimates_back, image_back;
   std::size_t most_bytes = 0;  // of a buffer
-  int most_view_px = 0;
+  const int most_view_px;
   std::vector<float> line_weights;
 
   std::optional<ImageRequest> request;  // the image at hand
@@ -111,7 +111,7 @@ struct GpuBinner::Impl {
   std::size_t estimates_asked = 0;      // and that have not been taken
   Traffic traffic;                      // of that image
 
-  Impl(EglContext& made_current, std::shared_ptr<Programs> shared)
+  Impl(EglContext& made_current, int view_px, std::shared_ptr<Programs> shared)
       : context(made_current),
         gl(*osg::GLExtensions::Get(context.getState()->getContextID(), true)),
         programs(shared ? std::move(shared) : std::make_shared<Programs>()),
@@ -126,10 +126,10 @@ struct GpuBinner::Impl {
         column_misses(gl),
         estimates(gl),
         estimates_back(gl),
-        image_back(gl) {
+        image_back(gl),
+        most_view_px(view_px) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most_view_px);
     GLint most_texels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
     most_texels = std::min(most_texels, 1 << 28);  // which shaders count in integers, twice for open water
@@ -477,7 +477,7 @@ struct GpuBinner::Impl {
 };
 
 GpuBinner::GpuBinner(RasterSampler& sampler, const GpuBinner* other)
-    : impl_(std::make_unique<Impl>(sampler.current_context(),
+    : impl_(std::make_unique<Impl>(sampler.current_context(), sampler.most_view_px(),
                                    other == nullptr ? nullptr : other->impl_->programs)) {}
 
 GpuBinner::~GpuBinner() {

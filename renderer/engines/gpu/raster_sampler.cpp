@@ -361,6 +361,10 @@ RasterSampler::ViewTextures RasterSampler::draw(const Pose& T_world_sonar, const
   return impl_->target.textures(*impl_->context->getState());
 }
 
+int RasterSampler::most_view_px() const {
+  return impl_->max_texture_px;
+}
+
 EglContext& RasterSampler::current_context() {
   impl_->context->make_current_or_throw();
   return *impl_->context;

@@ -59,10 +59,11 @@ class RasterSampler {
 
   /// Names of arrays of textures in which the views of a grid are as lay_out() says.
   struct ViewTextures {
-    unsigned samples =
-        0;  ///< RGBA32F, a SurfaceSample each texel, row by row upwards: where there is a surface
-    unsigned depths = 0;  ///< DEPTH_COMPONENT32F, above 0 where there is one
+    unsigned samples = 0;  ///< RGBA32F, a SurfaceSample each texel, row by row upwards
+    unsigned depths = 0;   ///< DEPTH_COMPONENT32F, above 0 where there is a surface
   };
+  /// What lay_out() is told.
+  int most_view_px() const;
   /// Like sample(), but the samples stay on the GPU, and where there is no surface anything may be.
   /// @return what stays valid until the next call of draw() or sample().
   ViewTextures draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,

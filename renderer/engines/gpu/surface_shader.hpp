@@ -133,8 +133,7 @@ void main() {
   for (int i = 0; i < 3; ++i) {
     gl_Position = gl_in[i].gl_Position;
     slope = n.xy / d;
-    anchor = vec3(p.xy, -1.0) / -p.z;
-    anchor.z = -1.0 / p.z;
+    anchor = vec3(p.xy, 1.0) / -p.z;
     plane_distance = abs(d) * inversesqrt(dot(n, n));
 #if SHADING != 0
     normal_eye = corner[i].normal_eye;
