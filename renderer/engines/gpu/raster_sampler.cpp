@@ -231,9 +231,7 @@ struct RasterSampler::Impl {
     for (const BodyNode& body : bodies) {
       body.transform->setMatrix(to_osg(relative(T_world_sonar, body.T_world_body)));
     }
-    Stopwatch watch;
     const std::vector<CulledView> culled = cull(grid.views);
-    drawn.culling_s += watch.lap();
     const Refraction bend{glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1)),
                           bend_per_m};
     state.pushStateSet(scene->getStateSet());
@@ -272,6 +270,7 @@ struct RasterSampler::Impl {
 
   /// Everything that is drawn is then in video memory.
   std::vector<CulledView> cull(const std::vector<SubView>& views) {
+    Stopwatch watch;
     std::vector<CulledView> culled;
     std::vector<VideoMemory::Item*> items;
     for (const SubView& view : views) {
@@ -291,6 +290,7 @@ struct RasterSampler::Impl {
       drawn.pixels += static_cast<std::uint64_t>(view.columns) * static_cast<std::uint64_t>(view.rows);
     }
     drawn.views += views.size();
+    drawn.culling_s += watch.lap();
     video_memory->hold(items);
     return culled;
   }
