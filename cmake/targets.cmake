@@ -4,7 +4,7 @@ add_library(sonard_flags INTERFACE)
 target_include_directories(sonard_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
 target_include_directories(sonard_flags SYSTEM INTERFACE ${PROJECT_SOURCE_DIR}/cmake/compile_once)
 target_compile_options(sonard_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
+  -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
   # A multiply-add where the machine has one would make images depend on the machine (renderer/simd.hpp).
   -ffp-contract=off
   # GCC before 14 reports false positives of these in optimised standard library code.
@@ -15,8 +15,11 @@ if(SONARD_SIMD)
   target_compile_definitions(sonard_flags INTERFACE SONARD_SIMD_ONLY="${SONARD_SIMD}")
 endif()
 if(CMAKE_UNITY_BUILD)
-  # It takes a source that another one includes for a header.
-  target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  # It takes a source that another one includes for a header, and what one source keeps to itself for a global of all,
+  # which clang's -Wshadow cannot leave out.
+  target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage -Wshadow=local>)
+else()
+  target_compile_options(sonard_flags INTERFACE -Wshadow)
 endif()
 if(SONARD_SANITIZE)
   target_compile_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

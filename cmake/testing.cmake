@@ -18,18 +18,15 @@ if(SONARD_SANITIZE)
   set(SONARD_TEST_OPTIMISATION -O0)
 endif()
 
-# What all test programs include is compiled once for all of them. Sources name their headers all the same: the preset
-# checked builds without.
-if(SONARD_PCH)
-  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp CONTENT "")
-  add_library(sonard_test_pch OBJECT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp)
-  target_link_libraries(sonard_test_pch PRIVATE sonard_flags GTest::gmock)
-  target_compile_options(sonard_test_pch PRIVATE $<$<CONFIG:RelWithDebInfo>:${SONARD_TEST_OPTIMISATION}>)
-  target_precompile_headers(sonard_test_pch PRIVATE
-    <gmock/gmock.h> <gtest/gtest.h>
-    <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numeric> <optional> <span>
-    <string> <utility> <variant> <vector>)
-endif()
+# What all test programs include is compiled once for all of them. Sources name their headers all the same.
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp CONTENT "")
+add_library(sonard_test_pch OBJECT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp)
+target_link_libraries(sonard_test_pch PRIVATE sonard_flags GTest::gmock)
+target_compile_options(sonard_test_pch PRIVATE $<$<CONFIG:RelWithDebInfo>:${SONARD_TEST_OPTIMISATION}>)
+target_precompile_headers(sonard_test_pch PRIVATE
+  <gmock/gmock.h> <gtest/gtest.h>
+  <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numeric> <optional> <span>
+  <string> <utility> <variant> <vector>)
 
 # sonard_test(NAME LABEL SOURCES... LIBS libs...): one test program. Its cases are registered one by one; sanitized,
 # where a start takes long, the program is one case.
@@ -39,9 +36,7 @@ function(sonard_test name label)
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SONARD_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:${SONARD_TEST_OPTIMISATION}>)
-  if(SONARD_PCH)
-    target_precompile_headers(${name} REUSE_FROM sonard_test_pch)
-  endif()
+  target_precompile_headers(${name} REUSE_FROM sonard_test_pch)
   add_dependencies(${label}_tests ${name})
   if(SONARD_SANITIZE)
     add_test(NAME ${name} COMMAND ${name})

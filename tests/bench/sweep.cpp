@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "tests/bench/plans.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::bench {
 
@@ -13,7 +13,6 @@ namespace {
 
 constexpr Repetition usual{5, 101, 0.5};
 constexpr Repetition several{5, 201, 2.0};  // for ratios of two scenes
-constexpr double degree = std::numbers::pi / 180;
 
 /// Presets, grids and points from coarse to fine, and the paper's own.
 Plan ladder() {

@@ -11,7 +11,7 @@ namespace sonard::oracle {
 
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double no_hit = std::numeric_limits<double>::infinity();
 
 SurfaceHit smooth_hit(double range_m, const glm::dvec3& normal, const Material& material) {
   return {range_m, normal, normal, material};
@@ -24,7 +24,7 @@ class Plane : public Surface {
 
   SurfaceHit nearest(const glm::dvec3& direction) const override {
     const double range = distance_ / glm::dot(normal_, direction);
-    return range > 0 && range < never ? smooth_hit(range, normal_, material_) : SurfaceHit{};
+    return range > 0 && range < no_hit ? smooth_hit(range, normal_, material_) : SurfaceHit{};
   }
 
  private:
@@ -92,7 +92,7 @@ class PlacedShape : public Surface {
   SurfaceHit nearest(const glm::dvec3& direction) const override {
     glm::dvec3 normal(0);
     const double range = meet(origin_, glm::conjugate(T_sonar_shape_.orientation) * direction, normal);
-    return range < never ? smooth_hit(range, T_sonar_shape_.orientation * normal, material_) : SurfaceHit{};
+    return range < no_hit ? smooth_hit(range, T_sonar_shape_.orientation * normal, material_) : SurfaceHit{};
   }
 
  protected:
@@ -112,7 +112,7 @@ class Cylinder : public PlacedShape {
 
  protected:
   double meet(const glm::dvec3& origin, const glm::dvec3& direction, glm::dvec3& normal) const override {
-    double nearest = never;
+    double nearest = no_hit;
     const glm::dvec2 o(origin);
     const glm::dvec2 d(direction);
     const double a = glm::dot(d, d);
@@ -148,7 +148,7 @@ class Box : public PlacedShape {
 
  protected:
   double meet(const glm::dvec3& origin, const glm::dvec3& direction, glm::dvec3& normal) const override {
-    double nearest = never;
+    double nearest = no_hit;
     for (int axis = 0; axis < 3; ++axis) {
       const int next = (axis + 1) % 3;
       const int last = (axis + 2) % 3;

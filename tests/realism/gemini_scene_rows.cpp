@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What targets, structures and beds look like: worlds that are made here, and those of configs/.
-#include <numbers>
 #include <queue>
 #include <set>
 
@@ -9,6 +8,7 @@
 #include "tests/pictures/view.hpp"
 #include "tests/realism/rows.hpp"
 #include "tests/realism/statistics.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 #include "tests/support/gemini_client.hpp"
 
@@ -18,7 +18,6 @@ namespace {
 using test::GeminiImage;
 
 constexpr int beams = gemini::beam_count;
-constexpr double degree = std::numbers::pi / 180;
 
 struct Ask {
   double range_m = 20;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -12,12 +11,12 @@
 #include "tests/scenes/manifold.hpp"
 #include "tests/scenes/shapes.hpp"
 #include "tests/scenes/terrain.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::test {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double sonar_height_m = 4.0;
 constexpr double sonar_tilt_rad = 20 * degree;
 constexpr std::size_t seabed_triangles = 106'830;

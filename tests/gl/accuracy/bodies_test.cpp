@@ -5,11 +5,10 @@
 
 #include "tests/gl/accuracy/accuracy_case.hpp"
 #include "tests/gl/accuracy/truth_image.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::test {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 class SphereAccuracy : public AccuracyTest {};
 class CylinderAccuracy : public AccuracyTest {};

@@ -2,17 +2,15 @@
 // T6, T7 and T8: edges, shadows and corners.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "tests/bench/plane_quadrature.hpp"
 #include "tests/gl/accuracy/accuracy_case.hpp"
 #include "tests/gl/accuracy/truth_image.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::test {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 class EdgeAccuracy : public AccuracyTest {};
 class DihedralAccuracy : public AccuracyTest {};

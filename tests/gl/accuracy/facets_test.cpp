@@ -6,12 +6,11 @@
 
 #include "tests/gl/accuracy/accuracy_case.hpp"
 #include "tests/gl/accuracy/truth_image.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/kink_quadrature.hpp"
 
 namespace sonard::test {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 class FacetAccuracy : public AccuracyTest {};
 

@@ -5,11 +5,11 @@
 
 #include "tests/gl/accuracy/accuracy_case.hpp"
 #include "tests/scenes/shapes.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::test {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double range_m = 30, radius_m = 0.025, half_length_m = 0.4;
 constexpr int pipes = 50;
 

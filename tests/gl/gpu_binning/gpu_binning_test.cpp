@@ -3,7 +3,6 @@
 // OpenGL, so every sample is the same to the bit, and what differs is binning.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <random>
 #include <string>
@@ -15,6 +14,7 @@
 #include "renderer/pipeline/self_test.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
 #include "tests/gl/gpu_binning/double_binning.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -25,8 +25,6 @@ using test::make_body;
 using test::make_quad;
 using test::make_sphere;
 using test::make_world;
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// Over the whole fan.
 TriangleMesh wall(float distance_m) {

@@ -71,12 +71,12 @@ TEST_P(Ghosts, RipplesOnTheWaterWeakenItsImages) {
   EXPECT_NEAR(decibels(rippled_twice / calm_twice), 2 * decibels(std::exp(-p * p)), 0.3);
 }
 
-struct Plate {
+struct SmallPlate {
   glm::dvec3 corner, a, b;
 };
 
 /// The integral of mu cos(in) cos(out) / (r_in^2 r_out^2) over a plate that both see.
-double plate_echo(const Plate& plate, double mu, const glm::dvec3& source, const glm::dvec3& receiver) {
+double plate_echo(const SmallPlate& plate, double mu, const glm::dvec3& source, const glm::dvec3& receiver) {
   constexpr int n = 64;
   const glm::dvec3 cross = glm::cross(plate.a, plate.b);
   const glm::dvec3 normal = glm::normalize(cross);
@@ -90,13 +90,13 @@ double plate_echo(const Plate& plate, double mu, const glm::dvec3& source, const
   return mu * sum * glm::length(cross) / (n * n);
 }
 
-TriangleMesh plate_mesh(const Plate& plate) {
+TriangleMesh plate_mesh(const SmallPlate& plate) {
   return make_quad(glm::vec3(plate.corner), glm::vec3(plate.a), glm::vec3(plate.b));
 }
 
 // A box with a smooth side along y = 2, and a rough plate of 0.3 m, turned by 45 degrees, at (10, -1).
 constexpr double mirror_y = 2, mu_plate = 0.1, reflection = 0.8, sigma_m = 0.0002;
-const Plate plate{{10 - 0.1, -1 - 0.1, -0.15}, {0.2, 0.2, 0}, {0, 0, 0.3}};
+const SmallPlate plate{{10 - 0.1, -1 - 0.1, -0.15}, {0.2, 0.2, 0}, {0, 0, 0.3}};
 const glm::dvec3 plate_middle(10, -1, 0);
 
 World mirror_and_plate() {

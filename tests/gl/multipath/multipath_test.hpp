@@ -3,14 +3,12 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
-
-inline constexpr double degree = std::numbers::pi / 180.0;
 
 /// A Gemini-like fan of `beams` equal angles over 120 degrees; no absorption, no pattern.
 inline render::PingRequest fan_request(int beams, double height_deg, double range_m, double step_m) {

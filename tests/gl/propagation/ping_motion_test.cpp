@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/pipeline/ping_motion.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -15,7 +16,6 @@ namespace {
 
 using namespace test;
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double range_m = 50.0;
 constexpr double turn_rad = 1.98 * degree;  // in all: four spans of half a beam of 1 degree
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -14,7 +15,6 @@ namespace {
 
 using namespace test;
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double altitude_m = 5.0;
 constexpr double curvature_per_m = 1.2e-3;  // 1.8 m/s per metre at 1500 m/s: a strong thermocline
 constexpr double bend_per_m = curvature_per_m / 2;

@@ -12,6 +12,7 @@
 #include "server/devices/gemini/settings.hpp"
 #include "server/devices/micron/kind.hpp"
 #include "server/devices/micron/settings.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::server {
@@ -20,7 +21,6 @@ namespace {
 using namespace test;
 
 constexpr double assumed_mps = 1500.0;
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 /// What a client that counts 20 m at 1500 m/s makes the head ask for, in water of another speed.
 PingJob gemini_job(double water_mps) {

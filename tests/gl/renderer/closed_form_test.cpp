@@ -2,9 +2,9 @@
 // Echo energy against closed forms (docs/physics.md 3.2) at the lines the demo runs with: what accuracy_test
 // does not hold `gpu` to, and fixed grids.
 #include <cmath>
-#include <numbers>
 
 #include "tests/support/closed_forms.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -16,7 +16,6 @@ using test::make_quad;
 using test::make_world;
 using test::PlaneTruth;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double error_bound = 0.02;
 
 /// 256 beams over 120 x 20 degrees, range bins of 8.29 mm, no absorption.

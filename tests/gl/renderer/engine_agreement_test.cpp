@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -17,8 +18,6 @@ using test::make_body;
 using test::make_quad;
 using test::make_sphere;
 using test::make_world;
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// A world and where it is heard from.
 struct View {

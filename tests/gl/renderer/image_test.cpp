@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must hold for any image: repeatability, frames, moving bodies, bad input.
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "renderer/pipeline/self_test.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -15,8 +15,6 @@ using test::make_body;
 using test::make_quad;
 using test::make_sphere;
 using test::make_world;
-
-constexpr double degree = std::numbers::pi / 180;
 
 PingRequest small_request() {
   PingRequest request;

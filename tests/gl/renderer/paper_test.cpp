@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -12,8 +13,6 @@ using test::EngineTest;
 using test::make_body;
 using test::make_quad;
 using test::make_world;
-
-constexpr double degree = std::numbers::pi / 180;
 
 PingRequest paper_request(int lines, double step_m) {
   PingRequest request;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/closed_forms.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -19,7 +20,6 @@ using test::make_sphere;
 using test::make_world;
 
 constexpr double pi = std::numbers::pi;
-constexpr double degree = pi / 180;
 
 class Reception : public test::EngineTest {
  protected:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -13,13 +14,12 @@ using test::make_body;
 using test::make_quad;
 using test::make_world;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double scattering_db = -60;
-constexpr int beams = 32;
+constexpr int beam_count = 32;
 
 PingRequest turbid_request(Aperture::Elevation elevation = Aperture::Elevation::top_hat) {
   PingRequest request;
-  request.settings.aperture.beam_edges_rad = equal_angle_edges(beams, 80 * degree);
+  request.settings.aperture.beam_edges_rad = equal_angle_edges(beam_count, 80 * degree);
   request.settings.aperture.elevation = elevation;
   request.settings.range = {600, 0.05, 0, false};
   request.settings.physical.volume_scattering_db = scattering_db;
@@ -42,7 +42,7 @@ double expected_echo(const PingRequest& request, double open_sr, int line) {
 
 /// Solid angle of a beam without an elevation pattern.
 double beam_sr(double low_rad, double high_rad) {
-  return 80 * degree / beams * (std::sin(high_rad) - std::sin(low_rad));
+  return 80 * degree / beam_count * (std::sin(high_rad) - std::sin(low_rad));
 }
 
 void expect_level(const EchoImage& image, int beam, int line, double expected) {
@@ -76,7 +76,7 @@ TEST_P(VolumeReverberation, WeighsTheWaterWithTheElevationPattern) {
   }
   SonarRenderer renderer(World{}, options());
   const EchoImage& image = renderer.render_echo(request);
-  expect_level(image, 16, 300, expected_echo(request, 80 * degree / beams * height, 300));
+  expect_level(image, 16, 300, expected_echo(request, 80 * degree / beam_count * height, 300));
 }
 
 TEST_P(VolumeReverberation, EndsBehindAWall) {
@@ -115,8 +115,8 @@ TEST_P(VolumeReverberation, IsNotHiddenInTheBeamsBesideAWall) {
   SonarRenderer renderer(make_world({screen({6, 0, -40}, {0, 40, 0}, {0, 0, 80})}), options());
   const PingRequest request = turbid_request();
   const EchoImage& image = renderer.render_echo(request);
-  EXPECT_EQ(image.at(beams / 2 - 1, 400), 0.0F);
-  expect_level(image, beams / 2, 400, expected_echo(request, beam_sr(-10 * degree, 10 * degree), 400));
+  EXPECT_EQ(image.at(beam_count / 2 - 1, 400), 0.0F);
+  expect_level(image, beam_count / 2, 400, expected_echo(request, beam_sr(-10 * degree, 10 * degree), 400));
 }
 
 TEST_P(VolumeReverberation, ActsAtAnyRangeAndStrengthThatIsSet) {

@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/gl/scenes_of_the_paper/scene_echo.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 class FanScenes : public EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engines, FanScenes, all_engines(), engine_name);

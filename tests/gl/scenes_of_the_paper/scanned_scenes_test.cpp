@@ -8,18 +8,18 @@
 #include <vector>
 
 #include "tests/gl/scenes_of_the_paper/scene_echo.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double half_beam = 1.5 * degree;
 
 class ScannedScenes : public EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engines, ScannedScenes, all_engines(), engine_name);
 
-const render::RendererOptions on_cpu{render::EngineKind::cpu};
+const render::RendererOptions scanned_on_cpu{render::EngineKind::cpu};
 
 /// Distance from a point inside an upright rectangle to its sides.
 struct Room {
@@ -75,7 +75,7 @@ TEST_P(ScannedScenes, WallsOfTheTank) {
 }
 
 TEST(ScannedScenesOnRay, PillarOfTheTankHidesTheWall) {
-  const SceneEcho scene("tank", on_cpu);
+  const SceneEcho scene("tank", scanned_on_cpu);
   // Radius 0.3 m about (5, 1.3) from the sonar: nearest at hypot(5, 1.3) - 0.3, wide by asin(0.3 / 5.166)
   // = 3.3 degrees.
   const double bearing = std::atan2(1.3, 5.0);
@@ -86,7 +86,7 @@ TEST(ScannedScenesOnRay, PillarOfTheTankHidesTheWall) {
 }
 
 TEST(ScannedScenesOnRay, TargetInTheTank) {
-  const SceneEcho scene("tank", on_cpu);
+  const SceneEcho scene("tank", scanned_on_cpu);
   // A sphere of radius 0.25 m about (1.5, -2.6, 0) from the sonar.
   const int line = scene.beam_at(std::atan2(-2.6, 1.5));
   EXPECT_NEAR(scene.first_range_m(line, 0, 1e-3 * scene.strongest(line, 0, 4)), std::hypot(1.5, 2.6) - 0.25,
@@ -114,7 +114,7 @@ bool in_gate(double heading) {
 }
 
 TEST(ScannedScenesOnRay, CageIsShearedByTheTurn) {
-  const SceneEcho scene("grid", on_cpu);
+  const SceneEcho scene("grid", scanned_on_cpu);
   ASSERT_EQ(scene.beams(), 200);
   int agree = 0;
   int agree_at_rest = 0;
@@ -135,7 +135,7 @@ TEST(ScannedScenesOnRay, CageIsShearedByTheTurn) {
 }
 
 TEST(ScannedScenesOnRay, BarsOfTheCageDriftAgainstTheTurn) {
-  const SceneEcho scene("grid", on_cpu);
+  const SceneEcho scene("grid", scanned_on_cpu);
   const auto energy_near = [&](double heading, double range_m, int& line) {
     // The line during which the vehicle's own turn brings the head to look along this heading.
     line = 0;
@@ -167,7 +167,7 @@ TEST(ScannedScenesOnRay, BarsOfTheCageDriftAgainstTheTurn) {
 }
 
 TEST(ScannedScenesOnRay, GateOfTheCageIsOpen) {
-  const SceneEcho scene("grid", on_cpu);
+  const SceneEcho scene("grid", scanned_on_cpu);
   int open = 0;
   for (int line = 0; line < scene.beams(); ++line) {
     const double heading = std::remainder(scene.azimuth_rad(line) + yaw_at(line), 2 * std::numbers::pi);
@@ -185,7 +185,7 @@ TEST(ScannedScenesOnRay, GateOfTheCageIsOpen) {
 constexpr double level_below = 30.009 - 24.5;
 
 TEST(ScannedScenesOnRay, SpoolsBelowAndManifoldToPort) {
-  const SceneEcho scene("oil_and_gas", on_cpu);
+  const SceneEcho scene("oil_and_gas", scanned_on_cpu);
   const auto first = [&](double azimuth) {
     const int line = scene.beam_at(azimuth);
     return scene.first_range_m(line, 1, 0.02 * scene.strongest(line, 1, 12));
@@ -199,7 +199,7 @@ TEST(ScannedScenesOnRay, SpoolsBelowAndManifoldToPort) {
 }
 
 TEST(ScannedScenesOnRay, RisersToStarboard) {
-  const SceneEcho scene("oil_and_gas", on_cpu);
+  const SceneEcho scene("oil_and_gas", scanned_on_cpu);
   // They stand at y = -13.5 + 6 + 0.75 where they leave the bed's bend, 0.75 m above it, and lean away over
   // the 30.26 m from there to their top by a twelfth of their whole 31.01 m; x = -0.9, radius 0.2.
   const auto riser_m = [](double azimuth) {
@@ -218,7 +218,7 @@ TEST(ScannedScenesOnRay, RisersToStarboard) {
 }
 
 TEST(ScannedScenesOnRay, BedLiesBelow) {
-  const SceneEcho scene("oil_and_gas", on_cpu);
+  const SceneEcho scene("oil_and_gas", scanned_on_cpu);
   // Levelled round the manifold; between it and the spools' supports the strongest echo is the bed's or the
   // spools', and beyond the bed nothing is heard. Straight down the beam is 35 degrees wide along the
   // vehicle.

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::test {
 
-inline constexpr double degree = std::numbers::pi / 180;
 /// Of a passive, fully diffuse surface: the largest there is.
 inline constexpr double full_mu = std::numbers::inv_pi;
 

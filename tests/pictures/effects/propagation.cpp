@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "tests/pictures/effects/effects.hpp"
 #include "tests/scenes/shapes.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::pictures {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 render::BodyPart part_of(render::TriangleMesh mesh, double lambert_mu) {
   render::BodyPart part;

@@ -16,8 +16,6 @@ namespace {
 
 using Taper = Aperture::Taper;
 
-constexpr double pi = std::numbers::pi;
-
 struct TaperFacts {
   Taper taper;
   double beamwidth_deg;  ///< of 101 half-wave elements
@@ -31,8 +29,8 @@ double power_db(const std::vector<double>& weights, double sine_offset) {
   double re = 0;
   double im = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    re += weights[i] * std::cos(pi * static_cast<double>(i) * sine_offset);
-    im += weights[i] * std::sin(pi * static_cast<double>(i) * sine_offset);
+    re += weights[i] * std::cos(std::numbers::pi * static_cast<double>(i) * sine_offset);
+    im += weights[i] * std::sin(std::numbers::pi * static_cast<double>(i) * sine_offset);
   }
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   return 10 * std::log10((re * re + im * im) / (sum * sum) + 1e-30);
@@ -45,7 +43,7 @@ TEST(LineArray, TapersHaveTheWidthsAndSideLobesOfTheTable) {
     while (power_db(weights, edge) > 10 * std::log10(0.5)) {
       edge += 1e-5;
     }
-    EXPECT_NEAR(2 * std::asin(edge) * 180 / pi, facts.beamwidth_deg, 0.006);
+    EXPECT_NEAR(2 * std::asin(edge) * 180 / std::numbers::pi, facts.beamwidth_deg, 0.006);
     // Behind the first minimum.
     double offset = edge;
     while (power_db(weights, offset + 1e-4) < power_db(weights, offset)) {
@@ -64,7 +62,7 @@ TEST(LineArray, HasTheBeamwidthAskedFor) {
     for (const double degrees : {0.5, 1.0, 3.0}) {
       Aperture aperture;
       aperture.taper = facts.taper;
-      aperture.receive_beamwidth_rad = degrees * pi / 180;
+      aperture.receive_beamwidth_rad = degrees * std::numbers::pi / 180;
       const LineArray array(aperture);
       const double at_edge = array.power(std::sin(aperture.receive_beamwidth_rad / 2));
       EXPECT_NEAR(at_edge, 0.5, 0.035) << degrees;

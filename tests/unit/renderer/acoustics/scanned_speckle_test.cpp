@@ -10,16 +10,16 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "tests/support/correlation.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/unit/renderer/acoustics/receiver_bench.hpp"
 
 namespace sonard::render {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr int lines = 4000;
+constexpr int scanned_lines = 4000;
 
 PingRequest beam_request() {
-  PingRequest request = bare_request(lines);
+  PingRequest request = bare_request(scanned_lines);
   request.settings.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
   request.settings.aperture.receive_beamwidth_rad = 3 * degree;
   return request;
@@ -45,7 +45,7 @@ class Scan {
   WorkerPool workers_{1};
 };
 
-constexpr double bound = 0.08;  // five standard errors of 4000 lines
+constexpr double scanned_bound = 0.08;  // five standard errors of 4000 lines
 
 // exp(-(d / 3 degrees)^2) of the field, its square in the intensity, at any bearing and across +-180
 // degrees.
@@ -55,7 +55,7 @@ TEST(ScannedSpeckle, BearingsAreCorrelatedByTheLawOfTheFan) {
     const std::vector<double> first = scan.field_at(looking(from_deg * degree));
     for (const double apart_deg : {0.225, 0.45, 0.9, 1.8, 6.0}) {
       EXPECT_NEAR(test::correlation(first, scan.field_at(looking((from_deg + apart_deg) * degree))),
-                  std::exp(-2 * std::pow(apart_deg / 3, 2)), bound)
+                  std::exp(-2 * std::pow(apart_deg / 3, 2)), scanned_bound)
           << from_deg << ' ' << apart_deg;
     }
   }
@@ -102,7 +102,7 @@ TEST(ScannedSpeckle, MotionOfTheVehicleFades) {
     Scan scan;
     const std::vector<double> first = scan.field_at(looking(0.4));
     const Pose moved{{dx_m, 0, 0}, glm::angleAxis(tilt_rad, glm::dvec3(std::sin(-0.4), std::cos(0.4), 0))};
-    EXPECT_NEAR(test::correlation(first, scan.field_at(looking(0.4, moved))), expected, bound);
+    EXPECT_NEAR(test::correlation(first, scan.field_at(looking(0.4, moved))), expected, scanned_bound);
   }
 }
 
@@ -124,7 +124,7 @@ TEST(ScannedSpeckle, IsCorrelatedByThePulse) {
   const double side = 2 / std::numbers::pi;
   const double expected = 2 * side / (1 + 2 * side * side);
   EXPECT_NEAR(test::correlation({field.begin(), field.end() - 1}, {field.begin() + 1, field.end()}),
-              expected * expected, bound);
+              expected * expected, scanned_bound);
 }
 
 TEST(ScannedSpeckle, TextureComesBackToo) {

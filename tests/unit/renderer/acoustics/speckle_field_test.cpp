@@ -12,23 +12,23 @@
 namespace sonard::render {
 namespace {
 
-constexpr int beams = 512;
-constexpr int lines = 200;
-constexpr double numbers = beams * lines;
+constexpr int field_beams = 512;
+constexpr int field_lines = 200;
+constexpr double numbers = field_beams * field_lines;
 
 /// Innovations are white here: the field does not care.
 void bring_up_to_date(SpeckleField& field, int line, std::uint64_t ping) {
   if (field.is_current(line)) {
     return;
   }
-  std::vector<float> re(beams), im(beams);
+  std::vector<float> re(field_beams), im(field_beams);
   fill_complex_gaussian(make_random_key(1, 0, RandomField::speckle, ping), static_cast<std::uint32_t>(line),
-                        beams, re.data(), im.data());
+                        field_beams, re.data(), im.data());
   field.evolve(line, re.data(), im.data());
 }
 
 void bring_all_up_to_date(SpeckleField& field, std::uint64_t ping) {
-  for (int line = 0; line < lines; ++line) {
+  for (int line = 0; line < field_lines; ++line) {
     bring_up_to_date(field, line, ping);
   }
 }
@@ -37,8 +37,8 @@ using Values = std::vector<std::complex<double>>;
 
 Values values_of(const SpeckleField& field) {
   Values values;
-  for (int line = 0; line < lines; ++line) {
-    for (int b = 0; b < beams; ++b) {
+  for (int line = 0; line < field_lines; ++line) {
+    for (int b = 0; b < field_beams; ++b) {
       values.emplace_back(static_cast<double>(field.real(line)[b]),
                           static_cast<double>(field.imaginary(line)[b]));
     }
@@ -55,15 +55,15 @@ double correlation(const Values& a, const Values& b) {
 }
 
 // Standard errors of n CN(0, 1): of E|z|^2, 1 / sqrt(n); of the correlation rho, less than 1 / sqrt(n).
-const double bound = 4 / std::sqrt(numbers);
+const double field_bound = 4 / std::sqrt(numbers);
 
 TEST(SpeckleField, IsUntouchedAtRest) {
-  SpeckleField field(beams);
-  field.ensure_lines(lines);
+  SpeckleField field(field_beams);
+  field.ensure_lines(field_lines);
   EXPECT_FALSE(field.is_current(0));
   bring_all_up_to_date(field, 0);
   const Values first = values_of(field);
-  EXPECT_NEAR(correlation(first, first), 1, bound);
+  EXPECT_NEAR(correlation(first, first), 1, field_bound);
   field.fade(0);
   EXPECT_TRUE(field.is_current(0));
   bring_all_up_to_date(field, 1);
@@ -72,28 +72,28 @@ TEST(SpeckleField, IsUntouchedAtRest) {
 
 TEST(SpeckleField, FadesByTheDecayAndKeepsItsPower) {
   for (const double decay : {1e-6, 0.1, 1.0, 3.0}) {
-    SpeckleField field(beams);
-    field.ensure_lines(lines);
+    SpeckleField field(field_beams);
+    field.ensure_lines(field_lines);
     bring_all_up_to_date(field, 0);
     const Values first = values_of(field);
     field.fade(decay);
     bring_all_up_to_date(field, 1);
     const Values faded = values_of(field);
-    EXPECT_NEAR(correlation(faded, faded), 1, bound);
-    EXPECT_NEAR(correlation(first, faded), std::exp(-decay), bound);
+    EXPECT_NEAR(correlation(faded, faded), 1, field_bound);
+    EXPECT_NEAR(correlation(first, faded), std::exp(-decay), field_bound);
     // Small steps are resolved too: what was lost is 1 - rho, seen in the difference |a - b|^2 = 2 (1 - rho).
     double difference = 0;
     for (std::size_t i = 0; i < first.size(); ++i) {
       difference += std::norm(first[i] - faded[i]);
     }
     const double expected = 2 * (1 - std::exp(-decay));
-    EXPECT_NEAR(difference / numbers, expected, 2 * bound * expected);
+    EXPECT_NEAR(difference / numbers, expected, 2 * field_bound * expected);
   }
 }
 
 TEST(SpeckleField, ManySmallStepsAddUp) {
-  SpeckleField field(beams);
-  field.ensure_lines(lines);
+  SpeckleField field(field_beams);
+  field.ensure_lines(field_lines);
   bring_all_up_to_date(field, 0);
   const Values first = values_of(field);
   for (std::uint64_t ping = 1; ping <= 200; ++ping) {
@@ -101,17 +101,17 @@ TEST(SpeckleField, ManySmallStepsAddUp) {
     bring_all_up_to_date(field, ping);
   }
   const Values last = values_of(field);
-  EXPECT_NEAR(correlation(last, last), 1, bound);
-  EXPECT_NEAR(correlation(first, last), std::exp(-1), bound);
+  EXPECT_NEAR(correlation(last, last), 1, field_bound);
+  EXPECT_NEAR(correlation(first, last), std::exp(-1), field_bound);
 }
 
 // Lines that nobody asked for catch up in one step: the same correlations with what was before as line by
 // line.
 TEST(SpeckleField, SkippedStepsAreExactInDistribution) {
-  SpeckleField eager(beams);
-  SpeckleField lazy(beams);
+  SpeckleField eager(field_beams);
+  SpeckleField lazy(field_beams);
   for (SpeckleField* field : {&eager, &lazy}) {
-    field->ensure_lines(lines);
+    field->ensure_lines(field_lines);
     bring_all_up_to_date(*field, 0);
   }
   const Values first = values_of(eager);
@@ -122,7 +122,7 @@ TEST(SpeckleField, SkippedStepsAreExactInDistribution) {
     eager.fade(0.1 * static_cast<double>(ping));
     lazy.fade(0.1 * static_cast<double>(ping));
     bring_all_up_to_date(eager, ping);
-    for (int line = 0; line < lines; line += 2) {
+    for (int line = 0; line < field_lines; line += 2) {
       bring_up_to_date(lazy, line, ping);
     }
   }
@@ -130,32 +130,32 @@ TEST(SpeckleField, SkippedStepsAreExactInDistribution) {
   bring_all_up_to_date(lazy, 6);
   const Values a = values_of(eager);
   const Values b = values_of(lazy);
-  EXPECT_NEAR(correlation(b, b), 1, bound);
-  EXPECT_NEAR(correlation(first, a), std::exp(-decay), bound);
-  EXPECT_NEAR(correlation(first, b), std::exp(-decay), bound);
-  for (std::size_t i = 0; i < beams; ++i) {
+  EXPECT_NEAR(correlation(b, b), 1, field_bound);
+  EXPECT_NEAR(correlation(first, a), std::exp(-decay), field_bound);
+  EXPECT_NEAR(correlation(first, b), std::exp(-decay), field_bound);
+  for (std::size_t i = 0; i < field_beams; ++i) {
     EXPECT_EQ(a[i], b[i]);  // line 0 missed nothing
   }
 }
 
 TEST(SpeckleField, LongWaysLeaveNothing) {
-  SpeckleField field(beams);
-  field.ensure_lines(lines);
+  SpeckleField field(field_beams);
+  field.ensure_lines(field_lines);
   bring_all_up_to_date(field, 0);
   const Values first = values_of(field);
   field.fade(1e300);
   bring_all_up_to_date(field, 1);
-  EXPECT_NEAR(correlation(first, values_of(field)), 0, bound);
-  EXPECT_NEAR(correlation(values_of(field), values_of(field)), 1, bound);
+  EXPECT_NEAR(correlation(first, values_of(field)), 0, field_bound);
+  EXPECT_NEAR(correlation(values_of(field), values_of(field)), 1, field_bound);
 }
 
 TEST(SpeckleField, LinesSurviveAShorterRange) {
-  SpeckleField field(beams);
-  field.ensure_lines(lines);
+  SpeckleField field(field_beams);
+  field.ensure_lines(field_lines);
   bring_all_up_to_date(field, 0);
   const Values first = values_of(field);
   field.ensure_lines(10);
-  field.ensure_lines(lines);
+  field.ensure_lines(field_lines);
   EXPECT_EQ(values_of(field), first);
 }
 

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Single things in the water: as many as asked for, where they are, and nothing behind what hides them.
 #include "renderer/acoustics/water_clutter.hpp"
+#include "tests/support/degree.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
 namespace sonard::render {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 SonarSettings settings_of(double density_per_m3) {
   SonarSettings settings;

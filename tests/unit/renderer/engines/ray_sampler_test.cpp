@@ -8,13 +8,13 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
@@ -25,7 +25,6 @@ using test::make_quad;
 using test::make_sphere;
 using test::make_world;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double far_m = 1000;
 
 /// A world and what samples it.

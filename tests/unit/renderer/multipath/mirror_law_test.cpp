@@ -2,16 +2,15 @@
 #include "renderer/multipath/mirror_law.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "renderer/multipath/path_fan.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::render {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double wavelength_m = 1500.0 / 720e3;
 
 double level_db(double rms_height_mm, double grazing_deg) {

@@ -13,7 +13,7 @@
 namespace sonard::render {
 namespace {
 
-constexpr double wavelength_m = 1500.0 / 720e3;
+constexpr double at_720_khz_m = 1500.0 / 720e3;
 
 World world_of(TriangleMesh mesh, double reflection, double rms_height_m) {
   World world = test::make_world({test::make_body("thing", std::move(mesh))});
@@ -40,7 +40,7 @@ double strongest_gain(const World& world, const glm::dvec3& sonar_m, double rang
                               sonar_m;
         if (glm::length(at) <= range_m) {
           strongest =
-              std::max(strongest, mirror.gain(std::abs(glm::dot(n, at)) / glm::length(at), wavelength_m));
+              std::max(strongest, mirror.gain(std::abs(glm::dot(n, at)) / glm::length(at), at_720_khz_m));
         }
       }
     }
@@ -60,7 +60,7 @@ TEST(MirrorSurvey, NeverMissesAMirror) {
                                     glm::angleAxis(0.1 * i, glm::normalize(glm::dvec3(1, i % 4, 2)))};
     const glm::dvec3 sonar_m(0, 0, 0.3 * (i % 9));
     const double range_m = 2 + i % 11;
-    const bool found = MirrorSurvey(world).has_mirror(world, sonar_m, range_m, wavelength_m);
+    const bool found = MirrorSurvey(world).has_mirror(world, sonar_m, range_m, at_720_khz_m);
     const bool is_one = strongest_gain(world, sonar_m, range_m) > least_mirror_gain;
     EXPECT_TRUE(found || !is_one) << i;
     mirrors += is_one ? 1 : 0;
@@ -72,18 +72,18 @@ TEST(MirrorSurvey, NeverMissesAMirror) {
 
 TEST(MirrorSurvey, WeakReflectionNeverMirrors) {
   const World world = world_of(test::make_quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), 0.17, 0.0);
-  EXPECT_FALSE(MirrorSurvey(world).has_mirror(world, {0, 0, 1e-3}, 100, wavelength_m));
+  EXPECT_FALSE(MirrorSurvey(world).has_mirror(world, {0, 0, 1e-3}, 100, at_720_khz_m));
   const World stronger = world_of(test::make_quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), 0.18, 0.0);
-  EXPECT_TRUE(MirrorSurvey(stronger).has_mirror(stronger, {0, 0, 1e-3}, 100, wavelength_m));
+  EXPECT_TRUE(MirrorSurvey(stronger).has_mirror(stronger, {0, 0, 1e-3}, 100, at_720_khz_m));
 }
 
 TEST(MirrorSurvey, WaterMirrorsWhereItIsSeenFlatEnough) {
   // P = 2 k sigma sin gamma = 1.858 makes exp(-P^2) = -15 dB: with 10 mm at sin gamma = 0.0308.
   const Mirror water(-1.0, 0.01);
-  EXPECT_TRUE(water_surface_mirrors(water, 1.5, 50, wavelength_m));
-  EXPECT_FALSE(water_surface_mirrors(water, 1.6, 50, wavelength_m));
-  EXPECT_FALSE(water_surface_mirrors(water, -1, 50, wavelength_m));
-  EXPECT_FALSE(water_surface_mirrors(Mirror(-1.0, 0.0), 51, 50, wavelength_m));
+  EXPECT_TRUE(water_surface_mirrors(water, 1.5, 50, at_720_khz_m));
+  EXPECT_FALSE(water_surface_mirrors(water, 1.6, 50, at_720_khz_m));
+  EXPECT_FALSE(water_surface_mirrors(water, -1, 50, at_720_khz_m));
+  EXPECT_FALSE(water_surface_mirrors(Mirror(-1.0, 0.0), 51, 50, at_720_khz_m));
 }
 
 }  // namespace

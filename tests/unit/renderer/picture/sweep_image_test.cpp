@@ -18,8 +18,8 @@ namespace {
 
 constexpr int bins = 200;
 constexpr double bin_m = 0.05;  // 10 m
-constexpr int radius_px = 400;  // two pixels a bin
-constexpr FanStyle plain{.radius_px = radius_px, .grid = false};
+constexpr int disc_px = 400;    // two pixels a bin
+constexpr FanStyle plain{.radius_px = disc_px, .grid = false};
 
 SweepShape all_round(int step = 32) {
   return {.step = step, .bins = bins, .bin_m = bin_m};
@@ -41,7 +41,7 @@ SweepLine one_bin(int bearing, int bin) {
   return line;
 }
 
-cv::Point2d centroid(const cv::Mat& image) {
+cv::Point2d centre_of_mass(const cv::Mat& image) {
   const cv::Moments moments = cv::moments(image);
   return {moments.m10 / moments.m00, moments.m01 / moments.m00};
 }
@@ -52,11 +52,11 @@ TEST_P(BrightBin, AppearsAtItsBearingAndRange) {
   const int bearing = GetParam();
   const SweepImage image(all_round(), plain);
   const auto [samples, heard] = image.project({one_bin(bearing, 150)});
-  ASSERT_EQ(samples.size(), cv::Size(2 * radius_px + 1, 2 * radius_px + 1));
-  const double radius = 150.5 * radius_px / bins;
-  const cv::Point2d expected{radius_px + radius * std::sin(angle_rad(bearing)),
-                             radius_px - radius * std::cos(angle_rad(bearing))};
-  const cv::Point2d found = centroid(samples);
+  ASSERT_EQ(samples.size(), cv::Size(2 * disc_px + 1, 2 * disc_px + 1));
+  const double radius = 150.5 * disc_px / bins;
+  const cv::Point2d expected{disc_px + radius * std::sin(angle_rad(bearing)),
+                             disc_px - radius * std::cos(angle_rad(bearing))};
+  const cv::Point2d found = centre_of_mass(samples);
   EXPECT_NEAR(found.x, expected.x, 0.7);
   EXPECT_NEAR(found.y, expected.y, 0.7);
   EXPECT_GT(samples.at<uchar>(cvRound(expected.y), cvRound(expected.x)), 120);
@@ -68,11 +68,11 @@ INSTANTIATE_TEST_SUITE_P(Bearings, BrightBin,
 TEST(SweepImage, AheadIsUpAndStarboardOnTheRight) {
   const SweepImage image(all_round(), plain);
   const cv::Mat ahead = image.project({even_line(3200, 200)}).samples;
-  EXPECT_EQ(ahead.at<uchar>(radius_px - 100, radius_px), 200);
-  EXPECT_EQ(ahead.at<uchar>(radius_px + 100, radius_px), 0);
+  EXPECT_EQ(ahead.at<uchar>(disc_px - 100, disc_px), 200);
+  EXPECT_EQ(ahead.at<uchar>(disc_px + 100, disc_px), 0);
   const cv::Mat starboard = image.project({even_line(4800, 200)}).samples;
-  EXPECT_EQ(starboard.at<uchar>(radius_px, radius_px + 100), 200);
-  EXPECT_EQ(starboard.at<uchar>(radius_px, radius_px - 100), 0);
+  EXPECT_EQ(starboard.at<uchar>(disc_px, disc_px + 100), 200);
+  EXPECT_EQ(starboard.at<uchar>(disc_px, disc_px - 100), 0);
 }
 
 /// A line fills half a step on either side of its bearing, out to the range, and nothing else.
@@ -90,13 +90,13 @@ void expect_wedge(const SweepImage& image, int bearing, int step) {
       if (std::abs(off - half_rad) < rounding_rad || (dx == 0.0 && dy == 0.0)) {
         continue;  // on the edge
       }
-      const bool inside = off < half_rad && std::hypot(dx, dy) < radius_px;
+      const bool inside = off < half_rad && std::hypot(dx, dy) < disc_px;
       ASSERT_EQ(heard.at<uchar>(y, x), inside ? 255 : 0) << x << ", " << y;
       ASSERT_EQ(samples.at<uchar>(y, x), inside ? 177 : 0) << x << ", " << y;
       filled += inside ? 1 : 0;
     }
   }
-  EXPECT_GT(filled, 0.8 * half_rad * radius_px * radius_px);
+  EXPECT_GT(filled, 0.8 * half_rad * disc_px * disc_px);
 }
 
 TEST(SweepImage, ALineFillsItsOwnStepAndNothingElse) {

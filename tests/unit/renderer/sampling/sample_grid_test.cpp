@@ -2,16 +2,14 @@
 #include "renderer/sample_grid/sample_grid.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "renderer/errors.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::render {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 Aperture gemini_like() {
   Aperture aperture;

@@ -18,7 +18,7 @@ using testing::UnorderedElementsAre;
 
 const std::string head =
     "<sdf version=\"1.9\" xmlns:sonard=\"https://sonard.dev/sdf\">\n<world name=\"w\">\n";
-const std::string ball =
+const std::string ball_visual =
     "<visual name=\"ball\"><geometry><sphere><radius>1</radius></sphere></geometry></visual>";
 
 World loaded(const std::string& models) {
@@ -35,7 +35,7 @@ std::string load_error(const std::string& models) {
   return "no error";
 }
 
-void expect_near(const glm::dvec3& actual, const glm::dvec3& expected) {
+void expect_at(const glm::dvec3& actual, const glm::dvec3& expected) {
   EXPECT_NEAR(glm::distance(actual, expected), 0.0, 1e-9) << actual.x << " " << actual.y << " " << actual.z;
 }
 
@@ -44,7 +44,7 @@ void expect_near(const glm::dvec3& actual, const glm::dvec3& expected) {
 // matter.
 TEST(Sonars, HaveTheirPlaceInTheModelThatStandsInTheWorld) {
   const World world = loaded(R"(<model name="rov"><pose>10 20 -3 0 0 2</pose>
-    <link name="hull">)" + ball +
+    <link name="hull">)" + ball_visual +
                              R"(</link>
     <model name="arm"><pose>1 0 0 0 0 1.5707963267948966</pose>
       <link name="wrist"><pose>0.5 0 0 0 0 0</pose>
@@ -56,9 +56,9 @@ TEST(Sonars, HaveTheirPlaceInTheModelThatStandsInTheWorld) {
   EXPECT_EQ(sonar.path, "rov::arm::wrist::gemini");
   EXPECT_EQ(sonar.type, "gemini_720i");
   EXPECT_EQ(sonar.body, "rov");
-  expect_near(sonar.T_body_sonar.position_m, {1, 0.5, 0.2});
-  expect_near(sonar.T_body_sonar.orientation * glm::dvec3(1, 0, 0), {0, std::cos(0.3), -std::sin(0.3)});
-  expect_near(sonar.T_body_sonar.orientation * glm::dvec3(0, 1, 0), {-1, 0, 0});
+  expect_at(sonar.T_body_sonar.position_m, {1, 0.5, 0.2});
+  expect_at(sonar.T_body_sonar.orientation * glm::dvec3(1, 0, 0), {0, std::cos(0.3), -std::sin(0.3)});
+  expect_at(sonar.T_body_sonar.orientation * glm::dvec3(0, 1, 0), {-1, 0, 0});
   EXPECT_THAT(world.left_out, IsEmpty());
   EXPECT_THAT(world.warnings, IsEmpty());
 }
@@ -66,11 +66,11 @@ TEST(Sonars, HaveTheirPlaceInTheModelThatStandsInTheWorld) {
 TEST(Sonars, FollowTheFrameGraph) {
   const World world = loaded(R"(<model name="rov"><frame name="bow"><pose>2 0 0 0 0 0</pose></frame>
     <link name="hull"><pose>0 0 5 0 0 0</pose>)" +
-                             ball + R"(
+                             ball_visual + R"(
       <sensor name="micron" type="custom" sonard:type="micron"><pose relative_to="bow">0 0 -1 0 0 0</pose></sensor>
     </link></model>)");
   ASSERT_EQ(world.sonars.size(), 1U);
-  expect_near(world.sonars[0].T_body_sonar.position_m, {2, 0, -1});
+  expect_at(world.sonars[0].T_body_sonar.position_m, {2, 0, -1});
 }
 
 /// As vehicles usually come: a model of its own, in an older version of SDF, under the name that the world
@@ -81,7 +81,7 @@ TEST(Sonars, ComeWithIncludedModels) {
       "models/rov/model.sdf",
       "<sdf version=\"1.6\" xmlns:sonard=\"https://sonard.dev/sdf\"><model name=\"rov\"><link name=\"bow\">"
       "<pose>0.5 0 0 0 0 0</pose>" +
-          ball +
+          ball_visual +
           "<sensor name=\"gemini\" type=\"custom\" sonard:type=\"gemini_720i\"><pose>0 0 0.1 0 0 0</pose>"
           "</sensor></link></model></sdf>");
   const World world = load_world(
@@ -92,20 +92,20 @@ TEST(Sonars, ComeWithIncludedModels) {
   ASSERT_EQ(world.sonars.size(), 1U);
   EXPECT_EQ(world.sonars[0].path, "rov_1::bow::gemini");
   EXPECT_EQ(world.sonars[0].body, "rov_1");
-  expect_near(world.sonars[0].T_body_sonar.position_m, {0.5, 0, 0.1});
+  expect_at(world.sonars[0].T_body_sonar.position_m, {0.5, 0, 0.1});
   EXPECT_THAT(world.warnings, IsEmpty());
 }
 
 TEST(Sonars, AreRefusedInTheWrongPlace) {
-  const std::string link = "<model name=\"m\"><link name=\"l\">" + ball;
+  const std::string link = "<model name=\"m\"><link name=\"l\">" + ball_visual;
   EXPECT_THAT(
       load_error(link + "\n<sensor name=\"s\" type=\"custom\" sonard:typ=\"micron\"/></link></model>"),
       HasSubstr("w.sdf:4: attribute 'sonard:typ' of <sensor>"));
   EXPECT_THAT(load_error(link + "\n<sensor name=\"s\" type=\"imu\" sonard:type=\"micron\"/></link></model>"),
               HasSubstr("w.sdf:4: attribute 'sonard:type' of <sensor>"));
-  EXPECT_THAT(
-      load_error("<model name=\"m\" sonard:type=\"micron\"><link name=\"l\">" + ball + "</link></model>"),
-      HasSubstr("w.sdf:3: attribute 'sonard:type' of <model>"));
+  EXPECT_THAT(load_error("<model name=\"m\" sonard:type=\"micron\"><link name=\"l\">" + ball_visual +
+                         "</link></model>"),
+              HasSubstr("w.sdf:3: attribute 'sonard:type' of <model>"));
 }
 
 TEST(LeftOut, IsListedByKind) {
@@ -114,7 +114,7 @@ TEST(LeftOut, IsListedByKind) {
     <light name="lamp" type="point"/>
     <plugin name="gz::sim::systems::Physics" filename="gz-sim-physics-system"/>
     <model name="m"><link name="l">)" +
-                             ball + R"(
+                             ball_visual + R"(
         <sensor name="eye" type="camera"/><sensor name="other" type="custom"/>
         <light name="torch" type="spot"/></link>
       <link name="door"/>
@@ -133,9 +133,10 @@ TEST(LeftOut, IsWarnedOfWhereItCouldBeHeard) {
       "<geometry><polyline><point>0 0</point><point>1 0</point><point>1 "
       "1</point><height>1</height></polyline>"
       "</geometry>";
-  const World world = loaded("<model name=\"m\"><link name=\"l\">" + ball + "<visual name=\"a\">" + polyline +
-                             "</visual><visual name=\"b\">" + polyline + "</visual></link></model>" +
-                             "<actor name=\"walker\"><skin><filename>w.dae</filename></skin></actor>");
+  const World world =
+      loaded("<model name=\"m\"><link name=\"l\">" + ball_visual + "<visual name=\"a\">" + polyline +
+             "</visual><visual name=\"b\">" + polyline + "</visual></link></model>" +
+             "<actor name=\"walker\"><skin><filename>w.dae</filename></skin></actor>");
   EXPECT_EQ(world.bodies.at(0).parts.size(), 1U);
   EXPECT_THAT(world.left_out, IsEmpty());
   EXPECT_THAT(world.warnings,
@@ -149,7 +150,8 @@ TEST(LeftOut, NamesTheFirstOfMany) {
   for (int i = 0; i < 40; ++i) {
     lights += "<light name=\"l" + std::to_string(i) + "\" type=\"point\"/>";
   }
-  const World world = loaded(lights + "<model name=\"m\"><link name=\"l\">" + ball + "</link></model>");
+  const World world =
+      loaded(lights + "<model name=\"m\"><link name=\"l\">" + ball_visual + "</link></model>");
   EXPECT_THAT(world.left_out, ElementsAre("lights (40): l0, l1, l2, l3, l4, l5, ..."));
 }
 

@@ -43,7 +43,7 @@ TEST(NormalMapImage, HasRowZeroAtTheBottom) {
   EXPECT_THAT(map.rgb, ElementsAre(128, 128, 255, 1, 2, 3, 255, 0, 128, 0, 255, 128));
 }
 
-std::string error_of(const std::filesystem::path& file) {
+std::string normal_map_error(const std::filesystem::path& file) {
   try {
     load_normal_map(file);
   } catch (const WorldError& error) {
@@ -54,11 +54,11 @@ std::string error_of(const std::filesystem::path& file) {
 
 TEST(Image, ErrorsNameTheFile) {
   const test::TempFolder folder;
-  EXPECT_THAT(error_of("/nowhere/x.png"), HasSubstr("/nowhere/x.png: image file not found"));
-  EXPECT_THAT(error_of(folder.write("a.exr", "x")), HasSubstr("supported: png"));
-  EXPECT_THAT(error_of(folder.write("bad.png", "not a picture")), HasSubstr("bad.png: "));
-  EXPECT_THAT(error_of(data / "grey8.png"), HasSubstr("needs 3 channels, this image has 1"));
-  EXPECT_THAT(error_of("http://127.0.0.1/x.png"), HasSubstr("network"));
+  EXPECT_THAT(normal_map_error("/nowhere/x.png"), HasSubstr("/nowhere/x.png: image file not found"));
+  EXPECT_THAT(normal_map_error(folder.write("a.exr", "x")), HasSubstr("supported: png"));
+  EXPECT_THAT(normal_map_error(folder.write("bad.png", "not a picture")), HasSubstr("bad.png: "));
+  EXPECT_THAT(normal_map_error(data / "grey8.png"), HasSubstr("needs 3 channels, this image has 1"));
+  EXPECT_THAT(normal_map_error("http://127.0.0.1/x.png"), HasSubstr("network"));
 }
 
 TEST(Image, DamagedFilesAreErrors) {
@@ -67,7 +67,7 @@ TEST(Image, DamagedFilesAreErrors) {
     std::string bytes(static_cast<std::size_t>(size), '\0');
     std::ifstream(data / "normal_map.png", std::ios::binary).read(bytes.data(), size);
     const auto file = folder.write("cut.png", bytes);
-    EXPECT_NE(error_of(file), "") << size << " bytes";
+    EXPECT_NE(normal_map_error(file), "") << size << " bytes";
   }
 }
 

@@ -19,7 +19,7 @@ double level_db(double linear) {
   return 10.0 * std::log10(linear);
 }
 
-std::string error_of(const MaterialRequest& request) {
+std::string material_error(const MaterialRequest& request) {
   std::vector<std::string> warnings;
   try {
     make_acoustic_material(request, warnings);
@@ -121,13 +121,13 @@ TEST(MaterialRequest, ReplacesTheNumbersOfFacets) {
 TEST(MaterialRequest, ChecksTheNumbersOfFacets) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double wrong : {-1.01, 1.01, nan}) {
-    EXPECT_THAT(error_of({"", {}, {}, wrong, {}, {}}), HasSubstr("pressure_reflection is"));
+    EXPECT_THAT(material_error({"", {}, {}, wrong, {}, {}}), HasSubstr("pressure_reflection is"));
   }
   for (const double wrong : {0.0, 0.009, 0.51, nan}) {
-    EXPECT_THAT(error_of({"", {}, {}, {}, wrong, {}}), HasSubstr("rms_slope is"));
+    EXPECT_THAT(material_error({"", {}, {}, {}, wrong, {}}), HasSubstr("rms_slope is"));
   }
   for (const double wrong : {-0.1, 1000.1, nan}) {
-    EXPECT_THAT(error_of({"", {}, {}, {}, {}, wrong}), HasSubstr("rms_height_mm is"));
+    EXPECT_THAT(material_error({"", {}, {}, {}, {}, wrong}), HasSubstr("rms_height_mm is"));
   }
 }
 
@@ -140,16 +140,16 @@ TEST(MaterialRequest, MayDefineANewOne) {
 }
 
 TEST(MaterialRequest, UnknownNamesGetAHint) {
-  EXPECT_THAT(error_of({"stel", {}, {}}), HasSubstr("did you mean 'steel'"));
-  EXPECT_THAT(error_of({"concreet", {}, {}}), HasSubstr("did you mean 'concrete'"));
-  EXPECT_THAT(error_of({"kryptonite", 1.0, {}}), HasSubstr("known: default, steel"));
-  EXPECT_THAT(error_of({"kryptonite", {}, {}}), testing::Not(HasSubstr("did you mean")));
+  EXPECT_THAT(material_error({"stel", {}, {}}), HasSubstr("did you mean 'steel'"));
+  EXPECT_THAT(material_error({"concreet", {}, {}}), HasSubstr("did you mean 'concrete'"));
+  EXPECT_THAT(material_error({"kryptonite", 1.0, {}}), HasSubstr("known: default, steel"));
+  EXPECT_THAT(material_error({"kryptonite", {}, {}}), testing::Not(HasSubstr("did you mean")));
 }
 
 TEST(MaterialRequest, ChecksItsNumbers) {
-  EXPECT_THAT(error_of({"", -0.1, {}}), HasSubstr("reflectance is -0.1"));
-  EXPECT_THAT(error_of({"", std::numeric_limits<double>::quiet_NaN(), {}}), HasSubstr("reflectance"));
-  EXPECT_THAT(error_of({"", {}, std::numeric_limits<double>::infinity()}), HasSubstr("lambert_mu_db"));
+  EXPECT_THAT(material_error({"", -0.1, {}}), HasSubstr("reflectance is -0.1"));
+  EXPECT_THAT(material_error({"", std::numeric_limits<double>::quiet_NaN(), {}}), HasSubstr("reflectance"));
+  EXPECT_THAT(material_error({"", {}, std::numeric_limits<double>::infinity()}), HasSubstr("lambert_mu_db"));
   std::vector<std::string> warnings;
   EXPECT_EQ(make_acoustic_material({"", 1e6, -22.0}, warnings).reflectance, 1e6);
   EXPECT_EQ(warnings.size(), 1U);

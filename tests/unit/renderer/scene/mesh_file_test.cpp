@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-const std::filesystem::path data = std::filesystem::path(SONARD_SOURCE_DIR) / "tests/data/worlds";
+const std::filesystem::path worlds_data = std::filesystem::path(SONARD_SOURCE_DIR) / "tests/data/worlds";
 
 MeshFileRequest request_for(const std::filesystem::path& file) {
   MeshFileRequest request;
@@ -62,7 +62,7 @@ class TetrahedronFile : public testing::TestWithParam<const char*> {};
 
 // Corners (0 0 0) (1 0 0) (0 2 0) (0 0 3): volume 1, wound outward, axes as in the file.
 TEST_P(TetrahedronFile, KeepsItsAxesSizeAndWinding) {
-  const MeshFile file = load_mesh_file(request_for(data / GetParam()));
+  const MeshFile file = load_mesh_file(request_for(worlds_data / GetParam()));
   EXPECT_EQ(triangle_count(file), 4U);
   EXPECT_NEAR(volume_m3(file), 1.0, 1e-6);
   glm::dvec3 high(0.0);
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, TetrahedronFile,
                                          "tetrahedron.osgt"));
 
 TEST(MeshFile, SplitsAnObjByMaterialName) {
-  const MeshFile file = load_mesh_file(request_for(data / "tetrahedron.obj"));
+  const MeshFile file = load_mesh_file(request_for(worlds_data / "tetrahedron.obj"));
   std::vector<std::string> names;
   for (const MeshFilePart& part : file.parts) {
     names.push_back(part.material_name);
@@ -91,7 +91,7 @@ TEST(MeshFile, SplitsAnObjByMaterialName) {
 }
 
 TEST(MeshFile, AppliesTheUnitAndTransformsOfCollada) {
-  const MeshFile file = load_mesh_file(request_for(data / "millimetres.dae"));
+  const MeshFile file = load_mesh_file(request_for(worlds_data / "millimetres.dae"));
   ASSERT_EQ(file.parts.size(), 1U);
   EXPECT_EQ(file.parts[0].material_name, "steel");
   EXPECT_NEAR(volume_m3(file), 1.0, 1e-6);
@@ -102,7 +102,7 @@ TEST(MeshFile, AppliesTheUnitAndTransformsOfCollada) {
 
 TEST(MeshFile, HonoursTheUpAxisOfCollada) {
   const test::TempFolder folder;
-  std::string text = content(data / "millimetres.dae");
+  std::string text = content(worlds_data / "millimetres.dae");
   text.replace(text.find("Z_UP"), 4, "Y_UP");
   const MeshFile file = load_mesh_file(request_for(folder.write("y_up.dae", text)));
   // y up becomes z up: (x, y, z) -> (x, -z, y).
@@ -114,7 +114,7 @@ TEST(MeshFile, HonoursTheUpAxisOfCollada) {
 
 TEST(MeshFile, RefusesAColladaUnitThatIsNoNumber) {
   const test::TempFolder folder;
-  std::string text = content(data / "millimetres.dae");
+  std::string text = content(worlds_data / "millimetres.dae");
   text.replace(text.find("0.001"), 5, "-1e-3");
   EXPECT_THAT(error_of(request_for(folder.write("unit.dae", text))),
               HasSubstr("unit.dae: <unit meter=\"-1e-3\">"));
@@ -122,9 +122,9 @@ TEST(MeshFile, RefusesAColladaUnitThatIsNoNumber) {
 
 TEST(MeshFile, InventsNoNormals) {
   // Smooth normals over the edges of a box would make it sound like a ball.
-  EXPECT_TRUE(load_mesh_file(request_for(data / "tetrahedron.ply")).parts.at(0).mesh->normals.empty());
-  EXPECT_TRUE(load_mesh_file(request_for(data / "tetrahedron.stl")).parts.at(0).mesh->normals.empty());
-  for (const MeshFilePart& part : load_mesh_file(request_for(data / "tetrahedron.obj")).parts) {
+  EXPECT_TRUE(load_mesh_file(request_for(worlds_data / "tetrahedron.ply")).parts.at(0).mesh->normals.empty());
+  EXPECT_TRUE(load_mesh_file(request_for(worlds_data / "tetrahedron.stl")).parts.at(0).mesh->normals.empty());
+  for (const MeshFilePart& part : load_mesh_file(request_for(worlds_data / "tetrahedron.obj")).parts) {
     for (std::size_t t = 0; t < part.mesh->triangle_count(); ++t) {
       const glm::dvec3 facing = glm::normalize(test::area_normal(*part.mesh, t));
       for (std::size_t k = 0; k < 3 && !part.mesh->normals.empty(); ++k) {
@@ -165,7 +165,7 @@ TEST(MeshFile, RefusesATextPlyWithoutNumbers) {
 }
 
 TEST(MeshFile, ScalesAndMirrors) {
-  MeshFileRequest request = request_for(data / "tetrahedron.obj");
+  MeshFileRequest request = request_for(worlds_data / "tetrahedron.obj");
   request.scale = {2.0, 1.0, -0.5};
   const MeshFile file = load_mesh_file(request);
   EXPECT_NEAR(volume_m3(file), 1.0, 1e-6);  // positive: the winding was turned with the mirror
@@ -186,7 +186,7 @@ TEST(MeshFile, ScalesAndMirrors) {
 }
 
 TEST(MeshFile, TakesOneSubmesh) {
-  MeshFileRequest request = request_for(data / "tetrahedron.obj");
+  MeshFileRequest request = request_for(worlds_data / "tetrahedron.obj");
   request.submesh = "cap";
   const MeshFile file = load_mesh_file(request);
   ASSERT_EQ(file.parts.size(), 1U);
@@ -199,7 +199,7 @@ TEST(MeshFile, TakesOneSubmesh) {
 }
 
 TEST(MeshFile, TakesASubmeshOfCollada) {
-  MeshFileRequest request = request_for(data / "millimetres.dae");
+  MeshFileRequest request = request_for(worlds_data / "millimetres.dae");
   request.submesh = "tetrahedron_node";
   EXPECT_EQ(triangle_count(load_mesh_file(request)), 4U);
 }
@@ -215,7 +215,7 @@ TEST(MeshFile, MakesTangentsForANormalMap) {
   for (const glm::vec4& tangent : mesh.tangents) {
     EXPECT_NEAR(glm::distance(tangent, glm::vec4(1, 0, 0, 1)), 0.0, 1e-6);
   }
-  request.file = data / "tetrahedron.obj";
+  request.file = worlds_data / "tetrahedron.obj";
   EXPECT_THAT(error_of(request), HasSubstr("texture coordinates"));
 }
 
@@ -310,7 +310,7 @@ TEST(MeshFile, SurvivesDamagedFiles) {
   int refused = 0;
   for (const char* name :
        {"tetrahedron.obj", "tetrahedron.ply", "tetrahedron.stl", "tetrahedron.osgt", "millimetres.dae"}) {
-    const std::string whole = content(data / name);
+    const std::string whole = content(worlds_data / name);
     for (std::size_t i = 1; i < 24; ++i) {
       std::string damaged = whole.substr(0, whole.size() * i / 24);
       if (i % 2 == 0) {

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const std::string shape = "<geometry><sphere><radius>1</radius></sphere></geometry>";
 
-std::string load_error(const std::filesystem::path& file) {
+std::string error_of_world(const std::filesystem::path& file) {
   try {
     load_world(file, {SONARD_SOURCE_DIR "/tests/data/worlds"});
   } catch (const WorldError& error) {
@@ -54,7 +54,7 @@ TEST_P(BadWorld, IsNamedWithItsPlace) {
   const auto file =
       folder.write("world.sdf", "<sdf version=\"1.9\" xmlns:sonard=\"x\">\n<world name=\"w\">\n" +
                                     GetParam().world + "\n</world></sdf>");
-  const std::string message = load_error(file);
+  const std::string message = error_of_world(file);
   for (const std::string& part : GetParam().expected) {
     EXPECT_THAT(message, HasSubstr(part));
   }
@@ -197,7 +197,7 @@ TEST(BadWorldFile, LeadsOutOfItsFolders) {
         std::string("<include><uri>model://../../secret</uri></include>")}) {
     const auto file = folder.write(
         "project/worlds/w.sdf", "<sdf version=\"1.9\">\n<world name=\"w\">\n" + content + "\n</world></sdf>");
-    EXPECT_THAT(load_error(file), HasSubstr("leads out of the folders of this world and its models"))
+    EXPECT_THAT(error_of_world(file), HasSubstr("leads out of the folders of this world and its models"))
         << content;
   }
 }
@@ -211,7 +211,7 @@ TEST(BadWorldFile, LeadsOutOfItsFoldersByAManifest) {
   const auto file = folder.write(
       "project/worlds/w.sdf",
       "<sdf version=\"1.9\">\n<world name=\"w\">\n<include><uri>model://b</uri></include>\n</world></sdf>");
-  EXPECT_THAT(load_error(file), HasSubstr("leads out of the folders of this world and its models"));
+  EXPECT_THAT(error_of_world(file), HasSubstr("leads out of the folders of this world and its models"));
 }
 
 TEST(BadWorldFile, LeadsOutOfTheCacheOfFuel) {
@@ -226,11 +226,11 @@ TEST(BadWorldFile, LeadsOutOfTheCacheOfFuel) {
                                   "</uri></mesh></geometry>") +
                             "\n</world></sdf>");
   };
-  EXPECT_EQ(load_error(world("reef/1/files/quad.obj")), "no error");
+  EXPECT_EQ(error_of_world(world("reef/1/files/quad.obj")), "no error");
   for (const char* rest : {"reef/1/files/../../../../../../secret/quad.obj",
                            "reef/1/files/%2e%2e/../../../../../secret/quad.obj",
                            "reef/1/files/..%2F..%2F..%2F..%2F..%2F..%2Fsecret%2Fquad.obj"}) {
-    EXPECT_THAT(load_error(world(rest)), HasSubstr("nothing is fetched")) << rest;
+    EXPECT_THAT(error_of_world(world(rest)), HasSubstr("nothing is fetched")) << rest;
   }
   unsetenv("GZ_FUEL_CACHE_PATH");
 }
@@ -257,10 +257,10 @@ TEST(WorldFile, MayBeInItsFoldersModelsAndMeshes) {
        {std::string("here/quad.obj"), std::string("here/../here/quad.obj"), std::string("../meshes/quad.obj"),
         std::string("../models/b/quad.obj"), std::string("model://b/quad.obj"),
         project + "/models/b/quad.obj", std::string("inner/quad.obj")}) {
-    EXPECT_EQ(load_error(world(uri)), "no error") << uri;
+    EXPECT_EQ(error_of_world(world(uri)), "no error") << uri;
   }
   const auto linked = world("link/quad.obj");
-  EXPECT_THAT(load_error(linked), HasSubstr("leads out of the folders of this world and its models"));
+  EXPECT_THAT(error_of_world(linked), HasSubstr("leads out of the folders of this world and its models"));
   EXPECT_NO_THROW(load_world(linked, {folder.path() / "elsewhere"})) << "named by the operator";
   const auto outside = world((folder.path() / "elsewhere/quad.obj").string());
   EXPECT_NO_THROW(load_world(outside, {folder.path() / "elsewhere"})) << "named by the operator";
@@ -325,39 +325,42 @@ TEST(BadWorldFile, HasIncludesThatMultiply) {
     }
     file = folder.write("m" + std::to_string(level) + ".sdf", text + "</model></sdf>");
   }
-  EXPECT_THAT(load_error(file), HasSubstr("m9.sdf: more than 1000000 elements with all that is included"));
+  EXPECT_THAT(error_of_world(file),
+              HasSubstr("m9.sdf: more than 1000000 elements with all that is included"));
 }
 
 TEST(BadWorldFile, IsOfAnotherKind) {
   const test::TempFolder folder;
-  EXPECT_THAT(load_error(folder.write("arm.urdf", "<robot name=\"arm\"/>")), HasSubstr("<robot> is no SDF"));
-  EXPECT_THAT(load_error(folder.write("old.sdf", "<sdf version=\"1.2\"><model name=\"m\"/></sdf>")),
+  EXPECT_THAT(error_of_world(folder.write("arm.urdf", "<robot name=\"arm\"/>")),
+              HasSubstr("<robot> is no SDF"));
+  EXPECT_THAT(error_of_world(folder.write("old.sdf", "<sdf version=\"1.2\"><model name=\"m\"/></sdf>")),
               HasSubstr("SDF version 1.2 is too old"));
 }
 
 TEST(BadWorldFile, HasPosesThatAreRelativeToEachOther) {
   const test::TempFolder folder;
-  EXPECT_THAT(load_error(folder.write("w.sdf",
-                                      "<sdf version=\"1.9\"><model name=\"m\">"
-                                      "<frame name=\"a\"><pose relative_to=\"b\">1 0 0 0 0 0</pose></frame>"
-                                      "\n<frame name=\"b\"><pose relative_to=\"a\">1 0 0 0 0 0</pose></frame>"
-                                      "<link name=\"l\"><pose relative_to=\"a\"/><visual name=\"v\">" +
-                                          shape + "</visual></link></model></sdf>")),
-              HasSubstr("is relative to itself, by way of others"));
+  EXPECT_THAT(
+      error_of_world(folder.write("w.sdf",
+                                  "<sdf version=\"1.9\"><model name=\"m\">"
+                                  "<frame name=\"a\"><pose relative_to=\"b\">1 0 0 0 0 0</pose></frame>"
+                                  "\n<frame name=\"b\"><pose relative_to=\"a\">1 0 0 0 0 0</pose></frame>"
+                                  "<link name=\"l\"><pose relative_to=\"a\"/><visual name=\"v\">" +
+                                      shape + "</visual></link></model></sdf>")),
+      HasSubstr("is relative to itself, by way of others"));
 }
 
 TEST(BadWorldFile, IsNamed) {
   const test::TempFolder folder;
-  EXPECT_EQ(load_error("/nowhere/w.sdf"), "/nowhere/w.sdf: world file not found");
-  EXPECT_THAT(load_error(folder.path()), HasSubstr("world file not found"));
-  EXPECT_THAT(load_error(folder.write("empty.sdf", "")), HasSubstr("empty.sdf:1: not well-formed XML"));
-  EXPECT_THAT(load_error(folder.write("bare.sdf", "<?xml version=\"1.0\"?>\n")),
+  EXPECT_EQ(error_of_world("/nowhere/w.sdf"), "/nowhere/w.sdf: world file not found");
+  EXPECT_THAT(error_of_world(folder.path()), HasSubstr("world file not found"));
+  EXPECT_THAT(error_of_world(folder.write("empty.sdf", "")), HasSubstr("empty.sdf:1: not well-formed XML"));
+  EXPECT_THAT(error_of_world(folder.write("bare.sdf", "<?xml version=\"1.0\"?>\n")),
               HasSubstr("bare.sdf: holds no element"));
-  EXPECT_THAT(load_error(folder.write("two.sdf",
-                                      "<sdf version=\"1.9\"><world name=\"a\"/><world name=\"b\"/></sdf>")),
+  EXPECT_THAT(error_of_world(folder.write(
+                  "two.sdf", "<sdf version=\"1.9\"><world name=\"a\"/><world name=\"b\"/></sdf>")),
               AllOf(HasSubstr("two.sdf"), HasSubstr("2 worlds")));
-  EXPECT_THAT(load_error(folder.write("none.sdf", "<sdf version=\"1.9\"/>")), HasSubstr("none.sdf"));
-  EXPECT_THAT(load_error(folder.write(
+  EXPECT_THAT(error_of_world(folder.write("none.sdf", "<sdf version=\"1.9\"/>")), HasSubstr("none.sdf"));
+  EXPECT_THAT(error_of_world(folder.write(
                   "model.sdf", "<sdf version=\"1.9\"><model name=\"m\"><link name=\"l\"/></model></sdf>")),
               HasSubstr("no triangles"));
 }

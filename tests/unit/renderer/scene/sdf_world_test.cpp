@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::filesystem::path data = std::filesystem::path(SONARD_SOURCE_DIR) / "tests/data/worlds";
+const std::filesystem::path shared_worlds = std::filesystem::path(SONARD_SOURCE_DIR) / "tests/data/worlds";
 
 /// One model "m" with one link "l" that holds `visuals`.
 std::string world_of(const std::string& visuals) {
@@ -41,7 +41,7 @@ void expect_near(const glm::dvec3& actual, const glm::dvec3& expected) {
 
 class Harbour : public testing::Test {
  protected:
-  const World world_ = load_world(data / "harbour/harbour.sdf", {});
+  const World world_ = load_world(shared_worlds / "harbour/harbour.sdf", {});
 };
 
 TEST_F(Harbour, HasItsBodiesAndItsWaterSurface) {
@@ -103,7 +103,7 @@ TEST_F(Harbour, TakesVisualsAndNotCollisions) {
 }
 
 TEST(SdfWorld, MayBeASingleModel) {
-  const World world = load_world(data / "harbour/models/hook/model.sdf", {});
+  const World world = load_world(shared_worlds / "harbour/models/hook/model.sdf", {});
   ASSERT_EQ(world.bodies.size(), 1U);
   EXPECT_EQ(world.bodies[0].name, "hook");
   EXPECT_FALSE(world.water_surface_z_m);
@@ -115,7 +115,7 @@ TEST(SdfWorld, FindsModelsInTheGivenFolders) {
       "w.sdf",
       "<sdf version=\"1.9\"><world name=\"w\"><include><uri>model://hook</uri></include></world></sdf>");
   EXPECT_THROW(load_world(file, {}), WorldError);
-  EXPECT_NE(load_world(file, {data / "harbour/models"}).find_body("hook"), nullptr);
+  EXPECT_NE(load_world(file, {shared_worlds / "harbour/models"}).find_body("hook"), nullptr);
 }
 
 TEST(SdfWorld, IsNotMisledByTheWorkingDirectory) {
@@ -291,17 +291,18 @@ TEST(SdfWorld, HoldsTenThousandModels) {
 TEST(SdfWorld, KnowsEveryShape) {
   const test::TempFolder folder;
   const auto file = folder.write(
-      "w.sdf", world_of(visual("a", geometry("<box><size>1 2 3</size></box>")) + visual("b", ball) +
-                        visual("c", geometry("<cylinder><radius>1</radius><length>2</length></cylinder>")) +
-                        visual("d", geometry("<capsule><radius>1</radius><length>2</length></capsule>")) +
-                        visual("e", geometry("<ellipsoid><radii>1 2 3</radii></ellipsoid>")) +
-                        visual("f", geometry("<plane><normal>0 0 1</normal><size>2 3</size></plane>")) +
-                        visual("g", geometry("<heightmap><uri>" + (data / "grey16.png").string() +
-                                             "</uri><size>4 2 8</size><pos>0 0 -5</pos></heightmap>")) +
-                        visual("h", geometry("<mesh><uri>file://" + (data / "tetrahedron.ply").string() +
-                                             "</uri></mesh>")) +
-                        visual("i", geometry("<empty/>"))));
-  const World world = load_world(file, {data});
+      "w.sdf",
+      world_of(visual("a", geometry("<box><size>1 2 3</size></box>")) + visual("b", ball) +
+               visual("c", geometry("<cylinder><radius>1</radius><length>2</length></cylinder>")) +
+               visual("d", geometry("<capsule><radius>1</radius><length>2</length></capsule>")) +
+               visual("e", geometry("<ellipsoid><radii>1 2 3</radii></ellipsoid>")) +
+               visual("f", geometry("<plane><normal>0 0 1</normal><size>2 3</size></plane>")) +
+               visual("g", geometry("<heightmap><uri>" + (shared_worlds / "grey16.png").string() +
+                                    "</uri><size>4 2 8</size><pos>0 0 -5</pos></heightmap>")) +
+               visual("h", geometry("<mesh><uri>file://" + (shared_worlds / "tetrahedron.ply").string() +
+                                    "</uri></mesh>")) +
+               visual("i", geometry("<empty/>"))));
+  const World world = load_world(file, {shared_worlds});
   const auto& parts = world.bodies.at(0).parts;
   ASSERT_EQ(parts.size(), 8U);
   const double pi = 3.14159265358979;
@@ -317,7 +318,8 @@ TEST(SdfWorld, KnowsEveryShape) {
 
 TEST(SdfWorld, TakesMaterialsInTheDocumentedOrder) {
   const test::TempFolder folder;
-  const std::string obj = geometry("<mesh><uri>" + (data / "tetrahedron.obj").string() + "</uri></mesh>");
+  const std::string obj =
+      geometry("<mesh><uri>" + (shared_worlds / "tetrahedron.obj").string() + "</uri></mesh>");
   const auto file = folder.write(
       "w.sdf",
       world_of(
@@ -326,7 +328,7 @@ TEST(SdfWorld, TakesMaterialsInTheDocumentedOrder) {
           visual("retro", ball + "<laser_retro>0.7</laser_retro>") + visual("none", ball) +
           visual("mesh", obj + "<laser_retro>0.7</laser_retro>") +
           visual("mesh_own", obj + "<sonard:material>pvc</sonard:material>")));
-  const World world = load_world(file, {data});
+  const World world = load_world(file, {shared_worlds});
   std::vector<std::string> names;
   for (const BodyPart& part : world.bodies.at(0).parts) {
     names.push_back(part.material.name);
@@ -380,7 +382,7 @@ TEST(SdfWorld, FallsBackToCollisionsOfAModelWithoutVisuals) {
 
 TEST(SdfWorld, LoadsNormalMapsOfBothKindsOnce) {
   const test::TempFolder folder;
-  std::filesystem::copy_file(data / "normal_map.png", folder.path() / "ripples.png");
+  std::filesystem::copy_file(shared_worlds / "normal_map.png", folder.path() / "ripples.png");
   const auto file = folder.write(
       "w.sdf",
       world_of(

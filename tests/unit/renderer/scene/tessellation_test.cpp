@@ -20,7 +20,7 @@ TriangleMesh quad(const glm::vec3& a, const glm::vec3& b) {
   return mesh;
 }
 
-double area_m2(const TriangleMesh& mesh) {
+double summed_area_m2(const TriangleMesh& mesh) {
   double twice = 0;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const glm::dvec3 a(mesh.positions[mesh.indices[i]]);
@@ -44,7 +44,7 @@ TEST(Tessellation, FlatSurfaceKeepsItsAreaInShortEdges) {
   const TriangleMesh bed = quad({40, 0, 0}, {0, 7, 0});
   const TriangleMesh divided = tessellated(bed, 1.5F);
   EXPECT_LE(longest_edge_m(divided), 1.5);
-  EXPECT_NEAR(area_m2(divided), 280, 1e-6);
+  EXPECT_NEAR(summed_area_m2(divided), 280, 1e-6);
   EXPECT_LT(divided.triangle_count(), 280 / (1.5 * 1.5) * 16) << "not smaller than asked for";
 }
 
@@ -70,7 +70,7 @@ TEST(Tessellation, ClosedSurfaceStaysClosedAndFacesOutwards) {
     EXPECT_EQ(count, 1);
     EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
   }
-  EXPECT_NEAR(area_m2(divided), area_m2(ball), 1e-4);
+  EXPECT_NEAR(summed_area_m2(divided), summed_area_m2(ball), 1e-4);
 }
 
 TEST(Tessellation, NormalsAndTextureCoordinatesAreInterpolated) {

@@ -7,18 +7,18 @@
 #include <gtest/gtest.h>
 
 #include "renderer/acoustics/point_spread.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::render {
 namespace {
 
-constexpr int lines = 256;
-constexpr double degree = 0.017453292519943295;
+constexpr int line_count = 256;
 
 SonarSettings settings_of(std::vector<double> edges_rad) {
   SonarSettings settings;
   settings.aperture.beam_edges_rad = std::move(edges_rad);
   settings.aperture.azimuth = Aperture::Azimuth::array;
-  settings.range = {lines, 0.01, 0, false};
+  settings.range = {line_count, 0.01, 0, false};
   return settings;
 }
 
@@ -26,30 +26,31 @@ SonarSettings settings_of(std::vector<double> edges_rad) {
 /// percent.
 EchoImage echo_of(const Aperture& aperture) {
   const int beams = aperture.beam_count();
-  EchoImage echo{beams, lines,
-                 std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines), 0.0F)};
+  EchoImage echo{
+      beams, line_count,
+      std::vector<float>(static_cast<std::size_t>(beams) * static_cast<std::size_t>(line_count), 0.0F)};
   for (int beam = 0; beam < beams; ++beam) {
     const auto b = static_cast<std::size_t>(beam);
     const double width_rad = aperture.beam_edges_rad[b] - aperture.beam_edges_rad[b + 1];
-    for (int line = 100; line < lines; ++line) {
+    for (int line = 100; line < line_count; ++line) {
       const bool even = line >= 160;
       const double level = even ? 1 + 0.005 * ((beam * 31 + line) % 2) : (beam * 7 + line) % 13 == 0 ? 2 : 0;
-      echo.intensity[b * lines + static_cast<std::size_t>(line)] = static_cast<float>(level * width_rad);
+      echo.intensity[b * line_count + static_cast<std::size_t>(line)] = static_cast<float>(level * width_rad);
     }
   }
   return echo;
 }
 
-struct Outcome {
+struct Reception {
   EchoImage echo;
   std::uint64_t skipped = 0;
 };
 
 /// The second of two pings.
-Outcome receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& settings) {
+Reception receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& settings) {
   WorkerPool workers(2);
   PointSpread reception;
-  Outcome outcome;
+  Reception outcome;
   for (int ping = 0; ping < 2; ++ping) {
     SkipCounts skipped;
     reception.prepare(settings, 1, 0, skip, skipped);
@@ -60,11 +61,11 @@ Outcome receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& se
       reception.form_beams(seen, settings, outcome.echo, workers, skip, skipped);
     } else {
       const int parts = settings.aperture.fine_beams;
-      outcome.echo = {settings.aperture.beam_count(), lines, {}};
+      outcome.echo = {settings.aperture.beam_count(), line_count, {}};
       outcome.echo.intensity.resize(seen.intensity.size() / static_cast<std::size_t>(parts));
       for (int f = 0; f < seen.beams; ++f) {
-        for (int line = 0; line < lines; ++line) {
-          outcome.echo.intensity[static_cast<std::size_t>(f / parts * lines + line)] += seen.at(f, line);
+        for (int line = 0; line < line_count; ++line) {
+          outcome.echo.intensity[static_cast<std::size_t>(f / parts * line_count + line)] += seen.at(f, line);
         }
       }
     }
@@ -77,9 +78,9 @@ Outcome receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& se
 /// On against off. The rule must have skipped `expected` times in the second ping.
 void expect_within_bound(SkipRule rule, const SonarSettings& settings, std::uint64_t expected) {
   ASSERT_EQ(entry_of(rule).bound_unit, "of the image's maximum");
-  const Outcome on = receive(rule, {}, settings);
+  const Reception on = receive(rule, {}, settings);
   EXPECT_EQ(on.skipped, expected);
-  const Outcome off = receive(rule, SkipSwitches{}.turn_off(rule), settings);
+  const Reception off = receive(rule, SkipSwitches{}.turn_off(rule), settings);
   EXPECT_EQ(off.skipped, 0u);
   ASSERT_EQ(on.echo.intensity.size(), off.echo.intensity.size());
   const float most = *std::max_element(off.echo.intensity.begin(), off.echo.intensity.end());

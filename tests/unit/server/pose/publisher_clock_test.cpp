@@ -14,7 +14,7 @@ using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
 constexpr milliseconds longest_delay{50};
-constexpr std::int64_t ms_ns = 1'000'000;
+constexpr std::int64_t millisecond_ns = 1'000'000;
 
 TEST(PublisherClock, SeesThroughAConstantOffset) {
   PublisherClock clock{longest_delay};
@@ -66,10 +66,10 @@ TEST(PublisherClock, StandsWhileThePublisherIsPausedAndGoesOnAtOnce) {
   for (int i = 0; i < 2000; ++i) {  // 20 s of the same stamp
     clock.observe(0, seconds{1} + milliseconds{10 * i});
   }
-  EXPECT_LE(clock.stamp_at(seconds{21}), 60 * ms_ns);
-  clock.observe(10 * ms_ns, milliseconds{21'010});
-  EXPECT_GE(clock.stamp_at(milliseconds{21'010}), 10 * ms_ns);
-  EXPECT_LE(clock.stamp_at(milliseconds{21'010}), 60 * ms_ns);
+  EXPECT_LE(clock.stamp_at(seconds{21}), 60 * millisecond_ns);
+  clock.observe(10 * millisecond_ns, milliseconds{21'010});
+  EXPECT_GE(clock.stamp_at(milliseconds{21'010}), 10 * millisecond_ns);
+  EXPECT_LE(clock.stamp_at(milliseconds{21'010}), 60 * millisecond_ns);
 }
 
 TEST(PublisherClock, ForgetsAnOldMinimumAfterTwoSeconds) {
@@ -77,28 +77,28 @@ TEST(PublisherClock, ForgetsAnOldMinimumAfterTwoSeconds) {
   PublisherClock clock{longest_delay};
   clock.observe(0, nanoseconds{0});
   for (int i = 1; i <= 100; ++i) {
-    clock.observe(10 * i * ms_ns, milliseconds{10 * i + 20});
+    clock.observe(10 * i * millisecond_ns, milliseconds{10 * i + 20});
   }
-  EXPECT_EQ(clock.stamp_at(milliseconds{1020}), 1020 * ms_ns) << "the old minimum still stands";
+  EXPECT_EQ(clock.stamp_at(milliseconds{1020}), 1020 * millisecond_ns) << "the old minimum still stands";
   for (int i = 101; i <= 210; ++i) {
-    clock.observe(10 * i * ms_ns, milliseconds{10 * i + 20});
+    clock.observe(10 * i * millisecond_ns, milliseconds{10 * i + 20});
   }
-  EXPECT_EQ(clock.stamp_at(milliseconds{2120}), 2100 * ms_ns);
+  EXPECT_EQ(clock.stamp_at(milliseconds{2120}), 2100 * millisecond_ns);
 }
 
 TEST(PublisherClock, ALateMessageDoesNotHoldTheClockBack) {
   PublisherClock clock{longest_delay};
-  clock.observe(100 * ms_ns, milliseconds{100});
-  clock.observe(20 * ms_ns, milliseconds{200});  // 180 ms under way
-  EXPECT_EQ(clock.stamp_at(milliseconds{200}), 200 * ms_ns);
+  clock.observe(100 * millisecond_ns, milliseconds{100});
+  clock.observe(20 * millisecond_ns, milliseconds{200});  // 180 ms under way
+  EXPECT_EQ(clock.stamp_at(milliseconds{200}), 200 * millisecond_ns);
 }
 
 TEST(PublisherClock, StartsAfreshAfterARestart) {
   PublisherClock clock{longest_delay};
-  clock.observe(500'000 * ms_ns, seconds{1});
+  clock.observe(500'000 * millisecond_ns, seconds{1});
   clock.restart();
   clock.observe(0, seconds{2});
-  EXPECT_EQ(clock.stamp_at(seconds{3}), 1000 * ms_ns);
+  EXPECT_EQ(clock.stamp_at(seconds{3}), 1000 * millisecond_ns);
 }
 
 TEST(PublisherClock, BearsTheEndsOfTime) {

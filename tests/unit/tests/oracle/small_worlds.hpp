@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -15,10 +14,9 @@
 #include "renderer/scene/world.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "tests/oracle/echo_truth.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::oracle {
-
-inline constexpr double degree = std::numbers::pi / 180;
 
 /// `beams` of equal angle over `width_rad`; mode `physical`, top hat, no absorption.
 inline render::SonarSettings ping(int beams, double width_rad, double height_rad, int lines, double range_m) {

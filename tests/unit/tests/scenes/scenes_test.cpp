@@ -15,11 +15,10 @@
 
 #include "tests/scenes/manifold.hpp"
 #include "tests/scenes/shapes.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::test {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 const render::TriangleMesh& mesh_of(const Scene& scene, std::string_view body) {
   return *scene.world.find_body(std::string(body))->parts.at(0).mesh;

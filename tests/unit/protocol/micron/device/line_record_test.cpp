@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a log is told of a line, and how that becomes a line again.
-#include <numbers>
 
 #include "bench.hpp"
 #include "protocol/micron/recorded_form.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::micron {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 HeadData without_data(HeadData line) {
   line.data = {};

@@ -22,13 +22,13 @@
 #include "renderer/scene/world.hpp"
 #include "server/devices/micron/kind.hpp"
 #include "server/devices/micron/settings.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::server {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double half_beam = 1.5 * degree;
 /// Inner faces of the walls.
 constexpr double east_m = 7, west_m = -7, north_m = 5, south_m = -5;

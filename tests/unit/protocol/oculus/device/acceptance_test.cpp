@@ -26,14 +26,14 @@ using Bytes = std::vector<std::uint8_t>;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const Peer client{Device::stream_channel, {0xC0A80205, 40000}, 0};
+const Peer vehicle{Device::stream_channel, {0xC0A80205, 40000}, 0};
 
 /// A head with one client, which reads with the code of a client. Images are ready at once.
 class Line {
  public:
   explicit Line(const DeviceConfig& config = {}) : device_(config, TimePoint{}) {
     step(TimePassed{});
-    step(ClientCame{client});
+    step(ClientCame{vehicle});
   }
 
   void step(const Event& event) {
@@ -60,7 +60,7 @@ class Line {
       render(jobs.back());
     }
   }
-  void receive(const Bytes& bytes) { step(BytesReceived{client, SharedBytes(bytes)}); }
+  void receive(const Bytes& bytes) { step(BytesReceived{vehicle, SharedBytes(bytes)}); }
   void run_for(TimePoint duration) {
     const TimePoint end = now_ + duration;
     while (wake_ <= end) {

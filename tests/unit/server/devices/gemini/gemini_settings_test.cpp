@@ -6,11 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "server/devices/gemini/kind.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::server {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 HeadConfig plain_head() {
   return gemini_kind().make_default();

@@ -3,12 +3,12 @@
 #include "server/devices/oculus/section.hpp"
 
 #include <chrono>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "server/devices/oculus/kind.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
 namespace sonard::server {
@@ -19,8 +19,6 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 class OculusSection : public ConfigFolder {
  protected:

@@ -3,7 +3,6 @@
 #include "server/devices/oculus/settings.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -11,11 +10,10 @@
 #include "protocol/oculus/ping_plan.hpp"
 #include "server/devices/oculus/config.hpp"
 #include "server/devices/oculus/kind.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::server {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 oculus::SimpleFire fire_with(int mode, int beams) {
   oculus::SimpleFire fire;

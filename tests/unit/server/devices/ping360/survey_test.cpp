@@ -2,7 +2,6 @@
 // The scan that `sonard render` makes of its options, and what a Ping360 refuses.
 #include "server/devices/ping360/survey.hpp"
 
-#include <numbers>
 #include <type_traits>
 
 #include <gmock/gmock.h>
@@ -10,14 +9,13 @@
 #include <CLI/Error.hpp>
 
 #include "server/devices/ping360/kind.hpp"
+#include "tests/support/degree.hpp"
 
 namespace sonard::server {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 std::unique_ptr<Survey> survey(const SurveyOptions& options) {
   return ping360_kind().survey(ping360_kind().make_default(), options);
