@@ -144,14 +144,14 @@ class SimulatedTime(link_test.LinkTest):
         self.check_grid(real_time, 0, 1440)
         self.assertEqual(len({crc for _, crc in real_time}), len(real_time), "noise and motion change every image")
         self.assertLessEqual({crc for _, crc in real_time}, self.received, "the client has them all")
-        for steps in (["run:1.5@0.1"], ["run:1.5@5"], ["run:1.5@0"],
+        for steps in (["run:1.5@0.25"], ["run:1.5@5"], ["run:1.5@0"],
                       ["run:0.4@1", "stand:1", "run:0.5@5", "silent:2", "run:0.6@0.5"]):
             self.assertEqual(self.run_daemon(steps), real_time, steps)
 
     def test_a_publisher_by_tcp_waits_for_the_pings(self):
-        """60 s of simulated time at once are 6000 poses, of which 4096 are kept."""
-        pings = self.run_daemon(["run:60@0"], noisy=False)
-        self.check_grid(pings, 0, 59940)
+        """45 s of simulated time at once are 4500 poses, of which 4096 are kept."""
+        pings = self.run_daemon(["run:45@0"], noisy=False)
+        self.check_grid(pings, 0, 44940)
         self.assertNotIn("left out", self.daemon.output())
 
     def test_images_are_those_of_their_stamps(self):

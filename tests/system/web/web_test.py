@@ -190,7 +190,7 @@ class Web(OwnMachine):
 
         async def deaf(seconds):
             """Asks for a thousand pings and reads none of them."""
-            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_queue=1) as live:
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_queue=1, close_timeout=0.1) as live:
                 for _ in range(1000):
                     await live.send('{"type": "want", "head": 0, "max_rows": 4000}')
                     await asyncio.sleep(seconds / 1000)
