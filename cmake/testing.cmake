@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # How every test of this project is registered. A label (unit, gl, system, deep, soak, logs, simulators, cluster) is a part of ./test; the target
 # LABEL_tests builds all that the tests of one label start.
-include(GoogleTest)
 
 foreach(label unit gl system deep soak logs simulators cluster)
   add_custom_target(${label}_tests)
@@ -25,8 +24,17 @@ target_precompile_headers(sonard_test_pch PRIVATE
   <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numeric> <optional> <span>
   <string> <utility> <variant> <vector>)
 
-# sonard_test(NAME LABEL SOURCES... LIBS libs...): one test program. Its cases are registered one by one; sanitized,
-# where a start takes long, the program is one case.
+# sonard_patience(TEST): sanitized, it may take five times as long.
+function(sonard_patience test)
+  if(SONARD_SANITIZE)
+    get_test_property(${test} TIMEOUT seconds)
+    math(EXPR seconds "5 * ${seconds}")
+    set_tests_properties(${test} PROPERTIES TIMEOUT ${seconds})
+  endif()
+endfunction()
+
+# sonard_test(NAME LABEL SOURCES... LIBS libs...): one test program, which is one case of CTest: to start a process takes
+# longer than most of its cases.
 function(sonard_test name label)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBS")
   sonard_program(${name} ${arg_UNPARSED_ARGUMENTS})
@@ -35,21 +43,9 @@ function(sonard_test name label)
   target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:${SONARD_TEST_OPTIMISATION}>)
   target_precompile_headers(${name} REUSE_FROM sonard_test_pch)
   add_dependencies(${label}_tests ${name})
-  if(SONARD_SANITIZE)
-    add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 1200)
-  else()
-    gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 120)
-  endif()
-endfunction()
-
-# sonard_patience(TEST): sanitized, it may take five times as long.
-function(sonard_patience test)
-  if(SONARD_SANITIZE)
-    get_test_property(${test} TIMEOUT seconds)
-    math(EXPR seconds "5 * ${seconds}")
-    set_tests_properties(${test} PROPERTIES TIMEOUT ${seconds})
-  endif()
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600)
+  sonard_patience(${name})
 endfunction()
 
 # sonard_python_cases(OUT SCRIPT): the cases of a script of unittest, each as Class.test_method, read from its text. A
