@@ -235,14 +235,21 @@ class Clients(HeadCase):
         self.daemon.wait_for_line(r"head=forgetful auto scan ended: ", 5)
 
     def test_forty_pings_of_a_turn_take_as_long_as_an_owner_measured(self):
-        """3.29 s by the clock, within 5 % (docs/protocols/ping360.md 3.7)."""
+        """3.29 s by the clock, within 5 % (docs/protocols/ping360.md 3.7). A busy machine can only make a turn longer, so the
+        shortest of three turns counts."""
         client = self.client(TIMED)
         client.write(AutoTransmit(steps=10).bytes())
-        times = []
-        for angle in [*range(0, 400, 10), 0]:
+
+        def time_of_ping(angle):
             self.assertEqual(messages.data_of(client.wait(AUTO_DEVICE_DATA)).angle, angle)
-            times.append(time.monotonic())
-        self.assertAlmostEqual(times[-1] - times[0], 3.29, delta=0.05 * 3.29)
+            return time.monotonic()
+
+        begin, turns_s = time_of_ping(0), []
+        for _ in range(3):
+            end = [time_of_ping(angle) for angle in [*range(10, 400, 10), 0]][-1]
+            turns_s.append(end - begin)
+            begin = end
+        self.assertAlmostEqual(min(turns_s), 3.29, delta=0.05 * 3.29)
 
     # ---- The bridge of a vehicle
 
