@@ -10,6 +10,7 @@
 #include "tests/oracle/slice_integrator.hpp"
 #include "tests/scenes/bed.hpp"
 #include "tests/scenes/shapes.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/unit/tests/oracle/small_worlds.hpp"
 
 namespace sonard::oracle {

@@ -8,6 +8,7 @@
 
 #include "tests/oracle/shapes.hpp"
 #include "tests/scenes/shapes.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/unit/tests/oracle/small_worlds.hpp"
 
 namespace sonard::oracle {

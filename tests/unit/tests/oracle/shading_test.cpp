@@ -11,6 +11,7 @@
 #include "tests/oracle/slice_integrator.hpp"
 #include "tests/scenes/shapes.hpp"
 #include "tests/support/closed_forms.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/unit/tests/oracle/small_worlds.hpp"
 
 namespace sonard::oracle {

@@ -14,7 +14,6 @@
 #include "renderer/scene/world.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "tests/oracle/echo_truth.hpp"
-#include "tests/support/degree.hpp"
 
 namespace sonard::oracle {
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "tests/support/degree.hpp"
+
 namespace sonard::oculus {
 namespace {
 
@@ -36,7 +38,6 @@ TEST(OculusBearings, have_exact_ends_and_are_symmetric_and_rise) {
 // A hundredth of a degree at most is cut off, towards zero.
 TEST(OculusBearings, are_equally_spaced_in_their_sine) {
   const auto bearings = bearings_cdeg(512, 65.0);
-  const double degree = std::acos(-1.0) / 180.0;
   for (std::size_t i = 256; i < 511; ++i) {
     const double exact =
         100.0 * std::asin(std::sin(65.0 * degree) * (2.0 * static_cast<double>(i) / 511.0 - 1.0)) / degree;
