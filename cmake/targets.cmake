@@ -7,6 +7,8 @@ target_compile_options(sonard_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
   # A multiply-add where the machine has one would make images depend on the machine (renderer/simd.hpp).
   -ffp-contract=off
+  # Loops with a square root, or a choice between floats, can be vectorised so. No code asks for errno or traps of them.
+  -fno-math-errno -fno-trapping-math
   # GCC before 14 reports false positives of these in optimised standard library code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow>)
 set(SONARD_SIMD "" CACHE STRING "Compile hot loops for sse2, avx2 or avx512f alone; empty: for all, the best is picked at load time")

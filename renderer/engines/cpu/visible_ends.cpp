@@ -10,8 +10,9 @@ namespace sonard::render {
 
 namespace {
 
-// Relative difference of 1 / h below which surfaces touch: a millimetre or two, less than any line is long.
-constexpr float touching = 1e-4F;
+// Relative difference of 1 / h below which lines are of one surface: a millimetre or two, less than any is
+// long.
+constexpr float joined = 1e-4F;
 
 }  // namespace
 
@@ -58,7 +59,7 @@ void VisibleEnds::find_surfaces(const VisibleArrays& seen) {
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const float t = high[i];
     const float w = w_at_0[i] + w_slope[i] * t, next = w_at_0[i + 1] + w_slope[i + 1] * t;
-    goes_on[i] = ((t == low[i + 1]) & (part[i] == part[i + 1]) & (std::abs(w - next) < touching * w)) ? 1 : 0;
+    goes_on[i] = ((t == low[i + 1]) & (part[i] == part[i + 1]) & (std::abs(w - next) < joined * w)) ? 1 : 0;
   }
   if (count > 0) {
     goes_on[count - 1] = 0;
