@@ -93,10 +93,10 @@ BeamRefinement::Ping::Ping(RasterSampler& sampler, GpuBinner& binner, const Echo
 
 void BeamRefinement::Ping::sample(const Grid& grid) {
   Stopwatch watch;
-  const auto textures = sampler_.draw(request_.T_world_sonar, *grid.samples, surface_,
-                                      request_.settings.range.sampled_range_m());
+  const unsigned samples = sampler_.draw(request_.T_world_sonar, *grid.samples, surface_,
+                                         request_.settings.range.sampled_range_m());
   statistics_.visibility_s += watch.lap();
-  binner_.add(*grid.on_gpu, textures);
+  binner_.add(*grid.on_gpu, samples);
 }
 
 void BeamRefinement::Ping::sample_evenly(const EvenGrids& even) {

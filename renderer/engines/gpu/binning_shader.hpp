@@ -99,7 +99,6 @@ uvec2 minus(uvec2 a, uvec2 b) {
 /// What looks at samples.
 inline constexpr char sample_shader_head[] = R"glsl(
 layout(binding = 7) uniform sampler2DArray surface_samples;  // SurfaceSample
-layout(binding = 15) uniform sampler2DArray depths;          // 0 where there is none
 layout(binding = 14) uniform isamplerBuffer views;
 
 // The view at hand: its lower left pixel, its rows, the tangents of that pixel's centre and of the size of one.
@@ -119,8 +118,7 @@ void look_at(int view) {
 }
 
 vec4 sample_at(ivec2 at) {
-  ivec3 texel = corner + ivec3(at, 0);
-  return texelFetch(depths, texel, 0).x > 0.0 ? texelFetch(surface_samples, texel, 0) : vec4(0.0);
+  return texelFetch(surface_samples, corner + ivec3(at, 0), 0);
 }
 
 layout(location = 1) uniform vec3 lines_per_m;    // in three parts, of 12, 12 and 24 bits
@@ -162,7 +160,7 @@ float weight_of(vec2 t, float width, float height) {
 
 /// One work group per ColumnPart.
 inline constexpr char splat_shader[] = R"glsl(
-layout(local_size_x = 64) in;
+layout(local_size_x = COLUMN_GROUP) in;
 
 // [beam][line]: by how many units a line differs from the one before; low word first. As in RangeProfile, what is
 // spread over many lines costs no more than its ends.
@@ -376,11 +374,11 @@ void main() {
   Part part = part_at(p);
   look_at(part.view);
   first_line = uint(part.beam) * uint(lines);
-  for (int row = part.row_begin + int(gl_LocalInvocationIndex); row < part.row_end; row += 64) {
+  for (int row = part.row_begin + int(gl_LocalInvocationIndex); row < part.row_end; row += COLUMN_GROUP) {
     bin(part, row);
   }
 #if ESTIMATE
-  partial_columns[64 * p + int(gl_LocalInvocationIndex)] = own_echo;
+  partial_columns[COLUMN_GROUP * p + int(gl_LocalInvocationIndex)] = own_echo;
 #endif
   atomicAdd(additions, own_additions);
 #if !THINNED

@@ -23,6 +23,7 @@ EglContext::EglContext(const std::string& device) {
   const std::vector<GlDevice> devices = list_gl_devices();
   const std::size_t number = choose_gl_device(devices, device).number;
   display_ = egl_devices()[number].display;
+  software_ = devices[number].software;
   context_ = make_egl_context(display_);
   if (context_ == EGL_NO_CONTEXT) {
     throw RendererError("OpenGL gave one context and then no other: " + devices[number].description);
@@ -44,10 +45,6 @@ osg::ref_ptr<osg::Program> EglContext::build_program(const std::vector<osg::ref_
   for (const osg::ref_ptr<osg::Shader>& shader : shaders) {
     program->addShader(shader);
   }
-  // Of a geometry shader, as its own layout says; OpenSceneGraph tells OpenGL something in any case.
-  program->setParameter(GL_GEOMETRY_VERTICES_OUT_EXT, 3);
-  program->setParameter(GL_GEOMETRY_INPUT_TYPE_EXT, GL_TRIANGLES);
-  program->setParameter(GL_GEOMETRY_OUTPUT_TYPE_EXT, GL_TRIANGLE_STRIP);
   program->compileGLObjects(*getState());
   const osg::Program::PerContextProgram& linked = *program->getPCP(*getState());
   if (!linked.isLinked()) {

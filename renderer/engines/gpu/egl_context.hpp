@@ -21,6 +21,9 @@ class EglContext : public osg::GraphicsContext {
   /// "vendor / renderer / version"; valid once realized and current.
   std::string describe() const;
 
+  /// Whether a processor does the work, as the driver says.
+  bool software() const { return software_; }
+
   /// @throws RendererError when the context is lost.
   void make_current_or_throw();
 
@@ -55,6 +58,7 @@ class EglContext : public osg::GraphicsContext {
  private:
   void* display_ = nullptr;  // EGLDisplay; kept opaque for those who include this
   void* context_ = nullptr;  // EGLContext
+  bool software_ = false;
   bool realized_ = false;
 };
 

@@ -88,7 +88,7 @@ void main() {
   int p = int(gl_GlobalInvocationID.x);
   if (p >= part_count) return;
   vec2 sum = vec2(0.0);
-  for (int i = 64 * p; i < 64 * p + 64; ++i) sum += texelFetch(partial_columns, i).xy;
+  for (int i = COLUMN_GROUP * p; i < COLUMN_GROUP * (p + 1); ++i) sum += texelFetch(partial_columns, i).xy;
   columns[p] = sum;
 }
 )glsl";

@@ -56,7 +56,6 @@ enum TextureUnit : unsigned {
   line_weight_unit,
   parts_unit,
   views_unit,
-  depth_unit,
 };
 constexpr GLbitfield written_by_shaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 constexpr std::size_t image_header_bytes = 16;
@@ -104,6 +103,8 @@ struct GpuBinner::Impl {
   GpuReadback estimates_back, image_back;
   std::size_t most_bytes = 0;  // of a buffer
   const int most_view_px;
+  /// Invocations that share a column. Each reads what the column is: a processor runs eight of them at once.
+  const std::size_t column_group;
   std::vector<float> line_weights;
 
   std::optional<ImageRequest> request;  // the image at hand
@@ -127,7 +128,8 @@ struct GpuBinner::Impl {
         estimates(gl),
         estimates_back(gl),
         image_back(gl),
-        most_view_px(view_px) {
+        most_view_px(view_px),
+        column_group(context.software() ? 8 : 64) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     GLint most_texels = 0;
@@ -160,9 +162,9 @@ struct GpuBinner::Impl {
   /// Makes the program current. It is built when first asked for.
   void use(const Variant& variant, const std::vector<const char*>& shader) {
     const std::string head = fmt::format(
-        "#version 430\n#define WEIGHED {:d}\n#define THINNED {:d}\n#define ESTIMATE {:d}\n#define FOOTPRINT "
-        "{:d}\n#define PATTERN {}\n",
-        variant.weighed, variant.thinned, variant.estimate, variant.footprint,
+        "#version 430\n#define COLUMN_GROUP {}\n#define WEIGHED {:d}\n#define THINNED {:d}\n#define ESTIMATE "
+        "{:d}\n#define FOOTPRINT {:d}\n#define PATTERN {}\n",
+        column_group, variant.weighed, variant.thinned, variant.estimate, variant.footprint,
         static_cast<int>(variant.elevation));
     osg::ref_ptr<osg::Program>& program = (*programs)[{head, shader.back()}];
     if (!program) {
@@ -279,7 +281,7 @@ struct GpuBinner::Impl {
     if (grid.thinned) {
       begin_sums(thinned, words);
       begin_sums(thinned_weight, request->options.mean ? words : sizeof(std::uint64_t));
-      hold(partial_columns, grid.columns.part_count * group_size * 2 * sizeof(float), "columns");
+      hold(partial_columns, grid.columns.part_count * column_group * 2 * sizeof(float), "columns");
       hold(columns, grid.columns.part_count * 2 * sizeof(float), "columns");
       hold(column_misses, grid.columns.part_count * sizeof(float), "columns");
       hold(rows, grid.beam_count * static_cast<std::size_t>(grid.most_rows) * 4 * sizeof(float), "rows");
@@ -296,11 +298,9 @@ struct GpuBinner::Impl {
     gl.glUniform1f(at_pattern_scale, grid.pattern_scale);
   }
 
-  void look_at(const RasterSampler::ViewTextures& textures) const {
-    gl.glActiveTexture(GL_TEXTURE0 + depth_unit);
-    glBindTexture(GL_TEXTURE_2D_ARRAY, textures.depths);
+  void look_at(unsigned samples) const {
     gl.glActiveTexture(GL_TEXTURE0 + samples_unit);
-    glBindTexture(GL_TEXTURE_2D_ARRAY, textures.samples);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, samples);
   }
 
   void splat(const GpuGrid& grid, const GpuColumns& of, bool is_thinned) {
@@ -380,9 +380,9 @@ struct GpuBinner::Impl {
     gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count), 1, 1);
   }
 
-  void add(const GpuGrid& grid, const RasterSampler::ViewTextures& textures) {
+  void add(const GpuGrid& grid, unsigned samples) {
     make_room(grid);
-    look_at(textures);
+    look_at(samples);
     line_weight.bind_texels(line_weight_unit, GL_R32F);
     splat(grid, grid.columns, false);
     if (grid.thinned) {
@@ -506,9 +506,9 @@ int GpuBinner::beams_per_page() const {
   return impl_->beams_per_page();
 }
 
-void GpuBinner::add(const GpuGrid& grid, const RasterSampler::ViewTextures& textures) {
+void GpuBinner::add(const GpuGrid& grid, unsigned samples) {
   impl_->context.make_current_or_throw();
-  impl_->add(grid, textures);
+  impl_->add(grid, samples);
 }
 
 void GpuBinner::ask_estimates() {

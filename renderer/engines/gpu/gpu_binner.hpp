@@ -55,9 +55,9 @@ class GpuBinner {
   void begin(const ImageRequest& request);
 
   /// Puts the beams of a grid into the image, in place of what it has of them.
-  /// @param textures what RasterSampler::draw() returned for the grid, or for one with the same views.
+  /// @param samples what RasterSampler::draw() returned for the grid, or for one with the same views.
   /// @throws RequestError when the buffers of this OpenGL cannot hold what it takes.
-  void add(const GpuGrid& grid, const RasterSampler::ViewTextures& textures);
+  void add(const GpuGrid& grid, unsigned samples);
 
   /// Has the estimates of all beams that were added since the last call sent back.
   void ask_estimates();

@@ -196,12 +196,12 @@ void GpuEngine::draw_grid(GpuBinner& binner, const EchoRequest& request, bool ma
     grid_page_ = beams_per_page;
   }
   Stopwatch watch;
-  const auto textures =
+  const unsigned samples =
       sampler_.draw(request.T_world_sonar, grid_.grid(), surface_model(request.settings, skip_),
                     request.settings.range.sampled_range_m());
   statistics.visibility_s += watch.lap();
   for (const auto& page : grid_on_gpu_) {
-    binner.add(*page, textures);
+    binner.add(*page, samples);
   }
   ++statistics.passes;
 }

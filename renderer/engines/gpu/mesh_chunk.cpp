@@ -89,21 +89,36 @@ class ChunkBuilder {
   }
 
   ChunkBytes content_of(std::span<Triangle> triangles) {
-    std::vector<std::uint32_t> vertices;  // of the mesh
+    std::vector<std::uint32_t> vertices;       // of the mesh
+    std::vector<std::uint32_t> ending_facets;  // of the mesh, for each vertex
     std::vector<std::uint16_t> indices;
     ChunkBytes content;
+    const auto add = [&](std::uint32_t vertex) {
+      vertices.push_back(vertex);
+      ending_facets.push_back(none);
+      return static_cast<std::uint32_t>(vertices.size() - 1);
+    };
     for (const Triangle& triangle : triangles) {
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::uint32_t vertex = mesh_.indices[std::size_t{triangle.number} * 3 + corner];
+      std::array<std::uint32_t, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t vertex = mesh_.indices[std::size_t{triangle.number} * 3 + i];
         std::uint32_t& number = number_in_chunk_[vertex];
         if (number == none) {
-          number = static_cast<std::uint32_t>(vertices.size());
-          vertices.push_back(vertex);
+          number = add(vertex);
           const glm::vec3& p = mesh_.positions[vertex];
           content.box.expandBy(p.x, p.y, p.z);
         }
-        indices.push_back(static_cast<std::uint16_t>(number));
+        corners[i] = number;
       }
+      const auto free =
+          std::find_if(corners.begin(), corners.end(), [&](auto i) { return ending_facets[i] == none; });
+      if (free != corners.end()) {
+        std::rotate(corners.begin(), free + 1, corners.end());
+      } else {
+        corners[2] = add(vertices[corners[2]]);
+      }
+      ending_facets[corners[2]] = triangle.number;
+      indices.insert(indices.end(), corners.begin(), corners.end());
     }
     for (const std::uint32_t vertex : vertices) {
       number_in_chunk_[vertex] = none;
@@ -112,11 +127,31 @@ class ChunkBuilder {
     add_attribute(mesh_.normals, normal_attribute, vertices, content);
     add_attribute(mesh_.texcoords, texcoord_attribute, vertices, content);
     add_attribute(mesh_.tangents, tangent_attribute, vertices, content);
-    content.index_begin = content.bytes.size();
+    add_facets(ending_facets, content);
+    content.index_begin = append(indices, content.bytes);
     content.index_count = static_cast<int>(indices.size());
-    content.bytes.resize(content.index_begin + indices.size() * sizeof(indices[0]));
-    std::memcpy(&content.bytes[content.index_begin], indices.data(), indices.size() * sizeof(indices[0]));
     return content;
+  }
+
+  void add_facets(const std::vector<std::uint32_t>& facets, ChunkBytes& content) const {
+    const osg::Vec3d centre = content.box.center();
+    std::vector<glm::vec4> planes;
+    planes.reserve(facets.size());
+    for (const std::uint32_t facet : facets) {
+      planes.push_back(facet == none ? glm::vec4(0.0F)
+                                     : plane_of(facet, {centre.x(), centre.y(), centre.z()}));
+    }
+    content.attribute_begin[facet_attribute] = append(planes, content.bytes);
+  }
+
+  /// Zero: it has no area.
+  glm::vec4 plane_of(std::uint32_t triangle, const glm::dvec3& centre) const {
+    const std::uint32_t* corner = &mesh_.indices[std::size_t{triangle} * 3];
+    const glm::dvec3 a = mesh_.positions[corner[0]];
+    const glm::dvec3 normal =
+        glm::cross(glm::dvec3(mesh_.positions[corner[1]]) - a, glm::dvec3(mesh_.positions[corner[2]]) - a);
+    const double length = glm::length(normal);
+    return length > 0.0 ? glm::vec4(normal / length, glm::dot(normal / length, a - centre)) : glm::vec4(0.0F);
   }
 
   template <class Value>
@@ -125,13 +160,21 @@ class ChunkBuilder {
     if (of_mesh.empty()) {
       return;
     }
-    std::size_t end = content.bytes.size();
-    content.attribute_begin[attribute] = end;
-    content.bytes.resize(end + vertices.size() * sizeof(Value));
+    std::vector<Value> values;
+    values.reserve(vertices.size());
     for (const std::uint32_t vertex : vertices) {
-      std::memcpy(&content.bytes[end], &of_mesh[vertex], sizeof(Value));
-      end += sizeof(Value);
+      values.push_back(of_mesh[vertex]);
     }
+    content.attribute_begin[attribute] = append(values, content.bytes);
+  }
+
+  /// Returns where they begin.
+  template <class Value>
+  static std::size_t append(const std::vector<Value>& values, std::vector<std::uint8_t>& bytes) {
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + values.size() * sizeof(Value));
+    std::memcpy(&bytes[begin], values.data(), values.size() * sizeof(Value));
+    return begin;
   }
 
   const TriangleMesh& mesh_;

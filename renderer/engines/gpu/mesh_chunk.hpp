@@ -22,17 +22,19 @@ enum VertexAttribute : unsigned {
   position_attribute,
   normal_attribute,
   texcoord_attribute,
-  tangent_attribute
+  tangent_attribute,
+  facet_attribute  ///< plane of the triangle that ends with the vertex, which is one at most: unit normal n,
+                   ///< and n.p of its points p from the centre of the chunk
 };
-inline constexpr std::array<int, 4> attribute_floats{3, 3, 2, 4};
+inline constexpr std::array<int, 5> attribute_floats{3, 3, 2, 4, 4};
 
 /// The bytes of a chunk as they are uploaded: array after array, then three 16-bit indices per triangle.
 struct ChunkBytes {
   static constexpr std::size_t none = ~std::size_t{0};
 
   std::vector<std::uint8_t> bytes;
-  std::array<std::size_t, 4> attribute_begin{none, none, none,
-                                             none};  ///< none: the mesh has no such attribute
+  /// none: the mesh has no such attribute
+  std::array<std::size_t, attribute_floats.size()> attribute_begin{none, none, none, none, none};
   std::size_t index_begin = 0;
   int index_count = 0;
   osg::BoundingBox box;
@@ -45,6 +47,8 @@ class MeshChunk final : public osg::Drawable, public VideoMemory::Item {
 
   osg::BoundingBox computeBoundingBox() const override { return content_.box; }
   void drawImplementation(osg::RenderInfo& info) const override;
+  /// In coordinates of the part.
+  osg::Vec3d centre() const { return content_.box.center(); }
   std::uint64_t triangles() const { return static_cast<std::uint64_t>(content_.index_count) / 3; }
 
  private:

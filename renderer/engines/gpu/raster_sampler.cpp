@@ -32,11 +32,11 @@ namespace sonard::render {
 
 namespace {
 
-osg::ref_ptr<osg::Texture2DArray> make_texture(const ViewLayout& size, GLint internal_format, GLenum format) {
+osg::ref_ptr<osg::Texture2DArray> make_samples(const ViewLayout& size) {
   osg::ref_ptr<osg::Texture2DArray> texture = new osg::Texture2DArray;
   texture->setTextureSize(size.width, size.height, size.layers);
-  texture->setInternalFormat(internal_format);
-  texture->setSourceFormat(format);
+  texture->setInternalFormat(GL_RGBA32F_ARB);
+  texture->setSourceFormat(GL_RGBA);
   texture->setSourceType(GL_FLOAT);
   texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
   texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
@@ -60,13 +60,13 @@ class ViewTarget {
     both.layers = std::max(layout.layers, size_.layers);
     size_ = pixels(both) <= most_kept_pixels ? both : layout;
     size_.places.clear();
-    samples_ = make_texture(size_, GL_RGBA32F_ARB, GL_RGBA);
-    depths_ = make_texture(size_, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT);
+    samples_ = make_samples(size_);
+    depths_ = new osg::RenderBuffer(size_.width, size_.height, GL_DEPTH_COMPONENT32F);
     for (int layer = 0; layer < size_.layers; ++layer) {
       osg::ref_ptr<osg::FrameBufferObject> framebuffer = new osg::FrameBufferObject;
       framebuffer->setAttachment(osg::Camera::COLOR_BUFFER0,
                                  osg::FrameBufferAttachment(samples_.get(), layer));
-      framebuffer->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(depths_.get(), layer));
+      framebuffer->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(depths_.get()));
       framebuffers_.push_back(framebuffer);
     }
   }
@@ -90,15 +90,12 @@ class ViewTarget {
     state.haveAppliedTextureAttribute(state.getActiveTextureUnit(), osg::StateAttribute::TEXTURE);
   }
 
-  RasterSampler::ViewTextures textures(const osg::State& state) const {
-    const auto name = [&](const osg::Texture& texture) {
-      return texture.getTextureObject(state.getContextID())->id();
-    };
-    return {name(*samples_), name(*depths_)};
+  unsigned samples(const osg::State& state) const {
+    return samples_->getTextureObject(state.getContextID())->id();
   }
 
  private:
-  // Making textures takes as long as drawing, so they are kept from call to call: so many pixels of 20 bytes.
+  // Making textures takes as long as drawing, so they are kept from call to call: so many pixels of 16 bytes.
   static constexpr double most_kept_pixels = 0x1p25;
 
   /// The next pass hardly differs. What OpenGL has at most is a multiple of this, too.
@@ -106,7 +103,8 @@ class ViewTarget {
   static double pixels(const ViewLayout& size) { return 1.0 * size.width * size.height * size.layers; }
 
   ViewLayout size_;
-  osg::ref_ptr<osg::Texture2DArray> samples_, depths_;
+  osg::ref_ptr<osg::Texture2DArray> samples_;
+  osg::ref_ptr<osg::RenderBuffer> depths_;                          // of the layer at hand
   std::vector<osg::ref_ptr<osg::FrameBufferObject>> framebuffers_;  // of the layers
 };
 
@@ -122,6 +120,7 @@ struct RasterSampler::Impl {
   std::string description;
   std::unique_ptr<VideoMemory> video_memory;  // what it holds goes first
   osg::ref_ptr<osg::Group> scene;
+  osg::ref_ptr<osg::StateSet> unseen;  // draws what is not of the scene
   std::unique_ptr<ViewCuller> culler;
   std::vector<BodyNode> bodies;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
@@ -145,6 +144,7 @@ struct RasterSampler::Impl {
     scene = new osg::Group;
     culler = std::make_unique<ViewCuller>(*context->getState(), *scene);
     set_up_state(*scene->getOrCreateStateSet());
+    set_up_unseen();
     program(Shading::geometric_normal, {}, false);  // an OpenGL that cannot build it is found out here
     add_bodies(world);
   }
@@ -190,16 +190,24 @@ struct RasterSampler::Impl {
     state.addUniform(new osg::Uniform("normal_map", normal_map_unit));
   }
 
+  void set_up_unseen() {
+    unseen = new osg::StateSet;
+    unseen->setAttributeAndModes(new osg::Depth(osg::Depth::EQUAL, 0.0, 1.0));
+    unseen->setMode(GL_CULL_FACE, osg::StateAttribute::OFF);
+    unseen->setAttributeAndModes(
+        context->build_program({new osg::Shader(osg::Shader::VERTEX, unseen_vertex_shader),
+                                new osg::Shader(osg::Shader::FRAGMENT, unseen_fragment_shader)},
+                               "the shader of what is not seen"));
+  }
+
   /// Built when first asked for.
   osg::ref_ptr<osg::Program> program(Shading shading, const SurfaceModel& surface, bool bent) {
     const std::string head = surface_shader_head(shading, surface, bent);
     osg::ref_ptr<osg::Program>& known = programs[head];
     if (!known) {
-      known = context->build_program(
-          {new osg::Shader(osg::Shader::VERTEX, head + surface_corner + surface_vertex_shader),
-           new osg::Shader(osg::Shader::GEOMETRY, head + surface_corner + surface_geometry_shader),
-           new osg::Shader(osg::Shader::FRAGMENT, head + surface_fragment_shader)},
-          "the surface shader");
+      known = context->build_program({new osg::Shader(osg::Shader::VERTEX, head + surface_vertex_shader),
+                                      new osg::Shader(osg::Shader::FRAGMENT, head + surface_fragment_shader)},
+                                     "the surface shader");
     }
     return known;
   }
@@ -209,6 +217,7 @@ struct RasterSampler::Impl {
       one.state->setAttributeAndModes(program(one.shading, surface, bend_per_m != 0.0F));
     }
     osg::StateSet& state = *scene->getStateSet();
+    state.setMode(GL_CULL_FACE, surface.two_sided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
     state.getOrCreateUniform("sigmoid", osg::Uniform::FLOAT_VEC2)
         ->set(
             osg::Vec2(static_cast<float>(surface.sigmoid_slope), static_cast<float>(surface.sigmoid_centre)));
@@ -217,11 +226,9 @@ struct RasterSampler::Impl {
   }
 
   /// All views of a ping. Does not wait for the drawing to end.
-  /// @param clear what of the target is cleared. On an H200 the samples take two fifths of what drawing
-  /// takes.
   /// @return where the views are.
   ViewLayout draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
-                  double range_m, GLbitfield clear) {
+                  double range_m) {
     context->make_current_or_throw();
     osg::State& state = *context->getState();
     ViewLayout layout = lay_out(grid.views, max_texture_px);
@@ -236,16 +243,15 @@ struct RasterSampler::Impl {
                           bend_per_m};
     state.pushStateSet(scene->getStateSet());
     state.apply();
-    clear_layers(layout, clear);
-    int layer = -1;
-    for (std::size_t v = 0; v < culled.size(); ++v) {
-      const ViewLayout::Place& place = layout.places[v];
-      if (place.layer != layer) {
-        layer = place.layer;
-        target.bind(layer, state);
+    for (int layer = 0; layer < layout.layers; ++layer) {
+      target.bind(layer, state);
+      clear_depths(layout);
+      for (std::size_t v = 0; v < culled.size(); ++v) {
+        if (layout.places[v].layer == layer) {
+          draw(grid.views[v], layout.places[v], culled[v], bend);
+        }
       }
-      glViewport(place.x, place.y, grid.views[v].columns, grid.views[v].rows);
-      draw(grid.views[v], place, culled[v], bend);
+      draw_unseen(layout);
     }
     state.popStateSet();
     gl().glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
@@ -253,17 +259,20 @@ struct RasterSampler::Impl {
     return layout;
   }
 
-  /// What of them holds views.
-  void clear_layers(const ViewLayout& layout, GLbitfield clear) const {
-    glClearColor(0, 0, 0, 0);
+  /// Of what holds views.
+  static void clear_depths(const ViewLayout& layout) {
     glClearDepth(0);
     glEnable(GL_SCISSOR_TEST);
     glScissor(0, 0, layout.width, layout.height);
-    for (int layer = 0; layer < layout.layers; ++layer) {
-      target.bind(layer, *context->getState());
-      glClear(clear);
-    }
+    glClear(GL_DEPTH_BUFFER_BIT);
     glDisable(GL_SCISSOR_TEST);
+  }
+
+  /// Once all views of the layer are drawn.
+  void draw_unseen(const ViewLayout& layout) const {
+    context->getState()->apply(unseen);
+    glViewport(0, 0, layout.width, layout.height);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
   }
 
   osg::GLExtensions& gl() const { return *context->getState()->get<osg::GLExtensions>(); }
@@ -300,6 +309,7 @@ struct RasterSampler::Impl {
             const Refraction& bend) const {
     osg::State& state = *context->getState();
     osg::RenderInfo info(&state, nullptr);
+    glViewport(place.x, place.y, view.columns, view.rows);
     const osg::Vec3 up =
         osg::Matrixd::transform3x3(osg::Vec3(bend.up.x, bend.up.y, bend.up.z), view_matrix(view));
     const osg::StateSet* surface = nullptr;
@@ -310,13 +320,17 @@ struct RasterSampler::Impl {
         state.apply(surface);
         gl().glUniform2f(at_tan_half, static_cast<float>(view.tan_half_width),
                          static_cast<float>(view.tan_half_height));
-        gl().glUniform2f(at_pixels, static_cast<float>(view.columns), static_cast<float>(view.rows));
+        gl().glUniform2f(at_pixel, static_cast<float>(view.pixel_width()),
+                         static_cast<float>(view.pixel_height()));
         gl().glUniform2f(at_corner, static_cast<float>(place.x), static_cast<float>(place.y));
         if (!bend.straight()) {
           gl().glUniform4f(at_refraction, up.x(), up.y(), up.z(), bend.per_m);
         }
       }
       state.applyModelViewMatrix(leaf.body_to_eye.get());
+      const osg::Matrixd rounded = osg::Matrixf(*leaf.body_to_eye);  // as the shader has it
+      const osg::Vec3 eye = osg::Matrixd::inverse(rounded).getTrans() - leaf.chunk->centre();
+      gl().glUniform3f(at_eye, eye.x(), eye.y(), eye.z());
       leaf.chunk->drawImplementation(info);
     }
   }
@@ -345,8 +359,7 @@ RasterSampler::~RasterSampler() = default;
 std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                                         const SurfaceModel& surface, double max_range_m) {
   static_assert(sizeof(SurfaceSample) == 4 * sizeof(float), "must match one RGBA32F pixel");
-  const ViewLayout layout =
-      impl_->draw(T_world_sonar, grid, surface, max_range_m, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const ViewLayout layout = impl_->draw(T_world_sonar, grid, surface, max_range_m);
   impl_->read(grid.views, layout);
   std::vector<const SurfaceSample*> samples;
   for (std::size_t v = 0; v < grid.views.size(); ++v) {
@@ -355,10 +368,10 @@ std::vector<const SurfaceSample*> RasterSampler::sample(const Pose& T_world_sona
   return samples;
 }
 
-RasterSampler::ViewTextures RasterSampler::draw(const Pose& T_world_sonar, const SampleGrid& grid,
-                                                const SurfaceModel& surface, double max_range_m) {
-  impl_->draw(T_world_sonar, grid, surface, max_range_m, GL_DEPTH_BUFFER_BIT);
-  return impl_->target.textures(*impl_->context->getState());
+unsigned RasterSampler::draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+                             double max_range_m) {
+  impl_->draw(T_world_sonar, grid, surface, max_range_m);
+  return impl_->target.samples(*impl_->context->getState());
 }
 
 int RasterSampler::most_view_px() const {

@@ -57,18 +57,14 @@ class RasterSampler {
   };
   const Drawn& drawn() const;
 
-  /// Names of arrays of textures in which the views of a grid are as lay_out() says.
-  struct ViewTextures {
-    unsigned samples = 0;  ///< RGBA32F, a SurfaceSample each texel, row by row upwards
-    unsigned depths = 0;   ///< DEPTH_COMPONENT32F, above 0 where there is a surface
-  };
   /// What lay_out() is told.
   int most_view_px() const;
-  /// Like sample(), but the samples stay on the GPU, and where there is no surface anything may be.
-  /// @return what stays valid until the next call of draw() or sample().
-  ViewTextures draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
-                    double max_range_m);
-  /// Where these textures are, made current.
+  /// Like sample(), but the samples stay on the GPU.
+  /// @return name of an array of textures (RGBA32F, a SurfaceSample each texel, row by row upwards), in which
+  /// the views are as lay_out() says. Stays valid until the next call of draw() or sample().
+  unsigned draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
+                double max_range_m);
+  /// Where the texture is, made current.
   /// @throws RendererError when the context is lost.
   EglContext& current_context();
   /// For what ends: does nothing when the context is lost.

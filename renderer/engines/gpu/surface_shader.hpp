@@ -17,36 +17,22 @@ namespace sonard::render {
 /// What of a surface decides which program draws it: where the normal comes from that its echo is taken by.
 enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
-/// Locations of the uniforms that belong to a view; OpenSceneGraph has the others.
-enum ViewUniform : int { at_tan_half, at_pixels, at_refraction, at_corner };
+/// Locations of the uniforms that belong to a view or, at_eye, to a chunk in it; OpenSceneGraph has the
+/// others.
+enum ViewUniform : int { at_tan_half, at_pixel, at_refraction, at_corner, at_eye };
 
-/// The beginning of all three shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
-/// TWO_SIDED: back faces are drawn.
+/// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
       "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
-      "BENT {:d}\n#define TWO_SIDED {:d}\n",
-      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent,
-      surface.two_sided);
+      "BENT {:d}\n",
+      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
 }
 
-/// What the vertex shader hands to the geometry shader: both begin with it.
-inline constexpr char surface_corner[] = R"glsl(
-struct Corner {
-  vec3 in_body, in_eye;  // positions
-#if BENT
-  vec3 unbent;           // in_eye, were rays straight
-#endif
-#if SHADING != 0
-  vec3 normal_eye;
-#endif
-#if SHADING == 2
-  vec4 tangent_eye;
-  vec2 texcoord;
-#endif
-};
-)glsl";
-
+// The plane of a triangle comes with its last corner, which no other triangle ends with, and not from what
+// the GPU interpolates between the corners: that is rounded as the GPU likes, and off by per cents where a
+// triangle of a hundred metres passes a metre from the eye and is clipped there (docs/accuracy.md). How far
+// the plane is from the eye comes from the chunk's centre, because corners may be far away.
 inline constexpr char surface_vertex_shader[] = R"glsl(
 layout(location = 0) in vec4 position;  // VertexAttribute
 layout(location = 1) in vec3 normal;
@@ -54,49 +40,26 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 mapped_at;
 layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
 #endif
+layout(location = 4) in vec4 facet;
+layout(location = 4) uniform vec3 eye;  // from the centre of the chunk, in coordinates of the part
 #if BENT
 layout(location = 2) uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
-#endif
-out Corner corner;
 
-void main() {
-  vec3 p = (gl_ModelViewMatrix * position).xyz;
-#if SHADING != 0
-  corner.normal_eye = gl_NormalMatrix * normal;
-#endif
-#if BENT  // Refraction::point() and normal(), term by term
-  corner.unbent = p;
+// Refraction::normal() at `p`.
+vec3 bent_normal(vec3 n, vec3 p) {
+  vec3 level = p - refraction.xyz * dot(p, refraction.xyz);
+  return n - level * (2.0 * refraction.w * dot(n, refraction.xyz));
+}
+
+// Refraction::point().
+vec3 bent_point(vec3 p) {
   float height = dot(p, refraction.xyz);
   float squared = dot(p, p);
-#if SHADING != 0
-  corner.normal_eye -= (p - refraction.xyz * height) * (2.0 * refraction.w * dot(corner.normal_eye, refraction.xyz));
-#endif
   vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
-  p = lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30));
-#endif
-  gl_Position = gl_ProjectionMatrix * vec4(p, 1.0);
-  corner.in_body = position.xyz;
-  corner.in_eye = p;
-#if SHADING == 2
-  corner.tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
-  corner.texcoord = mapped_at;
-#endif
+  return lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30));
 }
-)glsl";
-
-// The plane of a triangle from its corners, once, instead of from what the GPU interpolates between them:
-// that is rounded as the GPU likes, and off by per cents where a triangle of a hundred metres passes a metre
-// from the eye and is clipped there (docs/accuracy.md).
-inline constexpr char surface_geometry_shader[] = R"glsl(
-layout(triangles) in;
-layout(triangle_strip, max_vertices = 3) out;
-#if BENT
-layout(location = 2) uniform vec4 refraction;
 #endif
-in Corner corner[];
-flat out vec2 slope;      // of the inverse depth, per tangent
-flat out vec3 anchor;     // tangents of a point of the plane, and its inverse depth
-flat out float plane_distance;  // of the plane from the eye
+flat out vec4 plane;  // n / d, where n.p = d, and how far it is
 #if SHADING != 0
 out vec3 normal_eye;
 #endif
@@ -105,46 +68,27 @@ out vec4 tangent_eye;
 out vec2 texcoord;
 #endif
 
-bool outside_of_view() {
-  vec4 a = gl_in[0].gl_Position, b = gl_in[1].gl_Position, c = gl_in[2].gl_Position;
-  vec3 w = vec3(a.w, b.w, c.w), x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y);
-  return all(greaterThan(x, w)) || all(lessThan(x, -w)) || all(greaterThan(y, w)) || all(lessThan(y, -w));
-}
-
 void main() {
-  // What is not handed on costs least.
-  if (outside_of_view()) return;
-  // Differences of positions in the body have its roundings, not those of how far away it is.
-  vec3 n = mat3(gl_ModelViewMatrix) *
-           cross(corner[1].in_body - corner[0].in_body, corner[2].in_body - corner[0].in_body);
-#if BENT  // as a normal of the vertex shader is, in the middle
-  vec3 middle = (corner[0].unbent + corner[1].unbent + corner[2].unbent) / 3.0;
-  n -= (middle - refraction.xyz * dot(middle, refraction.xyz)) * (2.0 * refraction.w * dot(n, refraction.xyz));
-#endif
-  vec3 p = corner[0].in_eye;  // the corner farthest ahead
-  for (int i = 1; i < 3; ++i) {
-    if (corner[i].in_eye.z < p.z) p = corner[i].in_eye;
-  }
-  float d = dot(n, p);
-  if (d == 0.0 || p.z >= 0.0) return;  // seen edge-on, or behind the eye
-#if !TWO_SIDED
-  if (d > 0.0) return;
-#endif
-  for (int i = 0; i < 3; ++i) {
-    gl_Position = gl_in[i].gl_Position;
-    slope = n.xy / d;
-    anchor = vec3(p.xy, 1.0) / -p.z;
-    plane_distance = abs(d) * inversesqrt(dot(n, n));
+  vec3 p = (gl_ModelViewMatrix * position).xyz;
+  vec3 n = mat3(gl_ModelViewMatrix) * facet.xyz;
+  float d = facet.w - dot(facet.xyz, eye);
 #if SHADING != 0
-    normal_eye = corner[i].normal_eye;
+  normal_eye = gl_NormalMatrix * normal;
 #endif
+#if BENT
+  n = bent_normal(n, p);
+#if SHADING != 0
+  normal_eye = bent_normal(normal_eye, p);
+#endif
+  p = bent_point(p);
+  d = dot(n, p);
+#endif
+  gl_Position = gl_ProjectionMatrix * vec4(p, 1.0);
+  plane = d == 0.0 ? vec4(0.0) : vec4(n / d, abs(d) * inversesqrt(dot(n, n)));
 #if SHADING == 2
-    tangent_eye = corner[i].tangent_eye;
-    texcoord = corner[i].texcoord;
+  tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
+  texcoord = mapped_at;
 #endif
-    EmitVertex();
-  }
-  EndPrimitive();
 }
 )glsl";
 
@@ -153,16 +97,14 @@ void main() {
 // affine in t, and with it come the exact range derivatives (docs/physics.md 2.3, equation 2), without
 // differences of positions and without trouble where the plane is seen edge-on.
 inline constexpr char surface_fragment_shader[] = R"glsl(
-flat in vec2 slope;
-flat in vec3 anchor;
-flat in float plane_distance;
+flat in vec4 plane;
 #if SHADING != 0
 in vec3 normal_eye;
 #endif
 layout(location = 0) out vec4 surface_sample;
 
 layout(location = 0) uniform vec2 tan_half;  // of the view
-layout(location = 1) uniform vec2 pixels;
+layout(location = 1) uniform vec2 pixel;     // the tangents that one spans
 layout(location = 3) uniform vec2 view_corner;  // its lower left, in pixels
 #if SHADING == 2
 in vec4 tangent_eye;
@@ -259,16 +201,20 @@ float facet_response_of_mean(float cos_phi, float mean_length) {
 #endif
 
 void main() {
-  vec2 pixel = 2.0 * tan_half / pixels;
   vec2 t = (gl_FragCoord.xy - view_corner) * pixel - tan_half;
-  float inverse_depth = anchor.z + dot(slope, t - anchor.xy);
+  vec2 slope = plane.xy;  // of the inverse depth, per tangent
+#if BENT  // small, and as a plane only that through its corners
+  float inverse_depth = gl_FragCoord.w;
+#else
+  float inverse_depth = dot(plane.xyz, vec3(t, -1.0));
+#endif
   float depth = 1.0 / inverse_depth;
   float qq = 1.0 + dot(t, t);
   float per_length = inversesqrt(qq);
   float range = qq * per_length * depth;
-  vec2 range_d = range * (t / qq - slope * depth);
+  vec2 range_d = range * (t * (1.0 / qq) - slope * depth);
 
-  float cosine = plane_distance * inverse_depth * per_length;
+  float cosine = plane.w * inverse_depth * per_length;
   float mean_length = 1.0;
 #if SHADING != 0
   vec3 n = shading_normal(inverse_depth, slope * pixel);
@@ -289,7 +235,24 @@ void main() {
   float response = 1.0 / (1.0 + exp(-sigmoid.x * (echo - sigmoid.y)));
 #endif
   vec4 result = vec4(range, response, range_d);
-  surface_sample = any(isnan(result)) || any(isinf(result)) ? vec4(-1.0, 0.0, 0.0, 0.0) : result;
+  float all = range + response + range_d.x + range_d.y;
+  // A triangle seen edge-on may be drawn all the same, but has no echo.
+  surface_sample = !(inverse_depth > 0.0) ? vec4(0.0)
+                   : isnan(all) || isinf(all) ? vec4(-1.0, 0.0, 0.0, 0.0) : result;
+}
+)glsl";
+
+// What is seen where there is no surface: drawn last, over the depth that was there to begin with. To clear
+// samples takes a card two fifths of what drawing takes.
+inline constexpr char unseen_vertex_shader[] = R"glsl(#version 450 compatibility
+void main() {
+  gl_Position = vec4(vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1), 0.0, 1.0);
+}
+)glsl";
+inline constexpr char unseen_fragment_shader[] = R"glsl(#version 450 compatibility
+layout(location = 0) out vec4 surface_sample;
+void main() {
+  surface_sample = vec4(0.0);
 }
 )glsl";
 

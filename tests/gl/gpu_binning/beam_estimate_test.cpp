@@ -43,16 +43,15 @@ class BeamEstimateTest : public ::testing::Test {
   }
 
   /// Of the size of the view.
-  GLuint make_texture(RasterSampler& sampler, GLint internal_format, GLenum format,
-                      const void* floats) const {
+  GLuint make_texture(RasterSampler& sampler, const std::vector<SurfaceSample>& samples) const {
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D_ARRAY, texture);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     sampler.current_context().getState()->get<osg::GLExtensions>()->glTexImage3D(
-        GL_TEXTURE_2D_ARRAY, 0, internal_format, grid_.views[0].columns, grid_.views[0].rows, 1, 0, format,
-        GL_FLOAT, floats);
+        GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, grid_.views[0].columns, grid_.views[0].rows, 1, 0, GL_RGBA,
+        GL_FLOAT, samples.data());
     return texture;
   }
 
@@ -71,19 +70,15 @@ class BeamEstimateTest : public ::testing::Test {
     RasterSampler sampler(World{});
     GpuBinner binner(sampler);
     sampler.current_context();
-    const std::vector<float> depths(samples.size(), 1.0F);
-    const RasterSampler::ViewTextures textures{
-        make_texture(sampler, GL_RGBA32F, GL_RGBA, samples.data()),
-        make_texture(sampler, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, depths.data())};
+    const GLuint texture = make_texture(sampler, samples);
     const std::vector<float> no_weights;
     const BinningOptions options;
     const auto on_gpu = binner.load(grid_, {0, 1, 2}, &thinned_);
     binner.begin({3, range, options, no_weights, most_error});
-    binner.add(*on_gpu, textures);
+    binner.add(*on_gpu, texture);
     binner.ask_estimates();
     const BeamEstimate found = binner.take_estimates().at(1);
-    glDeleteTextures(1, &textures.samples);
-    glDeleteTextures(1, &textures.depths);
+    glDeleteTextures(1, &texture);
     return found;
   }
 

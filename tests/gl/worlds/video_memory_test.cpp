@@ -142,18 +142,20 @@ SampleGrid forward_grid(double width_rad) {
   return make_sample_grid(aperture, Sampling::of_grid(1, 64, 64), {});
 }
 
-// 12 bytes a position and a normal, 8 a texture coordinate, 16 a tangent; 2 an index.
+// 12 bytes a position and a normal, 8 a texture coordinate, 16 a tangent and the plane of a facet; 2 an
+// index. Each triangle ends with a vertex of its own; with some vertices none does.
 TEST_F(VideoMemoryOfWorlds, IsWhatOpenGlWasGiven) {
   constexpr unsigned cells = 30;  // one chunk
-  constexpr std::uint64_t vertices = 31 * 31, triangles = 2 * cells * cells;
+  constexpr std::uint64_t triangles = 2 * cells * cells;
   TriangleMesh mesh = make_square(cells);
   const auto expect_bytes = [&](std::uint64_t bytes_per_vertex) {
     RasterSampler sampler(make_world({make_body("square", mesh)}));
     const std::uint64_t before = buffer_bytes(sampler.current_context());
     EXPECT_EQ(sampler.video_memory().bytes(), 0U) << "nothing is drawn yet";
     sampler.draw({}, forward_grid(0.3), {}, 20);
-    const std::uint64_t bytes = bytes_per_vertex * vertices + 3 * 2 * triangles;
-    EXPECT_EQ(sampler.video_memory().bytes(), bytes);
+    const std::uint64_t bytes = sampler.video_memory().bytes();
+    EXPECT_GE(bytes, (bytes_per_vertex + 3 * 2) * triangles);
+    EXPECT_LE(bytes, (1.01 * bytes_per_vertex + 3 * 2) * triangles);
     EXPECT_EQ(buffer_bytes(sampler.current_context()) - before, bytes);
     sampler.draw({}, forward_grid(0.3), {}, 4);  // out of range: not needed, but there is room
     EXPECT_EQ(sampler.video_memory().bytes(), bytes);
@@ -162,12 +164,12 @@ TEST_F(VideoMemoryOfWorlds, IsWhatOpenGlWasGiven) {
     EXPECT_EQ(sampler.video_memory().bytes(), 0U);
     EXPECT_EQ(buffer_bytes(sampler.current_context()), before);
   };
-  expect_bytes(12 + 12 + 8 + 16);
+  expect_bytes(12 + 16 + 12 + 8 + 16);
   mesh.tangents.clear();
   mesh.texcoords.clear();
-  expect_bytes(12 + 12);
+  expect_bytes(12 + 16 + 12);
   mesh.normals.clear();
-  expect_bytes(12);
+  expect_bytes(12 + 16);
 }
 
 // 8 bytes a texel of all levels, in rows of 4096.
@@ -179,7 +181,7 @@ TEST_F(VideoMemoryOfWorlds, HoldsNormalMapsToo) {
   sampler.draw({}, forward_grid(0.3), {}, 20);
   constexpr std::uint64_t texels = 128 * 128 + 64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1;
   constexpr std::uint64_t rows = (texels + 4095) / 4096;
-  EXPECT_EQ(sampler.video_memory().bytes(), rows * 4096 * 8 + 4 * 48 + 6 * 2);
+  EXPECT_EQ(sampler.video_memory().bytes(), rows * 4096 * 8 + 4 * 64 + 6 * 2);
 }
 
 /// Renders with a bound and without from every pose.
@@ -220,7 +222,7 @@ World balls() {
   World world;
   for (int i = 0; i < count; ++i) {
     const double azimuth_rad = 2 * std::acos(-1.0) * i / count;
-    Body ball = make_body("ball " + std::to_string(i), make_sphere(1, 64));  // 0.25 MiB
+    Body ball = make_body("ball " + std::to_string(i), make_sphere(1, 64));  // 0.7 MiB
     ball.T_world_body.position_m = {6 * std::cos(azimuth_rad), 6 * std::sin(azimuth_rad), 0};
     if (i % 2 == 0) {
       TriangleMesh mesh = make_sphere(1, 64);
@@ -243,7 +245,7 @@ World balls() {
 
 // A sonar that turns sees two or three balls at a time.
 TEST_F(VideoMemoryOfWorlds, OfBodiesStaysBoundedWithoutChangingAnImage) {
-  BoundedAndUnbounded renderers(balls(), options(1), 1 * mib);
+  BoundedAndUnbounded renderers(balls(), options(3), 3 * mib);
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_angle_edges(32, 0.5);
   request.settings.aperture.vertical_beamwidth_rad = 0.35;
@@ -254,8 +256,8 @@ TEST_F(VideoMemoryOfWorlds, OfBodiesStaysBoundedWithoutChangingAnImage) {
         turn % 2 == 0 ? Sampling::of_grid(2, 128, 128) : Sampling{Sampling::Preset::fast};
     renderers.expect_same_image(request);
   }
-  EXPECT_GT(renderers.unbounded_bytes(), 3 * mib);
-  EXPECT_GT(renderers.uploaded_bytes(), 5 * mib) << "what was released came back";
+  EXPECT_GT(renderers.unbounded_bytes(), 9 * mib);
+  EXPECT_GT(renderers.uploaded_bytes(), 15 * mib) << "what was released came back";
 }
 
 // The tiles of a terrain come and go by themselves, too.
@@ -264,7 +266,7 @@ TEST_F(VideoMemoryOfWorlds, OfATerrainStaysBoundedWithoutChangingAnImage) {
   scene.settings.aperture.beam_edges_rad = equal_angle_edges(32, 0.5);
   scene.settings.sampling = Sampling::of_grid(1, 64, 64);
   for (const bool coarse : {false, true}) {
-    const std::uint64_t bound_mib = coarse ? 1 : 6;
+    const std::uint64_t bound_mib = coarse ? 3 : 16;
     RendererOptions bounded = options(bound_mib);
     if (!coarse) {
       bounded.skip.turn_off(SkipRule::terrain_detail);
@@ -296,10 +298,10 @@ TEST_F(VideoMemoryOfWorlds, ThatDoNotFitAreLeftToTheCpuWithALineThatSaysWhy) {
   request.settings.sampling = Sampling::of_grid(1, 64, 64);
   const std::vector<float> image = renderer.render_echo(request).intensity;
   EXPECT_THAT(what, ::testing::HasSubstr("gpu.memory_mib allows 1048576 (1 MiB)"));
-  // 2 * 200 * 399 triangles of 200 * 401 vertices or a few more, for chunks share none.
+  // 2 * 200 * 399 triangles, and as many vertices or a few more.
   const std::uint64_t needed_bytes = std::stoull(what.substr(what.find("takes ") + 6));
-  EXPECT_GT(needed_bytes, 6 * 2 * 200 * 399 + 24 * 199 * 400);
-  EXPECT_LT(needed_bytes, 1.1 * (6 * 2 * 200 * 399 + 24 * 201 * 401));
+  EXPECT_GE(needed_bytes, (6 + 40) * 2 * 200 * 399);
+  EXPECT_LT(needed_bytes, 1.05 * (6 + 40) * 2 * 200 * 399);
   EXPECT_EQ(image, SonarRenderer(world, {EngineKind::cpu}).render_echo(request).intensity);
   EXPECT_EQ(renderer.engine(), EngineKind::gpu) << "of another ping it may see less";
   request.settings.range = {10, 0.1, 0, false};  // receives nothing of it
@@ -310,7 +312,7 @@ TEST_F(VideoMemoryOfWorlds, ThatDoNotFitAreLeftToTheCpuWithALineThatSaysWhy) {
 TEST_F(VideoMemoryOfWorlds, OfTenMillionTrianglesStaysBounded) {
   const Scene scene = make_seabed_scene("swell", swell_height_m, 10'000'000);
   EXPECT_NEAR(static_cast<double>(scene.world.triangle_count()), 1e7, 1e4);
-  constexpr std::uint64_t bound_mib = 24;
+  constexpr std::uint64_t bound_mib = 64;
   SonarRenderer renderer(scene.world, options(bound_mib));
   PingRequest request = scene.request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(32, 0.8);
