@@ -110,6 +110,7 @@ class ChunkBuilder {
         }
         corners[i] = number;
       }
+      // It ends with a corner that no other triangle ends with, or with a copy of one.
       const auto free =
           std::find_if(corners.begin(), corners.end(), [&](auto i) { return ending_facets[i] == none; });
       if (free != corners.end()) {
