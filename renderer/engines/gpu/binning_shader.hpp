@@ -118,7 +118,7 @@ void look_at(int view) {
 }
 
 vec4 sample_at(ivec2 at) {
-  return texelFetch(surface_samples, corner + ivec3(at, 0), 0);
+  return texelFetch(surface_samples, corner + ivec3(at.yx, 0), 0);
 }
 
 layout(location = 1) uniform vec3 lines_per_m;    // in three parts, of 12, 12 and 24 bits

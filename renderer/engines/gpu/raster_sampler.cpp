@@ -10,6 +10,7 @@
 #include <osg/ClipControl>
 #include <osg/Depth>
 #include <osg/FrameBufferObject>
+#include <osg/FrontFace>
 #include <osg/GLExtensions>
 #include <osg/MatrixTransform>
 #include <osg/Program>
@@ -185,6 +186,7 @@ struct RasterSampler::Impl {
     state.setAttributeAndModes(
         new osg::ClipControl(osg::ClipControl::LOWER_LEFT, osg::ClipControl::ZERO_TO_ONE));
     state.setAttributeAndModes(new osg::Depth(osg::Depth::GREATER, 0.0, 1.0));
+    state.setAttributeAndModes(new osg::FrontFace(osg::FrontFace::CLOCKWISE));  // views lie on their side
     state.setMode(GL_LIGHTING, osg::StateAttribute::OFF);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF);
     state.addUniform(new osg::Uniform("normal_map", normal_map_unit));
@@ -309,7 +311,7 @@ struct RasterSampler::Impl {
             const Refraction& bend) const {
     osg::State& state = *context->getState();
     osg::RenderInfo info(&state, nullptr);
-    glViewport(place.x, place.y, view.columns, view.rows);
+    glViewport(place.x, place.y, view.rows, view.columns);
     const osg::Vec3 up =
         osg::Matrixd::transform3x3(osg::Vec3(bend.up.x, bend.up.y, bend.up.z), view_matrix(view));
     const osg::StateSet* surface = nullptr;
@@ -322,7 +324,7 @@ struct RasterSampler::Impl {
                          static_cast<float>(view.tan_half_height));
         gl().glUniform2f(at_pixel, static_cast<float>(view.pixel_width()),
                          static_cast<float>(view.pixel_height()));
-        gl().glUniform2f(at_corner, static_cast<float>(place.x), static_cast<float>(place.y));
+        gl().glUniform2f(at_corner, static_cast<float>(place.y), static_cast<float>(place.x));
         if (!bend.straight()) {
           gl().glUniform4f(at_refraction, up.x(), up.y(), up.z(), bend.per_m);
         }
@@ -341,10 +343,16 @@ struct RasterSampler::Impl {
     for (std::size_t v = 0; v < views.size(); ++v) {
       const ViewLayout::Place& place = layout.places[v];
       target.bind(place.layer, *context->getState());
-      read_samples[v].resize(static_cast<std::size_t>(views[v].columns) *
-                             static_cast<std::size_t>(views[v].rows));
-      glReadPixels(place.x, place.y, views[v].columns, views[v].rows, GL_RGBA, GL_FLOAT,
-                   read_samples[v].data());
+      const auto columns = static_cast<std::size_t>(views[v].columns);
+      const auto rows = static_cast<std::size_t>(views[v].rows);
+      std::vector<SurfaceSample> on_its_side(columns * rows);
+      glReadPixels(place.x, place.y, views[v].rows, views[v].columns, GL_RGBA, GL_FLOAT, on_its_side.data());
+      read_samples[v].resize(columns * rows);
+      for (std::size_t row = 0; row < rows; ++row) {
+        for (std::size_t column = 0; column < columns; ++column) {
+          read_samples[v][row * columns + column] = on_its_side[column * rows + row];
+        }
+      }
     }
     gl().glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
     check_gl_errors("drawing the scene");

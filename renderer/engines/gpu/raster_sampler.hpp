@@ -60,8 +60,8 @@ class RasterSampler {
   /// What lay_out() is told.
   int most_view_px() const;
   /// Like sample(), but the samples stay on the GPU.
-  /// @return name of an array of textures (RGBA32F, a SurfaceSample each texel, row by row upwards), in which
-  /// the views are as lay_out() says. Stays valid until the next call of draw() or sample().
+  /// @return name of an array of textures (RGBA32F, a SurfaceSample each texel), in which the views are as
+  /// lay_out() says. Stays valid until the next call of draw() or sample().
   unsigned draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
                 double max_range_m);
   /// Where the texture is, made current.

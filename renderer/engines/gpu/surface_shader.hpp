@@ -105,7 +105,7 @@ layout(location = 0) out vec4 surface_sample;
 
 layout(location = 0) uniform vec2 tan_half;  // of the view
 layout(location = 1) uniform vec2 pixel;     // the tangents that one spans
-layout(location = 3) uniform vec2 view_corner;  // its lower left, in pixels
+layout(location = 3) uniform vec2 view_corner;  // its first pixel, column and row
 #if SHADING == 2
 in vec4 tangent_eye;
 in vec2 texcoord;
@@ -157,8 +157,8 @@ vec3 mean_normal(vec2 uv, float level) {
 float map_level(float inverse_depth, vec2 inverse_depth_step) {
   vec2 over_depth = texcoord * inverse_depth;
   vec2 texels_per_step = vec2(map_levels[0].xy) / inverse_depth;
-  vec2 dx = (dFdx(over_depth) - texcoord * inverse_depth_step.x) * texels_per_step;
-  vec2 dy = (dFdy(over_depth) - texcoord * inverse_depth_step.y) * texels_per_step;
+  vec2 dx = (dFdy(over_depth) - texcoord * inverse_depth_step.x) * texels_per_step;
+  vec2 dy = (dFdx(over_depth) - texcoord * inverse_depth_step.y) * texels_per_step;
   return 0.5 * log2(max(dot(dx, dx), dot(dy, dy)));
 }
 #endif
@@ -201,7 +201,7 @@ float facet_response_of_mean(float cos_phi, float mean_length) {
 #endif
 
 void main() {
-  vec2 t = (gl_FragCoord.xy - view_corner) * pixel - tan_half;
+  vec2 t = (gl_FragCoord.yx - view_corner) * pixel - tan_half;
   vec2 slope = plane.xy;  // of the inverse depth, per tangent
 #if BENT  // small, and as a plane only that through its corners
   float inverse_depth = gl_FragCoord.w;

@@ -17,8 +17,8 @@ namespace {
 /// terms and loses nothing by a small near distance (docs/physics.md 4.2). Visibility only; ranges never come
 /// from the depth buffer.
 osg::Matrixd projection_matrix(const SubView& view) {
-  return osg::Matrixd(1 / view.tan_half_width, 0, 0, 0,   //
-                      0, 1 / view.tan_half_height, 0, 0,  //
+  return osg::Matrixd(0, 1 / view.tan_half_width, 0, 0,   //
+                      1 / view.tan_half_height, 0, 0, 0,  //
                       0, 0, 0, -1,                        //
                       0, 0, static_cast<double>(nearest_depth_m), 0);
 }
@@ -60,7 +60,7 @@ ViewCuller::ViewCuller(osg::State& state, osg::Node& scene) : scene_view_(new os
 
 CulledView ViewCuller::cull(const SubView& view, bool bent) {
   osg::Camera& camera = *scene_view_->getCamera();
-  camera.setViewport(0, 0, view.columns, view.rows);
+  camera.setViewport(0, 0, view.rows, view.columns);
   camera.setViewMatrix(view_matrix(view));
   camera.setProjectionMatrix(projection_matrix(view));
   // Only the sides cull: there is no far plane, and small features are echoes too.

@@ -14,6 +14,14 @@ namespace {
 
 constexpr int step_px = 4;  // GPUs work on small squares of pixels: no view shares one with another
 
+/// Views lie on their side.
+int width_px(const SubView& view) {
+  return view.rows;
+}
+int height_px(const SubView& view) {
+  return view.columns;
+}
+
 int rounded_up(int px) {
   return (px + step_px - 1) / step_px * step_px;
 }
@@ -27,8 +35,8 @@ ViewLayout lay_out(const std::vector<SubView>& views, int most_px) {
     if (view.columns > most_px || view.rows > most_px) {
       throw RequestError("sampling: a view exceeds the GL limit of " + std::to_string(most_px) + " pixels");
     }
-    layout.width = std::max(layout.width, view.columns);
-    pixels += 1.0 * rounded_up(view.columns) * rounded_up(view.rows);
+    layout.width = std::max(layout.width, width_px(view));
+    pixels += 1.0 * rounded_up(width_px(view)) * rounded_up(height_px(view));
   }
   layout.width = std::min(most_px, rounded_up(std::max(layout.width, static_cast<int>(std::sqrt(pixels)))));
 
@@ -36,24 +44,24 @@ ViewLayout lay_out(const std::vector<SubView>& views, int most_px) {
   std::vector<std::size_t> order(views.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return views[a].rows > views[b].rows; });
+                   [&](std::size_t a, std::size_t b) { return height_px(views[a]) > height_px(views[b]); });
   layout.places.resize(views.size());
   ViewLayout::Place next;
   int shelf_px = 0;
   for (const std::size_t v : order) {
     const SubView& view = views[v];
-    if (next.x + view.columns > layout.width) {
+    if (next.x + width_px(view) > layout.width) {
       next = {0, next.y + rounded_up(shelf_px), next.layer};
       shelf_px = 0;
     }
-    if (next.y + view.rows > most_px) {
+    if (next.y + height_px(view) > most_px) {
       next = {0, 0, next.layer + 1};
     }
-    shelf_px = std::max(shelf_px, view.rows);
+    shelf_px = std::max(shelf_px, height_px(view));
     layout.places[v] = next;
-    layout.height = std::max(layout.height, next.y + view.rows);
+    layout.height = std::max(layout.height, next.y + height_px(view));
     layout.layers = next.layer + 1;
-    next.x += rounded_up(view.columns);
+    next.x += rounded_up(width_px(view));
   }
   return layout;
 }

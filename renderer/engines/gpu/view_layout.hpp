@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many views in one texture: changing textures costs a GPU more than a small view takes.
+// Many views in one texture: changing textures costs a GPU more than a small view takes. They lie on their
+// side: what bins a column has its samples one after the other in memory.
 #pragma once
 
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace sonard::render {
 
-/// Where the views of a grid lie in an array of textures of one size, in pixels. A function of the sizes of
-/// the views alone.
+/// Where the views of a grid lie in an array of textures of one size, in pixels: the sample of column c and
+/// row r at (x + r, y + c). A function of the sizes of the views alone.
 struct ViewLayout {
   struct Place {
     int x = 0, y = 0;  ///< of the lower left corner

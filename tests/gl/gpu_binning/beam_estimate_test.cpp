@@ -42,7 +42,7 @@ class BeamEstimateTest : public ::testing::Test {
     thinned_ = of(3 * columns / 2, rows / 2);
   }
 
-  /// Of the size of the view.
+  /// Of the size of the view, which lies on its side.
   GLuint make_texture(RasterSampler& sampler, const std::vector<SurfaceSample>& samples) const {
     GLuint texture = 0;
     glGenTextures(1, &texture);
@@ -50,7 +50,7 @@ class BeamEstimateTest : public ::testing::Test {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     sampler.current_context().getState()->get<osg::GLExtensions>()->glTexImage3D(
-        GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, grid_.views[0].columns, grid_.views[0].rows, 1, 0, GL_RGBA,
+        GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, grid_.views[0].rows, grid_.views[0].columns, 1, 0, GL_RGBA,
         GL_FLOAT, samples.data());
     return texture;
   }
@@ -61,9 +61,9 @@ class BeamEstimateTest : public ::testing::Test {
                            const BeamError& most_error = {1, 1}) {
     const SubView& view = grid_.views[0];
     std::vector<SurfaceSample> samples;
-    for (int j = 0; j < view.rows; ++j) {
-      for (int i = 0; i < view.columns; ++i) {
-        const double x = -view.tan_half_width + (i + 0.5) * view.pixel_width();
+    for (int i = 0; i < view.columns; ++i) {
+      const double x = -view.tan_half_width + (i + 0.5) * view.pixel_width();
+      for (int j = 0; j < view.rows; ++j) {
         samples.push_back(what(-std::atan(x), -view.tan_half_height + (j + 0.5) * view.pixel_height()));
       }
     }

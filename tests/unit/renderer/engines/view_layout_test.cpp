@@ -25,13 +25,12 @@ void expect_apart(const std::vector<SubView>& views, const ViewLayout& layout) {
     const ViewLayout::Place& p = layout.places[a];
     EXPECT_GE(p.layer, 0);
     EXPECT_LT(p.layer, layout.layers);
-    EXPECT_LE(p.x + views[a].columns, layout.width);
-    EXPECT_LE(p.y + views[a].rows, layout.height);
+    EXPECT_LE(p.x + views[a].rows, layout.width);
+    EXPECT_LE(p.y + views[a].columns, layout.height);
     for (std::size_t b = 0; b < a; ++b) {
       const ViewLayout::Place& q = layout.places[b];
-      const bool apart = p.layer != q.layer || p.x + views[a].columns <= q.x ||
-                         q.x + views[b].columns <= p.x || p.y + views[a].rows <= q.y ||
-                         q.y + views[b].rows <= p.y;
+      const bool apart = p.layer != q.layer || p.x + views[a].rows <= q.x || q.x + views[b].rows <= p.x ||
+                         p.y + views[a].columns <= q.y || q.y + views[b].columns <= p.y;
       EXPECT_TRUE(apart) << a << " and " << b;
     }
   }
@@ -51,8 +50,8 @@ TEST(ViewLayout, NoTwoViewsShareAPixel) {
   }
 }
 
-TEST(ViewLayout, OneViewHasATextureOfItsSize) {
-  const ViewLayout layout = lay_out({view_of(400, 30)}, 512);
+TEST(ViewLayout, OneViewHasATextureOfItsSizeOnItsSide) {
+  const ViewLayout layout = lay_out({view_of(30, 400)}, 512);
   EXPECT_EQ(layout.width, 400);
   EXPECT_EQ(layout.height, 30);
   EXPECT_EQ(layout.layers, 1);
