@@ -134,6 +134,7 @@ bool BeamRefinement::Ping::advance() {
 /// Takes what the GPU has estimated of the beams of the last pass.
 void BeamRefinement::Ping::learn() {
   const std::vector<BeamEstimate> estimates = binner_.take_estimates();
+  const double share = error_of_distance(request_.settings.sampling.preset, pass_);
   std::size_t i = 0;
   for (const Grid& grid : grids_) {
     const SampleGrid& samples = *grid.samples;
@@ -147,7 +148,7 @@ void BeamRefinement::Ping::learn() {
       beams_[static_cast<std::size_t>(choices_[i].beam)] = {
           choices_[i].density,
           estimate,
-          pass_ > 1,
+          share,
           end - first,
           samples.port_rad(part(estimate.zone_begin)),
           samples.starboard_rad(part(estimate.zone_end - 1))};

@@ -29,6 +29,7 @@ enum BinningUniform : int {
   at_most_error,
   at_most_rest,
   at_first_beam,
+  at_paired_rows,
 };
 
 /// What all shaders know.
@@ -166,7 +167,7 @@ layout(local_size_x = COLUMN_GROUP) in;
 // spread over many lines costs no more than its ends.
 layout(std430, binding = 0) buffer EchoDifferences { uint echo_differences[]; };
 layout(std430, binding = 1) buffer WeightDifferences { uint weight_differences[]; };
-layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, additions; };
+layout(std430, binding = 4) buffer Image { uint samples, invalid, saturated, additions, pairs; };
 #if ESTIMATE
 layout(std430, binding = 5) writeonly buffer PartialColumns { vec2 partial_columns[]; };  // [part][invocation]
 vec2 own_echo = vec2(0.0);
@@ -174,12 +175,15 @@ vec2 own_echo = vec2(0.0);
 
 layout(location = 7) uniform int part_count;
 layout(location = 3) uniform float units_per_sr;
+layout(location = 20) uniform int paired_rows;    // ImageRequest::paired_rows
 layout(location = 4) uniform float most_units;    // of one sample: so many of them cannot overflow
 
 const float least_spread = 1e-3;   // lines
 const float widest_smear = 512.0;  // lines
+const float most_off_plane = 0.02;   // lines, of two samples that are binned as one
+const float most_response_step = 0.05;  // of the sum of their responses
 
-uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u, own_additions = 0u;
+uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u, own_additions = 0u, own_pairs = 0u;
 
 // A place on the range axis. A single float would say where in line 16384 no closer than to a thousandth.
 struct Place {
@@ -326,21 +330,33 @@ void add_trapezoid(Place centre, float spread, float smear) {
   }
 }
 
-void bin(Part part, int row) {
-  vec4 seen = sample_at((THINNED + 1) * ivec2(part.column, row));
-  if (!(seen.x > 0.0)) {  // range, response, range derivatives
+// Whether two samples, one above the other, see one plane that echoes evenly (SkipRule::coplanar_samples).
+bool coplanar(vec4 below, vec4 above, float width, float per_m) {
+  vec4 more = above - below;
+  float off = abs(more.x - 0.5 * (below.w + above.w) * pixel.y) + abs(more.w) * pixel.y + abs(more.z) * width;
+  return above.x > 0.0 && off * per_m < most_off_plane && abs(more.y) <= most_response_step * (below.y + above.y);
+}
+
+// Returns how many rows are done with: two where the sample above is taken as one with this one, or neither saw
+// anything.
+int bin(Part part, int row, bool may_pair) {
+  vec4 seen = sample_at((THINNED + 1) * ivec2(part.column, row));  // range, response, range derivatives
+  vec4 above = PAIRED == 1 ? sample_at((THINNED + 1) * ivec2(part.column, min(row + 1, part.row_end - 1))) : vec4(-1.0);
+  if (!(seen.x > 0.0)) {
     if (seen.x < 0.0) ++own_invalid;
-    return;
+    return may_pair && above.x == 0.0 ? 2 : 1;
   }
+  float per_m = lines_per_m.x + lines_per_m.y + lines_per_m.z;
+  bool paired = may_pair && coplanar(seen, above, part.width, per_m);
+  if (paired) seen.y = 0.5 * (seen.y + above.y);
   vec2 t = tangents_of(part, row);
 #if THINNED  // a larger pixel, sampled off its middle
   vec3 middle = move_plane(seen.xzw, t - 0.25 * pixel, 0.25 * pixel);
   seen.xzw = vec3(seen.x + seen.x * middle.x, middle.yz);
 #endif
-  Cell cell = cell_of(part, row);
+  Cell cell = paired ? Cell(vec2(part.x_offset, 0.5 * pixel.y), 2.0 * pixel.y, 0.0) : cell_of(part, row);
   vec3 plane = vec3(0.0, seen.zw);
   if (FOOTPRINT == 1 && cell.offset != vec2(0.0)) plane = move_plane(seen.xzw, t, cell.offset);
-  float per_m = lines_per_m.x + lines_per_m.y + lines_per_m.z;
   float across = abs(plane.y + cell.slope * plane.z) * part.width * per_m;
   float along = abs(plane.z) * cell.height * per_m;
   float weight = weight_of(t + cell.offset, part.width, cell.height);
@@ -351,9 +367,10 @@ void bin(Part part, int row) {
   float all = seen.x + plane.x + across + along + echo;
   if (isnan(all) || isinf(all)) {
     ++own_invalid;
-    return;
+    return 1;
   }
-  ++own_samples;
+  own_samples += paired ? 2u : 1u;
+  own_pairs += paired ? 1u : 0u;
   echo_units = max(0.0, echo * units_per_sr);
   weight_units = weight * units_per_sr;
   if (echo_units > most_units) {
@@ -366,6 +383,7 @@ void bin(Part part, int row) {
 #else
     add_point(place_of(seen.x));
 #endif
+  return paired ? 2 : 1;
 }
 
 void main() {
@@ -374,8 +392,13 @@ void main() {
   Part part = part_at(p);
   look_at(part.view);
   first_line = uint(part.beam) * uint(lines);
-  for (int row = part.row_begin + int(gl_LocalInvocationIndex); row < part.row_end; row += COLUMN_GROUP) {
-    bin(part, row);
+  const int at_once = PAIRED + 1;  // rows
+  bool fine = PAIRED == 1 && view_rows >= paired_rows;
+  for (int row = part.row_begin + at_once * int(gl_LocalInvocationIndex); row < part.row_end;) {
+    bool lower = (row - part.row_begin) % at_once == 0;
+    // The first and the last row of a part are cut as the elevation limit cuts them.
+    row += bin(part, row, fine && lower && row > part.row_begin && row + 2 < part.row_end);
+    if ((row - part.row_begin) % at_once == 0) row += at_once * (COLUMN_GROUP - 1);
   }
 #if ESTIMATE
   partial_columns[COLUMN_GROUP * p + int(gl_LocalInvocationIndex)] = own_echo;
@@ -383,6 +406,7 @@ void main() {
   atomicAdd(additions, own_additions);
 #if !THINNED
   atomicAdd(samples, own_samples);
+  if (own_pairs != 0u) atomicAdd(pairs, own_pairs);
   if (own_invalid != 0u) atomicAdd(invalid, own_invalid);
   if (own_saturated != 0u) atomicAdd(saturated, own_saturated);
 #endif
@@ -400,7 +424,7 @@ layout(binding = 9) uniform usamplerBuffer weight_differences;
 layout(binding = 10) uniform usamplerBuffer thinned_differences;
 layout(binding = 11) uniform usamplerBuffer thinned_weights;
 // The echo [beam][line] as in BinningResult, then open_sr.
-layout(std430, binding = 4) buffer Image { uint counts[4]; float image[]; };
+layout(std430, binding = 4) buffer Image { uint counts[5]; float image[]; };
 layout(std430, binding = 5) readonly buffer Beams { Beam beams[]; };
 layout(std430, binding = 7) buffer Estimates { Estimate estimates[]; };
 

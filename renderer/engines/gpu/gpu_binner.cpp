@@ -58,13 +58,13 @@ enum TextureUnit : unsigned {
   views_unit,
 };
 constexpr GLbitfield written_by_shaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
-constexpr std::size_t image_header_bytes = 16;
+constexpr std::size_t image_header_bytes = 20;
 constexpr std::size_t most_view_rows = 16384;
 constexpr const char* doing = "binning";
 
 /// The layout in the shaders.
 struct ImageHeader {
-  std::uint32_t samples = 0, invalid = 0, saturated = 0, additions = 0;
+  std::uint32_t samples = 0, invalid = 0, saturated = 0, additions = 0, pairs = 0;
 };
 static_assert(sizeof(ImageHeader) == image_header_bytes, "must match std430");
 static_assert(sizeof(BeamEstimate) == 10 * 4, "must match std430");
@@ -156,6 +156,7 @@ struct GpuBinner::Impl {
     bool thinned = false;   ///< of the samples every second column and row
     bool estimate = false;  ///< what the columns hold is summed too
     bool footprint = true;
+    bool paired = false;  ///< two samples may be binned as one
     Aperture::Elevation elevation = Aperture::Elevation::top_hat;
   };
 
@@ -163,8 +164,8 @@ struct GpuBinner::Impl {
   void use(const Variant& variant, const std::vector<const char*>& shader) {
     const std::string head = fmt::format(
         "#version 430\n#define COLUMN_GROUP {}\n#define WEIGHED {:d}\n#define THINNED {:d}\n#define ESTIMATE "
-        "{:d}\n#define FOOTPRINT {:d}\n#define PATTERN {}\n",
-        column_group, variant.weighed, variant.thinned, variant.estimate, variant.footprint,
+        "{:d}\n#define FOOTPRINT {:d}\n#define PAIRED {:d}\n#define PATTERN {}\n",
+        column_group, variant.weighed, variant.thinned, variant.estimate, variant.footprint, variant.paired,
         static_cast<int>(variant.elevation));
     osg::ref_ptr<osg::Program>& program = (*programs)[{head, shader.back()}];
     if (!program) {
@@ -284,7 +285,7 @@ struct GpuBinner::Impl {
       hold(partial_columns, grid.columns.part_count * column_group * 2 * sizeof(float), "columns");
       hold(columns, grid.columns.part_count * 2 * sizeof(float), "columns");
       hold(column_misses, grid.columns.part_count * sizeof(float), "columns");
-      hold(rows, grid.beam_count * static_cast<std::size_t>(grid.most_rows) * 4 * sizeof(float), "rows");
+      hold(rows, grid.beam_count * static_cast<std::size_t>(grid.estimated_rows) * 4 * sizeof(float), "rows");
     }
     hold(estimates, static_cast<std::size_t>(request->beams) * sizeof(BeamEstimate), "estimates");
     check_memory("beams");
@@ -305,8 +306,9 @@ struct GpuBinner::Impl {
 
   void splat(const GpuGrid& grid, const GpuColumns& of, bool is_thinned) {
     const bool estimating = grid.thinned && !is_thinned;
+    const bool paired = request->paired_rows > 0 && of.most_view_rows >= request->paired_rows;
     use({is_thinned ? request->options.mean : weighed(), is_thinned, estimating, request->options.footprint,
-         grid.elevation},
+         paired, grid.elevation},
         splatting);
     partial_columns.bind(5);
     set_pattern(grid);
@@ -316,6 +318,7 @@ struct GpuBinner::Impl {
     of.views.bind_texels(views_unit, GL_RGBA32I);
     pages[static_cast<std::size_t>(page_of(grid))]->bind(4);
     gl.glUniform1i(at_part_count, static_cast<GLint>(of.part_count));
+    gl.glUniform1i(at_paired_rows, request->paired_rows);
     gl.glUniform1f(at_units_per_sr, static_cast<float>(units_per_sr(grid)));
     gl.glUniform1f(at_most_units, static_cast<float>(most_units_of_beam / grid.most_samples));
     const auto in_a_row = static_cast<GLuint>(std::min(of.part_count, most_groups));
@@ -328,17 +331,19 @@ struct GpuBinner::Impl {
     columns.bind(1);
     gl.glUniform1i(at_part_count, static_cast<GLint>(grid.columns.part_count));
     gl.glDispatchCompute(groups_of(grid.columns.part_count), 1, 1);
-
-    use({false, false, false, true, grid.elevation}, row_summing);
+    if (grid.estimated_rows == 0) {
+      return;
+    }
+    use({false, false, false, true, false, grid.elevation}, row_summing);
     set_pattern(grid);
     rows.bind(0);
     grid.beams.bind(5);
     grid.segments.bind_texels(first_unit, GL_RGBA32I);
     grid.columns.views.bind_texels(views_unit, GL_RGBA32I);
-    gl.glUniform1i(at_most_rows, grid.most_rows);
+    gl.glUniform1i(at_most_rows, grid.estimated_rows);
     gl.glUniform1f(at_tan_limit, grid.tan_limit);
     gl.glDispatchCompute(static_cast<GLuint>(grid.beam_count),
-                         groups_of(static_cast<std::size_t>(grid.most_rows)), 1);
+                         groups_of(static_cast<std::size_t>(grid.estimated_rows)), 1);
   }
 
   void sum_beams(const GpuGrid& grid) {
@@ -372,7 +377,7 @@ struct GpuBinner::Impl {
     column_misses.bind(3);
     grid.beams.bind(5);
     estimates.bind(7);
-    gl.glUniform1i(at_most_rows, grid.most_rows);
+    gl.glUniform1i(at_most_rows, grid.estimated_rows);
     gl.glUniform1i(at_first_estimate, static_cast<GLint>(estimated));
     gl.glUniform2f(at_most_error, static_cast<float>(request->most_error.total),
                    static_cast<float>(request->most_error.centroid_lines));
@@ -471,6 +476,7 @@ struct GpuBinner::Impl {
       result.samples += counted.samples;
       result.invalid_samples += counted.invalid;
       result.saturated_samples += counted.saturated;
+      result.skipped.add(SkipRule::coplanar_samples, counted.pairs);
       traffic.atomic_additions += counted.additions;
     }
   }

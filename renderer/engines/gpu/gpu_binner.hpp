@@ -49,6 +49,9 @@ class GpuBinner {
     const std::vector<float>& line_weight;
     /// The error of a beam that counts as 1 in BeamEstimate::zone_miss.
     BeamError most_error{1.0, 1.0};
+    /// In views of at least so many rows two samples, one above the other, are binned as one where they see
+    /// one plane (SkipRule::coplanar_samples); with footprints. 0: in none.
+    int paired_rows = 0;
   };
   /// Begins an image. All that the request refers to outlives its last add().
   /// @throws RequestError when this OpenGL has no memory for it.

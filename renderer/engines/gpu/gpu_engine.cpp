@@ -146,10 +146,13 @@ void GpuEngine::begin(Making& image) {
     sampler_.current_context().lose();
   }
   const SonarSettings& settings = request.settings;
+  const bool is_grid = needs_grid(settings);
+  const bool may_pair = !is_grid && image.options.footprint && skip_.on(SkipRule::coplanar_samples);
   image.binner.begin({settings.aperture.beam_count(), settings.range, image.options, request.line_weight,
-                      most_estimated_error(settings.sampling.preset)});
+                      most_estimated_error(settings.sampling.preset),
+                      may_pair ? paired_rows(settings.aperture) : 0});
   const bool may_keep = skip_.on(SkipRule::unchanged_settings);
-  if (needs_grid(settings)) {
+  if (is_grid) {
     draw_grid(image.binner, request, may_keep, statistics);
     image.binner.ask_image();
   } else {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "renderer/engines/gpu/grid_choice.hpp"
+
 namespace sonard::render {
 
 namespace {
@@ -27,7 +29,7 @@ struct GpuBeam {
   float solid_angle;
   std::int32_t part_begin, part_end;
   std::int32_t segment_begin, segment_end;
-  std::int32_t rows;
+  std::int32_t rows;  // of which the error is asked for: none where there can be no more of them
 };
 static_assert(sizeof(GpuBeam) == 7 * 4, "must match std430");
 struct GpuView {
@@ -129,7 +131,13 @@ Segments segments_of(const SampleGrid& grid) {
 }  // namespace
 
 GpuColumns::GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid, const ViewLayout& layout)
-    : parts(gl), views(gl), part_count(grid.parts.size()) {
+    : parts(gl),
+      views(gl),
+      part_count(grid.parts.size()),
+      most_view_rows(
+          std::max_element(grid.views.begin(), grid.views.end(), [](const SubView& a, const SubView& b) {
+            return a.rows < b.rows;
+          })->rows) {
   parts.fill(gpu_parts(grid));
   views.fill(gpu_views(grid, layout));
 }
@@ -165,6 +173,7 @@ void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_imag
                          const std::vector<int>& segment_begin) {
   const Aperture& aperture = grid.aperture;
   const double height = aperture.pattern_height();
+  const int finest = finest_rows(aperture);
   std::vector<GpuBeam> all;
   for (std::size_t b = 0; b < beam_count; ++b) {
     const auto beam = static_cast<std::size_t>(in_image[b]);
@@ -175,9 +184,10 @@ void GpuGrid::load_beams(const SampleGrid& grid, const std::vector<int>& in_imag
       rows = std::max(rows, grid.views[static_cast<std::size_t>(part.view)].rows);
       samples += part.row_end - part.row_begin;
     }
+    rows = rows < finest ? rows : 0;
     all.push_back({in_image[b], static_cast<float>(solid_angle), grid.beam_parts[b], grid.beam_parts[b + 1],
                    segment_begin[b], segment_begin[b + 1], rows});
-    most_rows = std::max(most_rows, rows);
+    estimated_rows = std::max(estimated_rows, rows);
     most_samples = std::max(most_samples, samples);
     fullest_beam_sr = std::max(fullest_beam_sr, solid_angle);
   }

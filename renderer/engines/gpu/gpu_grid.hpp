@@ -18,6 +18,7 @@ struct GpuColumns {
   GpuBuffer parts;  ///< in the order of the grid
   GpuBuffer views;
   std::size_t part_count;
+  int most_view_rows;  ///< of any view
 
   /// @param layout of the grid that is drawn.
   GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid, const ViewLayout& layout);
@@ -32,7 +33,7 @@ struct GpuGrid {
   GpuBuffer segments;  ///< the columns of a beam in a view, beam by beam
   int first_beam;      ///< of the image
   std::size_t beam_count;
-  int most_rows = 0;  ///< of any beam
+  int estimated_rows = 0;  ///< of any beam; 0: all beams have as many as there can be
   Aperture::Elevation elevation;
   float pattern_scale;  ///< the elevation pattern is a power of sinc(this * sine of the elevation)
   float tan_limit;      ///< of the elevations

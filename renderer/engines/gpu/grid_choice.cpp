@@ -14,14 +14,12 @@ constexpr double most_beam_samples = 0x1p18;
 constexpr int most_pixels = 8192;             // of a view in each direction; every OpenGL 4.5 can draw 16384
 constexpr int most_columns = 512;             // of a beam, or of its zone
 constexpr double narrowest_column = 0x1p-16;  // of a beam
+constexpr int first_rows_factor = 4;
 constexpr int most_rows_factor = 16;
 
 // Measured on the scenes of the benchmark (docs/accuracy.md). The error of bins falls with about the 0.6th
-// power of the number of samples, and is hardly ever more than this share of the distance to the image of a
-// quarter of the samples.
+// power of the number of samples.
 constexpr double bin_order = 0.6;
-constexpr double error_of_distance = 0.3;
-constexpr double error_of_distance_refined = 0.2;
 // The estimated error of a beam falls with the first power of the number of columns (or rows) where
 // there is one edge, faster where there are many; and the beam is hardly ever off by more than twice that.
 constexpr double beam_order = 4.0 / 3;
@@ -39,14 +37,6 @@ constexpr int thinnest_columns = 32;  // columns of a beam, to find what may be 
 int least_rows(const Aperture& aperture) {
   constexpr double row_rad = std::numbers::pi / 9 / 128;
   return std::max(16, static_cast<int>(std::lround(2 * aperture.elevation_limit_rad() / row_rad)));
-}
-
-int most_rows(const Aperture& aperture) {
-  int rows = least_rows(aperture);
-  while (2 * rows <= std::min(most_pixels, most_rows_factor * least_rows(aperture))) {
-    rows *= 2;
-  }
-  return rows;
 }
 
 BeamRun run_of(const Aperture& aperture, int begin, int end, const BeamDensity& density) {
@@ -100,9 +90,9 @@ double miss(float total, float centroid_lines, const BeamError& target) {
 /// The estimated error of a beam's bins.
 double bin_rms(const BeamState& beam) {
   const BeamEstimate& estimate = beam.estimate;
-  const double share = beam.refined ? error_of_distance_refined : error_of_distance;
-  return estimate.bins > 0 ? share * std::sqrt(static_cast<double>(estimate.bin_squares) / estimate.bins)
-                           : 0.0;
+  return estimate.bins > 0
+             ? beam.error_of_distance * std::sqrt(static_cast<double>(estimate.bin_squares) / estimate.bins)
+             : 0.0;
 }
 
 /// What the bins of every beam may be off by so that all bins together are off by no more than the target:
@@ -213,7 +203,7 @@ class NextPass {
     const double both = bins > 1 ? std::min(std::pow(bins, 0.5 / bin_order), longest_stride) : 1.0;
     const int rows =
         std::min(round_up_to_even(now.rows * round_up(std::max(finer_factor(by_rows, is_last_), both))),
-                 most_rows(aperture_));
+                 finest_rows(aperture_));
     if (by_columns > 1 && by_rows <= 1 && bins <= 1) {
       const BeamDensity zone = with_zone(aperture_, beam, state);
       if (zone.has_zone() && zone.samples() <= most) {
@@ -253,17 +243,37 @@ BeamError most_estimated_error(Sampling::Preset preset) {
 }
 
 int most_passes(Sampling::Preset preset) {
-  return preset == Sampling::Preset::fast ? 2 : 3;
+  return preset == Sampling::Preset::normal ? 3 : 2;
+}
+
+double error_of_distance(Sampling::Preset preset, int pass) {
+  // Measured on the scenes of the benchmark (docs/accuracy.md).
+  if (pass > 1) {
+    return 0.2;
+  }
+  return preset == Sampling::Preset::reference ? 0.25 : 0.3;
+}
+
+int finest_rows(const Aperture& aperture) {
+  int rows = least_rows(aperture);
+  while (2 * rows <= std::min(most_pixels, most_rows_factor * least_rows(aperture))) {
+    rows *= 2;
+  }
+  return rows;
+}
+
+int paired_rows(const Aperture& aperture) {
+  return 2 * first_rows_factor * least_rows(aperture);
 }
 
 BeamDensity first_density(const Aperture& aperture, Sampling::Preset preset) {
   check_aperture(aperture);
   const int rows = least_rows(aperture);
-  BeamDensity density{4, 4 * rows, 0, 0, 0, 0};
+  BeamDensity density{4, first_rows_factor * rows, 0, 0, 0, 0};
   if (preset == Sampling::Preset::fast) {
-    density = {2, 4 * rows, 0, 0, 0, 0};
+    density = {2, first_rows_factor * rows, 0, 0, 0, 0};
   } else if (preset == Sampling::Preset::reference) {
-    density = {32, most_rows(aperture), 0, 0, 0, 0};
+    density = {32, finest_rows(aperture), 0, 0, 0, 0};
   }
   const auto too_many = [&] { return whole_fan(aperture, density).samples() > most_samples; };
   while (too_many() && density.columns > 2) {

@@ -35,8 +35,21 @@ GridTargets grid_targets(Sampling::Preset preset);
 /// The estimated error from which on a beam is sampled again.
 BeamError most_estimated_error(Sampling::Preset preset);
 
-/// How often a preset samples at most. Of the last pass no errors are estimated.
+/// How often a preset samples at most. Of the last pass no errors are estimated. `reference` begins so finely
+/// that a third pass changes no error by more than a hundredth of it (docs/accuracy.md).
 int most_passes(Sampling::Preset preset);
+
+/// The error of a beam's bins is taken to be this share of their distance to those of a quarter of the
+/// samples: hardly ever is it more.
+/// @param pass that the samples are of, from 1
+double error_of_distance(Sampling::Preset preset, int pass);
+
+/// Rows of a view over the height of the fan, at the finest.
+int finest_rows(const Aperture& aperture);
+
+/// Rows of the views in which two coplanar samples are binned as one: twice as many as `normal` begins with,
+/// so that nothing is seen more coarsely than that.
+int paired_rows(const Aperture& aperture);
 
 /// The even grid that a preset begins with: fewer samples where it were more than 2^25.
 /// @throws RequestError when the aperture cannot be gridded.
@@ -65,8 +78,8 @@ std::vector<BeamRun> thinned(std::vector<BeamRun> runs);
 struct BeamState {
   BeamDensity density;
   BeamEstimate estimate;
-  bool refined = false;  ///< sampled more finely than the preset begins with
-  int columns = 0;       ///< of all of the beam, as the estimate counts them
+  double error_of_distance = 1.0;  ///< see error_of_distance()
+  int columns = 0;                 ///< of all of the beam, as the estimate counts them
   /// The sides of the zone of the estimate.
   double zone_port_rad = 0.0, zone_starboard_rad = 0.0;
 };

@@ -106,7 +106,7 @@ constexpr GridTargets one_per_cent{0.01, {0.001, 0.05}};
 
 /// A beam of even columns, none of which adds an error, that has echoes in a hundred bins.
 BeamState sure(const Aperture& aperture, int beam, const BeamDensity& density) {
-  BeamState state{density, {}, false, density.columns};
+  BeamState state{density, {}, error_of_distance(Sampling::Preset::normal, 1), density.columns};
   const auto b = static_cast<std::size_t>(beam);
   state.zone_port_rad = aperture.beam_edges_rad[b];
   state.zone_starboard_rad = aperture.beam_edges_rad[b + 1];

@@ -282,6 +282,28 @@ TEST(SliceRules, TheGpuDrawsMergedFacetsToo) {
   EXPECT_EQ(skipped(mappable_bed(false)), 0u);  // it has normals, which the GPU takes as they are
 }
 
+// What lies in one plane from a sample to that above it is binned at once, of views that are fine enough;
+// what a user sets as a grid is not.
+TEST(SliceRules, SamplesInOnePlaneAreBinnedAsOne) {
+  require_gl();
+  PingRequest request = small_request();
+  const auto compare_with = [&](Sampling sampling, const World& world) {
+    request.settings.sampling = sampling;
+    return compare(SkipRule::coplanar_samples, world, request, {}, EngineKind::gpu);
+  };
+  Sampling reference;
+  reference.preset = Sampling::Preset::reference;
+  for (const World& world : {divided_bed_and_box(), mappable_bed(true), ball_alone(make_sphere(0.5F, 16))}) {
+    const Comparison comparison = compare_with(reference, world);
+    EXPECT_GT(comparison.skipped, 1000U);
+    EXPECT_GT(comparison.worst_of_maximum, 0.0);
+  }
+  Sampling fast;
+  fast.preset = Sampling::Preset::fast;
+  EXPECT_EQ(compare_with(fast, mappable_bed(false)).skipped, 0U) << "its rows are too coarse";
+  EXPECT_EQ(compare_with(Sampling::of_grid(3, 64, 2048), mappable_bed(false)).skipped, 0U);
+}
+
 TEST(SliceRules, FacetsInDifferentPlanesAreNotMerged) {
   for (const bool with_normals : {false, true}) {
     const Comparison ball =
