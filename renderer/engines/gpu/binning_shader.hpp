@@ -416,7 +416,7 @@ void main() {
 /// One work group per beam: from differences to lines of the image, and how far those of the thinned samples
 /// are off.
 inline constexpr char sum_shader[] = R"glsl(
-layout(local_size_x = 32) in;
+layout(local_size_x = BEAM_GROUP) in;
 
 // [beam][line], low word first
 layout(binding = 8) uniform usamplerBuffer echo_differences;
@@ -439,8 +439,8 @@ layout(location = 14) uniform bool estimating;
 layout(location = 15) uniform float least_level;
 layout(location = 16) uniform int first_estimate;
 
-shared uvec2 up_to[2][32];
-shared vec2 gathered[32];
+shared uvec2 up_to[2][BEAM_GROUP];
+shared vec2 gathered[BEAM_GROUP];
 
 // What the invocations before this one hold together.
 uvec2 sum_before(uvec2 own) {
@@ -448,7 +448,7 @@ uvec2 sum_before(uvec2 own) {
   int from = 0;
   up_to[from][me] = own;
   barrier();
-  for (uint distance = 1u; distance < 32u; distance *= 2u) {
+  for (uint distance = 1u; distance < uint(BEAM_GROUP); distance *= 2u) {
     uvec2 sum = up_to[from][me];
     if (me >= distance) sum = plus(sum, up_to[from][me - distance]);
     from = 1 - from;
@@ -464,7 +464,7 @@ float strongest_of_all(float own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me].x = own;
   barrier();
-  for (uint half_of = 16u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = uint(BEAM_GROUP) / 2u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me].x = max(gathered[me].x, gathered[me + half_of].x);
     barrier();
   }
@@ -477,7 +477,7 @@ vec2 sum_of_all(vec2 own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me] = own;
   barrier();
-  for (uint half_of = 16u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = uint(BEAM_GROUP) / 2u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me] += gathered[me + half_of];
     barrier();
   }
@@ -510,7 +510,7 @@ SUM_BEFORE(thinned_weight_before, thinned_weights)
 
 void main() {
   Beam beam = beams[gl_WorkGroupID.x];
-  int each = (lines + 31) / 32;
+  int each = (lines + BEAM_GROUP - 1) / BEAM_GROUP;
   int begin = min(int(gl_LocalInvocationIndex) * each, lines);
   int count = min(each, lines - begin);
   int first = int(gl_WorkGroupID.x) * lines + begin;

@@ -95,7 +95,7 @@ void main() {
 
 /// One work group per beam.
 inline constexpr char estimate_shader[] = R"glsl(
-layout(local_size_x = 32) in;
+layout(local_size_x = BEAM_GROUP) in;
 layout(binding = 8) uniform samplerBuffer columns;  // echo, moment: of each part
 layout(binding = 9) uniform samplerBuffer rows;
 layout(std430, binding = 3) coherent buffer ColumnMisses { float column_misses[]; };
@@ -107,13 +107,13 @@ layout(location = 16) uniform int first_estimate;
 layout(location = 17) uniform vec2 most_error;  // of a beam's total and centroid: the error that counts as 1
 layout(location = 18) uniform float most_rest;  // of a zone: the square of what may lie outside of it
 
-shared vec4 gathered[32];
+shared vec4 gathered[BEAM_GROUP];
 
 vec4 sum_of_all(vec4 own) {
   uint me = gl_LocalInvocationIndex;
   gathered[me] = own;
   barrier();
-  for (uint half_of = 16u; half_of > 0u; half_of /= 2u) {
+  for (uint half_of = uint(BEAM_GROUP) / 2u; half_of > 0u; half_of /= 2u) {
     if (me < half_of) gathered[me] += gathered[me + half_of];
     barrier();
   }
@@ -137,13 +137,13 @@ void main() {
   Beam beam = beams[gl_WorkGroupID.x];
   uint me = gl_LocalInvocationIndex;
   vec4 all = vec4(0.0);
-  for (int p = beam.part_begin + int(me); p < beam.part_end; p += 32) all.xy += texelFetch(columns, p).xy;
+  for (int p = beam.part_begin + int(me); p < beam.part_end; p += BEAM_GROUP) all.xy += texelFetch(columns, p).xy;
   all = sum_of_all(all);
   float all_at = all.y / all.x;  // the centroid
 
   vec4 by_columns = vec4(0.0);  // squares of total and centroid, thin columns
   if (all.x > 0.0) {
-    for (int p = beam.part_begin + int(me); p < beam.part_end; p += 32) {
+    for (int p = beam.part_begin + int(me); p < beam.part_end; p += BEAM_GROUP) {
       Part part = part_at(p);
       // At the end of what was sampled, as from the column before it.
       bool first = part.before == p, last = part.after == p;
@@ -165,7 +165,7 @@ void main() {
   vec4 by_rows = vec4(0.0);
   int first_row = int(gl_WorkGroupID.x) * most_rows;
   if (all.x > 0.0) {
-    for (int j = 1 + int(me); j + 1 < beam.rows; j += 32) {
+    for (int j = 1 + int(me); j + 1 < beam.rows; j += BEAM_GROUP) {
       vec4 a = texelFetch(rows, first_row + j - 1), b = texelFetch(rows, first_row + j),
            c = texelFetch(rows, first_row + j + 1);
       // Rows that the elevation limit or the last line leaves little of tell nothing.

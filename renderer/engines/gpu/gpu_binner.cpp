@@ -103,8 +103,9 @@ struct GpuBinner::Impl {
   GpuReadback estimates_back, image_back;
   std::size_t most_bytes = 0;  // of a buffer
   const int most_view_px;
-  /// Invocations that share a column. Each reads what the column is: a processor runs eight of them at once.
-  const std::size_t column_group;
+  /// Invocations that share a column, or a beam. A processor runs eight at once: each of a column reads what
+  /// the column is, and those of a beam wait for each other.
+  const std::size_t column_group, beam_group;
   std::vector<float> line_weights;
 
   std::optional<ImageRequest> request;  // the image at hand
@@ -129,7 +130,8 @@ struct GpuBinner::Impl {
         estimates_back(gl),
         image_back(gl),
         most_view_px(view_px),
-        column_group(context.software() ? 8 : 64) {
+        column_group(context.software() ? 8 : 64),
+        beam_group(context.software() ? 8 : 32) {
     GLint64 most = 0;
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     GLint most_texels = 0;
@@ -163,10 +165,11 @@ struct GpuBinner::Impl {
   /// Makes the program current. It is built when first asked for.
   void use(const Variant& variant, const std::vector<const char*>& shader) {
     const std::string head = fmt::format(
-        "#version 430\n#define COLUMN_GROUP {}\n#define WEIGHED {:d}\n#define THINNED {:d}\n#define ESTIMATE "
+        "#version 430\n#define COLUMN_GROUP {}\n#define BEAM_GROUP {}\n#define WEIGHED {:d}\n#define THINNED "
+        "{:d}\n#define ESTIMATE "
         "{:d}\n#define FOOTPRINT {:d}\n#define PAIRED {:d}\n#define PATTERN {}\n",
-        column_group, variant.weighed, variant.thinned, variant.estimate, variant.footprint, variant.paired,
-        static_cast<int>(variant.elevation));
+        column_group, beam_group, variant.weighed, variant.thinned, variant.estimate, variant.footprint,
+        variant.paired, static_cast<int>(variant.elevation));
     osg::ref_ptr<osg::Program>& program = (*programs)[{head, shader.back()}];
     if (!program) {
       std::string source = head + binning_shader_head;
