@@ -175,12 +175,12 @@ vec2 own_echo = vec2(0.0);
 
 layout(location = 7) uniform int part_count;
 layout(location = 3) uniform float units_per_sr;
-layout(location = 20) uniform int paired_rows;    // ImageRequest::paired_rows
 layout(location = 4) uniform float most_units;    // of one sample: so many of them cannot overflow
+layout(location = 20) uniform int paired_rows;    // ImageRequest::paired_rows
 
-const float least_spread = 1e-3;   // lines
-const float widest_smear = 512.0;  // lines
-const float most_off_plane = 0.02;   // lines, of two samples that are binned as one
+const float least_spread = 1e-3;        // lines
+const float widest_smear = 512.0;       // lines
+const float most_off_plane = 0.02;      // lines, of two samples that are binned as one
 const float most_response_step = 0.05;  // of the sum of their responses
 
 uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u, own_additions = 0u, own_pairs = 0u;

@@ -166,8 +166,7 @@ struct GpuBinner::Impl {
   void use(const Variant& variant, const std::vector<const char*>& shader) {
     const std::string head = fmt::format(
         "#version 430\n#define COLUMN_GROUP {}\n#define BEAM_GROUP {}\n#define WEIGHED {:d}\n#define THINNED "
-        "{:d}\n#define ESTIMATE "
-        "{:d}\n#define FOOTPRINT {:d}\n#define PAIRED {:d}\n#define PATTERN {}\n",
+        "{:d}\n#define ESTIMATE {:d}\n#define FOOTPRINT {:d}\n#define PAIRED {:d}\n#define PATTERN {}\n",
         column_group, beam_group, variant.weighed, variant.thinned, variant.estimate, variant.footprint,
         variant.paired, static_cast<int>(variant.elevation));
     osg::ref_ptr<osg::Program>& program = (*programs)[{head, shader.back()}];

@@ -147,7 +147,7 @@ void GpuEngine::begin(Making& image) {
   }
   const SonarSettings& settings = request.settings;
   const bool is_grid = needs_grid(settings);
-  const bool may_pair = !is_grid && image.options.footprint && skip_.on(SkipRule::coplanar_samples);
+  const bool may_pair = !is_grid && skip_.on(SkipRule::coplanar_samples);
   image.binner.begin({settings.aperture.beam_count(), settings.range, image.options, request.line_weight,
                       most_estimated_error(settings.sampling.preset),
                       may_pair ? paired_rows(settings.aperture) : 0});

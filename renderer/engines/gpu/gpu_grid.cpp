@@ -134,10 +134,7 @@ GpuColumns::GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid, const View
     : parts(gl),
       views(gl),
       part_count(grid.parts.size()),
-      most_view_rows(
-          std::max_element(grid.views.begin(), grid.views.end(), [](const SubView& a, const SubView& b) {
-            return a.rows < b.rows;
-          })->rows) {
+      most_view_rows(std::ranges::max_element(grid.views, {}, &SubView::rows)->rows) {
   parts.fill(gpu_parts(grid));
   views.fill(gpu_views(grid, layout));
 }

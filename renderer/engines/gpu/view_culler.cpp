@@ -15,7 +15,7 @@ namespace {
 
 /// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative
 /// terms and loses nothing by a small near distance (docs/physics.md 4.2). Visibility only; ranges never come
-/// from the depth buffer.
+/// from the depth buffer. Views lie on their side (ViewLayout): x of the eye is y of the screen.
 osg::Matrixd projection_matrix(const SubView& view) {
   return osg::Matrixd(0, 1 / view.tan_half_width, 0, 0,   //
                       1 / view.tan_half_height, 0, 0, 0,  //
