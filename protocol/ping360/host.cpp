@@ -132,6 +132,9 @@ void Host::on_report(TimePoint now, const DeviceData& data) {
     ask_identity(now);
     return;
   }
+  if (phase_ == Phase::stopping) {
+    return;  // The head pings on until the stop reaches it.
+  }
   auto* const command = programme_ ? std::get_if<Transducer>(&programme_->command) : nullptr;
   const bool unwanted = phase_ != Phase::pinging || command == nullptr;
   if (unwanted || (last_data_ == before && form_of(Report{data}) != form_of(*command))) {
@@ -147,6 +150,9 @@ void Host::on_report(TimePoint now, const DeviceData& data) {
 
 /// Of the settings only those of the scan are compared, as above.
 void Host::on_report(TimePoint now, const AutoDeviceData& data) {
+  if (phase_ == Phase::stopping) {
+    return;
+  }
   const auto* const command = programme_ ? std::get_if<AutoTransmit>(&programme_->command) : nullptr;
   const bool wanted = phase_ == Phase::pinging && command != nullptr &&
                       data.start_angle == command->start_angle && data.stop_angle == command->stop_angle &&

@@ -36,13 +36,14 @@ struct ReceivedPing {
 
 /// Counters since construction. They only grow.
 struct HostStatistics {
-  std::uint64_t frames = 0;          ///< with a right checksum
-  std::uint64_t dropped_bytes = 0;   ///< part of no frame
-  std::uint64_t bad_frames = 0;      ///< could not be read
-  std::uint64_t pings = 0;           ///< delivered
-  std::uint64_t pings_unwanted = 0;  ///< of another scan, second copies, or none was asked for
-  std::uint64_t commands = 0;        ///< that ask for pings, the first time and again
-  std::uint64_t timeouts = 0;        ///< commands that no ping came for
+  std::uint64_t frames = 0;         ///< with a right checksum
+  std::uint64_t dropped_bytes = 0;  ///< part of no frame
+  std::uint64_t bad_frames = 0;     ///< could not be read
+  std::uint64_t pings = 0;          ///< delivered
+  /// Of another scan, second copies, or none was asked for; not those sent before a stop was read.
+  std::uint64_t pings_unwanted = 0;
+  std::uint64_t commands = 0;  ///< that ask for pings, the first time and again
+  std::uint64_t timeouts = 0;  ///< commands that no ping came for
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.

@@ -112,6 +112,22 @@ TEST(Ping360Host, scans_and_stops_the_scan_behind_it) {
   EXPECT_EQ(session.head.heard.size(), heard);
 }
 
+TEST(Ping360Host, pings_that_come_before_a_stop_is_read_are_not_unwanted) {
+  Session session;
+  int stops = 0;
+  session.to_head = [&](const Bytes& frame) {
+    const auto command = decode_command(frame);
+    const bool stop = command && std::holds_alternative<MotorOff>(*command);
+    return stop && ++stops <= 3 ? std::vector<Bytes>{} : std::vector<Bytes>{frame};
+  };
+  session.host.start(0ns, scan_of(390, 10, 5), 7);
+  session.run_to_end();
+  session.run_for(1s);
+  EXPECT_GT(session.head.all<AutoDeviceData>().size(), 7U);
+  EXPECT_EQ(session.pings.size(), 7U);
+  EXPECT_EQ(session.host.statistics().pings_unwanted, 0U);
+}
+
 TEST(Ping360Host, gives_signs_of_life_so_that_a_scan_goes_on) {
   Session session;
   session.host.start(0ns, scan_of(0, 399, 10), 0);
