@@ -35,7 +35,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes: a Gemini writes some 5 MB a second
+constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes: a multibeam head writes some 5 MB a second
 
 class Check {
  public:

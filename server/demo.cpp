@@ -35,6 +35,8 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds longest_start{120};  // of the daemon
 constexpr std::chrono::seconds longest_end{5};      // of each program that was asked to end
 
+constexpr const char* list_file = "demo/list.yaml";  // in the folder of configurations
+
 fs::path folder_of_programs() {
   return fs::canonical("/proc/self/exe").parent_path();
 }
@@ -43,13 +45,13 @@ fs::path folder_of_programs() {
 fs::path folder_of_configurations() {
   const fs::path programs = folder_of_programs();
   for (const char* const folder : {"../share/sonard/configs", "../../../configs"}) {
-    if (fs::exists(programs / folder / "demo/list.yaml")) {
+    if (fs::exists(programs / folder / list_file)) {
       return fs::canonical(programs / folder);
     }
   }
   throw std::runtime_error(
-      fmt::format("demo/list.yaml is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
-                  programs.string()));
+      fmt::format("{1} is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
+                  programs.string(), list_file));
 }
 
 /// A program that runs, and its lines.
@@ -259,23 +261,26 @@ class Demo {
 
 }  // namespace
 
+std::vector<std::string> demo_names() {
+  std::vector<std::string> names;
+  for (const auto& demo : YAML::LoadFile((folder_of_configurations() / list_file).string())) {
+    names.push_back(demo.first.as<std::string>());
+  }
+  return names;
+}
+
 int run_demo(const DemoOptions& options) {
-  const fs::path configurations = folder_of_configurations();
-  const YAML::Node demos = YAML::LoadFile((configurations / "demo/list.yaml").string());
-  const YAML::Node entry = demos[options.name];
-  if (!entry) {
-    std::vector<std::string> names;
-    for (const auto& demo : demos) {
-      names.push_back(demo.first.as<std::string>());
-    }
-    fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", options.name,
-               fmt::join(names, ", "));
+  const std::vector<std::string> names = demo_names();
+  const std::string& name = options.name.empty() ? names.front() : options.name;
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", name, fmt::join(names, ", "));
     return exit_config;
   }
   if (!options.out.empty()) {
     fs::create_directories(options.out);
   }
-  return Demo(options, configurations, entry).run();
+  const fs::path configurations = folder_of_configurations();
+  return Demo(options, configurations, YAML::LoadFile((configurations / list_file).string())[name]).run();
 }
 
 }  // namespace sonard::server

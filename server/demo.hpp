@@ -6,14 +6,18 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace sonard::server {
 
 struct DemoOptions {
-  std::string name = "gemini";               ///< of configs/demo/list.yaml
+  std::string name;                          ///< one of demo_names(); empty: the first
   std::filesystem::path out;                 ///< pictures and the programs' lines go there; empty: nowhere
   std::optional<std::chrono::seconds> time;  ///< nullopt: until SIGINT or SIGTERM
 };
+
+/// The entries of configs/demo/list.yaml, in their order.
+std::vector<std::string> demo_names();
 
 /// Starts `sonard run` with the configuration of the demo and, when it is ready, `posecast` and `sonarview`
 /// that lie beside this program; prints where to look, and the client's lines. What it needs is looked for in

@@ -246,10 +246,8 @@ int main_program(int argc, char** argv) {
 
   CLI::App* demo_command = app.add_subcommand(
       "demo", "Show sonard at work: the daemon, moving poses, a client, and a page in the browser");
-  demo_command
-      ->add_option("NAME", arguments.demo.name,
-                   "gemini, oculus, micron, ping360: an entry of configs/demo/list.yaml")
-      ->capture_default_str();
+  demo_command->add_option("NAME", arguments.demo.name, "What is shown; default: the first of those below");
+  demo_command->footer([] { return fmt::format("NAME is one of: {}", fmt::join(demo_names(), ", ")); });
   demo_command->add_option("--out", arguments.demo.out, "Folder for pictures and the programs' lines");
   demo_command->add_option("--seconds", arguments.demo_s, "End after this time; default: at Ctrl-C")
       ->check(CLI::Range(1, 1'000'000));
