@@ -207,6 +207,7 @@ void Host::stop(TimePoint now) {
   }
   become_idle();
   phase_ = Phase::stopping;
+  finished_ = false;
   stop_orders_ = 0;
   on_timeout(now);
 }

@@ -76,7 +76,8 @@ class Host {
   const HeadIdentity& head() const { return head_; }
   /// What the head has answered to the present command instead of a ping. It is not asked again.
   const std::optional<Nack>& refusal() const { return refusal_; }
-  /// All pings asked for by start() are delivered or refused, or the head has stopped.
+  /// All pings asked for by start() are delivered or refused; after stop(): the head has stopped, or does
+  /// not answer.
   bool finished() const { return finished_; }
   const HostStatistics& statistics() const { return statistics_; }
 

@@ -12,10 +12,6 @@
 namespace sonard::client {
 namespace {
 
-std::chrono::nanoseconds to_ns(double seconds) {
-  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
-
 Ipv4 address_of(const std::string& option, const std::string& text) {
   boost::system::error_code error;
   const auto address = boost::asio::ip::make_address_v4(text, error);
@@ -43,14 +39,6 @@ void GeminiArguments::declare_link(CLI::App& app) {
          "The head to talk to, or several (513,514), each with a folder of its own in --out; 0: the first "
          "that sends a status")
       ->delimiter(',')
-      ->capture_default_str()
-      ->group("Link");
-  app.add_option("--wait", status_wait_s_, "Seconds to wait for the first status")
-      ->check(CLI::Range(0.1, 1e6))
-      ->capture_default_str()
-      ->group("Link");
-  app.add_option("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: no limit")
-      ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->group("Link");
 }
@@ -90,26 +78,7 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->group("Sonar");
 }
 
-void GeminiArguments::declare_run(CLI::App& app) {
-  app.add_option("--pings", options_.pings, "End after this many pings; 0: no limit")
-      ->capture_default_str()
-      ->group("Run");
-  app.add_option("--seconds", seconds_, "End this many seconds after the first status; 0: no limit")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str()
-      ->group("Run");
-  app.add_option("--out", options_.out, "Folder for pictures: the fan in colour, the samples in grey")
-      ->group("Run");
-  app.add_option("--every", options_.every, "Pictures of each n-th ping; 0: only of the last")
-      ->capture_default_str()
-      ->group("Run");
-  app.add_option("--size", options_.radius_px, "Pixels from the apex of the fan to its full range")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str()
-      ->group("Run");
-  app.add_flag("--log-pings", options_.log_pings, "One line of key=value for each ping on standard output")
-      ->group("Run");
-  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+void GeminiArguments::declare_drops(CLI::App& app) {
   app.add_option("--drop-rx", options_.drop_rx, "Share of arriving datagrams to lose on purpose")
       ->check(CLI::Range(0.0, 1.0))
       ->group("Test of the link");
@@ -124,7 +93,8 @@ void GeminiArguments::declare_run(CLI::App& app) {
 GeminiArguments::GeminiArguments(CLI::App& app) {
   declare_link(app);
   declare_sonar(app);
-  declare_run(app);
+  run_.declare(app, {});
+  declare_drops(app);
 }
 
 GeminiOptions GeminiArguments::options() const {
@@ -152,9 +122,7 @@ GeminiOptions GeminiArguments::options() const {
   if (interval_ms_ > 0.0) {
     options.settings.interval = std::chrono::microseconds{std::llround(interval_ms_ * 1e3)};
   }
-  options.duration = to_ns(seconds_);
-  options.status_wait = to_ns(status_wait_s_);
-  options.ping_wait = to_ns(ping_wait_s_);
+  options.run = run_.options();
   return options;
 }
 

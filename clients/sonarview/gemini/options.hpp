@@ -2,12 +2,11 @@
 // What the user asks of sonarview for a Gemini 720i.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "clients/sonarview/common/run_options.hpp"
 #include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/ping_settings.hpp"
 #include "protocol/gemini/topside.hpp"
@@ -25,16 +24,7 @@ struct GeminiOptions {
   std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to talk to; 0: the first whose status arrives
   gemini::PingSettings settings;
 
-  std::uint64_t pings = 0;                 ///< 0: without limit
-  std::chrono::nanoseconds duration{};     ///< from the first status; 0: without limit
-  std::chrono::nanoseconds status_wait{};  ///< patience for the first status
-  std::chrono::nanoseconds ping_wait{};    ///< patience for the next ping; 0: without limit
-
-  std::filesystem::path out;  ///< folder for pictures; empty: none
-  std::uint64_t every = 0;    ///< a picture of each n-th ping; 0: only of the last
-  int radius_px = 900;        ///< of the fan
-  bool log_pings = false;
-  bool quiet = false;
+  RunOptions run;
 
   double drop_rx = 0.0;  ///< share of datagrams lost on purpose, 0..1
   double drop_tx = 0.0;
@@ -54,18 +44,16 @@ class GeminiArguments {
  private:
   void declare_link(CLI::App& app);
   void declare_sonar(CLI::App& app);
-  void declare_run(CLI::App& app);
+  void declare_drops(CLI::App& app);
 
   GeminiOptions options_;
   // As they are typed, before they have their units.
+  RunArguments run_{900, 5.0};
   std::string topside_address_;
   std::string bind_address_ = "0.0.0.0";
   std::string head_address_;
   int bits_ = 8;
   double interval_ms_ = 0.0;
-  double seconds_ = 0.0;
-  double status_wait_s_ = 5.0;
-  double ping_wait_s_ = 30.0;
 };
 
 }  // namespace sonard::client

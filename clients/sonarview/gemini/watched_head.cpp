@@ -37,16 +37,16 @@ WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number,
       topside_(topside_of(options, sonar_id_)),
       drop_rx_(options.drop_rx, options.seed, 2 * number),
       drop_tx_(options.drop_tx, options.seed, 2 * number + 1),
-      pictures_({.radius_px = options.radius_px}, options.settings.sound_speed_mps) {
-  if (!options_.out.empty()) {
-    writer_.emplace(options.sonar_ids.size() > 1 ? options_.out / fmt::format("{}", sonar_id_)
-                                                 : options_.out);
+      pictures_({.radius_px = options.run.radius_px}, options.settings.sound_speed_mps) {
+  if (!options_.run.out.empty()) {
+    writer_.emplace(options.sonar_ids.size() > 1 ? options_.run.out / fmt::format("{}", sonar_id_)
+                                                 : options_.run.out);
   }
 }
 
 void WatchedHead::start(TimePoint at) {
   started_ = at;
-  topside_.start(at, make_ping_config(options_.settings), options_.pings);
+  topside_.start(at, make_ping_config(options_.settings), options_.run.pings);
 }
 
 void WatchedHead::on_datagram(TimePoint at, std::span<const std::uint8_t> datagram) {
@@ -94,14 +94,14 @@ void WatchedHead::send_commands() {
 void WatchedHead::take_ping(gemini::ReceivedPing ping) {
   last_ping_at_ = ping.finished;
   rate_.add(ping.finished);
-  if (options_.log_pings) {
+  if (options_.run.log_pings) {
     fmt::print("{}\n", ping_line(ping, topside_.head()->status.sonar_id));
     std::fflush(stdout);
   }
   if (!writer_) {
     return;
   }
-  if (options_.every > 0 && ping.number % options_.every == 0) {
+  if (options_.run.every > 0 && ping.number % options_.run.every == 0) {
     writer_->write(pictures_.of(ping, fmt::format("{:06}", ping.number)));
   }
   last_ping_ = std::move(ping);
@@ -118,7 +118,7 @@ void WatchedHead::refresh_picture() {
 void WatchedHead::greet_head() {
   const auto& head = *topside_.head();
   const gemini::Status& status = head.status;
-  if (!options_.quiet) {
+  if (!options_.run.quiet) {
     fmt::print(stderr, "{}head {} at {}, netmask {}, firmware {:#06x}\n", says_, status.sonar_id,
                address_text(head.address), address_text(status.subnet_mask), status.firmware_version);
   }
@@ -138,7 +138,7 @@ void WatchedHead::show_progress(TimePoint at) {
   progress_due_ = at + progress_period;
   const auto& statistics = topside_.statistics();
   const std::uint64_t pings = statistics.pings_complete + statistics.pings_incomplete;
-  if (!options_.quiet) {
+  if (!options_.run.quiet) {
     fmt::print(stderr, "{}{} pings, {} in the last second; {} lines repaired, {} missing\n", says_, pings,
                pings - pings_at_progress_, statistics.lines_repaired, statistics.lines_missing);
   }
@@ -146,24 +146,26 @@ void WatchedHead::show_progress(TimePoint at) {
 }
 
 void WatchedHead::check_limits(TimePoint at) {
-  const bool out_of_time = head_met_ && options_.duration.count() > 0 && at - *head_met_ >= options_.duration;
+  const bool out_of_time =
+      head_met_ && options_.run.duration.count() > 0 && at - *head_met_ >= options_.run.duration;
   if (topside_.finished() || out_of_time) {
     end();
-  } else if (!head_met_ && at - started_ >= options_.status_wait) {
+  } else if (!head_met_ && at - started_ >= options_.run.wait) {
     fail(ExitStatus::no_head,
          fmt::format(
              "no status{} on port {} within {:.1f} s: is sonard running, does it send its status to this "
              "address or broadcast it on this network, and does a firewall let UDP in?",
              sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::topside_port,
-             std::chrono::duration<double>(options_.status_wait).count()));
-  } else if (head_met_ && options_.ping_wait.count() > 0 && at - last_ping_at_ >= options_.ping_wait) {
-    fail(
-        ExitStatus::incomplete,
-        fmt::format(
-            "status comes, but no ping for {:.1f} s: can the head be reached at {}:{} from {}, and does it "
-            "have a pose?",
-            std::chrono::duration<double>(options_.ping_wait).count(), address_text(topside_.head()->address),
-            gemini::head_port, address_text(options_.topside_address)));
+             std::chrono::duration<double>(options_.run.wait).count()));
+  } else if (head_met_ && options_.run.ping_wait.count() > 0 &&
+             at - last_ping_at_ >= options_.run.ping_wait) {
+    fail(ExitStatus::incomplete,
+         fmt::format(
+             "status comes, but no ping for {:.1f} s: can the head be reached at {}:{} from {}, and does it "
+             "have a pose?",
+             std::chrono::duration<double>(options_.run.ping_wait).count(),
+             address_text(topside_.head()->address), gemini::head_port,
+             address_text(options_.topside_address)));
   }
 }
 
@@ -187,14 +189,14 @@ std::optional<Ipv4> WatchedHead::address() const {
 TimePoint WatchedHead::next_wake(TimePoint at) const {
   TimePoint wake = topside_.next_deadline().value_or(TimePoint::max());
   if (!head_met_) {
-    return std::min(wake, started_ + options_.status_wait);
+    return std::min(wake, started_ + options_.run.wait);
   }
   wake = std::min(wake, progress_due_);
-  if (options_.duration.count() > 0) {
-    wake = std::min(wake, *head_met_ + options_.duration);
+  if (options_.run.duration.count() > 0) {
+    wake = std::min(wake, *head_met_ + options_.run.duration);
   }
-  if (options_.ping_wait.count() > 0) {
-    wake = std::min(wake, last_ping_at_ + options_.ping_wait);
+  if (options_.run.ping_wait.count() > 0) {
+    wake = std::min(wake, last_ping_at_ + options_.run.ping_wait);
   }
   return std::max(wake, at);
 }

@@ -14,10 +14,6 @@ namespace {
 
 constexpr int most_ad_interval = 65'535;
 
-std::chrono::nanoseconds to_ns(double seconds) {
-  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
-
 int step_of(double degrees) {
   if (const std::optional<int> step = micron::step_of_degrees(degrees)) {
     return *step;
@@ -55,14 +51,6 @@ void MicronArguments::declare_link(CLI::App& app) {
       ->group(group);
   app.add_flag("--reboot", options_.host.reboot_first, "Reboot the head first: it forgets all settings")
       ->group(group);
-  app.add_option("--wait", wait_s_, "Seconds to wait for a connection, and then for the head's first message")
-      ->check(CLI::Range(0.1, 1e6))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--line-wait", line_wait_s_, "Seconds to wait for the next line of a scan; 0: no limit")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str()
-      ->group(group);
 }
 
 void MicronArguments::declare_sonar(CLI::App& app) {
@@ -95,25 +83,12 @@ void MicronArguments::declare_sonar(CLI::App& app) {
 }
 
 void MicronArguments::declare_run(CLI::App& app) {
-  const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->group("Run");
-  };
-  add("--turns", options_.sweeps, "End after this many turns, or sweeps of the sector; 0: no limit")
-      ->capture_default_str();
-  add("--lines", options_.lines, "End after this many lines; 0: no limit")->capture_default_str();
-  add("--seconds", seconds_, "End this many seconds after the head's first message; 0: no limit")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
-  add("--out", options_.out, "Folder for pictures: turn or sector in colour, the samples in grey");
-  add("--every", options_.every, "Keep the pictures of every n-th sweep; 0: only of the last")
-      ->capture_default_str();
-  add("--size", options_.radius_px, "Pixels from the apex to the full range")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  add("--raw", options_.raw, "File for the lines as they came, a JSON object each");
-  app.add_flag("--log-lines", options_.log_lines, "One line of key=value for each line on standard output")
+  run_.declare(app, {.ping = "line", .picture = "turn", .link_group = LinkArguments::group});
+  app.add_option("--turns", options_.sweeps,
+                 "End after this many turns, or sweeps of the sector; 0: no limit")
+      ->capture_default_str()
       ->group("Run");
-  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+  app.add_option("--raw", options_.raw, "File for the lines as they came, a JSON object each")->group("Run");
 }
 
 micron::ScanSettings MicronArguments::scan() const {
@@ -138,9 +113,7 @@ MicronOptions MicronArguments::options() const {
   options.line = link_.address();
   options.host.node = static_cast<std::uint8_t>(node_);
   options.scan = scan();
-  options.duration = to_ns(seconds_);
-  options.wait = to_ns(wait_s_);
-  options.line_wait = to_ns(line_wait_s_);
+  options.run = run_.options();
   return options;
 }
 

@@ -2,13 +2,13 @@
 // What the user asks of `sonarview micron`.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "clients/sonarview/common/link_arguments.hpp"
+#include "clients/sonarview/common/run_options.hpp"
 #include "protocol/micron/host.hpp"
 #include "protocol/micron/scan_settings.hpp"
 
@@ -23,18 +23,9 @@ struct MicronOptions {
   micron::HostConfig host;
   micron::ScanSettings scan;
 
-  std::uint64_t sweeps = 0;             ///< 0: without limit
-  std::uint64_t lines = 0;              ///< 0: without limit
-  std::chrono::nanoseconds duration{};  ///< from the head's first message; 0: without limit
-  std::chrono::nanoseconds wait{};  ///< patience for a line that cannot be opened and a head without a word
-  std::chrono::nanoseconds line_wait{};  ///< patience for the next line of the scan; 0: without limit
-
-  std::filesystem::path out;  ///< folder for pictures; empty: none
-  std::uint64_t every = 0;    ///< keep the pictures of each n-th turn; 0: only of the last
-  int radius_px = 500;        ///< from the apex to the full range
+  RunOptions run;             ///< its pings are lines
+  std::uint64_t sweeps = 0;   ///< 0: without limit
   std::filesystem::path raw;  ///< file for the lines; empty: none
-  bool log_lines = false;
-  bool quiet = false;
 };
 
 /// The options of the subcommand.
@@ -56,14 +47,12 @@ class MicronArguments {
   MicronOptions options_;
   // As they are typed, before they have their units.
   LinkArguments link_;
+  RunArguments run_{500, 10.0};
   int node_ = micron::default_head_node;
   double step_deg_ = 1.8;
   std::vector<double> sector_deg_;
   bool scan_left_ = false;
   bool four_bit_ = false;
-  double seconds_ = 0.0;
-  double wait_s_ = 10.0;
-  double line_wait_s_ = 30.0;
 };
 
 }  // namespace sonard::client

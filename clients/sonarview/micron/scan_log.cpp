@@ -37,16 +37,17 @@ std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, dou
       (static_cast<double>(strongest - line.bins.begin()) + 0.5) * bin_m, crc.checksum());
 }
 
-std::string summary_text(const micron::HostStatistics& statistics, const ScanCounters& counters) {
+std::string summary_text(const micron::HostStatistics& statistics, std::uint64_t sweeps,
+                         std::uint64_t lines_missed, const RunCounters& counters) {
   return fmt::format(
       "summary turns={} lines={} lines_missed={} rate_hz={:.2f} requests={} timeouts={} head_commands={} "
       "reboots={} motor_errors={} lines_unmatched={} lines_unrequested={} frames={} frames_bad={} "
       "frames_of_others={} bytes_dropped={} alives={} reconnects={} images_written={} images_skipped={}",
-      counters.sweeps, statistics.lines, counters.lines_missed, counters.rate_hz, statistics.requests,
-      statistics.timeouts, statistics.head_commands, statistics.reboots, statistics.motor_errors,
-      statistics.lines_unmatched, statistics.lines_unrequested, statistics.frames, statistics.bad_frames,
-      statistics.other_nodes, statistics.dropped_bytes, statistics.alives, counters.reconnects,
-      counters.images_written, counters.images_skipped);
+      sweeps, statistics.lines, lines_missed, counters.rate_hz, statistics.requests, statistics.timeouts,
+      statistics.head_commands, statistics.reboots, statistics.motor_errors, statistics.lines_unmatched,
+      statistics.lines_unrequested, statistics.frames, statistics.bad_frames, statistics.other_nodes,
+      statistics.dropped_bytes, statistics.alives, counters.reconnects, counters.images_written,
+      counters.images_skipped);
 }
 
 }  // namespace sonard::client

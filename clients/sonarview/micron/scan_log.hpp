@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "clients/sonarview/common/line_viewer.hpp"
 #include "protocol/micron/host.hpp"
 #include "protocol/micron/scan_settings.hpp"
 
@@ -16,17 +17,8 @@ std::string scan_text(const micron::ScanSettings& settings);
 /// "line number=0 turn=0 bearing_deg=0.00 ...". `bin_m`: length of a bin.
 std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, double bin_m);
 
-/// Counters of the program beside those of the host.
-struct ScanCounters {
-  std::uint64_t sweeps = 0;
-  std::uint64_t lines_missed = 0;
-  double rate_hz = 0.0;
-  std::uint64_t reconnects = 0;
-  std::uint64_t images_written = 0;
-  std::uint64_t images_skipped = 0;
-};
-
 /// The last line of the program: "summary turns=... ".
-std::string summary_text(const micron::HostStatistics& statistics, const ScanCounters& counters);
+std::string summary_text(const micron::HostStatistics& statistics, std::uint64_t sweeps,
+                         std::uint64_t lines_missed, const RunCounters& counters);
 
 }  // namespace sonard::client

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <iterator>
-#include <set>
 #include <utility>
 
 #include "protocol/micron/units.hpp"
@@ -13,20 +11,6 @@ namespace sonard::client {
 
 using micron::units_per_turn;
 using micron::wrapped;
-
-Sweep with_lines_before(Sweep sweep, const std::optional<Sweep>& before) {
-  std::set<int> bearings;
-  for (const micron::ReceivedLine& line : sweep.lines) {
-    bearings.insert(line.head.bearing);
-  }
-  std::vector<micron::ReceivedLine> older;
-  if (before) {
-    std::copy_if(before->lines.begin(), before->lines.end(), std::back_inserter(older),
-                 [&](const micron::ReceivedLine& line) { return bearings.count(line.head.bearing) == 0; });
-  }
-  sweep.lines.insert(sweep.lines.begin(), older.begin(), older.end());
-  return sweep;
-}
 
 ScanSweeps::ScanSweeps(const micron::HeadCommand& parameters)
     : sector_(!parameters.has(micron::control_bits::continuous)),
@@ -99,7 +83,7 @@ std::optional<Sweep> ScanSweeps::add_in_sector(const micron::ReceivedLine& line)
 }
 
 void ScanSweeps::take(const micron::ReceivedLine& line) {
-  sweep_.lines.push_back(line);
+  sweep_.lines.push_back({line.head.bearing, line.bins});
 }
 
 int ScanSweeps::steps(int way) const {

@@ -4,22 +4,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "clients/sonarview/common/sweep_pictures.hpp"
 #include "protocol/micron/host.hpp"
 
 namespace sonard::client {
-
-/// One full turn, or in a sector one way from limit to limit, both included.
-struct Sweep {
-  std::uint64_t number = 0;  ///< 0, 1, 2, ...
-  std::vector<micron::ReceivedLine> lines;
-  std::uint64_t lines_missed = 0;
-};
-
-/// What a screen shows in the middle of a sweep: behind the lines of `before` at bearings that `sweep` has
-/// not come to, those of `sweep`.
-Sweep with_lines_before(Sweep sweep, const std::optional<Sweep>& before);
 
 /// Sorts lines into sweeps by their bearings (docs/protocols/micron.md 8.3). All round, a sweep begins with
 /// the first line that comes; in a sector it begins at a limit, and the way there belongs to none. Between

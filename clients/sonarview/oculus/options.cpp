@@ -3,15 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/ip/address_v4.hpp>
-#include <cmath>
 #include <map>
 
 namespace sonard::client {
 namespace {
-
-std::chrono::nanoseconds to_ns(double seconds) {
-  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
 
 /// Rates in hertz and how a fire spells them.
 const std::map<int, std::uint8_t>& rate_codes() {
@@ -27,7 +22,7 @@ OculusArguments::OculusArguments(CLI::App& app) {
   options_.fire.fire.sound_speed_mps = 1500.0;
   declare_link(app);
   declare_sonar(app);
-  declare_run(app);
+  run_.declare(app, {});
 }
 
 void OculusArguments::declare_link(CLI::App& app) {
@@ -38,10 +33,6 @@ void OculusArguments::declare_link(CLI::App& app) {
   add("--port", options_.port, "TCP port of the head")->check(CLI::Range(1, 65535));
   add("--bind", bind_address_, "Local address on which statuses arrive");
   add("--status-port", options_.status_port, "and their port")->check(CLI::Range(1, 65535));
-  add("--wait", wait_s_, "Seconds to wait for the first status, and for the connection")
-      ->check(CLI::Range(0.1, 1e6));
-  add("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: no limit")
-      ->check(CLI::Range(0.0, 1e6));
 }
 
 void OculusArguments::declare_sonar(CLI::App& app) {
@@ -64,24 +55,6 @@ void OculusArguments::declare_sonar(CLI::App& app) {
   app.add_flag("--row-gains", row_gains_, "Four bytes of gain before each row of the image")->group("Sonar");
 }
 
-void OculusArguments::declare_run(CLI::App& app) {
-  const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->group("Run");
-  };
-  add("--pings", options_.pings, "End after this many pings; 0: no limit")->capture_default_str();
-  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: no limit")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
-  add("--out", options_.out, "Folder for pictures: the fan in colour, the samples in grey");
-  add("--every", options_.every, "Pictures of each n-th ping; 0: only of the last")->capture_default_str();
-  add("--size", options_.radius_px, "Pixels from the apex of the fan to its full range")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  app.add_flag("--log-pings", options_.log_pings, "One line of key=value for each ping on standard output")
-      ->group("Run");
-  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
-}
-
 OculusOptions OculusArguments::options() const {
   namespace flags = oculus::fire_flags;
   OculusOptions options = options_;
@@ -98,9 +71,7 @@ OculusOptions OculusArguments::options() const {
                     (bits_ > 8 ? flags::sixteen_bit : 0) | (row_gains_ ? flags::row_gains : 0);
   fire.flags = static_cast<std::uint8_t>(asked);
   options.fire.extension->flags = bits_ == 32 ? oculus::extension_flags::thirty_two_bit : 0;
-  options.duration = to_ns(seconds_);
-  options.wait = to_ns(wait_s_);
-  options.ping_wait = to_ns(ping_wait_s_);
+  options.run = run_.options();
   return options;
 }
 

@@ -2,11 +2,10 @@
 // What the user asks of `sonarview oculus`.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
+#include "clients/sonarview/common/run_options.hpp"
 #include "protocol/common/endpoint.hpp"
 #include "protocol/oculus/messages.hpp"
 
@@ -23,16 +22,7 @@ struct OculusOptions {
   std::uint16_t status_port = 52102;
   oculus::SimpleFire fire;
 
-  std::uint64_t pings = 0;               ///< 0: without limit
-  std::chrono::nanoseconds duration{};   ///< from the first word of the head; 0: without limit
-  std::chrono::nanoseconds wait{};       ///< patience for a status, or a connection
-  std::chrono::nanoseconds ping_wait{};  ///< patience for the next ping; 0: without limit
-
-  std::filesystem::path out;  ///< folder for pictures; empty: none
-  std::uint64_t every = 0;    ///< a picture of each n-th ping; 0: only of the last
-  int radius_px = 900;        ///< of the fan
-  bool log_pings = false;
-  bool quiet = false;
+  RunOptions run;
 };
 
 /// The options of the subcommand.
@@ -48,10 +38,10 @@ class OculusArguments {
  private:
   void declare_link(CLI::App& app);
   void declare_sonar(CLI::App& app);
-  void declare_run(CLI::App& app);
 
   OculusOptions options_;
   // As they are typed, before they have their units.
+  RunArguments run_{900, 10.0};
   std::string bind_address_ = "0.0.0.0";
   std::string frequency_ = "low";
   double range_m_ = 20.0;
@@ -59,9 +49,6 @@ class OculusArguments {
   int bits_ = 8;
   int rate_hz_ = 10;
   bool row_gains_ = false;
-  double seconds_ = 0.0;
-  double wait_s_ = 10.0;
-  double ping_wait_s_ = 30.0;
 };
 
 }  // namespace sonard::client

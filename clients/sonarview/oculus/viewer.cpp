@@ -4,19 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/crc.hpp>
-#include <csignal>
 #include <cstdio>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "clients/sonarview/common/image_writer.hpp"
-#include "clients/sonarview/common/serial_line.hpp"
+#include "clients/sonarview/common/line_viewer.hpp"
 #include "clients/sonarview/oculus/ping_pictures.hpp"
 #include "clients/sonarview/oculus/status_listener.hpp"
 #include "protocol/oculus/codec.hpp"
@@ -24,20 +18,6 @@
 
 namespace sonard::client {
 namespace {
-
-using boost::system::error_code;
-using std::chrono::nanoseconds;
-
-constexpr nanoseconds progress_period = std::chrono::seconds{1};
-constexpr nanoseconds retry_period = std::chrono::milliseconds{500};
-
-TimePoint now() {
-  return std::chrono::steady_clock::now().time_since_epoch();
-}
-
-double seconds(nanoseconds time) {
-  return std::chrono::duration<double>(time).count();
-}
 
 /// What a head may say of any length and with any characters.
 std::string one_line(std::string text) {
@@ -48,83 +28,52 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// Everything on one thread but the drawing of pictures.
-class Viewer {
+class Viewer final : public LineViewer {
  public:
-  explicit Viewer(const OculusOptions& options);
-
-  ExitStatus run();
+  explicit Viewer(const OculusOptions& options)
+      : LineViewer(options.run),
+        options_(options),
+        pictures_(picture::FanStyle{.radius_px = options.run.radius_px}) {}
 
  private:
+  void begin(TimePoint at) override;
+  void on_opened() override;
+  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { host_.receive(at, bytes); }
+  bool head_met() const override { return connected_; }
+  void take_received() override;
+  bool finished() const override { return options_.run.pings > 0 && pings() >= options_.run.pings; }
+  void refresh_pictures(ImageWriter& to) override;
+  void finish_pictures(ImageWriter& to) override;
+  std::string progress_text(std::uint64_t fresh) const override;
+  std::string no_head_text(double wait_s) const override;
+  std::string no_ping_text(double wait_s) const override;
+  bool sum_up(const RunCounters& counters) override;
+
   void meet(const oculus::Status& status);
   void connect_to(const std::string& address);
-  void on_opened();
-  void on_lost(const std::string& why);
-  void advance();
   void take_ping(oculus::ReceivedPing ping);
-  void show_progress(TimePoint at);
-  void check_limits(TimePoint at);
-  void give_up(ExitStatus failure, const std::string& message);
-  void end();
-  void arm_timer();
-  ExitStatus sum_up();
-  static bool limited(nanoseconds limit) { return limit.count() > 0; }
 
   const OculusOptions options_;
-  boost::asio::io_context io_;
   std::optional<StatusListener> statuses_;  ///< until the head is known
-  std::unique_ptr<SerialLine> line_;        ///< from then on
-  boost::asio::steady_timer timer_{io_};
-  boost::asio::signal_set signals_{io_, SIGINT, SIGTERM};
-
-  const TimePoint started_ = now();
+  bool connected_ = false;                  ///< now or once
   oculus::Host host_;
-  std::uint64_t pings_ = 0;
-  std::string address_;
-  std::string trouble_;                             ///< why the head could not be connected to last
-  std::optional<TimePoint> retry_due_;              ///< nothing: it is connected, or being connected to
-  std::optional<TimePoint> lost_since_ = started_;  ///< nothing: it is connected
-  std::optional<TimePoint> head_met_;
-  TimePoint first_ping_at_{};
-  TimePoint last_ping_at_{};
-  TimePoint waiting_since_{};  ///< for the next ping
-  TimePoint progress_due_{};
-  std::uint64_t pings_at_progress_ = 0;
-
   OculusPictures pictures_;
-  std::optional<ImageWriter> writer_;
   std::optional<oculus::ReceivedPing> last_ping_;  ///< where pictures are wanted
-  std::optional<ExitStatus> failure_;
 };
 
-Viewer::Viewer(const OculusOptions& options)
-    : options_(options), pictures_(picture::FanStyle{.radius_px = options.radius_px}) {
-  if (!options_.out.empty()) {
-    writer_.emplace(options_.out);
-  }
-}
-
-ExitStatus Viewer::run() {
-  signals_.async_wait([this](const error_code& cancelled, int) {
-    if (!cancelled) {
-      end();
-    }
-  });
+void Viewer::begin(TimePoint) {
   if (options_.head.empty()) {
-    statuses_.emplace(io_, Endpoint{options_.bind_address, options_.status_port},
+    statuses_.emplace(io(), Endpoint{options_.bind_address, options_.status_port},
                       [this](const oculus::Status& status) { meet(status); });
   } else {
     connect_to(options_.head);
   }
-  arm_timer();
-  io_.run();
-  return sum_up();
 }
 
 void Viewer::meet(const oculus::Status& status) {
   const auto& octets = status.address;
   const auto& client = status.client;
-  if (!options_.quiet) {
+  if (!options_.run.quiet) {
     fmt::print(stderr, "sonarview: head {}, part {}, at {}.{}.{}.{}{}\n", status.device_id,
                status.part_number, octets[0], octets[1], octets[2], octets[3],
                client == decltype(status.client){} ? "" : ", which has a client already");
@@ -134,77 +83,32 @@ void Viewer::meet(const oculus::Status& status) {
 }
 
 void Viewer::connect_to(const std::string& address) {
-  address_ = address;
-  line_ = std::make_unique<SerialLine>(
-      io_, LineAddress{.way = LineAddress::Way::tcp, .place = address, .port = options_.port},
-      SerialLine::Events{.opened = [this] { on_opened(); },
-                         .received =
-                             [this](std::span<const std::uint8_t> bytes) {
-                               host_.receive(now(), bytes);
-                               advance();
-                             },
-                         .lost = [this](const std::string& why) { on_lost(why); }});
-  line_->open();
+  open_line({.way = LineAddress::Way::tcp, .place = address, .port = options_.port});
 }
 
 void Viewer::on_opened() {
-  lost_since_.reset();
+  connected_ = true;
   host_.connected();
-  line_->send(oculus::encode(options_.fire));
-  const TimePoint at = now();
-  waiting_since_ = at;
-  if (!head_met_) {
-    head_met_ = at;
-    progress_due_ = at + progress_period;
-  }
-  advance();
+  send(oculus::encode(options_.fire));
 }
 
-void Viewer::on_lost(const std::string& why) {
-  const TimePoint at = now();
-  lost_since_ = lost_since_.value_or(at);
-  retry_due_ = at + retry_period;
-  if (why != trouble_) {  // said once, not at each try
-    fmt::print(stderr, "sonarview: {} port {}: {}; trying again\n", address_, options_.port, why);
-  }
-  trouble_ = why;
-  advance();
-}
-
-void Viewer::advance() {
-  if (io_.stopped()) {
-    return;
-  }
-  const TimePoint at = now();
-  if (retry_due_ && at >= *retry_due_) {
-    retry_due_.reset();
-    line_->open();
-  }
+void Viewer::take_received() {
   for (const std::string& text : host_.take_logs()) {
-    if (!options_.quiet) {
+    if (!options_.run.quiet) {
       fmt::print(stderr, "sonarview: the head says: {}\n", one_line(text));
     }
   }
   for (oculus::ReceivedPing& ping : host_.take_pings()) {
-    take_ping(std::move(ping));
+    if (!finished()) {
+      take_ping(std::move(ping));
+    }
   }
-  if (head_met_ && at >= progress_due_) {
-    show_progress(at);
-  }
-  check_limits(at);
-  arm_timer();
 }
 
 void Viewer::take_ping(oculus::ReceivedPing ping) {
-  if (options_.pings > 0 && pings_ >= options_.pings) {
-    return;
-  }
-  if (pings_++ == 0) {
-    first_ping_at_ = ping.received;
-  }
-  last_ping_at_ = waiting_since_ = ping.received;
+  count_ping(ping.received);
   const oculus::PingResult& result = ping.result;
-  if (options_.log_pings) {
+  if (options_.run.log_pings) {
     boost::crc_32_type crc;
     crc.process_bytes(result.image.data(), result.image.size());
     fmt::print(
@@ -216,103 +120,52 @@ void Viewer::take_ping(oculus::ReceivedPing ping) {
         crc.checksum());
     std::fflush(stdout);
   }
-  if (writer_) {
-    if (options_.every > 0 && pings_ % options_.every == 0) {
-      writer_->write(pictures_.of(ping, fmt::format("{:06}", pings_)));
+  if (ImageWriter* const to = writer()) {
+    if (options_.run.every > 0 && pings() % options_.run.every == 0) {
+      to->write(pictures_.of(ping, fmt::format("{:06}", pings())));
     }
     last_ping_ = std::move(ping);
   }
 }
 
-void Viewer::show_progress(TimePoint at) {
-  progress_due_ = at + progress_period;
-  const std::uint64_t fresh = pings_ - std::exchange(pings_at_progress_, pings_);
-  if (!options_.quiet) {
-    fmt::print(stderr, "sonarview: {} pings, {} in the last second; {} missed\n", pings_, fresh,
-               host_.statistics().pings_missed);
-  }
-  if (writer_ && last_ping_) {  // for whoever looks at the folder meanwhile
-    writer_->refresh(pictures_.of(*last_ping_, "last"));
+void Viewer::refresh_pictures(ImageWriter& to) {
+  if (last_ping_) {
+    to.refresh(pictures_.of(*last_ping_, "last"));
   }
 }
 
-// ---- Ends
-
-void Viewer::check_limits(TimePoint at) {
-  const double wait_s = seconds(options_.wait);
-  const bool out_of_time = head_met_ && limited(options_.duration) && at - *head_met_ >= options_.duration;
-  if (out_of_time || (options_.pings > 0 && pings_ >= options_.pings)) {
-    end();
-  } else if (lost_since_ && at - *lost_since_ >= options_.wait) {
-    give_up(ExitStatus::no_head,
-            address_.empty()
-                ? fmt::format("no status on port {} within {:.1f} s: is sonard running, does it send its "
-                              "status to this address or broadcast it on this network, and does a firewall "
-                              "let UDP in?",
-                              options_.status_port, wait_s)
-                : fmt::format("cannot connect to {} port {} within {:.1f} s{}{}", address_, options_.port,
-                              wait_s, trouble_.empty() ? "" : ": ", trouble_));
-  } else if (head_met_ && limited(options_.ping_wait) && at - waiting_since_ >= options_.ping_wait) {
-    give_up(ExitStatus::incomplete,
-            fmt::format("no ping for {:.1f} s: does the head have a pose?", seconds(options_.ping_wait)));
+void Viewer::finish_pictures(ImageWriter& to) {
+  if (last_ping_) {
+    to.write(pictures_.of(std::move(*last_ping_), "last"));
   }
 }
 
-void Viewer::give_up(ExitStatus failure, const std::string& message) {
-  fmt::print(stderr, "sonarview: {}\n", message);
-  failure_ = failure;
-  end();
+// ---- What is said
+
+std::string Viewer::progress_text(std::uint64_t fresh) const {
+  return fmt::format("{} pings, {} in the last second; {} missed", pings(), fresh,
+                     host_.statistics().pings_missed);
 }
 
-void Viewer::end() {
-  if (line_) {
-    line_->close();
-  }
-  io_.stop();
+std::string Viewer::no_head_text(double wait_s) const {
+  return fmt::format(
+      "no status on port {} within {:.1f} s: is sonard running, does it send its status to this address or "
+      "broadcast it on this network, and does a firewall let UDP in?",
+      options_.status_port, wait_s);
 }
 
-void Viewer::arm_timer() {
-  TimePoint wake = now() + progress_period;
-  wake = std::min(wake, retry_due_.value_or(wake));
-  if (head_met_ && limited(options_.duration)) {
-    wake = std::min(wake, *head_met_ + options_.duration);
-  }
-  if (lost_since_) {
-    wake = std::min(wake, *lost_since_ + options_.wait);
-  }
-  timer_.expires_at(std::chrono::steady_clock::time_point(wake));
-  timer_.async_wait([this](const error_code& cancelled) {
-    if (!cancelled) {
-      advance();
-    }
-  });
+std::string Viewer::no_ping_text(double wait_s) const {
+  return fmt::format("no ping for {:.1f} s: does the head have a pose?", wait_s);
 }
 
-ExitStatus Viewer::sum_up() {
-  std::uint64_t written = 0;
-  std::uint64_t skipped = 0;
-  if (writer_) {
-    if (last_ping_) {
-      writer_->write(pictures_.of(std::move(*last_ping_), "last"));
-    }
-    writer_->finish();
-    written = writer_->written();
-    skipped = writer_->skipped();
-    if (!writer_->error().empty()) {
-      fmt::print(stderr, "sonarview: {}\n", writer_->error());
-      failure_ = failure_.value_or(ExitStatus::system);
-    }
-  }
+bool Viewer::sum_up(const RunCounters& counters) {
   const oculus::HostStatistics& host = host_.statistics();
-  const double span_s = seconds(last_ping_at_ - first_ping_at_);
   fmt::print(
-      "summary pings={} rate_hz={:.2f} pings_missed={} messages={} messages_bad={} bytes_dropped={} "
-      "images_written={} images_skipped={}\n",
-      pings_, span_s > 0.0 ? static_cast<double>(pings_ - 1) / span_s : 0.0, host.pings_missed, host.messages,
-      host.bad_messages, host.dropped_bytes, written, skipped);
-  std::fflush(stdout);
-  const bool all = pings_ > 0 && host.pings_missed == 0 && host.bad_messages == 0;
-  return failure_.value_or(all ? ExitStatus::ok : ExitStatus::incomplete);
+      "summary pings={} rate_hz={:.2f} pings_missed={} reconnects={} messages={} messages_bad={} "
+      "bytes_dropped={} images_written={} images_skipped={}\n",
+      counters.pings, counters.rate_hz, host.pings_missed, counters.reconnects, host.messages,
+      host.bad_messages, host.dropped_bytes, counters.images_written, counters.images_skipped);
+  return counters.pings > 0 && host.pings_missed == 0 && host.bad_messages == 0;
 }
 
 }  // namespace

@@ -12,31 +12,13 @@
 #include "protocol/ping360/usual_scan.hpp"
 
 namespace sonard::client {
-namespace {
-
-std::chrono::nanoseconds to_ns(double seconds) {
-  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
-
-}  // namespace
-
 Ping360Arguments::Ping360Arguments(CLI::App& app) {
-  declare_link(app);
-  declare_sonar(app);
-  declare_run(app);
-}
-
-void Ping360Arguments::declare_link(CLI::App& app) {
   link_.declare(app);
-  app.add_option("--wait", wait_s_,
-                 "Seconds to try to reach a link, at first or again, and to wait for the head's first word")
-      ->check(CLI::Range(0.1, 1e6))
+  declare_sonar(app);
+  run_.declare(app, {.picture = "turn", .link_group = LinkArguments::group});
+  app.add_option("--turns", options_.turns, "End after this many turns, or sweeps of the sector; 0: no limit")
       ->capture_default_str()
-      ->group(LinkArguments::group);
-  app.add_option("--ping-wait", ping_wait_s_, "Seconds to wait for the next ping; 0: for ever")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str()
-      ->group(LinkArguments::group);
+      ->group("Run");
 }
 
 void Ping360Arguments::declare_sonar(CLI::App& app) {
@@ -64,27 +46,6 @@ void Ping360Arguments::declare_sonar(CLI::App& app) {
       ->group("Sonar");
   add("--delay", delay_ms_, "Milliseconds in addition between two pings of --auto")
       ->check(CLI::Range(0, 100));
-}
-
-void Ping360Arguments::declare_run(CLI::App& app) {
-  const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->group("Run");
-  };
-  add("--turns", options_.turns, "End after this many turns, or sweeps of the sector; 0: go on")
-      ->capture_default_str();
-  add("--pings", options_.pings, "End after this many pings; 0: go on")->capture_default_str();
-  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: go on")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
-  add("--out", options_.out, "Folder for pictures: turn or sector in colour, the samples in grey");
-  add("--every", options_.every, "Keep the pictures of each n-th turn; 0: only of the last")
-      ->capture_default_str();
-  add("--size", options_.radius_px, "Pixels from the apex to the full range")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  app.add_flag("--log-pings", options_.log_pings, "One line of key=value for each ping on standard output")
-      ->group("Run");
-  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
 }
 
 void Ping360Arguments::set_scan(Ping360Options& options) const {
@@ -116,9 +77,7 @@ Ping360Options Ping360Arguments::options() const {
   Ping360Options options = options_;
   options.line = link_.address();
   set_scan(options);
-  options.duration = to_ns(seconds_);
-  options.wait = to_ns(wait_s_);
-  options.ping_wait = to_ns(ping_wait_s_);
+  options.run = run_.options();
   return options;
 }
 

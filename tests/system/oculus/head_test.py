@@ -42,7 +42,7 @@ class Demo(HeadCase):
         self.assertIn("no status on port 52103 within 1.0 s", viewer.output())
         viewer = self.start(*view, "--head", "127.0.0.9")
         self.assertEqual(viewer.wait(PATIENCE_S), 3, viewer.tail())
-        self.assertIn("cannot connect to 127.0.0.9 port 52100 within 1.0 s: Connection refused", viewer.output())
+        self.assertIn("cannot open tcp 127.0.0.9:52100 within 1.0 s: Connection refused", viewer.output())
 
     # ---- Status (6)
 

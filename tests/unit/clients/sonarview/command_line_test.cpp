@@ -82,10 +82,10 @@ TEST(CommandLine, WithoutASubcommandItIsAGemini) {
   EXPECT_EQ(options.settings.range_m, 20.0);
   EXPECT_EQ(options.settings.compression_log2, 1);
   EXPECT_EQ(options.settings.interval, std::chrono::microseconds{100'000});
-  EXPECT_EQ(options.pings, 7U);
+  EXPECT_EQ(options.run.pings, 7U);
   EXPECT_EQ(options.topside_address, 0U);
-  EXPECT_EQ(options.status_wait, 5s);
-  EXPECT_EQ(options.radius_px, 900);
+  EXPECT_EQ(options.run.wait, 5s);
+  EXPECT_EQ(options.run.radius_px, 900);
 }
 
 TEST(CommandLine, CommandsLeaveFromTheAddressThatRoutesToTheHead) {
@@ -149,8 +149,8 @@ TEST(CommandLine, MicronSettingsBecomeThoseOfAScan) {
   EXPECT_EQ(options.host.node, 7);
   EXPECT_TRUE(options.host.reboot_first);
   EXPECT_EQ(options.sweeps, 3U);
-  EXPECT_EQ(options.lines, 9U);
-  EXPECT_EQ(options.duration, 1500ms);
+  EXPECT_EQ(options.run.pings, 9U);
+  EXPECT_EQ(options.run.duration, 1500ms);
 }
 
 TEST(CommandLine, StepsAreWholeSixteenthsOfAGradian) {

@@ -26,7 +26,7 @@ micron::ReceivedLine line_at(int bearing, SweepCode sweep = SweepCode::normal) {
 std::vector<int> bearings(const Sweep& sweep) {
   std::vector<int> all;
   for (const auto& line : sweep.lines) {
-    all.push_back(line.head.bearing);
+    all.push_back(line.bearing);
   }
   return all;
 }
@@ -51,8 +51,8 @@ micron::ScanSettings wide_steps(bool clockwise = true) {
 }
 
 TEST(ScanSweeps, ThePictureWithinATurnShowsTheNewestLineOfEachBearing) {
-  const Sweep before{0, {line_at(0), line_at(200), line_at(400)}, 0};
-  const Sweep turn{1, {line_at(0), line_at(210)}, 0};
+  const Sweep before{0, {{0, {}}, {200, {}}, {400, {}}}, 0};
+  const Sweep turn{1, {{0, {}}, {210, {}}}, 0};
   const Sweep shown = with_lines_before(turn, before);
   EXPECT_EQ(shown.number, 1U);
   EXPECT_THAT(bearings(shown), ElementsAre(200, 400, 0, 210));
@@ -68,7 +68,7 @@ TEST(ScanSweeps, ASweepEndsBeforeItsFirstBearingComesAgain) {
   ASSERT_EQ(scan.done.size(), 2U);
   EXPECT_EQ(scan.done[1].number, 1U);
   EXPECT_EQ(scan.done[1].lines.size(), 32U);
-  EXPECT_EQ(scan.done[1].lines.front().head.bearing, 3200);
+  EXPECT_EQ(scan.done[1].lines.front().bearing, 3200);
   EXPECT_EQ(scan.sweeps.lines_missed(), 0U);
 }
 

@@ -70,7 +70,7 @@ TEST(OculusOptions, words_become_flags_and_codes) {
   for (const auto& [hz, code] : {std::pair{"10", 0}, {"15", 1}, {"40", 2}, {"5", 3}, {"2", 4}}) {
     EXPECT_EQ(options({"--rate", hz}).fire.fire.ping_rate, code);
   }
-  EXPECT_EQ(options({"--seconds", "1.5"}).duration, std::chrono::milliseconds{1500});
+  EXPECT_EQ(options({"--seconds", "1.5"}).run.duration, std::chrono::milliseconds{1500});
 }
 
 TEST(OculusOptions, refuses_what_no_fire_can_say) {

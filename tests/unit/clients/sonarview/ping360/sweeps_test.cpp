@@ -21,7 +21,7 @@ std::vector<std::size_t> turns(bool all_round, const std::vector<int>& angles) {
     ping.form.settings.angle = static_cast<std::uint16_t>(angle);
     if (const auto done = collector.add(ping)) {
       EXPECT_EQ(done->number, sizes.size());
-      sizes.push_back(done->pings.size());
+      sizes.push_back(done->lines.size());
     }
   }
   return sizes;
