@@ -89,6 +89,9 @@ class ChunkBuilder {
   }
 
   ChunkBytes content_of(std::span<Triangle> triangles) {
+    // In the order of the mesh, where neighbours mostly follow one another: an OpenGL works out a corner once
+    // for triangles that share it, if they come soon one after the other.
+    std::ranges::sort(triangles, {}, &Triangle::number);
     std::vector<std::uint32_t> vertices;       // of the mesh
     std::vector<std::uint32_t> ending_facets;  // of the mesh, for each vertex
     std::vector<std::uint16_t> indices;
