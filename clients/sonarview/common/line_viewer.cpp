@@ -205,6 +205,9 @@ void LineViewer::arm_timer() {
     if (options_.duration.count() > 0) {
       earlier(met_at_, options_.duration);
     }
+    if (!lost_at_ && options_.ping_wait.count() > 0) {
+      earlier(waiting_since_, options_.ping_wait);
+    }
   }
   earlier(lost_at_, options_.wait);
   timer_.expires_at(std::chrono::steady_clock::time_point(wake));

@@ -31,8 +31,8 @@ struct RunCounters {
 /// Opens the line and opens it again when it is lost, says how it goes, ends when a limit is reached or a
 /// signal comes, and finishes the pictures. Everything on one thread but the drawing of pictures.
 ///
-/// The head's side of the conversation lives as long as the program, whatever becomes of the line: a head
-/// goes on when its client is away, and when neither speaks, time stands still for the client.
+/// What a device's viewer knows of the conversation lives as long as the program, whatever becomes of the
+/// line: a head goes on when its client is away.
 class LineViewer {
  public:
   /// @throws std::runtime_error (folder for pictures)

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a viewer ends, whatever becomes of its line: against a server on its own thread that speaks in single
+// bytes.
+#include "clients/sonarview/common/line_viewer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <optional>
+#include <string>
+
+namespace sonard::client {
+namespace {
+
+using namespace std::chrono_literals;
+using boost::asio::ip::tcp;
+using testing::HasSubstr;
+
+/// What the server does with those who connect.
+struct Server {
+  bool there = true;          ///< false: nobody listens
+  std::size_t bytes = 3;      ///< it sends to each
+  bool closes = false;        ///< after that
+  bool leaves = false;        ///< and nobody listens any more
+  bool says_goodbye = false;  ///< sends a byte for a goodbye
+};
+
+/// Each byte is a ping; the first word of the head, too.
+class Bytes final : public LineViewer {
+ public:
+  Bytes(const RunOptions& options, Server server)
+      : LineViewer(options), server_(server), wanted_(options.pings) {
+    if (!server_.there) {
+      acceptor_.close();
+    } else {
+      accept();
+    }
+  }
+
+  ExitStatus run_quietly() {
+    testing::internal::CaptureStderr();
+    const ExitStatus status = run();
+    said = testing::internal::GetCapturedStderr();
+    return status;
+  }
+
+  std::string said;
+  std::optional<RunCounters> counters;
+  int goodbyes = 0;
+  std::chrono::nanoseconds patience{};
+
+ private:
+  void begin(TimePoint) override {
+    open_line({.way = LineAddress::Way::tcp, .place = "127.0.0.1", .port = port_});
+  }
+  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override {
+    come_ += bytes.size();
+    last_ = at;
+  }
+  bool head_met() const override { return come_ > 0; }
+  void take_received() override {
+    for (; pings() < come_ && !finished();) {
+      count_ping(last_);
+    }
+  }
+  bool finished() const override {
+    return goodbyes > 0 ? come_ > at_goodbye_ : wanted_ > 0 && pings() >= wanted_;
+  }
+  std::chrono::nanoseconds say_goodbye(TimePoint) override {
+    ++goodbyes;
+    at_goodbye_ = come_;
+    if (server_.says_goodbye) {
+      boost::asio::write(*peer_, boost::asio::buffer("!", 1));
+    }
+    return patience;
+  }
+  void refresh_pictures(ImageWriter&) override {}
+  void finish_pictures(ImageWriter&) override {}
+  std::string progress_text(std::uint64_t) const override { return "going on"; }
+  std::string no_head_text(double) const override { return "open, and silent"; }
+  std::string no_ping_text(double) const override { return "no more pings"; }
+  bool sum_up(const RunCounters& all) override {
+    counters = all;
+    return all.pings > 0;
+  }
+
+  void accept() {
+    acceptor_.async_accept([this](const boost::system::error_code& error, tcp::socket socket) {
+      if (error) {
+        return;
+      }
+      peer_ = std::move(socket);
+      boost::asio::write(*peer_, boost::asio::buffer(std::string(server_.bytes, '.')));
+      if (server_.closes) {
+        peer_->close();
+      }
+      if (server_.leaves) {
+        acceptor_.close();
+      } else {
+        accept();
+      }
+    });
+  }
+
+  const Server server_;
+  const std::uint64_t wanted_;
+  tcp::acceptor acceptor_{io(), {boost::asio::ip::address_v4::loopback(), 0}};
+  const std::uint16_t port_ = acceptor_.local_endpoint().port();
+  std::optional<tcp::socket> peer_;
+  std::uint64_t come_ = 0;
+  std::uint64_t at_goodbye_ = 0;
+  TimePoint last_{};
+};
+
+RunOptions options() {
+  RunOptions options;
+  options.wait = 300ms;
+  options.quiet = true;
+  return options;
+}
+
+TEST(LineViewer, a_line_that_cannot_be_opened_has_no_head) {
+  Bytes viewer(options(), {.there = false});
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::no_head);
+  EXPECT_THAT(viewer.said, HasSubstr("within 0.3 s: Connection refused"));
+  EXPECT_EQ(viewer.counters->pings, 0U);
+}
+
+TEST(LineViewer, an_open_line_without_a_word_has_no_head) {
+  Bytes viewer(options(), {.bytes = 0});
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::no_head);
+  EXPECT_THAT(viewer.said, HasSubstr("open, and silent"));
+}
+
+TEST(LineViewer, a_line_that_is_lost_is_opened_again_and_counted) {
+  RunOptions run = options();
+  run.wait = 30s;
+  run.pings = 6;
+  Bytes viewer(run, {.closes = true});
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::ok);
+  EXPECT_EQ(viewer.counters->pings, 6U);
+  EXPECT_EQ(viewer.counters->reconnects, 1U);
+  EXPECT_THAT(viewer.said, HasSubstr("closed by the other end; trying again for 30.0 s"));
+  EXPECT_THAT(viewer.said, HasSubstr("is open again"));
+}
+
+TEST(LineViewer, a_line_that_does_not_come_back_leaves_the_run_incomplete) {
+  Bytes viewer(options(), {.closes = true, .leaves = true});
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::incomplete);
+  EXPECT_THAT(viewer.said, HasSubstr("did not come back within 0.3 s"));
+  EXPECT_EQ(viewer.counters->pings, 3U);
+}
+
+TEST(LineViewer, pings_that_stay_away_leave_it_incomplete_too) {
+  RunOptions run = options();
+  run.ping_wait = 200ms;
+  Bytes viewer(run, {});
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::incomplete);
+  EXPECT_THAT(viewer.said, HasSubstr("no more pings"));
+}
+
+TEST(LineViewer, a_time_that_is_over_ends_it_well) {
+  RunOptions run = options();
+  run.duration = 200ms;
+  Bytes viewer(run, {});
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::ok);
+  EXPECT_EQ(viewer.goodbyes, 1);
+  EXPECT_EQ(viewer.said, "");
+}
+
+TEST(LineViewer, an_answer_to_its_goodbye_is_waited_for_but_not_for_ever) {
+  for (const bool answers : {true, false}) {
+    RunOptions run = options();
+    run.pings = 3;
+    Bytes viewer(run, {.says_goodbye = answers});
+    viewer.patience = answers ? std::chrono::nanoseconds{1h} : std::chrono::nanoseconds{200ms};
+    EXPECT_EQ(viewer.run_quietly(), ExitStatus::ok);
+    EXPECT_EQ(viewer.goodbyes, 1);
+    EXPECT_EQ(viewer.counters->pings, 3U);
+  }
+}
+
+}  // namespace
+}  // namespace sonard::client
