@@ -231,6 +231,15 @@ int guarded(const Command& command) {
   }
 }
 
+/// For the help, which must not fail where the program was copied alone.
+std::string names_of_demos() {
+  try {
+    return fmt::format("NAME is one of: {}", fmt::join(demo_names(), ", "));
+  } catch (const std::exception&) {
+    return "NAME is an entry of demo/list.yaml in the folder of configurations, which is not here.";
+  }
+}
+
 int main_program(int argc, char** argv) {
   CLI::App app{"sonard - an imaging sonar on the network, rendered from a 3D world", "sonard"};
   app.set_version_flag("--version", std::string("sonard " SONARD_BUILD_INFO));
@@ -247,7 +256,7 @@ int main_program(int argc, char** argv) {
   CLI::App* demo_command = app.add_subcommand(
       "demo", "Show sonard at work: the daemon, moving poses, a client, and a page in the browser");
   demo_command->add_option("NAME", arguments.demo.name, "What is shown; default: the first of those below");
-  demo_command->footer([] { return fmt::format("NAME is one of: {}", fmt::join(demo_names(), ", ")); });
+  demo_command->footer(names_of_demos);
   demo_command->add_option("--out", arguments.demo.out, "Folder for pictures and the programs' lines");
   demo_command->add_option("--seconds", arguments.demo_s, "End after this time; default: at Ctrl-C")
       ->check(CLI::Range(1, 1'000'000));

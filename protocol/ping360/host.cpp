@@ -205,9 +205,12 @@ void Host::stop(TimePoint now) {
     finished_ = true;
     return;
   }
+  finished_ = false;
+  if (phase_ == Phase::stopping) {
+    return;
+  }
   become_idle();
   phase_ = Phase::stopping;
-  finished_ = false;
   stop_orders_ = 0;
   on_timeout(now);
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <utility>
 
@@ -54,6 +53,7 @@ void LineViewer::open_line(const LineAddress& address) {
                 SerialLine::Events{.opened = [this] { line_opened(); },
                                    .received =
                                        [this](std::span<const std::uint8_t> bytes) {
+                                         line_speaks();
                                          on_bytes(now(), bytes);
                                          advance();
                                        },
@@ -62,18 +62,30 @@ void LineViewer::open_line(const LineAddress& address) {
 }
 
 void LineViewer::line_opened() {
-  if (met_at_) {
-    ++counters_.reconnects;
-    fmt::print(stderr, "sonarview: {} is open again\n", line_text_);
-  }
-  lost_at_.reset();
-  trouble_.clear();
   waiting_since_ = now();
   on_opened();
   advance();
 }
 
+/// A line that is closed each time as soon as it is open stays lost: it is back with the first byte.
+void LineViewer::line_speaks() {
+  if (!lost_at_) {
+    return;
+  }
+  if (spoke_) {
+    ++counters_.reconnects;
+    fmt::print(stderr, "sonarview: {} is open again\n", line_text_);
+  }
+  spoke_ = true;
+  lost_at_.reset();
+  trouble_.clear();
+}
+
 void LineViewer::line_lost(const std::string& why) {
+  if (stopping()) {
+    end();
+    return;
+  }
   const TimePoint at = now();
   retry_due_ = at + retry_period;
   if (!lost_at_) {
@@ -94,7 +106,7 @@ void LineViewer::advance() {
     return;
   }
   const TimePoint at = now();
-  if (retry_due_ && at >= *retry_due_) {
+  if (retry_due_ && at >= *retry_due_ && !stopping()) {
     retry_due_.reset();
     line_->open();
   }
@@ -146,15 +158,17 @@ void LineViewer::check_limits(TimePoint at) {
     }
   } else if (finished() || (met_at_ && over(*met_at_, options_.duration))) {
     stop();
+  } else if (line_ && !line_is_open() && lost_at_ && over(*lost_at_, options_.wait)) {
+    const std::string why =
+        fmt::format("within {:.1f} s{}{}", wait_s, trouble_.empty() ? "" : ": ", trouble_);
+    if (spoke_) {
+      give_up(ExitStatus::incomplete, line_text_ + " did not come back " + why);
+    } else {
+      give_up(ExitStatus::no_head, "cannot open " + line_text_ + " " + why);
+    }
   } else if (!met_at_ && over(started_, options_.wait)) {
-    give_up(ExitStatus::no_head, line_ && lost_at_
-                                     ? fmt::format("cannot open {} within {:.1f} s{}{}", line_text_, wait_s,
-                                                   trouble_.empty() ? "" : ": ", trouble_)
-                                     : no_head_text(wait_s));
-  } else if (met_at_ && lost_at_ && over(*lost_at_, options_.wait)) {
-    give_up(ExitStatus::incomplete,
-            fmt::format("{} did not come back within {:.1f} s: {}", line_text_, wait_s, trouble_));
-  } else if (met_at_ && !lost_at_ && over(waiting_since_, options_.ping_wait)) {
+    give_up(ExitStatus::no_head, no_head_text(wait_s));
+  } else if (met_at_ && line_is_open() && over(waiting_since_, options_.ping_wait)) {
     give_up(ExitStatus::incomplete, no_ping_text(seconds(options_.ping_wait)));
   }
 }
@@ -190,26 +204,27 @@ void LineViewer::end() {
 
 void LineViewer::arm_timer() {
   TimePoint wake = now() + progress_period;
-  const auto earlier = [&wake](const std::optional<TimePoint>& time, nanoseconds after = {}) {
-    wake = time ? std::min(wake, *time + after) : wake;
+  const auto earlier = [&wake](bool matters, TimePoint time) {
+    wake = matters ? std::min(wake, time) : wake;
   };
-  earlier(retry_due_);
-  earlier(stopping_until_);
-  if (line_is_open()) {
-    earlier(next_deadline());
+  const auto at_limit = [&earlier](bool matters, TimePoint since, nanoseconds limit) {
+    earlier(matters && limit.count() > 0, since + limit);
+  };
+  const bool open = line_is_open();
+  if (const auto due = next_deadline(); due && open) {
+    earlier(true, *due);
   }
-  if (!met_at_) {
-    earlier(started_, options_.wait);
+  if (stopping()) {
+    earlier(true, *stopping_until_);
   } else {
-    earlier(progress_due_);
-    if (options_.duration.count() > 0) {
-      earlier(met_at_, options_.duration);
-    }
-    if (!lost_at_ && options_.ping_wait.count() > 0) {
-      earlier(waiting_since_, options_.ping_wait);
-    }
+    const bool met = met_at_.has_value();
+    earlier(retry_due_.has_value(), retry_due_.value_or(wake));
+    earlier(met, progress_due_);
+    at_limit(met, met_at_.value_or(wake), options_.duration);
+    at_limit(!met, started_, options_.wait);
+    at_limit(!open && lost_at_, lost_at_.value_or(wake), options_.wait);
+    at_limit(met && open, waiting_since_, options_.ping_wait);
   }
-  earlier(lost_at_, options_.wait);
   timer_.expires_at(std::chrono::steady_clock::time_point(wake));
   timer_.async_wait([this](const error_code& cancelled) {
     if (!cancelled) {

@@ -6,6 +6,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -97,6 +98,7 @@ class LineViewer {
 
  private:
   void line_opened();
+  void line_speaks();
   void line_lost(const std::string& why);
   void advance();
   void show_progress(TimePoint at);
@@ -114,7 +116,8 @@ class LineViewer {
 
   const TimePoint started_;
   std::optional<TimePoint> met_at_;
-  std::optional<TimePoint> lost_at_ = started_;  ///< nothing: the line is open
+  std::optional<TimePoint> lost_at_ = started_;  ///< nothing: bytes came since
+  bool spoke_ = false;                           ///< bytes came, now or once
   std::optional<TimePoint> retry_due_;           ///< nothing: the line is open, or being opened
   std::string trouble_;                          ///< why the line could not be opened last
   TimePoint first_ping_at_{};

@@ -21,9 +21,7 @@ void RunArguments::declare(CLI::App& app, const RunWords& words) {
     return app.add_option(name, value, what)->capture_default_str()->group("Run");
   };
   const std::string ping = words.ping;
-  add("--wait", wait_s_, "Seconds to wait for the head, at first and when its line is lost")
-      ->check(CLI::Range(0.1, 1e6))
-      ->group(words.link_group);
+  add("--wait", wait_s_, words.wait)->check(CLI::Range(0.1, 1e6))->group(words.link_group);
   add("--" + ping + "-wait", ping_wait_s_, fmt::format("Seconds to wait for the next {}; 0: no limit", ping))
       ->check(CLI::Range(0.0, 1e6))
       ->group(words.link_group);

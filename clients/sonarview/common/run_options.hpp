@@ -15,7 +15,7 @@ namespace sonard::client {
 struct RunOptions {
   std::uint64_t pings = 0;               ///< end after so many; 0: without limit
   std::chrono::nanoseconds duration{};   ///< from the first word of the head; 0: without limit
-  std::chrono::nanoseconds wait{};       ///< patience for a head, and for a line that was lost
+  std::chrono::nanoseconds wait{};       ///< patience for a head, and for a line to it that was lost
   std::chrono::nanoseconds ping_wait{};  ///< patience for the next ping; 0: without limit
 
   std::filesystem::path out;  ///< folder for pictures; empty: none
@@ -27,14 +27,16 @@ struct RunOptions {
 
 /// What a device's help calls things.
 struct RunWords {
-  const char* ping = "ping";        ///< "line": the options are --lines, --line-wait and --log-lines
-  const char* picture = "ping";     ///< what a picture shows: a "ping" or a "turn"
+  const char* ping = "ping";     ///< "line": the options are --lines, --line-wait and --log-lines
+  const char* picture = "ping";  ///< what a picture shows: a "ping" or a "turn"
+  const char* wait = "Seconds to wait for the head, at first and when its line is lost";
   const char* link_group = "Link";  ///< heading of the options that say how the head is reached
 };
 
-/// Those options on a command line. Defaults stand in the RunOptions that it is made with.
+/// Those options on a command line.
 class RunArguments {
  public:
+  /// Both are defaults, of --size and --wait.
   RunArguments(int radius_px, double wait_s) : wait_s_(wait_s) { options_.radius_px = radius_px; }
 
   /// Declares them; `app` and this object then live until it has parsed.

@@ -93,7 +93,7 @@ void GeminiArguments::declare_drops(CLI::App& app) {
 GeminiArguments::GeminiArguments(CLI::App& app) {
   declare_link(app);
   declare_sonar(app);
-  run_.declare(app, {});
+  run_.declare(app, {.wait = "Seconds to wait for the first status"});
   declare_drops(app);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "clients/sonarview/ping360/sweeps.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 

@@ -50,6 +50,7 @@ class Bytes final : public LineViewer {
   std::optional<RunCounters> counters;
   int goodbyes = 0;
   std::chrono::nanoseconds patience{};
+  bool met_without_a_word = false;
 
  private:
   void begin(TimePoint) override {
@@ -59,7 +60,7 @@ class Bytes final : public LineViewer {
     come_ += bytes.size();
     last_ = at;
   }
-  bool head_met() const override { return come_ > 0; }
+  bool head_met() const override { return come_ > 0 || (met_without_a_word && line_is_open()); }
   void take_received() override {
     for (; pings() < come_ && !finished();) {
       count_ping(last_);
@@ -151,6 +152,20 @@ TEST(LineViewer, a_line_that_does_not_come_back_leaves_the_run_incomplete) {
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::incomplete);
   EXPECT_THAT(viewer.said, HasSubstr("did not come back within 0.3 s"));
   EXPECT_EQ(viewer.counters->pings, 3U);
+}
+
+/// A head that has another client takes the connection and ends it.
+TEST(LineViewer, a_line_that_is_closed_whenever_it_opens_is_given_up_and_said_once) {
+  RunOptions run = options();
+  run.wait = 1200ms;
+  Bytes viewer(run, {.bytes = 0, .closes = true});
+  viewer.met_without_a_word = true;
+  EXPECT_EQ(viewer.run_quietly(), ExitStatus::no_head);
+  const std::string why = "closed by the other end";
+  const auto first = viewer.said.find(why + "; trying again");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(viewer.said.find(why + "; trying again", first + 1), std::string::npos) << viewer.said;
+  EXPECT_THAT(viewer.said, HasSubstr("within 1.2 s: " + why));
 }
 
 TEST(LineViewer, pings_that_stay_away_leave_it_incomplete_too) {
