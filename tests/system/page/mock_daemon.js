@@ -48,7 +48,7 @@ function echo(target, range_m, bearing_rad, cell_m) {
   const shadow = bearing_deg > 8 && bearing_deg < 41 && range_m > wall;
   const hidden = Math.abs(bearing_deg - target.bearing_deg) < 1.5 && range_m > target.range_m && range_m < target.range_m + 4;
   const bed = range_m < 4 || shadow || hidden ? 1.5 : 26 * Math.exp(-((range_m - 8) ** 2) / 60);
-  return Math.min(200, bed * speckle);
+  return Math.min(60, bed * speckle);  // a brighter cell would look like the target, and may be nearer
 }
 
 function message(header, directions, samples) {
