@@ -31,6 +31,9 @@ void OfflineArguments::declare_run(CLI::App& app) {
   app.add_option("--rate", options_.rate_hz,
                  "Pings per second (lines of a scanning head); default: as many as the head can")
       ->check(CLI::Range(1e-6, 1e6));
+  app.add_option("--seed", options_.seed,
+                 "Of speckle, noise, clutter and element errors: another for each trajectory of a data set; "
+                 "default: acoustics.seed of the head");
   app.add_option(
       "--shard", shard_,
       "I/N: render share I of N, for N processes that fill one folder together; I counts from 0 or "

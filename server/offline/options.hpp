@@ -2,6 +2,7 @@
 // What a user asks of `sonard render`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,8 +29,9 @@ struct OfflineOptions {
   std::filesystem::path trajectory;
   pose::Axes axes = pose::Axes::enu_flu;
   std::filesystem::path out;
-  std::string head;               ///< empty: the first of the configuration
-  std::optional<double> rate_hz;  ///< pings a second, > 0; nullopt: as fast as the head can
+  std::string head;                   ///< empty: the first of the configuration
+  std::optional<double> rate_hz;      ///< pings a second, > 0; nullopt: as fast as the head can
+  std::optional<std::uint64_t> seed;  ///< nullopt: the one of the head
   Shard shard;
   bool overwrite = false;
   bool truth = false;   ///< also which body echoes most in each bin

@@ -61,6 +61,14 @@ std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
                    fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")));
 }
 
+/// With the seed of the command line, where it has one, in the place of the head's own.
+DaemonConfig seeded(const LoadedConfig& loaded, const OfflineOptions& options) {
+  DaemonConfig config = loaded.config;
+  HeadConfig& head = config.heads[chosen_head(loaded, options.head)];
+  head.seed = options.seed.value_or(head.seed);
+  return config;
+}
+
 HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
   HeadPlace place{static_cast<int>(head), 0};
   for (std::size_t i = 0; i < head; ++i) {
@@ -206,7 +214,7 @@ render::World world_without_hidden(DaemonConfig& config, std::size_t head) {
 }
 
 RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
-    : config_(loaded.config),
+    : config_(seeded(loaded, options)),
       options_(options),
       head_(chosen_head(loaded, options.head)),
       world_(world_without_hidden(config_, head_)),
@@ -257,6 +265,9 @@ std::string RenderRun::manifest() const {
             {"radius_px", options_.radius_px},
             {"picture_every", options_.picture_every},
             {"truth", options_.truth}};
+  if (options_.seed) {
+    json["seed"] = *options_.seed;
+  }
   for (const OfflineOptions::BodyWay& way : options_.bodies) {
     json["bodies_crc32"][way.body] = fmt::format("{:08x}", crc_of(way.trajectory));
   }

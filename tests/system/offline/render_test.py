@@ -150,13 +150,14 @@ class Files(Case):
         render(DEMO, "--trajectory", short, "--out", out, "--truth", "--picture-every", "0")
         with open(os.path.join(SOURCE, "docs", "python.md")) as file:
             blocks = re.findall("```python\n(.*?)```", file.read(), re.DOTALL)
-        self.assertEqual(len(blocks), 3)
+        self.assertEqual(len(blocks), 4)
         said = [subprocess.run([sys.executable, "-W", "error", "-W", "ignore::ResourceWarning", "-c", block], cwd=out,
                                capture_output=True, text=True, timeout=PATIENCE_S) for block in blocks]
-        self.assertEqual([run.stderr for run in said], ["", "", ""])
+        self.assertEqual([run.stderr for run in said], 4 * [""])
         self.assertRegex(said[0].stdout, r"^strongest at [0-9.]+ m, -?[0-9.]+ degrees to port\n$")
         self.assertRegex(said[1].stdout, r" [1-9][0-9]* bins\n")
         self.assertEqual(said[2].stdout, "(1,) (1, 3)\n")
+        self.assertEqual(said[3].stdout, "(3, 256)\n")
 
     def test_log_holds_the_arrays(self):
         """Unix times in the trajectory: those of the log."""
@@ -331,6 +332,21 @@ class Bytes(Case):
         self.assertRegex(fast.stderr, r"--rate 200 is beyond head 'bow', which sends [0-9.]+ pings per second at most")
         usual = render(*arguments, "--out", self.path("usual"), "--rate", "4")
         self.assertNotIn("beyond", usual.stderr)
+
+    def test_a_seed_of_its_own_changes_noise_alone(self):
+        arguments = [self.config(), "--trajectory", self.way(0.02), "--compression", "4", "--picture-every", "0", "--rate", "4",
+                     "--truth", "--bits", "16"]
+        samples, masks = {}, {}
+        for name, seed in (("none", []), ("1", ["--seed", "1"]), ("2", ["--seed", "2"])):
+            render(*arguments, "--out", self.path(name), *seed)
+            samples[name] = numpy.load(self.path(name, "ping_000000.npy"))
+            masks[name] = numpy.load(self.path(name, "ping_000000_bodies.npy"))
+        numpy.testing.assert_array_equal(samples["1"], samples["none"], "1 is the default of acoustics.seed")
+        numpy.testing.assert_array_equal(masks["2"], masks["1"])
+        self.assertGreater(numpy.mean(samples["2"] != samples["1"]), 0.9)
+        self.assertEqual(self.sidecar(self.path("2"), "ping_000000")["seed"], 2)
+        refused = render(*arguments, "--out", self.path("2"), "--seed", "3", check=False)
+        self.assertEqual(refused.returncode, 5, "the folder is another run's: " + refused.stderr)
 
     def test_a_body_moves_along_a_file(self):
         """The sphere 5 m to port goes away: it is in the first ping, and in none when it is 1 km off."""
