@@ -28,6 +28,7 @@
 #include "server/devices/device_kind.hpp"
 #include "server/diagnosis/sight.hpp"
 #include "server/net/udp_endpoint.hpp"
+#include "server/pose/to_render.hpp"
 #include "server/trial_pings.hpp"
 
 namespace sonard::server {
@@ -149,18 +150,36 @@ void Check::list_bodies(const render::World& world) {
   }
 }
 
-/// What the heads would see from `poses.initial`, and what a ping takes here.
+/// Where the vehicle begins, and the key that says so; nullopt where poses alone will tell, or the trajectory
+/// cannot be read, which check_poses() says.
+std::optional<std::pair<const char*, render::Pose>> start_of(const PoseConfig& poses) {
+  if (poses.T_world_vehicle_initial) {
+    return std::pair{"poses.initial", *poses.T_world_vehicle_initial};
+  }
+  if (!poses.trajectory) {
+    return std::nullopt;
+  }
+  try {
+    const pose::Trajectory way = pose::load_trajectory(poses.trajectory->file, poses.trajectory->axes);
+    return std::pair{"poses.trajectory.file", to_render(way.points().front().T_world_vehicle)};
+  } catch (const pose::TrajectoryError&) {
+    return std::nullopt;
+  }
+}
+
+/// What the heads would see where the vehicle begins, and what a ping takes here.
 void Check::check_start(const render::World& world) {
-  if (!config_.poses.T_world_vehicle_initial) {
+  const auto start = start_of(config_.poses);
+  if (!start) {
     return;
   }
-  const render::Pose& T_world_vehicle = *config_.poses.T_world_vehicle_initial;
+  const auto& [key, T_world_vehicle] = *start;
   render::Pose T_world_beside = T_world_vehicle;
   T_world_beside.position_m.x += 1e-3;  // a world that stands still is not looked at again
   TrialPings pings(config_, world);
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
     for (const Finding& finding : pings.ping(i, T_world_vehicle)) {
-      warning("poses.initial", fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
+      warning(key, fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
     }
     pings.ping(i, T_world_beside);
     report_cost(config_.heads[i], pings.last_ms(), world.triangle_count());

@@ -12,6 +12,7 @@
 #include <istream>
 #include <memory>
 #include <sstream>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -276,8 +277,10 @@ int run_demo(const DemoOptions& options) {
     fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", name, fmt::join(names, ", "));
     return exit_config;
   }
-  if (!options.out.empty()) {
-    fs::create_directories(options.out);
+  std::error_code error;
+  if (!options.out.empty() && !fs::create_directories(options.out, error) && error) {
+    fmt::print(stderr, "demo: --out: cannot make the folder {}: {}\n", options.out.string(), error.message());
+    return exit_output;
   }
   const fs::path configurations = folder_of_configurations();
   return Demo(options, configurations, YAML::LoadFile((configurations / list_file).string())[name]).run();

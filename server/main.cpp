@@ -336,6 +336,12 @@ int main_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+      fmt::print(stderr,
+                 "'{}' is no subcommand (expected run, demo, check, render, replay, info or selftest)\n",
+                 argv[1]);
+      return exit_usage;
+    }
     return app.exit(error) == 0 ? exit_clean : exit_usage;
   }
   arguments.timing.start_now = start_now;

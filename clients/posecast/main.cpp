@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -65,7 +66,8 @@ void declare(CLI::App& app, Arguments& arguments) {
 client::Destination destination(const Arguments& arguments) {
   const auto parsed = client::parse_destination(arguments.to, arguments.tcp);
   if (!parsed) {
-    throw CLI::ValidationError("--to", "expected HOST:PORT, found '" + arguments.to + "'");
+    throw CLI::ValidationError("--to",
+                               "expected HOST:PORT with a port of 1 to 65535, found '" + arguments.to + "'");
   }
   return *parsed;
 }
@@ -107,12 +109,24 @@ int cast(const Arguments& arguments) {
       io.stop();
     }
   });
+  const client::LinkCounters& counters = link->counters();
+  boost::asio::steady_timer first_second{io, std::chrono::seconds{1}};
+  first_second.async_wait([&](const boost::system::error_code& cancelled) {
+    if (!cancelled && counters.refused > 0) {
+      fmt::print(stderr,
+                 "posecast: {}: nobody listens there (poses.udp.bind of sonard's configuration says where it "
+                 "does); going on\n",
+                 link->description());
+    }
+  });
   const auto began = std::chrono::steady_clock::now();
-  caster.start([&] { link->finish([&] { io.stop(); }); });
+  caster.start([&] {
+    first_second.cancel();
+    link->finish([&] { io.stop(); });
+  });
   io.run();
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
-  const client::LinkCounters& counters = link->counters();
   fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
              link->description(), counters.refused, counters.skipped);
   // Nothing comes back for the last datagram: there was no time.

@@ -8,6 +8,8 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
+#include <charconv>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -147,6 +149,12 @@ class TcpLink final : public ConnectedLink<tcp> {
 std::optional<Destination> parse_destination(const std::string& text, bool tcp) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) {
+    return std::nullopt;
+  }
+  unsigned port = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
+  if (error != std::errc() || rest != end || port < 1 || port > 65'535) {
     return std::nullopt;
   }
   return Destination{text.substr(0, colon), text.substr(colon + 1), tcp};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/sdf_frames.hpp"
 
+#include <strings.h>
+
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -13,8 +15,9 @@
 namespace sonard::render {
 namespace {
 
+/// As libsdformat has it, whatever the case.
 bool is_true(const std::string* attribute) {
-  return attribute != nullptr && (*attribute == "true" || *attribute == "1");
+  return attribute != nullptr && (strcasecmp(attribute->c_str(), "true") == 0 || *attribute == "1");
 }
 
 /// `relative_to`, which was `frame` up to SDF 1.6; "" where it is left to the rules.

@@ -80,8 +80,9 @@ void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, 
 void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const TextForm& form,
                  std::string_view bind_meaning, std::string_view allow_meaning) {
   section.require("bind", form.expected);
-  section.parsed("bind", bind, &parse_endpoint, form, bind_meaning);
-  read_allow_list(section, bind.address, allow, allow_meaning);
+  constexpr Ipv4 loopback = 0x7F000001;  // where the address was refused no `allow` is asked for, too
+  const bool stands = section.parsed("bind", bind, &parse_endpoint, form, bind_meaning);
+  read_allow_list(section, stands ? bind.address : loopback, allow, allow_meaning);
 }
 
 SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder) {

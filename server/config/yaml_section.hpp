@@ -136,9 +136,9 @@ class YamlSection {
     }
   }
 
-  /// A text that `parse` understands.
+  /// A text that `parse` understands. Returns whether `out` stands, read or left as it was.
   template <typename Value>
-  void parsed(std::string_view key, Value& out, std::optional<Value> (*parse)(std::string_view),
+  bool parsed(std::string_view key, Value& out, std::optional<Value> (*parse)(std::string_view),
               const TextForm& form, std::string_view meaning) {
     document(key, form.type, form.schema, "", meaning);
     if (const std::optional<std::string> word = plain_text(key, form.expected)) {
@@ -146,8 +146,10 @@ class YamlSection {
         out = *value;
       } else {
         report_bad_value(key, *word, form.expected);
+        return false;
       }
     }
+    return true;
   }
 
   /// A list of such texts; `out` is replaced.

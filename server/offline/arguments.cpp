@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/offline/arguments.hpp"
 
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
@@ -33,7 +34,8 @@ void OfflineArguments::declare_run(CLI::App& app) {
       ->check(CLI::Range(1e-6, 1e6));
   app.add_option("--seed", options_.seed,
                  "Of speckle, noise, clutter and element errors: another for each trajectory of a data set; "
-                 "default: acoustics.seed of the head");
+                 "default: acoustics.seed of the head")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   app.add_option(
       "--shard", shard_,
       "I/N: render share I of N, for N processes that fill one folder together; I counts from 0 or "

@@ -25,12 +25,16 @@ void RunArguments::declare(CLI::App& app, const RunWords& words) {
   add("--" + ping + "-wait", ping_wait_s_, fmt::format("Seconds to wait for the next {}; 0: no limit", ping))
       ->check(CLI::Range(0.0, 1e6))
       ->group(words.link_group);
-  add("--" + ping + "s", options_.pings, fmt::format("End after this many {}s; 0: no limit", ping));
+  add("--" + ping + "s", options_.pings, fmt::format("End after this many {}s; 0: no limit", ping))
+      ->check(CLI::Range(0, 1'000'000'000));
   add("--seconds", seconds_, "End this many seconds after the head's first word; 0: no limit")
       ->check(CLI::Range(0.0, 1e9));
-  app.add_option("--out", options_.out, "Folder for pictures: the scene in colour, the samples in grey")
-      ->group("Run");
-  add("--every", options_.every, fmt::format("Pictures of each n-th {}; 0: only of the last", words.picture));
+  CLI::Option* const out =
+      app.add_option("--out", options_.out, "Folder for pictures: the scene in colour, the samples in grey")
+          ->group("Run");
+  add("--every", options_.every, fmt::format("Pictures of each n-th {}; 0: only of the last", words.picture))
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->needs(out);
   add("--size", options_.radius_px, "Pixels from the apex to the full range")->check(CLI::Range(64, 8192));
   app.add_flag("--log-" + ping + "s", options_.log_pings,
                fmt::format("One line of key=value for each {} on standard output", ping))

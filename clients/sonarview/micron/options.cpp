@@ -86,6 +86,7 @@ void MicronArguments::declare_run(CLI::App& app) {
   run_.declare(app, {.ping = "line", .picture = "turn", .link_group = LinkArguments::group});
   app.add_option("--turns", options_.sweeps,
                  "End after this many turns, or sweeps of the sector; 0: no limit")
+      ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str()
       ->group("Run");
   app.add_option("--raw", options_.raw, "File for the lines as they came, a JSON object each")->group("Run");

@@ -15,6 +15,7 @@ Ping360Arguments::Ping360Arguments(CLI::App& app) {
   declare_sonar(app);
   run_.declare(app, {.picture = "turn", .link_group = LinkArguments::group});
   app.add_option("--turns", options_.turns, "End after this many turns, or sweeps of the sector; 0: no limit")
+      ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str()
       ->group("Run");
 }

@@ -151,6 +151,17 @@ class Diagnosis(OwnMachine):
                 printed = self.check(self.config("initial: {position_m: %s}" % pose["position_m"]))
                 self.assertRegex(printed, "head 'bow': .*" + self.says_of_check(pose))
 
+    def test_check_names_every_wrong_start_of_a_trajectory(self):
+        way = os.path.join(self.folder.name, "way.csv")
+        for pose in wrong_poses():
+            with self.subTest(pose["name"]):
+                turn = pose.get("orientation_xyzw", [0, 0, 0, 1])
+                row = ",".join(str(number) for number in [*pose["position_m"], *turn])
+                with open(way, "w", encoding="utf-8") as file:
+                    file.write(f"t,x,y,z,qx,qy,qz,qw\n0,{row}\n1,{row}\n")
+                printed = self.check(self.config("trajectory: {file: way.csv}"))
+                self.assertRegex(printed, "poses.trajectory.file: head 'bow': .*" + self.says_of_check(pose))
+
     def test_listening_names_every_wrong_pose_that_is_heard(self):
         publisher = self.publish(GOOD)
         self.assertNotIn("wrong?", self.check("--listen", "1", self.config()))

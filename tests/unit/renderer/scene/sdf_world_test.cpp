@@ -180,6 +180,7 @@ TEST(SdfWorld, ReadsNewVersions) {
 TEST(SdfWorld, ReadsPosesInEachForm) {
   for (const char* pose :
        {"<pose>1 2 3 0 0 1.5707963267948966</pose>", "<pose degrees=\"true\">1 2 3 0 0 90</pose>",
+        "<pose degrees=\"True\">1 2 3 0 0 90</pose>",
         "<pose rotation_format=\"quat_xyzw\">1 2 3  0 0 0.7071067811865476 0.7071067811865476</pose>"}) {
     const test::TempFolder folder;
     const World world = load_world(

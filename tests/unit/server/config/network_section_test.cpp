@@ -81,7 +81,7 @@ TEST_F(SerialSection, names_the_place_of_each_mistake) {
                           "127.0.0.1:4001)"));
   for (const char* bad : {"localhost:4001", "127.0.0.1:70000", "127.0.0.1", "4001"}) {
     EXPECT_THAT(complaints(fmt::format("tcp:\n  - {{bind: {}}}\n", bad)),
-                Contains(HasSubstr(fmt::format(
+                ElementsAre(HasSubstr(fmt::format(
                     "2:12: heads[0].serial.tcp[0].bind: '{}' is not understood (expected an address", bad))));
   }
   EXPECT_THAT(
