@@ -45,6 +45,7 @@ class Check {
   }
 
   CheckReport run(bool try_addresses) {
+    load_trajectory();
     check_world();
     check_poses();
     check_recording();
@@ -74,6 +75,8 @@ class Check {
   template <typename Protocol>
   void try_socket(const Endpoint& endpoint, const std::string& key);
   void list_bodies(const render::World& world);
+  void load_trajectory();
+  std::optional<std::pair<const char*, render::Pose>> start() const;
   void check_start(const render::World& world);
   void report_cost(const HeadConfig& head, double ms, std::size_t triangles);
   void try_folder(const std::filesystem::path& folder, const std::string& key);
@@ -81,6 +84,8 @@ class Check {
 
   const LoadedConfig& loaded_;
   DaemonConfig config_;
+  std::optional<pose::Trajectory> trajectory_;
+  std::string trajectory_trouble_;  ///< why it cannot be read
   CheckReport report_;
 };
 
@@ -150,30 +155,37 @@ void Check::list_bodies(const render::World& world) {
   }
 }
 
-/// Where the vehicle begins, and the key that says so; nullopt where poses alone will tell, or the trajectory
-/// cannot be read, which check_poses() says.
-std::optional<std::pair<const char*, render::Pose>> start_of(const PoseConfig& poses) {
-  if (poses.T_world_vehicle_initial) {
-    return std::pair{"poses.initial", *poses.T_world_vehicle_initial};
-  }
-  if (!poses.trajectory) {
-    return std::nullopt;
+/// Before the world, which is looked at from where it begins. What is wrong with it is said among the poses.
+void Check::load_trajectory() {
+  const std::optional<TrajectoryInput>& input = config_.poses.trajectory;
+  if (!input) {
+    return;
   }
   try {
-    const pose::Trajectory way = pose::load_trajectory(poses.trajectory->file, poses.trajectory->axes);
-    return std::pair{"poses.trajectory.file", to_render(way.points().front().T_world_vehicle)};
-  } catch (const pose::TrajectoryError&) {
-    return std::nullopt;
+    trajectory_ = pose::load_trajectory(input->file, input->axes);
+  } catch (const pose::TrajectoryError& error) {
+    trajectory_trouble_ = error.what();
   }
+}
+
+/// Where the vehicle begins, and the key that says so; nullopt where poses alone will tell.
+std::optional<std::pair<const char*, render::Pose>> Check::start() const {
+  if (config_.poses.T_world_vehicle_initial) {
+    return std::pair{"poses.initial", *config_.poses.T_world_vehicle_initial};
+  }
+  if (trajectory_) {
+    return std::pair{"poses.trajectory.file", to_render(trajectory_->points().front().T_world_vehicle)};
+  }
+  return std::nullopt;
 }
 
 /// What the heads would see where the vehicle begins, and what a ping takes here.
 void Check::check_start(const render::World& world) {
-  const auto start = start_of(config_.poses);
-  if (!start) {
+  const auto beginning = start();
+  if (!beginning) {
     return;
   }
-  const auto& [key, T_world_vehicle] = *start;
+  const auto& [key, T_world_vehicle] = *beginning;
   render::Pose T_world_beside = T_world_vehicle;
   T_world_beside.position_m.x += 1e-3;  // a world that stands still is not looked at again
   TrialPings pings(config_, world);
@@ -320,16 +332,12 @@ void Check::check_poses() {
     sources.push_back(
         fmt::format("ignition {} entity '{}'", poses.ignition->topic, poses.ignition->vehicle.name));
   }
-  if (poses.trajectory) {
-    try {
-      const pose::Trajectory trajectory =
-          pose::load_trajectory(poses.trajectory->file, poses.trajectory->axes);
-      sources.push_back(fmt::format("trajectory {} ({} poses, {:.1f} s)", poses.trajectory->file.string(),
-                                    trajectory.points().size(),
-                                    1e-9 * static_cast<double>(trajectory.end_ns() - trajectory.start_ns())));
-    } catch (const pose::TrajectoryError& error) {
-      problem("poses.trajectory.file", error.what());
-    }
+  if (trajectory_) {
+    sources.push_back(fmt::format(
+        "trajectory {} ({} poses, {:.1f} s)", poses.trajectory->file.string(), trajectory_->points().size(),
+        1e-9 * static_cast<double>(trajectory_->end_ns() - trajectory_->start_ns())));
+  } else if (poses.trajectory) {
+    problem("poses.trajectory.file", trajectory_trouble_);
   }
   report_.summary.push_back(fmt::format("engine  {}", render::name_of(config_.engine)));
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));

@@ -337,9 +337,11 @@ int main_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
-      fmt::print(stderr,
-                 "'{}' is no subcommand (expected run, demo, check, render, replay, info or selftest)\n",
-                 argv[1]);
+      std::vector<std::string> names;
+      for (const CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(subcommand->get_name());
+      }
+      fmt::print(stderr, "'{}' is no subcommand (expected one of: {})\n", argv[1], fmt::join(names, ", "));
       return exit_usage;
     }
     return app.exit(error) == 0 ? exit_clean : exit_usage;

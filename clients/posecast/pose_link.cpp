@@ -8,10 +8,11 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
-#include <charconv>
-#include <system_error>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "protocol/common/endpoint.hpp"
 
 namespace sonard::client {
 namespace {
@@ -147,17 +148,8 @@ class TcpLink final : public ConnectedLink<tcp> {
 }  // namespace
 
 std::optional<Destination> parse_destination(const std::string& text, bool tcp) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) {
-    return std::nullopt;
-  }
-  unsigned port = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
-  if (error != std::errc() || rest != end || port < 1 || port > 65'535) {
-    return std::nullopt;
-  }
-  return Destination{text.substr(0, colon), text.substr(colon + 1), tcp};
+  const auto parsed = parse_host_and_port(text);
+  return parsed ? std::optional(Destination{parsed->host, std::to_string(parsed->port), tcp}) : std::nullopt;
 }
 
 std::unique_ptr<PoseLink> connect(asio::io_context& io, const Destination& destination,

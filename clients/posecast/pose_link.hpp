@@ -47,7 +47,7 @@ struct Destination {
   bool tcp = false;
 };
 
-/// "HOST:PORT"; nullopt where one of the two is missing.
+/// "HOST:PORT", as parse_host_and_port() has it.
 std::optional<Destination> parse_destination(const std::string& text, bool tcp);
 
 /// Resolves the host and connects (IPv4). `on_failure` is called once, from the io_context, when the link is

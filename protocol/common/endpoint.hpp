@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace sonard {
@@ -22,5 +23,14 @@ struct Endpoint {
 std::string address_text(Ipv4 address);
 /// "127.0.0.1:14600"
 std::string endpoint_text(const Endpoint& endpoint);
+
+/// What a user types to name a port of another machine.
+struct HostAndPort {
+  std::string host;        ///< name or address, not empty
+  std::uint16_t port = 0;  ///< 1..65535
+};
+
+/// "sonar.local:4001"; nullopt for anything else.
+std::optional<HostAndPort> parse_host_and_port(const std::string& text);
 
 }  // namespace sonard

@@ -2,25 +2,18 @@
 #include "clients/sonarview/common/link_arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cstdint>
-#include <system_error>
+
+#include "protocol/common/endpoint.hpp"
 
 namespace sonard::client {
 namespace {
 
 LineAddress host_and_port(LineAddress::Way way, const std::string& option, const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  unsigned port = 0;
-  if (colon != std::string::npos && colon > 0) {
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
-    port = error == std::errc() && rest == end && port <= 65'535 ? port : 0;
-  }
-  if (port == 0) {
+  const auto parsed = parse_host_and_port(text);
+  if (!parsed) {
     throw CLI::ValidationError(option, "expected HOST:PORT, found '" + text + "'");
   }
-  return {.way = way, .place = text.substr(0, colon), .port = static_cast<std::uint16_t>(port)};
+  return {.way = way, .place = parsed->host, .port = parsed->port};
 }
 
 }  // namespace
