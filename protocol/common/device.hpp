@@ -54,6 +54,10 @@ struct TriggerEdge {};
 struct WaterChanged {
   bool out_of_water = false;
 };
+/// What the sensors of the head read now, for messages that belong to no ping.
+struct SensorsRead {
+  SensorReadings readings;
+};
 /// Feeds a device that plays back: the ping to send when a client next wants one. It replaces the one fed
 /// before and is used up by one job; without one no ping begins.
 struct PingFed {
@@ -65,7 +69,7 @@ struct PingGranted {};
 struct TimePassed {};
 
 using Event = std::variant<TimePassed, BytesReceived, ClientCame, ClientGone, PingRendered, PingNotRendered,
-                           TriggerEdge, WaterChanged, PingFed, PingGranted>;
+                           TriggerEdge, WaterChanged, SensorsRead, PingFed, PingGranted>;
 
 // ---- What a device wants done
 

@@ -70,12 +70,25 @@ struct PingJob {
   double range_m() const { return native_bins * native_bin_m; }
 };
 
+/// What the sensors of a head read at one time: how it is turned and how deep it is. A head without such
+/// sensors ignores it.
+struct SensorReadings {
+  double heading_rad = 0.0;  ///< of its x axis, clockwise from north, the y axis of the world; [0, 2 pi)
+  double pitch_rad = 0.0;    ///< positive: nose up; [-pi/2, pi/2]
+  double roll_rad = 0.0;     ///< positive: starboard side down; [-pi, pi]
+  std::optional<double>
+      depth_m;  ///< below the water surface, negative above it; nullopt: there is no surface
+
+  bool operator==(const SensorReadings&) const = default;
+};
+
 /// The rendered samples of a job: PingJob::bins() times the number of beams, bin after bin from near to far,
 /// each from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others.
 struct PingImage {
   std::uint64_t number = 0;  ///< of the job
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
+  std::optional<SensorReadings> readings = {};  ///< at the transmit time; nullopt: not known
 };
 
 /// The ping that a head begins next if it is granted.

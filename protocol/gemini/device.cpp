@@ -129,6 +129,7 @@ class Device::Impl {
   void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
   void take(TimePoint now, const TriggerEdge&);
   void take(TimePoint, const WaterChanged& water);
+  void take(TimePoint, const SensorsRead&) {}  // it has none
   void take(TimePoint, const PingFed& feed) { pinger_.feed(feed.ping); }
   void take(TimePoint, const PingGranted&) { pinger_.grant(); }
 

@@ -54,6 +54,7 @@ class Device::Impl {
   void take(TimePoint, const PingNotRendered& ping);
   void take(TimePoint, const TriggerEdge&) {}   // it has no such input here
   void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
+  void take(TimePoint, const SensorsRead& sensors) { depth_m_ = sensors.readings.depth_m; }
   void take(TimePoint, const PingFed& feed) { fed_ = feed.ping; }
   void take(TimePoint, const PingGranted&) { granted_ = true; }
 
@@ -97,6 +98,7 @@ class Device::Impl {
   TimePoint next_dummy_{};
   TimePoint next_ping_{};
   UserConfig user_config_;
+  std::optional<double> depth_m_;  ///< for the status; nullopt: not known
 
   std::optional<Peer> client_;
   CommandBuffer input_;
@@ -212,6 +214,9 @@ void Device::Impl::take(TimePoint, const PingRendered& ping) {
   auto image = image_bytes(ping_->plan.result, ping.image.u8, ping.image.u16);
   if (image) {
     ping_->image = std::move(*image);
+    if (ping.image.readings && !config_.plays_back) {
+      report_readings(*ping.image.readings, config_.plan, ping_->plan.result);
+    }
   } else {
     ++failed_;
     ping_.reset();
@@ -310,7 +315,7 @@ void Device::Impl::send_status(TimePoint now) {
   status.client = octets(client_ ? client_->remote.address : 0);
   status.mac = config_.mac;
   status.temperatures_c.fill(config_.plan.temperature_c);
-  status.pressure_bar = config_.plan.pressure_bar;
+  status.pressure_bar = pressure_bar(depth_m_, config_.plan);
   actions_.send.push_back(
       {Outgoing::To::everybody, Peer{status_channel, {}, 0}, SharedBytes(encode(status, identity_))});
   next_status_ += config_.status_period * ((now - next_status_) / config_.status_period + 1);

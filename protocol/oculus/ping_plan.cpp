@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr double percent = 0.01;
+constexpr double bar_per_m = 0.1;      // within 2 % of fresh and of sea water
 constexpr std::uint32_t row_gain = 1;  // never 0: clients divide by it (4.7)
 
 nanoseconds seconds(double value) {
@@ -70,10 +72,10 @@ PingPlan plan_ping(const SimpleFire& fire, const PlanConfig& config) {
   plan.asked = fire;
   PingResult& ping = plan.result;
   ping.fire = fire;
-  if (!fire.extension && fire.version != 1) {
-    ping.fire.version = 0;
-  } else if (fire.extension) {
+  if (fire.extension) {
     ping.fire.version = 2;
+  } else {
+    ping.fire.version = fire.version == 1 || config.reports_version_1 ? 1 : 0;
   }
   ping.sound_speed_mps = sound_speed_of(fire.fire, config);
   if (fire.fire.sound_speed_mps == 0.0 && config.reports_sound_speed_used) {
@@ -97,6 +99,19 @@ PingPlan plan_ping(const SimpleFire& fire, const PlanConfig& config) {
   plan.period = std::max({period_of_rate(fire.fire.ping_rate).value_or(nanoseconds{0}),
                           plan.listening + config.ping_overhead, time_on_link(plan)});
   return plan;
+}
+
+double pressure_bar(std::optional<double> depth_m, const PlanConfig& config) {
+  return depth_m ? config.surface_pressure_bar + bar_per_m * std::max(*depth_m, 0.0) : config.pressure_bar;
+}
+
+void report_readings(const SensorReadings& readings, const PlanConfig& config, PingResult& ping) {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  const double heading_deg = config.heading_sign * readings.heading_rad * degrees;
+  ping.heading_deg = heading_deg < 0.0 ? heading_deg + 360.0 : heading_deg;
+  ping.pitch_deg = config.pitch_sign * readings.pitch_rad * degrees;
+  ping.roll_deg = config.roll_sign * readings.roll_rad * degrees;
+  ping.pressure_bar = pressure_bar(readings.depth_m, config);
 }
 
 PingJob job_of(const PingPlan& plan, const PlanConfig& config) {

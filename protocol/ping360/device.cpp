@@ -66,6 +66,7 @@ class Device::Impl {
   void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }
   void take(TimePoint, const TriggerEdge&) {}   // it has no such input
   void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
+  void take(TimePoint, const SensorsRead&) {}   // it has none
   void take(TimePoint, const PingFed& feed) { scanner_.feed(feed.ping); }
   void take(TimePoint, const PingGranted&) { scanner_.grant(); }
 

@@ -2,6 +2,8 @@
 #include "server/devices/device_kind.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <glm/gtc/quaternion.hpp>
@@ -9,6 +11,26 @@
 #include "renderer/sample_grid/sample_grid.hpp"
 
 namespace sonard::server {
+
+// Looking straight up or down, a head that turns about the vertical cannot be told from one that rolls: then
+// roll is 0.
+SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m) {
+  constexpr double vertical = 1e-6;
+  constexpr double turn = 2 * std::numbers::pi;
+  const glm::dvec3 ahead = T_world_mount.orientation * glm::dvec3(1, 0, 0);
+  const glm::dvec3 port = T_world_mount.orientation * glm::dvec3(0, 1, 0);
+  const glm::dvec3 up = T_world_mount.orientation * glm::dvec3(0, 0, 1);
+  const double level = std::hypot(ahead.x, ahead.y);
+  SensorReadings readings;
+  const double heading = level > vertical ? std::atan2(ahead.x, ahead.y) : std::atan2(port.y, -port.x);
+  readings.heading_rad = heading < 0.0 ? heading + turn : heading;
+  readings.pitch_rad = std::atan2(ahead.z, level);
+  readings.roll_rad = level > vertical ? std::atan2(port.z, up.z) : 0.0;
+  if (water_surface_z_m) {
+    readings.depth_m = *water_surface_z_m - T_world_mount.position_m.z;
+  }
+  return readings;
+}
 
 // Bearings are positive to starboard, turns about z to port.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad) {

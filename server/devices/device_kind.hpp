@@ -52,6 +52,8 @@ class DeviceKind : public HeadKind {
  public:
   /// A ping is one beam, at the bearing of the job; else it is a fan.
   virtual bool scanning() const = 0;
+  /// The head has sensors of attitude or depth: it is given SensorsRead.
+  virtual bool has_sensors() const { return false; }
 
   /// Opens the sockets. @throws SocketError
   virtual std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
@@ -97,6 +99,10 @@ class DeviceKind : public HeadKind {
 inline const DeviceKind& kind_of(const HeadConfig& head) {
   return static_cast<const DeviceKind&>(*head.kind);
 }
+
+/// What the sensors of a head read whose mount is there.
+/// @param water_surface_z_m height of the surface; nullopt: the world has none
+SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m);
 
 /// The pose of a head's transducer at a bearing (PingJob::bearing_rad): the mount, turned about its z
 /// axis.

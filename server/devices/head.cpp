@@ -62,6 +62,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   std::optional<TimePoint> wake_at;
   std::optional<NextPing> next_ping;
   bool out_of_water = false;
+  SensorReadings readings;  ///< that the device has been told
   bool running = false;
   bool pumping = false;
 
@@ -79,6 +80,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   void send(std::vector<Outgoing> messages);
   void record(TimePoint now, PingRecord ping);
   void note_water(TimePoint now);
+  void read_sensors(TimePoint now);
   void feed(TimePoint now);
   bool grant(TimePoint now);
   bool render(const PingJob& job);
@@ -255,6 +257,7 @@ void Head::Impl::pump() {
 void Head::Impl::take(TimePoint now, const Event& event) {
   note_water(now);
   feed(now);
+  read_sensors(now);
   step(now, event);
   while (grant(now)) {
     step(now, PingGranted{});
@@ -321,6 +324,18 @@ void Head::Impl::record(TimePoint now, PingRecord ping) {
   }
   if (recording.on() && poses_to_record.poses && poses_to_record.number == ping.number) {
     recording.ping({std::move(ping), poses_to_record.poses});
+  }
+}
+
+void Head::Impl::read_sensors(TimePoint now) {
+  if (!kind.has_sensors()) {
+    return;
+  }
+  if (const auto T_world_mount = rendering.T_world_mount(services.poses.present(now))) {
+    const SensorReadings present = sensor_readings(*T_world_mount, services.water_surface_z_m);
+    if (std::exchange(readings, present) != present) {
+      step(now, SensorsRead{present});
+    }
   }
 }
 
@@ -413,7 +428,8 @@ bool Head::Impl::render(const PingJob& job) {
        .T_world_sonar = T_world_sonar,
        .T_world_sonar_at_end = T_world_at_end,
        .settings = std::move(settings)},
-      [weak = weak_from_this(), number = job.number, pose_time](RenderResult result) {
+      [weak = weak_from_this(), number = job.number, pose_time,
+       sensed = sensor_readings(*T_world_mount, services.water_surface_z_m)](RenderResult result) {
         const auto self = weak.lock();
         if (!self) {
           return;
@@ -421,7 +437,8 @@ bool Head::Impl::render(const PingJob& job) {
         if (self->rendering.take(result)) {
           self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
                                self->rendering.bodies_at(pose_time), result.statistics.sees_surface);
-          self->happen(PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16)}});
+          self->happen(
+              PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16), sensed}});
         } else {
           self->happen(PingNotRendered{number});
         }

@@ -113,10 +113,12 @@ void Viewer::take_ping(oculus::ReceivedPing ping) {
     crc.process_bytes(result.image.data(), result.image.size());
     fmt::print(
         "ping id={} mode={} frequency_hz={:.0f} ranges={} beams={} resolution_m={:.6f} bits={} gain={:.1f} "
-        "sound_speed={:.2f} start_s={:.6f} bytes={} crc32={:08x}\n",
+        "sound_speed={:.2f} heading_deg={:.2f} pitch_deg={:.2f} roll_deg={:.2f} pressure_bar={:.3f} "
+        "temperature_c={:.1f} start_s={:.6f} bytes={} crc32={:08x}\n",
         result.ping_id, result.fire.fire.master_mode, result.frequency_hz, result.ranges, result.beams,
         result.range_resolution_m, 8 * (static_cast<int>(result.data_size) + 1),
-        result.fire.fire.gain_percent, result.sound_speed_mps, result.start_time_s, ping.message.size(),
+        result.fire.fire.gain_percent, result.sound_speed_mps, result.heading_deg, result.pitch_deg,
+        result.roll_deg, result.pressure_bar, result.temperature_c, result.start_time_s, ping.message.size(),
         crc.checksum());
     std::fflush(stdout);
   }

@@ -28,6 +28,7 @@ class OculusKind final : public DeviceKind {
   std::string_view type() const override { return "oculus"; }
   std::string_view title() const override { return "Oculus"; }
   bool scanning() const override { return false; }
+  bool has_sensors() const override { return true; }
 
   // ---- Configuration
 

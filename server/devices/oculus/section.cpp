@@ -67,6 +67,20 @@ void read_firmware(YamlSection& section, oculus::DeviceConfig& device) {
                   "for it");
   section.boolean("reports_sound_speed_used", device.plan.reports_sound_speed_used,
                   "where a client sends 0 for the speed of sound, reports the one that is used instead");
+  section.boolean("reports_version_1", device.plan.reports_version_1,
+                  "a ping that answers a fire of version 0 says version 1 in its header; false: version 0");
+  section.choice(
+      "heading", device.plan.heading_sign, {{"clockwise", 1}, {"counter_clockwise", -1}, {"zero", 0}},
+      "how the heading of a ping grows from north, the y axis of the world; `zero`: it is always 0");
+  section.choice("pitch", device.plan.pitch_sign, {{"nose_up", 1}, {"nose_down", -1}, {"zero", 0}},
+                 "which pitch is positive; `zero`: it is always 0");
+  section.choice("roll", device.plan.roll_sign, {{"starboard_down", 1}, {"port_down", -1}, {"zero", 0}},
+                 "which roll is positive; `zero`: it is always 0");
+  section.choice(
+      "pressure", device.plan.surface_pressure_bar,
+      {{"absolute", device.plan.surface_pressure_bar}, {"gauge", 0.0}},
+      "pressure at the surface: that of the air, 1.013 bar, or 0. It is of the depth below the water "
+      "surface of the world; a world without a surface has `water.depth_m`");
   section.text("log_text", device.log_text, "sent to each client that connects; one driver waits for it");
   section.default_is("log_text", "two lines that name sonard");
 }
@@ -140,15 +154,12 @@ OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, 
       "A Blueprint Subsea Oculus ([protocols/oculus.md](protocols/oculus.md)). The x axis of its mount is "
       "the "
       "acoustic axis, so the down tilt of the head is part of the mount.");
-  constexpr double surface_bar = 1.013;
-  constexpr double bar_per_m = 0.1;
   OculusConfig config;
   read_identity(section, config.device);
   config.modes = oculus_modes(config.device.plan.model);
   apply_water(section, context, config.device.plan.model.modes[0].frequency_hz, head);
   apply_water_to_modes(context, head, config);
   config.device.plan.temperature_c = context.water.temperature_c;
-  config.device.plan.pressure_bar = surface_bar + bar_per_m * context.water.depth_m;
   config.device.plan.water_sound_speed_mps = context.water_sound_speed_mps;
   config.device.waits_for_permission = context.pings_by_source;
   read_common(section, context, head);
@@ -157,6 +168,7 @@ OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, 
   section.section("timing", "rates", [&](YamlSection& inner) { read_timing(inner, config.device); });
   section.section("firmware", "habits of its firmware",
                   [&](YamlSection& inner) { read_firmware(inner, config.device); });
+  config.device.plan.pressure_bar = oculus::pressure_bar(context.water.depth_m, config.device.plan);
   section.section("acoustics", "how its image is formed",
                   [&](YamlSection& inner) { read_oculus_acoustics(inner, head, config); });
   return config;

@@ -89,7 +89,7 @@ class Demo(HeadCase):
                 break
         else:
             self.fail("its settings never came")
-        self.assertEqual(ping.version, 0)
+        self.assertEqual(ping.version, 1)
         self.assertEqual(ping.gains, ping.ranges * [1])
         client.write(example("fire_ensta_standby"))
         self.assertIsNotNone(client.wait(DUMMY, 5))
@@ -186,6 +186,88 @@ BOTH = """
 """
 SPHERE_BEARING = -math.degrees(math.atan2(2, 3))  # to port
 SPHERE_RANGE_M = math.sqrt(13) - 0.5
+
+
+class Attitude(HeadCase):
+    """Two heads of a vehicle that is turned, tilted and rolled 20 m below the surface."""
+
+    WORLD = """<?xml version="1.0"?>
+<sdf version="1.9" xmlns:sonard="https://sonard.dev/sdf">
+  <world name="w">
+    <sonard:water_surface_z>0</sonard:water_surface_z>
+    <model name="wall"><pose>8 0 -20 0 0 0</pose><static>true</static><link name="l"><visual name="v">
+      <geometry><box><size>0.2 20 20</size></box></geometry></visual></link></model>
+  </world>
+</sdf>
+"""
+    CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+water: {{temperature_c: 7, depth_m: 5}}
+poses: {{initial: {{position_m: [0, 0, -20], rpy_deg: [3, 5, 30]}}}}
+sampling: {{preset: fast}}
+heads:
+  - name: nose
+    type: oculus
+    network: {{address: 127.0.0.3, netmask: 255.0.0.0, status: [127.0.0.1]}}
+    mount: {{rpy_deg: [0, 10, 0]}}
+  - name: hull
+    type: oculus
+    device_id: 8000
+    network: {{address: 127.0.0.4, netmask: 255.0.0.0, status: [127.0.0.1]}}
+    mount: {{position_m: [0, 0, 2], rpy_deg: [180, 0, 0]}}
+    firmware: {{heading: counter_clockwise, pitch: nose_down, roll: port_down, pressure: gauge, reports_version_1: false}}
+"""
+
+    @classmethod
+    def configuration(cls):
+        world, path = (os.path.join(cls.folder, name) for name in ("water.sdf", "sonard.yaml"))
+        with open(world, "w", encoding="utf-8") as file:
+            file.write(cls.WORLD)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(cls.CONFIG.format(world=world))
+        return path
+
+    def ping_of(self, address, version):
+        client = self.client(address)
+        client.write(messages.fire(mode=LOW, flags=0x19, range_m=10.0, speed=1500.0, version=version,
+                                   extension=0 if version == 2 else None))
+        ping = client.ping()
+        client.close()
+        return ping
+
+    def assert_angles(self, attitude, *wanted):
+        for angle, right in zip(attitude, wanted, strict=True):
+            self.assertAlmostEqual((angle - right + 180) % 360, 180, delta=1e-3)
+
+    def test_a_ping_has_the_attitude_of_the_head_by_its_mount_and_the_pressure_of_its_depth(self):
+        """Truth: the product of the rotation matrices of vehicle and mount, worked out by hand."""
+        ping = self.ping_of("127.0.0.3", 2)
+        self.assert_angles(ping.attitude_deg, 59.461, -14.986, 3.094)
+        self.assertAlmostEqual(ping.pressure_bar, 1.013 + 0.1 * 20, delta=1e-6)
+        self.assertEqual(ping.temperature_c, 7)
+
+    def test_signs_are_those_of_the_configuration_also_upside_down(self):
+        ping = self.ping_of("127.0.0.4", 2)  # its mount is 2 m up the tilted vehicle
+        self.assert_angles(ping.attitude_deg, 300, 5, 177)
+        height_m = 2 * math.cos(math.radians(3)) * math.cos(math.radians(5))
+        self.assertAlmostEqual(ping.pressure_bar, 0.1 * (20 - height_m), delta=1e-6)
+
+    def test_a_fire_of_version_0_is_answered_with_version_1_unless_told_not_to(self):
+        self.assertEqual(self.ping_of("127.0.0.3", 0).version, 1)
+        self.assertEqual(self.ping_of("127.0.0.3", 1).version, 1)
+        self.assertEqual(self.ping_of("127.0.0.4", 0).version, 0)
+        self.assertAlmostEqual(self.ping_of("127.0.0.3", 0).pressure_bar, 3.013, delta=1e-6)
+
+    def test_a_status_has_the_pressure_too(self):
+        statuses = self.statuses()
+        deadline = Deadline(PATIENCE_S)
+        while not deadline.over():
+            status = messages.status_of(statuses.recv(2048))
+            if status.device_id == 7892:
+                self.assertAlmostEqual(status.pressure_bar, 3.013, delta=1e-6)
+                return
+        self.fail("no status")
 
 
 class Sphere(HeadCase):

@@ -87,6 +87,8 @@ class Ping:
     id: int
     frequency_hz: float
     temperature_c: float
+    pressure_bar: float
+    attitude_deg: tuple  # heading, pitch, roll; version 1 has none
     speed_used: float
     start_s: float
     width: int
@@ -102,14 +104,15 @@ def ping_of(message):
     raw = message.raw
     assert message.id == PING
     mode, rate, _, gamma, flags, range_m, gain, speed, salinity = FIRE_BODY.unpack_from(raw, 16)
-    extension = 0
+    extension, attitude = 0, ()
     if message.version == 2:
         extension = struct.unpack_from("<I", raw, 53)[0]
-        (number, _, frequency, temperature, _, _, _, _, used, start, width, resolution, ranges, beams, *_, offset, size,
-         whole) = RESULT_2.unpack_from(raw, 89)
+        (number, _, frequency, temperature, pressure, heading, pitch, roll, used, start, width, resolution, ranges, beams,
+         *_, offset, size, whole) = RESULT_2.unpack_from(raw, 89)
+        attitude = (heading, pitch, roll)
         fixed = 202
     else:
-        (number, _, frequency, temperature, _, used, start, width, resolution, ranges, beams, offset, size,
+        (number, _, frequency, temperature, pressure, used, start, width, resolution, ranges, beams, offset, size,
          whole) = RESULT_1.unpack_from(raw, 53)
         start *= 1e-9
         fixed = 122
@@ -123,7 +126,7 @@ def ping_of(message):
     rows = [raw[at + lead:at + stride] for at in range(offset, whole, stride)]
     gains = [struct.unpack_from("<I", raw, at)[0] for at in range(offset, whole, stride)] if lead else []
     return Ping(message.version, mode, rate, gamma, flags, range_m, gain, speed, salinity, extension, number, frequency,
-                temperature, used, start, width, resolution, ranges, beams,
+                temperature, pressure, attitude, used, start, width, resolution, ranges, beams,
                 list(struct.unpack_from(f"<{beams}h", raw, fixed)), rows, gains)
 
 
@@ -137,6 +140,7 @@ class Status:
     mask: str
     client: str
     temperatures: tuple
+    pressure_bar: float
 
 
 def status_of(datagram):
@@ -146,4 +150,4 @@ def status_of(datagram):
     device_id, kind, part, word, *rest = STATUS_BODY.unpack_from(datagram, 16)
     address, mask, client = (".".join(map(str, octets)) for octets in rest[6:9])
     assert kind == 1
-    return Status(source, device_id, part, word, address, mask, client, tuple(rest[10:18]))
+    return Status(source, device_id, part, word, address, mask, client, tuple(rest[10:18]), rest[18])

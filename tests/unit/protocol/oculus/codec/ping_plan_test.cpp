@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 namespace sonard::oculus {
 namespace {
@@ -46,13 +47,52 @@ TEST(OculusPlan, gain_and_speed_are_echoed_as_the_configuration_says) {
   EXPECT_EQ(other.result.fire.fire.sound_speed_mps, 0.0);
 }
 
+// Readers of viewer logs take versions 1 and 2 only; the recording of a real head has version 0.
 TEST(OculusPlan, version_of_the_result_follows_the_length_of_the_fire) {
-  for (const std::uint16_t stated : {0, 1, 2}) {
-    SimpleFire fire = fire_with(1, 5.0);
-    fire.version = stated;
-    EXPECT_EQ(plan_ping(fire, {}).result.fire.version, stated == 1 ? 1 : 0);
-    fire.extension = FireExtension{};
-    EXPECT_EQ(plan_ping(fire, {}).result.fire.version, 2);
+  for (const bool reports_version_1 : {true, false}) {
+    PlanConfig config;
+    config.reports_version_1 = reports_version_1;
+    for (const std::uint16_t stated : {0, 1, 2}) {
+      SimpleFire fire = fire_with(1, 5.0);
+      fire.version = stated;
+      EXPECT_EQ(plan_ping(fire, config).result.fire.version, reports_version_1 || stated == 1 ? 1 : 0);
+      fire.extension = FireExtension{};
+      EXPECT_EQ(plan_ping(fire, config).result.fire.version, 2);
+    }
+  }
+}
+
+// A column of water of 10 m weighs about as much as the air above it.
+TEST(OculusPlan, pressure_is_that_of_air_and_of_the_water_above) {
+  PlanConfig config;
+  config.pressure_bar = 1.7;
+  EXPECT_NEAR(pressure_bar(20.0, config), 3.013, 1e-9);
+  EXPECT_NEAR(pressure_bar(0.0, config), 1.013, 1e-9);
+  EXPECT_NEAR(pressure_bar(-5.0, config), 1.013, 1e-9) << "in the air";
+  EXPECT_EQ(pressure_bar(std::nullopt, config), 1.7) << "the world has no surface";
+  config.surface_pressure_bar = 0.0;
+  EXPECT_NEAR(pressure_bar(20.0, config), 2.0, 1e-9);
+  EXPECT_EQ(pressure_bar(-5.0, config), 0.0);
+}
+
+TEST(OculusPlan, attitude_is_in_degrees_with_the_signs_of_the_configuration) {
+  const SensorReadings readings{.heading_rad = std::numbers::pi / 3,
+                                .pitch_rad = -std::numbers::pi / 12,
+                                .roll_rad = std::numbers::pi / 60,
+                                .depth_m = 20.0};
+  struct Case {
+    int sign;
+    double heading_deg, pitch_deg, roll_deg;
+  };
+  for (const Case& it : {Case{1, 60.0, -15.0, 3.0}, Case{-1, 300.0, 15.0, -3.0}, Case{0, 0.0, 0.0, 0.0}}) {
+    PlanConfig config;
+    config.heading_sign = config.pitch_sign = config.roll_sign = it.sign;
+    PingResult ping;
+    report_readings(readings, config, ping);
+    EXPECT_NEAR(ping.heading_deg, it.heading_deg, 1e-9);
+    EXPECT_NEAR(ping.pitch_deg, it.pitch_deg, 1e-9);
+    EXPECT_NEAR(ping.roll_deg, it.roll_deg, 1e-9);
+    EXPECT_NEAR(ping.pressure_bar, 3.013, 1e-9);
   }
 }
 

@@ -78,6 +78,7 @@ class Line {
   std::vector<PingJob> jobs;
   std::optional<NextPing> next_ping;
   bool plays_eight_bits = false;
+  std::optional<SensorReadings> readings;  ///< at the time of each ping
 
  private:
   /// Samples that count up, so that each is at its place or is not.
@@ -85,6 +86,7 @@ class Line {
     const auto count = static_cast<std::size_t>(job.bins()) * static_cast<std::size_t>(job.beams);
     PingImage image;
     image.number = job.number;
+    image.readings = readings;
     if (job.sixteen_bit && !plays_eight_bits) {
       image.u16.resize(count);
       for (std::size_t i = 0; i < count; ++i) {
@@ -158,7 +160,7 @@ TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
   EXPECT_EQ(line.host.statistics().bad_messages, 0U);
   const PingResult& ping = line.pings[1].result;
   EXPECT_EQ(ping.fire.extension, fire.extension);
-  EXPECT_EQ(ping.fire.version, second ? 2 : 0);
+  EXPECT_EQ(ping.fire.version, second ? 2 : 1);
   const Fire& echo = ping.fire.fire;
   EXPECT_EQ(echo.master_mode, mode);
   EXPECT_EQ(echo.gamma, 200);
@@ -312,6 +314,47 @@ TEST(OculusAcceptance, new_settings_come_with_the_next_ping) {
   EXPECT_EQ(line.pings[before + 1].result.beams, 512);
 }
 
+// 4.1, 4.2: of the time when the pulse left.
+TEST(OculusAcceptance, a_ping_says_how_the_head_is_turned_and_how_deep_it_is) {
+  const SensorReadings readings{.heading_rad = std::numbers::pi / 2,
+                                .pitch_rad = -std::numbers::pi / 6,
+                                .roll_rad = std::numbers::pi,
+                                .depth_m = 20.0};
+  for (const bool second : {true, false}) {
+    Line line;
+    line.readings = readings;
+    line.receive(encode(fire_with(second, 8, true, 256, 2)));
+    line.run_for(milliseconds{100});
+    ASSERT_FALSE(line.pings.empty());
+    const auto recorded = recorded_form(line.records.at(0).wire);
+    ASSERT_TRUE(recorded);
+    for (const PingResult& ping : {line.pings[0].result, *recorded}) {
+      EXPECT_NEAR(ping.pressure_bar, 3.013, 1e-9);
+      EXPECT_EQ(ping.temperature_c, 20.0);
+      EXPECT_NEAR(ping.heading_deg, second ? 90.0 : 0.0, 1e-9);  // version 1 has no attitude
+      EXPECT_NEAR(ping.pitch_deg, second ? -30.0 : 0.0, 1e-9);
+      EXPECT_NEAR(ping.roll_deg, second ? 180.0 : 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(OculusAcceptance, a_status_says_how_deep_the_head_is_whether_it_pings_or_not) {
+  DeviceConfig config;
+  config.plan.pressure_bar = 1.7;
+  Line line(config);
+  const auto told_bar = [&] {
+    line.run_for(seconds{1});
+    return decode_status(line.statuses.back()).value().pressure_bar;
+  };
+  EXPECT_EQ(told_bar(), 1.7) << "it has read nothing yet";
+  line.step(SensorsRead{{.depth_m = 20.0}});
+  EXPECT_NEAR(told_bar(), 3.013, 1e-9);
+  line.step(SensorsRead{{.depth_m = -1.0}});
+  EXPECT_NEAR(told_bar(), 1.013, 1e-9);
+  line.step(SensorsRead{});
+  EXPECT_EQ(told_bar(), 1.7);
+}
+
 // A simulator's clock: no ping but with a grant, and the head says which period it would keep.
 TEST(OculusAcceptance, by_a_simulators_clock_it_waits_for_grants) {
   DeviceConfig config;
@@ -343,6 +386,7 @@ RecordedPing fed(const PingRecord& record, std::uint64_t number) {
 
 TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   Line live;
+  live.readings = SensorReadings{.heading_rad = std::numbers::pi / 2, .depth_m = 20.0};
   live.receive(encode(fire_with(true, 8, true, 512, 1)));
   live.run_for(milliseconds{100});
   ASSERT_GE(live.records.size(), 1U);
@@ -358,6 +402,7 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   config.plays_back = true;
   Line player(config);
   player.plays_eight_bits = true;
+  player.readings = SensorReadings{.heading_rad = 1.0, .depth_m = 1.0};  // of where it is played
   player.receive(encode(fire_with(true, 8, true, 512, 1)));
   player.run_for(seconds{1});
   EXPECT_TRUE(player.jobs.empty()) << "nothing was fed";
@@ -372,6 +417,8 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   EXPECT_EQ(sent.bearings_cdeg, was.bearings_cdeg);
   EXPECT_EQ(sent.range_resolution_m, was.range_resolution_m);
   EXPECT_EQ(sent.frequency_hz, was.frequency_hz);
+  EXPECT_NEAR(sent.heading_deg, 90.0, 1e-9);
+  EXPECT_NEAR(sent.pressure_bar, 3.013, 1e-9);
   EXPECT_TRUE(std::ranges::equal(sent.image, was.image));
 
   SimpleFire other = fire_with(true, 16, false, 256, 2);

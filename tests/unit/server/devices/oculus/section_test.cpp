@@ -48,6 +48,11 @@ TEST_F(OculusSection, gives_defaults_for_what_is_left_out) {
   EXPECT_THAT(config.device.mac, ElementsAre(0x00, 0x1E, 0x63, 0x00, 7892 >> 8, 7892 & 0xFF));
   EXPECT_EQ(config.device.plan.temperature_c, 12.0);
   EXPECT_NEAR(config.device.plan.pressure_bar, 4.013, 1e-9);
+  EXPECT_TRUE(config.device.plan.reports_version_1);
+  EXPECT_EQ(config.device.plan.heading_sign, 1);
+  EXPECT_EQ(config.device.plan.pitch_sign, 1);
+  EXPECT_EQ(config.device.plan.roll_sign, 1);
+  EXPECT_EQ(config.device.plan.surface_pressure_bar, 1.013);
   EXPECT_NEAR(config.modes[0].receive_beamwidth_rad, 1.0 * degree, 1e-12);
   EXPECT_EQ(head.kind->summary(head),
             "ID 7892, part 1032, TCP 127.0.0.3:52100, status to 127.0.0.1, port 52102");
@@ -63,7 +68,9 @@ TEST_F(OculusSection, reads_what_is_written) {
       "mac: '00:01:02:03:04:05', status: directed_broadcast, allow: [127.0.0.0/8]}, timing: "
       "{status_period_ms: "
       "500, dummy_period_ms: 2000, ping_overhead_ms: 1}, firmware: {most_ranges: 800, "
-      "rescales_high_frequency_gain: false, reports_sound_speed_used: false, log_text: hello}, acoustics: "
+      "rescales_high_frequency_gain: false, reports_sound_speed_used: false, reports_version_1: false, "
+      "heading: "
+      "counter_clockwise, pitch: nose_down, roll: zero, pressure: gauge, log_text: hello}, acoustics: "
       "{vertical_beamwidth_deg: 19, receive_beamwidth_deg: 0.7, aperture_deg: 120, range_cell_mm: 3, "
       "gain_db_per_percent: 0.5, high_frequency: {aperture_deg: 50, vertical_beamwidth_deg: 11, "
       "receive_beamwidth_deg: 0.3, range_cell_mm: 2}}");
@@ -78,6 +85,12 @@ TEST_F(OculusSection, reads_what_is_written) {
   EXPECT_EQ(config.device.plan.most_ranges, 800);
   EXPECT_FALSE(config.device.plan.rescales_high_frequency_gain);
   EXPECT_FALSE(config.device.plan.reports_sound_speed_used);
+  EXPECT_FALSE(config.device.plan.reports_version_1);
+  EXPECT_EQ(config.device.plan.heading_sign, -1);
+  EXPECT_EQ(config.device.plan.pitch_sign, -1);
+  EXPECT_EQ(config.device.plan.roll_sign, 0);
+  EXPECT_EQ(config.device.plan.surface_pressure_bar, 0.0);
+  EXPECT_NEAR(config.device.plan.pressure_bar, 3.0, 1e-9);
   EXPECT_EQ(config.device.log_text, "hello");
   const oculus::Model& model = config.device.plan.model;
   EXPECT_EQ(model.part_number, 1042);
@@ -115,6 +128,7 @@ TEST_F(OculusSection, says_what_is_wrong) {
   EXPECT_THAT(said(with_network("acoustics: {high_frequency: {aperture_deg: 171}}")),
               Contains(HasSubstr("aperture_deg")));
   EXPECT_THAT(said(with_network("firmware: {most_ranges: 9000}")), Contains(HasSubstr("most_ranges")));
+  EXPECT_THAT(said(with_network("firmware: {pitch: up}")), Contains(HasSubstr("nose_up")));
 }
 
 }  // namespace

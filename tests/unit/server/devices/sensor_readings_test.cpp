@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// What attitude and depth a head's sensors read. Truth: turns about one axis, and products of rotation
+// matrices worked out by hand (docs/frames-and-units.md).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "server/devices/device_kind.hpp"
+#include "tests/support/degree.hpp"
+
+namespace sonard::server {
+namespace {
+
+/// Roll, pitch, yaw in degrees, as a mount has them: positive pitch is nose down, yaw 0 is east.
+render::Pose turned(double roll_deg, double pitch_deg, double yaw_deg, glm::dvec3 position_m = {}) {
+  const auto about = [](double deg, const glm::dvec3& axis) { return glm::angleAxis(deg * degree, axis); };
+  return {position_m, about(yaw_deg, {0, 0, 1}) * about(pitch_deg, {0, 1, 0}) * about(roll_deg, {1, 0, 0})};
+}
+
+void expect_deg(const render::Pose& T_world_mount, double heading, double pitch, double roll) {
+  const SensorReadings readings = sensor_readings(T_world_mount, std::nullopt);
+  EXPECT_NEAR(std::remainder(readings.heading_rad / degree - heading, 360.0), 0.0, 1e-3);
+  EXPECT_GE(readings.heading_rad, 0.0);
+  EXPECT_LT(readings.heading_rad, 2 * std::numbers::pi);
+  EXPECT_NEAR(readings.pitch_rad / degree, pitch, 1e-3);
+  EXPECT_NEAR(std::remainder(readings.roll_rad / degree - roll, 360.0), 0.0, 1e-3);
+}
+
+TEST(SensorReadings, heading_grows_clockwise_from_north) {
+  expect_deg(turned(0, 0, 0), 90, 0, 0);
+  expect_deg(turned(0, 0, 30), 60, 0, 0);
+  expect_deg(turned(0, 0, 90), 0, 0, 0);
+  expect_deg(turned(0, 0, 91), 359, 0, 0);
+  expect_deg(turned(0, 0, 180), 270, 0, 0);
+  expect_deg(turned(0, 0, -90), 180, 0, 0);
+}
+
+TEST(SensorReadings, pitch_is_positive_nose_up_and_roll_starboard_down) {
+  expect_deg(turned(0, 20, 30), 60, -20, 0);
+  expect_deg(turned(0, -10, 30), 60, 10, 0);
+  expect_deg(turned(3, 0, 30), 60, 0, 3);
+  expect_deg(turned(-3, 20, 30), 60, -20, -3);
+}
+
+TEST(SensorReadings, are_those_of_the_mount) {
+  // Nearly, but not exactly, the sums of the angles: the mount pitches about an axis that has rolled.
+  expect_deg(turned(3, 5, 30) * turned(0, 10, 0), 59.461, -14.986, 3.094);
+  expect_deg(turned(0, 5, 0) * turned(0, 0, -90), 180, 0, -5);  // looking to starboard of a nose that is down
+  expect_deg(turned(0, 0, 30) * turned(180, 0, 0), 60, 0, 180);
+  expect_deg(turned(0, 20, 30) * turned(180, 0, 0), 60, -20, 180);
+}
+
+TEST(SensorReadings, looking_straight_down_or_up_has_a_heading_and_no_roll) {
+  expect_deg(turned(0, 0, 30) * turned(0, 90, 0), 60, -90, 0);
+  expect_deg(turned(0, 0, 30) * turned(0, -90, 0), 60, 90, 0);
+}
+
+TEST(SensorReadings, depth_is_below_the_surface) {
+  EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), 0.0).depth_m, 20.0);
+  EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), 5.0).depth_m, 25.0);
+  EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, 1.5}), 0.0).depth_m, -1.5);
+  EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), std::nullopt).depth_m, std::nullopt);
+}
+
+}  // namespace
+}  // namespace sonard::server
