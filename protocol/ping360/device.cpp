@@ -45,7 +45,6 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   require(config.bootloader_silence >= zero, "bootloader_silence must not be negative");
   require(!config.lock_to_first || config.idle_timeout > zero,
           "idle_timeout must be positive where lock_to_first is set");
-  require(config.queue_length >= 1, "queue_length must be at least 1");
   require(config.max_clients >= 2, "max_clients must be at least 2");
   return config;
 }
@@ -386,7 +385,9 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const Transducer& co
     return;
   }
   warnings_.taken(command, notices_);
-  end_scan(now, "a transducer command came");
+  if (scanner_.running_scan()) {
+    notice("auto scan ended: a transducer command came");
+  }
   scanner_.command(now, asker, command);
 }
 
@@ -481,6 +482,7 @@ std::vector<Counter> Device::counts() const {
       {"pings_cancelled", count.pings_cancelled},
       {"commands", count.commands},
       {"refused", count.refused, Shown::often},
+      {"commands_joined", count.commands_joined},
       {"commands_dropped", count.commands_dropped, Shown::often},
       {"dropped_bytes", count.dropped_bytes, Shown::often},
       {"bad_checksums", count.bad_checksums},

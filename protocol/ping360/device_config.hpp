@@ -41,7 +41,10 @@ struct DeviceConfig {
   std::chrono::nanoseconds reset_silence{std::chrono::seconds{1}};       ///< >= 0 (3.5)
   std::chrono::nanoseconds bootloader_silence{std::chrono::seconds{5}};  ///< >= 0 (3.5)
 
-  std::size_t queue_length = 4;             ///< commands that wait for the one that is being done, >= 1 (3.2)
+  /// A transducer command that repeats the client's last unanswered one shares its answer (3.2).
+  bool joins_repeated_commands = true;
+  /// Commands that wait for the one that is being done; 0: what comes meanwhile is dropped (3.2).
+  std::size_t queue_length = 4;
   bool accepts_angle_400 = true;            ///< as angle 0 (2.3)
   bool obeys_set_common_device_id = false;  ///< message 100 as 2000 (3.6)
   bool signed_scan_angles = false;          ///< limits of a scan may be below 0: never refused (2.3)

@@ -14,6 +14,7 @@ struct DeviceCounters {
   std::uint64_t bad_checksums = 0;       ///< of what looked like a frame
   std::uint64_t other_destinations = 0;  ///< frames for another device
   std::uint64_t unheard_bytes = 0;       ///< came while it restarted
+  std::uint64_t commands_joined = 0;     ///< repeated an unanswered command, and share its answer
   std::uint64_t commands_dropped = 0;    ///< the queue was full
   std::uint64_t clients_dropped = 0;     ///< there were too many
   std::uint64_t locked_out = 0;          ///< datagrams of others while DeviceConfig::lock_to_first holds

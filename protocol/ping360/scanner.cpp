@@ -36,15 +36,41 @@ void Scanner::restart(TimePoint now) {
 // ---- What it is told
 
 void Scanner::command(TimePoint now, const Peer& asker, const Transducer& command) {
+  const bool joins = config_.joins_repeated_commands && is_repeated(asker, command);
   end_scan(now);
+  if (joins) {
+    ++counters_.commands_joined;
+    return;
+  }
   queue_.push_back({asker, command, now});
-  if (queue_.size() > config_.queue_length) {
+  // If the head is idle, the first command in the queue starts in this step and does not wait.
+  const std::size_t starting = work_ && !work_->form.scan ? 0 : 1;
+  if (queue_.size() > config_.queue_length + starting) {
     queue_.pop_front();
     ++counters_.commands_dropped;
   }
 }
 
+/// Clients repeat a command while the head still turns, and take each answer as the order for the next one:
+/// two answers to one command would make them ping every angle twice for ever.
+bool Scanner::is_repeated(const Peer& asker, const Transducer& command) const {
+  if (scan_) {
+    return false;  // the client has ordered something else since then
+  }
+  const PingForm form = form_of(command);
+  const bool transmit = command.transmit != 0;
+  const auto last = std::find_if(queue_.rbegin(), queue_.rend(),
+                                 [&](const Command& waiting) { return same_client(waiting.asker, asker); });
+  if (last != queue_.rend()) {
+    return form_of(last->command) == form && (last->command.transmit != 0) == transmit;
+  }
+  return work_ && same_client(work_->asker, asker) && work_->asked == form && work_->transmit == transmit;
+}
+
 void Scanner::scan(TimePoint now, const Peer& starter, const AutoTransmit& command) {
+  if (scan_ && same_client(scan_->starter, starter) && scan_->command == command) {
+    return;  // clients repeat it more often than a turn takes
+  }
   end_scan(now);
   scan_.emplace(Scan{starter, command,
                      Sweep(scan_angle(command.start_angle, config_), scan_angle(command.stop_angle, config_),
@@ -120,10 +146,12 @@ std::optional<Scanner::Work> Scanner::next_work() {
   if (!queue_.empty()) {
     const Command next = queue_.front();
     queue_.pop_front();
-    return Work{next.asker, form_of(next.command), next.command.transmit != 0, next.received};
+    const PingForm form = form_of(next.command);
+    return Work{next.asker, form, form, next.command.transmit != 0, next.received};
   }
   if (scan_) {
-    return Work{scan_->starter, form_of(scan_->command, scan_->sweep.angle()), true, scan_->next_from};
+    const PingForm form = form_of(scan_->command, scan_->sweep.angle());
+    return Work{scan_->starter, form, form, true, scan_->next_from};
   }
   return std::nullopt;
 }

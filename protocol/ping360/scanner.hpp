@@ -34,8 +34,11 @@ class Scanner {
 
   /// Forgets everything but the job that is still to be answered, and stands as at boot.
   void restart(TimePoint now);
-  /// These are for commands within their limits (limits.hpp).
+  /// Both take commands within their limits (limits.hpp).
+  /// Ends the scan. Queues the command, unless it repeats the last unanswered command of this client: then
+  /// one answer serves both (3.2).
   void command(TimePoint now, const Peer& asker, const Transducer& command);
+  /// Starts a scan. If this client's running scan has the same command, that scan goes on (3.3).
   void scan(TimePoint now, const Peer& starter, const AutoTransmit& command);
   void end_scan(TimePoint now);
   /// Drops all that is to be done.
@@ -83,7 +86,8 @@ class Scanner {
   };
   struct Work {
     Peer asker;
-    PingForm form;
+    PingForm asked;  ///< by the client
+    PingForm form;   ///< of the answer: as asked, or as recorded
     bool transmit = true;
     TimePoint wanted{};                 ///< not before this
     TimePoint there_at{};               ///< when the head has turned to it
@@ -102,6 +106,7 @@ class Scanner {
     PingForm form;
   };
 
+  bool is_repeated(const Peer& asker, const Transducer& command) const;
   std::chrono::nanoseconds scaled(std::chrono::nanoseconds time) const;
   int position(TimePoint now) const;
   void place(int angle);

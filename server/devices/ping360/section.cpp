@@ -74,8 +74,14 @@ void read_device(YamlSection& section, ping360::DeviceConfig& device) {
   section.integer("bearing_offset", device.bearing_offset, 0, 399,
                   "angle in gradians at which the head looks straight ahead; ping-viewer takes 200 for it, "
                   "drivers of ROS 0");
-  section.integer("queue_length", device.queue_length, 1, 100,
-                  "commands that wait for the one that is done; beyond that the oldest is dropped");
+  section.boolean(
+      "joins_repeated_commands", device.joins_repeated_commands,
+      "a transducer command that repeats the client's last unanswered one shares its answer: known "
+      "clients repeat a command while the head turns. false: each command is done");
+  section.integer(
+      "queue_length", device.queue_length, 0, 100,
+      "commands that wait for the one that is done; beyond that the oldest is dropped. 0: a command "
+      "that comes meanwhile is dropped");
   section.boolean("accepts_angle_400", device.accepts_angle_400,
                   "takes 400 gradians for 0, as a driver of ROS sends it");
   section.boolean("obeys_set_common_device_id", device.obeys_set_common_device_id,

@@ -302,6 +302,124 @@ TEST_F(Ping360PingViewer, older_firmware_is_turned_with_single_commands_quickly_
   }
 }
 
+/// The loop of ping-viewer with firmware up to 3.3.0 and of iPing360Device: each answer, to whichever
+/// command, is the order for the angle behind it. A command that has no answer in time is sent again.
+struct StepLoop {
+  Client client;
+  Transducer command;
+  int step;
+  std::chrono::nanoseconds patience;
+
+  void send() { client.bench.command(command, client.peer); }
+  /// Until `count` answers have come; returns their angles. The newest one is not followed by a command yet.
+  std::vector<int> run(std::size_t count) {
+    std::vector<int> angles;
+    for (int unanswered = 0; angles.size() < count && unanswered < 100;) {
+      const auto answer = client.wait_for<DeviceData, Nack>(patience);
+      const auto* const data = answer ? answer->get<DeviceData>() : nullptr;
+      unanswered = data ? 0 : unanswered + 1;
+      if (data) {
+        angles.push_back(data->angle);
+        command.angle = static_cast<std::uint16_t>((data->angle + step) % 400);
+      }
+      if (angles.size() < count) {
+        send();
+      }
+    }
+    return angles;
+  }
+};
+
+std::vector<int> turn_of(int first, int step, std::size_t count) {
+  std::vector<int> angles;
+  for (std::size_t i = 0; i < count; ++i) {
+    angles.push_back((first + static_cast<int>(i) * step) % 400);
+  }
+  return angles;
+}
+
+/// Two turns. The way to the first angle takes longer than the loop waits.
+void expect_one_ping_an_angle(StepLoop loop, std::chrono::nanoseconds render_time) {
+  Bench& bench = loop.client.bench;
+  bench.render_time = render_time;
+  const auto count = static_cast<std::size_t>(800 / loop.step);
+  const int first = loop.command.angle;
+  loop.send();
+  EXPECT_EQ(loop.run(count), turn_of(first, loop.step, count));
+  EXPECT_EQ(bench.jobs.size(), count) << "one ping for each";
+  EXPECT_GE(bench.device.counters().commands_joined, 2U) << "it has sent some again";
+  EXPECT_EQ(bench.device.counters().commands_dropped, 0U);
+}
+
+// It begins at 200 gradians, where it draws straight ahead: 1.2 s from where the head is at boot. It waits 6
+// ms a gradian and 200 ms for each answer. A renderer that is slower than this makes it send each command
+// again.
+TEST(Ping360Clients, ping_viewer_with_firmware_3_3_0_gets_one_ping_an_angle) {
+  for (const int step : {1, 5}) {
+    for (const auto render_time : {5ms, 300ms}) {
+      Bench bench;
+      Transducer command{.angle = 200,
+                         .transmit_duration_us = 11,
+                         .sample_period = 88,
+                         .transmit_frequency_khz = 750,
+                         .number_of_samples = 1200};
+      expect_one_ping_an_angle({{bench}, command, step, 200ms + step * 6ms}, render_time);
+    }
+  }
+}
+
+TEST(Ping360Clients, iping360device_gets_one_ping_an_angle_though_it_repeats_the_first_command) {
+  for (const auto render_time : {5ms, 250ms}) {
+    Bench bench;
+    expect_one_ping_an_angle({{bench}, as_brping(150), 1, 200ms}, render_time);
+  }
+}
+
+// A command that is sent again at the moment when its answer leaves cannot be told from a wish for another
+// ping. It costs one ping; the two answers make two commands, which are equal.
+TEST(Ping360Clients, a_repeated_command_that_crosses_its_answer_costs_one_ping) {
+  Bench bench;
+  StepLoop loop{{bench}, as_brping(0), 1, 200ms};
+  loop.send();
+  loop.run(10);
+  loop.command.angle = 9;
+  loop.send();
+  loop.command.angle = 10;
+  loop.send();
+  const std::size_t before = bench.jobs.size();
+  EXPECT_EQ(loop.run(1), std::vector{9});
+  loop.send();
+  EXPECT_EQ(loop.run(100), turn_of(10, 1, 100));
+  EXPECT_EQ(bench.jobs.size(), before + 100);
+}
+
+// iPing360Device orders its scan every 5 s; a turn of 20 m takes 20 s.
+TEST(Ping360Clients, auto_transmit_sent_every_5_s_scans_whole_turns) {
+  Bench bench;
+  const AutoTransmit command{.sample_period = 888, .number_of_samples = 1200};
+  for (int i = 0; i < 13; ++i) {
+    bench.command(command);
+    bench.run_for(5s);
+  }
+  const auto angles = angles_of(bench.all<AutoDeviceData>());
+  EXPECT_GT(angles.size(), 1200U) << "three turns";
+  EXPECT_EQ(angles, turn_of(0, 1, angles.size()));
+}
+
+TEST(Ping360Clients, auto_transmit_sent_every_second_turns_at_both_ends_of_a_sector) {
+  Bench bench;
+  for (int i = 0; i < 20; ++i) {
+    bench.command(scan_of(380, 20, 5));
+    bench.run_for(1s);
+  }
+  const auto angles = angles_of(bench.all<AutoDeviceData>());
+  ASSERT_GT(angles.size(), 50U);
+  const std::vector<int> sector{380, 385, 390, 395, 0, 5, 10, 15, 20, 15, 10, 5, 0, 395, 390, 385};
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    ASSERT_EQ(angles[i], sector[i % sector.size()]) << i;
+  }
+}
+
 TEST_F(Ping360PingViewer, asks_in_the_old_way_too) {
   bench.raw(make_frame(4, 0, 0, {}));
   EXPECT_TRUE(client.wait_for<DeviceInformation>(1s));

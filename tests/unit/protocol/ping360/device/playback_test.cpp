@@ -47,6 +47,20 @@ TEST_F(Ping360Playback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
   EXPECT_EQ(bench.jobs.size(), 1U);
 }
 
+// The answer has recorded settings. What the client has asked for decides which commands are equal.
+TEST_F(Ping360Playback, a_repeated_command_shares_the_recorded_answer) {
+  bench.render_time = 500ms;
+  bench.command(ping_at(7));
+  bench.command(ping_at(7));
+  bench.step(PingFed{recorded(5)});
+  bench.run_for(100ms);
+  bench.command(ping_at(7));
+  bench.step(PingFed{recorded(6)});
+  bench.run_for(3s);
+  EXPECT_EQ(bench.all<DeviceData>().size(), 1U);
+  EXPECT_EQ(bench.device.counters().commands_joined, 2U);
+}
+
 TEST_F(Ping360Playback, a_command_brings_the_recorded_ping_as_its_answer) {
   bench.step(PingFed{recorded(5)});
   Transducer command = ping_at(7);
