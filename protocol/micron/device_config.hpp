@@ -39,8 +39,9 @@ struct DeviceConfig {
   bool mounted_inverted = false;  ///< boot down; right only if the host sets the invert bit (7.6)
 
   std::chrono::nanoseconds boot_time{700'000'000};  ///< deaf and dumb; >= 0, < 1 s (7.1)
-  /// Least time of centring, even for a head at its centre; 0..15 s (7.4).
-  std::chrono::nanoseconds least_centring_time{500'000'000};
+  /// Least time of centring, even for a head at its centre; 0..15 s. The default is longer than one
+  /// alive_period, for drivers that want two alives of it, and ends in time for those with a watchdog (7.4).
+  std::chrono::nanoseconds least_centring_time{1'200'000'000};
   double seek_speed_rad_s = 1.5707963267948966;          ///< while centring, > 0 (7.4)
   std::chrono::nanoseconds alive_period{1'000'000'000};  ///< > 0 (7.1)
   bool alive_while_scanning = true;                      ///< also while lines are owed (8.5)

@@ -50,9 +50,11 @@ void read_timing(YamlSection& section, micron::DeviceConfig& device) {
   section.duration(
       "boot_ms", device.boot_time, Range::from(0.0, 999.0),
       "deaf and dumb after a reboot; when the daemon starts, its heads have long been on and are centred");
-  section.duration("centring_ms", device.least_centring_time, Range::from(0.0, 15'000.0),
-                   "the least time of centring after a reboot, also of a head that stands at its centre; the "
-                   "way to the centre takes longer where it is longer");
+  section.duration(
+      "centring_ms", device.least_centring_time, Range::from(0.0, 15'000.0),
+      "the least time of centring after a reboot, also for a head at its centre. Above 1000 a "
+      "driver gets two alives of it; above about 1800 a driver with a watchdog reboots the head again. "
+      "A long way to the centre takes longer");
   section.angle("seek_speed_deg", device.seek_speed_rad_s, Range::above(0.0, 36'000.0),
                 "degrees per second while centring");
   section.duration("alive_period_ms", device.alive_period, Range::from(10.0, minute_ms),
