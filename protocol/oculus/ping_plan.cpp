@@ -108,7 +108,7 @@ double pressure_bar(std::optional<double> depth_m, const PlanConfig& config) {
 void report_readings(const SensorReadings& readings, const PlanConfig& config, PingResult& ping) {
   constexpr double degrees = 180.0 / std::numbers::pi;
   const double heading_deg = config.heading_sign * readings.heading_rad * degrees;
-  ping.heading_deg = heading_deg < 0.0 ? heading_deg + 360.0 : heading_deg;
+  ping.heading_deg = heading_deg < 0.0 ? std::fmod(heading_deg + 360.0, 360.0) : heading_deg;
   ping.pitch_deg = config.pitch_sign * readings.pitch_rad * degrees;
   ping.roll_deg = config.roll_sign * readings.roll_rad * degrees;
   ping.pressure_bar = pressure_bar(readings.depth_m, config);

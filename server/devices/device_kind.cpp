@@ -23,7 +23,7 @@ SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<
   const double level = std::hypot(ahead.x, ahead.y);
   SensorReadings readings;
   const double heading = level > vertical ? std::atan2(ahead.x, ahead.y) : std::atan2(port.y, -port.x);
-  readings.heading_rad = heading < 0.0 ? heading + turn : heading;
+  readings.heading_rad = heading < 0.0 ? std::fmod(heading + turn, turn) : heading;
   readings.pitch_rad = std::atan2(ahead.z, level);
   readings.roll_rad = level > vertical ? std::atan2(port.z, up.z) : 0.0;
   if (water_surface_z_m) {

@@ -36,6 +36,13 @@ TEST(SensorReadings, heading_grows_clockwise_from_north) {
   expect_deg(turned(0, 0, -90), 180, 0, 0);
 }
 
+TEST(SensorReadings, heading_is_below_a_whole_turn_however_little_is_west_of_north) {
+  const double half = std::sqrt(0.5);
+  for (const double z : {std::nextafter(half, 0.0), half, std::nextafter(half, 1.0)}) {
+    expect_deg({{}, {half, 0.0, 0.0, z}}, 0, 0, 0);
+  }
+}
+
 TEST(SensorReadings, pitch_is_positive_nose_up_and_roll_starboard_down) {
   expect_deg(turned(0, 20, 30), 60, -20, 0);
   expect_deg(turned(0, -10, 30), 60, 10, 0);

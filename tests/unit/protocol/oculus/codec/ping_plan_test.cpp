@@ -29,6 +29,7 @@ TEST(OculusPlan, acknowledges_mode_gamma_flags_range_and_salinity_exactly) {
     fire.fire.sound_speed_mps = 1510.0;
     const PingPlan plan = plan_ping(fire, {});
     SimpleFire wanted = fire;
+    wanted.version = 1;
     wanted.fire.gain_percent = mode == 2 ? 70.0 : 50.0;
     EXPECT_TRUE(plan.result.fire == wanted);
     EXPECT_EQ(plan.range_m, mode == 1 ? 120.0 : 40.0);
@@ -94,6 +95,11 @@ TEST(OculusPlan, attitude_is_in_degrees_with_the_signs_of_the_configuration) {
     EXPECT_NEAR(ping.roll_deg, it.roll_deg, 1e-9);
     EXPECT_NEAR(ping.pressure_bar, 3.013, 1e-9);
   }
+  PlanConfig other_way;
+  other_way.heading_sign = -1;
+  PingResult north;
+  report_readings({.heading_rad = 1e-18, .depth_m = std::nullopt}, other_way, north);
+  EXPECT_EQ(north.heading_deg, 0.0) << "not 360";
 }
 
 TEST(OculusPlan, rates_are_limits) {
