@@ -309,6 +309,15 @@ class Sphere(HeadCase):
         self.assertAlmostEqual((row + 0.5) * ping.resolution_m, SPHERE_RANGE_M, delta=0.06)
         self.assertAlmostEqual(ping.bearings_cdeg[beam] / 100, SPHERE_BEARING, delta=2.0)
 
+    def test_a_level_head_that_looks_east_has_a_heading_of_90_degrees_and_the_water_of_the_configuration(self):
+        client = self.client()
+        client.write(messages.fire(mode=LOW, flags=0x09, range_m=5.0, speed=1500.0, version=2, extension=0))
+        ping = client.ping()
+        self.assertAlmostEqual(ping.pressure_bar, 1.013 + 0.1 * 10, delta=1e-9)
+        self.assertEqual(ping.temperature_c, 18)
+        for angle, right in zip(ping.attitude_deg, (90, 0, 0), strict=True):
+            self.assertAlmostEqual(angle, right, delta=1e-9)
+
     def test_samples_of_all_widths_and_gammas_are_of_one_picture(self):
         """The same ping, twice, has the same noise only by chance: the ball is compared."""
         strongest = {}
