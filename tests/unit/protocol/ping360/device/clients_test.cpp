@@ -393,7 +393,7 @@ TEST(Ping360Clients, a_repeated_command_that_crosses_its_answer_costs_one_ping) 
   EXPECT_EQ(bench.jobs.size(), before + 100);
 }
 
-// iPing360Device orders its scan every 5 s; a turn of 20 m takes 20 s.
+// A client that orders its scan again every 5 s; a turn of 20 m takes 20 s.
 TEST(Ping360Clients, auto_transmit_sent_every_5_s_scans_whole_turns) {
   Bench bench;
   const AutoTransmit command{.sample_period = 888, .number_of_samples = 1200};
