@@ -2,6 +2,8 @@
 // Loops of public drivers as they run: when each gives up, what it looks at first, what it repeats. Which
 // drivers they are, and where to find them: docs/your-micron-driver.md. The names of the tests are those of
 // the defects that they have shown.
+#include <numbers>
+
 #include "driver.hpp"
 
 namespace sonard::micron {
@@ -222,6 +224,20 @@ TEST(PublicDrivers, S3_two_alives_of_centring_and_lines_before_a_watchdog_fires)
       EXPECT_EQ((*alive)[20] & 0x03, 0x01) << bearing;
     }
     driver.sleep(5s);
+    leave_at(driver, bearing);
+    Watchdog watchdog{driver};
+    watchdog.program();
+    EXPECT_GT(watchdog.run_until(driver.bench().now + 20s), 200U) << bearing;
+    EXPECT_EQ(watchdog.programmed, 1) << bearing;
+  }
+}
+
+// A motor that seeks twice as fast: from everywhere.
+TEST(PublicDrivers, S3_a_fast_motor_has_lines_before_a_watchdog_fires_from_everywhere) {
+  for (int bearing = 0; bearing < 6400; bearing += 800) {
+    DeviceConfig config;
+    config.seek_speed_rad_s = std::numbers::pi;
+    Driver driver(steady, config);
     leave_at(driver, bearing);
     Watchdog watchdog{driver};
     watchdog.program();
