@@ -2,9 +2,6 @@
 # sonard_build_info: a header, and a module of Python, with what --version prints. They are written anew when the commit has
 # changed, and only the files with main() include the header.
 set(SONARD_FEATURES "")
-if(assimp_FOUND)
-  list(APPEND SONARD_FEATURES Assimp)
-endif()
 if(GEOGRAPHICLIB_FOUND)
   list(APPEND SONARD_FEATURES GeographicLib)
 endif()

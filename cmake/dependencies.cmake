@@ -4,6 +4,7 @@
 
 # ---- needed -----------------------------------------------------------------------------------------------------
 include(GNUInstallDirs)
+find_package(assimp REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
@@ -45,11 +46,6 @@ foreach(part IN LISTS parts)
 endforeach()
 
 # ---- optional: the daemon says the same when it is asked for what is missing --------------------------------------
-find_package(assimp QUIET)
-if(NOT assimp_FOUND)
-  message(STATUS "Without Assimp (libassimp-dev): meshes of .glb, .gltf and .fbx are refused")
-endif()
-
 pkg_check_modules(GEOGRAPHICLIB QUIET IMPORTED_TARGET geographiclib)
 if(NOT GEOGRAPHICLIB_FOUND)
   message(STATUS "Without GeographicLib (libgeographiclib-dev): world.origin, maps at their place on Earth and "

@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/assimp_mesh_reader.hpp"
 
-#include <stdexcept>
-
-#ifndef SONARD_HAS_ASSIMP
-
-namespace sonard::render {
-
-RawMesh read_with_assimp(const std::filesystem::path&, const std::string&) {
-  throw std::runtime_error(
-      "this program was built without Assimp, which reads this format: install libassimp-dev and build "
-      "again, "
-      "or export the mesh as OBJ, STL, PLY or DAE");
-}
-
-}  // namespace sonard::render
-
-#else
-
-#include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <system_error>
+#include <vector>
 
+#include <assimp/ColladaMetaData.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -89,6 +74,15 @@ glm::dmat4 fbx_axes(const aiScene& scene) {
   return matrix;
 }
 
+/// Of the root node. That of COLLADA and 3DS is Assimp's own: it turns the file to y up and applies the unit,
+/// which mesh_file does. That of FBX is, too; releases differ in what of unit and axes they put into it.
+glm::dmat4 root_transform(const aiScene& scene, const std::string& extension) {
+  if (extension == "dae" || extension == "3ds") {
+    return glm::dmat4(1.0);
+  }
+  return extension == "fbx" ? fbx_axes(scene) : matrix_of(scene.mRootNode->mTransformation);
+}
+
 RawPart triangles_of(const aiScene& scene, const aiMesh& mesh) {
   RawPart part;
   part.material_name = scene.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
@@ -114,36 +108,60 @@ RawPart triangles_of(const aiScene& scene, const aiMesh& mesh) {
   return part;
 }
 
+/// Which names of a mesh in the scene may be the submesh's, from the one that Gazebo knows to the widest.
+enum class SubmeshRule { node_name, own_names, names_above };
+
 class Collector {
  public:
-  Collector(const aiScene& scene, const std::string& submesh) : scene_(scene), submesh_(submesh) {}
+  Collector(const aiScene& scene, const std::string& submesh, SubmeshRule rule)
+      : scene_(scene), submesh_(submesh), rule_(rule) {}
 
-  void add(const aiNode& node, const glm::dmat4& T_mesh_node, bool selected) {
-    selected = is_wanted(node.mName) || selected;
+  void add(const aiNode& node, const glm::dmat4& T_mesh_node, const std::string& outer_name,
+           bool outer_wanted) {
+    const std::string given_name = given_name_of(node);
+    // Gazebo counts a node without a name to the next one above that has one.
+    const std::string& name = given_name.empty() ? outer_name : given_name;
+    const bool has_this_name = is_wanted(given_name) || is_wanted(id_of(node));
+    const bool wanted = submesh_.empty() ||
+                        (rule_ == SubmeshRule::names_above && (outer_wanted || has_this_name)) ||
+                        (rule_ == SubmeshRule::own_names && has_this_name) || name == submesh_;
     for (unsigned int i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
-      if (is_wanted(mesh.mName) || selected) {
+      const bool has_name = is_wanted(mesh.mName.C_Str());
+      if (wanted || (rule_ != SubmeshRule::node_name && has_name)) {
         mesh_.add(triangles_of(scene_, mesh), T_mesh_node);
       }
     }
     for (unsigned int i = 0; i < node.mNumChildren; ++i) {
       const aiNode& child = *node.mChildren[i];
-      add(child, T_mesh_node * matrix_of(child.mTransformation), selected);
+      add(child, T_mesh_node * matrix_of(child.mTransformation), name, outer_wanted || has_this_name);
     }
   }
 
   RawMesh take() { return std::move(mesh_); }
 
  private:
-  bool is_wanted(const aiString& name) {
-    if (name.length > 0) {
-      mesh_.names.emplace_back(name.C_Str());
+  /// Assimp invents a name for a node of COLLADA that has none.
+  static std::string given_name_of(const aiNode& node) {
+    const std::string name = node.mName.C_Str();
+    return name.starts_with("$ColladaAutoName$") ? "" : name;
+  }
+
+  static std::string id_of(const aiNode& node) {
+    aiString id;
+    return node.mMetaData != nullptr && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id) ? id.C_Str() : "";
+  }
+
+  bool is_wanted(const std::string& name) {
+    if (!name.empty()) {
+      mesh_.names.push_back(name);
     }
-    return submesh_ == name.C_Str();
+    return !name.empty() && submesh_ == name;
   }
 
   const aiScene& scene_;
   const std::string& submesh_;
+  const SubmeshRule rule_;
   RawMesh mesh_;
 };
 
@@ -153,6 +171,9 @@ RawMesh read_with_assimp(const std::filesystem::path& file, const std::string& s
   Assimp::Importer importer;
   importer.SetIOHandler(new OneFolderOnly(file.parent_path()));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
+                           true);  // no stand-ins for a scene without meshes
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -160,14 +181,16 @@ RawMesh read_with_assimp(const std::filesystem::path& file, const std::string& s
   if (scene == nullptr || scene->mRootNode == nullptr) {
     throw std::runtime_error(importer.GetErrorString());
   }
-  Collector collector(*scene, submesh);
   const aiNode& root = *scene->mRootNode;
-  // The root of an FBX is Assimp's own; releases differ in what of unit and axes they put into it.
-  const bool is_fbx = lower_extension(file) == "fbx";
-  collector.add(root, is_fbx ? fbx_axes(*scene) : matrix_of(root.mTransformation), submesh.empty());
-  return collector.take();
+  for (const SubmeshRule rule : {SubmeshRule::node_name, SubmeshRule::own_names, SubmeshRule::names_above}) {
+    Collector collector(*scene, submesh, rule);
+    collector.add(root, root_transform(*scene, lower_extension(file)), "", false);
+    RawMesh mesh = collector.take();
+    if (!mesh.parts.empty() || rule == SubmeshRule::names_above) {
+      return mesh;
+    }
+  }
+  return {};
 }
 
 }  // namespace sonard::render
-
-#endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of the formats that OpenSceneGraph does not read: glTF 2.0 and FBX, through Assimp. Runs inside
-// run_isolated(): nothing here is safe against bad files.
+// Triangles out of whatever Assimp can read. Runs inside run_isolated(): nothing here is safe against bad
+// files.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,13 @@
 
 namespace sonard::render {
 
-/// Reads `file`, of a .gltf its buffers too where they lie in its folder or below, and nothing else. All
-/// transforms inside the file are applied. Axes of a glTF are those of the file, as in Gazebo; an FBX names
-/// its own unit and axes, which become metres and z up. With a `submesh` only the nodes or meshes of that
-/// name are taken. Points, lines, skeletons and poses of animations are left out.
-/// @throws std::runtime_error when Assimp cannot read it, or this program was built without Assimp.
+/// Reads `file`, and files that it names (buffers of a .gltf, materials of an .obj) if they lie in its folder
+/// or below. All transforms inside the file are applied. Axes and unit stay those of the file; only an FBX
+/// becomes metres with z up. Points, lines, skeletons and poses of animations are left out.
+/// @param submesh empty: all. Otherwise, as in Gazebo, the meshes of the nodes of that name, without those of
+/// named nodes below; if there are none, the meshes of that name or with a node of that id; if there are
+/// none, all below such a node.
+/// @throws std::runtime_error if Assimp cannot read the file.
 RawMesh read_with_assimp(const std::filesystem::path& file, const std::string& submesh);
 
 }  // namespace sonard::render

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -30,6 +31,14 @@ unsigned int reading_limit_s(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   return static_cast<unsigned int>(std::min(longest_s, base_s + (error ? 0 : size / bytes_per_s)));
+}
+
+std::string head_of(const std::filesystem::path& file, std::size_t limit) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text(limit, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(limit));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
 }
 
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,

@@ -2,8 +2,10 @@
 // What may be handed to a foreign file reader: an existing local file of a known kind, nothing else.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace sonard::render {
@@ -17,6 +19,9 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
 /// Processor time that reading the file may take: the plugins need about 0.05 s for a megabyte, and on some
 /// damaged files they never end.
 unsigned int reading_limit_s(const std::filesystem::path& file);
+
+/// Up to `limit` bytes from the start of a file.
+std::string head_of(const std::filesystem::path& file, std::size_t limit);
 
 /// Extension in lower case without the dot.
 std::string lower_extension(const std::filesystem::path& file);

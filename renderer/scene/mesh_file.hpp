@@ -19,7 +19,7 @@ struct MeshFileRequest {
   std::string submesh;          ///< only the parts of this name; empty = all
   bool center_submesh = false;  ///< moves the centre of the bounding box to the origin, before scaling
   glm::dvec3 scale{1.0};        ///< negative values mirror
-  bool tangents = false;        ///< for a normal map: texture coordinates are then required
+  bool tangents = false;        ///< for a normal map, where the mesh has texture coordinates
 
   bool operator==(const MeshFileRequest&) const = default;
 };
@@ -34,10 +34,11 @@ struct MeshFile {
   std::vector<MeshFilePart> parts;  ///< one per material, each with at least one triangle
   MeshDiagnostics diagnostics;
   std::vector<std::string> warnings;  ///< each names the file
+  std::string up_axis{};  ///< "X_UP" or "Y_UP" of a COLLADA file, which is not applied; else empty
 };
 
 /// @throws WorldError naming the file: not found, not local, unknown format, damaged, no triangles, no such
-/// submesh, no texture coordinates, more than 50 million triangles.
+/// submesh, more than 50 million triangles.
 MeshFile load_mesh_file(const MeshFileRequest& request);
 
 }  // namespace sonard::render

@@ -14,6 +14,8 @@
 #include <osgDB/Callbacks>
 #include <osgDB/Registry>
 
+#include "renderer/scene/local_file.hpp"
+
 namespace sonard::render {
 namespace {
 
@@ -123,16 +125,7 @@ class TriangleCollector : public osg::NodeVisitor {
     material_ = outer_material;
   }
 
-  /// The OBJ plugin names a node "group:object".
-  bool is_submesh(const osg::Node& node) const {
-    if (submesh_.empty()) {
-      return false;
-    }
-    const std::string& name = node.getName();
-    const std::size_t colon = name.find(':');
-    return name == submesh_ || (colon != std::string::npos &&
-                                (name.substr(0, colon) == submesh_ || name.substr(colon + 1) == submesh_));
-  }
+  bool is_submesh(const osg::Node& node) const { return !submesh_.empty() && node.getName() == submesh_; }
 
   /// OBJ puts the name on the material attribute, DAE on the state set.
   static std::string material_of(const osg::StateSet* state, const std::string& inherited) {
@@ -178,8 +171,8 @@ class TriangleCollector : public osg::NodeVisitor {
 RawMesh read_with_osg(const std::filesystem::path& file, const std::string& submesh) {
   osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
   // Without these the OBJ plugin turns the model to its own idea of "up" and smooths edges that have no
-  // normals, and the STL plugin spends minutes on making triangle strips.
-  options->setOptionString("noRotation noTriStripPolygons generateFacetNormals");
+  // normals.
+  options->setOptionString("noRotation generateFacetNormals");
   options->setPrecisionHint(osgDB::Options::DOUBLE_PRECISION_VERTEX);
   osg::ref_ptr<OneFileOnly> guard = new OneFileOnly(file.string());
   osgDB::Registry::instance()->setReadFileCallback(guard);
@@ -193,7 +186,11 @@ RawMesh read_with_osg(const std::filesystem::path& file, const std::string& subm
   }
   RawMesh mesh;
   TriangleCollector collector(mesh, submesh);
-  node->accept(collector);
+  if (lower_extension(file) == "dae" && node->asGroup() != nullptr) {
+    node->asGroup()->traverse(collector);  // the root is the plugin's own and turns <up_axis> to z
+  } else {
+    node->accept(collector);
+  }
   return mesh;
 }
 

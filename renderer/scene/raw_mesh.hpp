@@ -23,7 +23,7 @@ struct RawPart {
 
 struct RawMesh {
   std::vector<RawPart> parts;
-  std::vector<std::string> names;  ///< nodes and meshes, for error messages
+  std::vector<std::string> names;  ///< of nodes, meshes or solids, for error messages; may repeat
 
   /// Adds triangles to those of the same material and attributes, moved by `T_mesh_part`. A mirroring
   /// transform keeps the outside of the triangles outside.

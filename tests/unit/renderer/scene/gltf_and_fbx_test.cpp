@@ -143,11 +143,6 @@ void expect_tetrahedron(const MeshFile& file, const glm::dvec3& at_m = glm::dvec
 
 class GltfAndFbx : public testing::Test {
  protected:
-#ifndef SONARD_HAS_ASSIMP
-  void SetUp() override {
-    GTEST_SKIP() << "built without Assimp";
-  }
-#endif
   test::TempFolder folder_;
 };
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene/mesh_readers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "renderer/scene/assimp_mesh_reader.hpp"
+#include "renderer/scene/isolated.hpp"
+#include "renderer/scene/local_file.hpp"
+#include "renderer/scene/osg_mesh_reader.hpp"
+#include "renderer/scene/stl_reader.hpp"
+
+namespace sonard::render {
+namespace {
+
+constexpr MeshReader assimp{"Assimp", read_with_assimp};
+constexpr MeshReader osg{"OpenSceneGraph", read_with_osg};
+constexpr MeshReader stl{"STL", read_stl};
+
+struct Format {
+  std::string_view extension;
+  const MeshReader* first;
+  const MeshReader* second = nullptr;
+};
+
+/// Assimp takes the first bytes of a binary PLY for the end of its header if they look like one.
+constexpr std::array<Format, 11> formats{{{"obj", &assimp, &osg},
+                                          {"stl", &stl},
+                                          {"ply", &osg, &assimp},
+                                          {"dae", &assimp, &osg},
+                                          {"glb", &assimp},
+                                          {"gltf", &assimp},
+                                          {"fbx", &assimp},
+                                          {"osgt", &osg},
+                                          {"osgb", &osg},
+                                          {"ive", &osg},
+                                          {"3ds", &assimp, &osg}}};
+
+}  // namespace
+
+std::span<const std::string_view> mesh_extensions() {
+  static const std::vector<std::string_view> extensions = [] {
+    std::vector<std::string_view> all;
+    std::ranges::transform(formats, std::back_inserter(all), &Format::extension);
+    return all;
+  }();
+  return extensions;
+}
+
+std::vector<MeshReader> mesh_readers(const std::filesystem::path& file) {
+  std::vector<MeshReader> readers;
+  for (const Format& format : formats) {
+    if (format.extension == lower_extension(file)) {
+      readers.push_back(*format.first);
+      if (format.second != nullptr) {
+        readers.push_back(*format.second);
+      }
+    }
+  }
+  return readers;
+}
+
+RawMesh read_mesh(std::span<const MeshReader> readers, const std::filesystem::path& file,
+                  const std::string& submesh, std::vector<std::string>& warnings) {
+  std::vector<std::string> failures;
+  std::optional<RawMesh> without_triangles;
+  for (const MeshReader& reader : readers) {
+    try {
+      RawMesh mesh = raw_mesh_of(
+          run_isolated([&] { return to_bytes(reader.read(file, submesh)); }, reading_limit_s(file)).bytes);
+      if (!mesh.parts.empty()) {
+        if (!failures.empty()) {
+          warnings.push_back(fmt::format("{}: read by {}, as {}; check its shape, or export the mesh again",
+                                         file.string(), reader.name, fmt::join(failures, "; ")));
+        }
+        return mesh;
+      }
+      without_triangles = without_triangles ? std::move(without_triangles) : std::move(mesh);
+    } catch (const IsolatedFailure& error) {
+      failures.push_back(readers.size() == 1 ? error.what()
+                                             : fmt::format("{} says: {}", reader.name, error.what()));
+    }
+  }
+  if (!without_triangles) {
+    throw std::runtime_error(fmt::format(
+        "{}{}", readers.size() == 1 ? "" : "no reader takes this file: ", fmt::join(failures, "; ")));
+  }
+  return std::move(*without_triangles);
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which readers take which mesh format, in what order. The order is by measurement: docs/worlds.md.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/scene/raw_mesh.hpp"
+
+namespace sonard::render {
+
+struct MeshReader {
+  std::string_view name;
+  RawMesh (*read)(const std::filesystem::path& file, const std::string& submesh);
+};
+
+/// Extensions of the formats that can be read, in lower case without the dot.
+std::span<const std::string_view> mesh_extensions();
+
+/// The readers of the file's format, the best one first; at least one if its extension is known.
+std::vector<MeshReader> mesh_readers(const std::filesystem::path& file);
+
+/// The triangles that the first of `readers` finds, in the unit and the axes of the file (an FBX: in metres,
+/// z up). Each reader runs in a process of its own. With a `submesh` only the parts of that name are taken.
+/// The result has no parts if no reader finds triangles. If a reader fails and a later one reads the file,
+/// that is a warning.
+/// @throws std::runtime_error with what each reader said, if none can read the file.
+RawMesh read_mesh(std::span<const MeshReader> readers, const std::filesystem::path& file,
+                  const std::string& submesh, std::vector<std::string>& warnings);
+
+}  // namespace sonard::render
