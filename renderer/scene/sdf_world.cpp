@@ -132,6 +132,7 @@ class WorldBuilder {
     if (problems_.empty() && world_.triangle_count() == 0) {
       problems_.add(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
     }
+    tell_what_may_lie();
     drop_repeated_warnings();
     if (!problems_.empty()) {
       throw WorldError(problems_.lines(), std::move(world_.warnings));
@@ -177,6 +178,17 @@ class WorldBuilder {
   void drop_repeated_warnings() {
     std::set<std::string> seen;
     std::erase_if(world_.warnings, [&](const std::string& line) { return !seen.insert(line).second; });
+  }
+
+  /// Gazebo takes the axes of COLLADA as they are.
+  void tell_what_may_lie() {
+    for (const auto& [up_axis, files] : up_axis_files_) {
+      world_.warnings.push_back(fmt::format(
+          "{}: <up_axis> {} is not applied, as in Gazebo, to {}; if such a mesh lies on its side, turn it by "
+          "<pose>{}</pose> in its <visual>",
+          file_.string(), up_axis, fmt::join(files, ", "),
+          up_axis == "Y_UP" ? "0 0 0 1.5708 0 0" : "0 0 0 0 -1.5708 0"));
+    }
   }
 
   void tell_what_is_left_out(const SdfElement& sdf) {
@@ -309,8 +321,8 @@ class WorldBuilder {
       return;
     }
     for (const MeshFilePart& part : *parts) {
-      body.parts.push_back(
-          {part.mesh, shape.T_body_shape, material_of(shape, part.material_name), normal_map, part.scale});
+      body.parts.push_back({part.mesh, shape.T_body_shape, material_of(shape, part.material_name),
+                            part.mesh->tangents.empty() ? nullptr : normal_map, part.scale});
     }
   }
 
@@ -401,6 +413,9 @@ class WorldBuilder {
     }
     world_.diagnostics += loaded.diagnostics;
     world_.warnings.insert(world_.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+    if (!loaded.up_axis.empty()) {
+      up_axis_files_[loaded.up_axis].insert(request.file.filename().string());
+    }
     mesh_files_.emplace_back(request, loaded.parts);
     return loaded.parts;
   }
@@ -433,14 +448,24 @@ class WorldBuilder {
     return {};
   }
 
+  /// A map only refines a surface: one that cannot be used is left out with a warning.
   std::shared_ptr<const NormalMap> normal_map_of(const Shape& shape) {
     const SdfElement* const material =
         shape.element.name == "visual" ? shape.element.child("material") : nullptr;
-    const std::string uri = material == nullptr ? "" : normal_map_uri(*material);
-    if (uri.empty()) {
+    try {
+      const std::string uri = material == nullptr ? "" : normal_map_uri(*material);
+      return uri.empty() ? nullptr : normal_map_file(resolver_.resolve(uri, shape.element.folder()));
+    } catch (const WorldError& error) {
+      world_.warnings.push_back(
+          fmt::format("{}: the normal map is left out: {}; the shape is used without it, correct or remove "
+                      "<normal_map>",
+                      shape.element.place(), error.what()));
       return nullptr;
     }
-    const fs::path file = resolver_.resolve(uri, shape.element.folder());
+  }
+
+  /// Each file is read once.
+  std::shared_ptr<const NormalMap> normal_map_file(const fs::path& file) {
     auto& known = normal_maps_[file];
     if (!known) {
       known = std::make_shared<const NormalMap>(load_normal_map(file));
@@ -485,6 +510,7 @@ class WorldBuilder {
   std::map<std::string, std::vector<MeshFilePart>> primitives_;
   std::vector<std::pair<MeshFileRequest, std::vector<MeshFilePart>>> mesh_files_;
   std::map<fs::path, std::shared_ptr<const NormalMap>> normal_maps_;
+  std::map<std::string, std::set<std::string>> up_axis_files_;
 };
 
 }  // namespace

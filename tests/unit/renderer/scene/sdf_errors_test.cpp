@@ -138,21 +138,6 @@ const std::vector<Case> cases{
      model("<geometry><mesh><uri>quad.obj</uri><submesh><name>keel</name></submesh></mesh></geometry>"),
      {"world.sdf:4: m::l::v: ", "quad.obj: no submesh 'keel'"}},
     {"no_geometry", model(""), {"world.sdf:4: m::l::v: there is no geometry"}},
-    {"normal_map_without_texcoords",
-     model("<geometry><mesh><uri>quad.obj</uri></mesh></geometry><material><pbr><metal><normal_map>" +
-           std::string(SONARD_SOURCE_DIR) +
-           "/tests/data/worlds/normal_map.png</normal_map></metal></pbr></material>"),
-     {"world.sdf:4: m::l::v: ", "quad.obj: a normal map needs texture coordinates"}},
-    {"bad_normal_map",
-     model(shape + "<material><pbr><metal><normal_map>n.png</normal_map></metal></pbr></material>"),
-     {"world.sdf:4: m::l::v: ", "n.png: "}},
-    {"missing_normal_map",
-     model(shape + "<material><pbr><metal><normal_map>gone.png</normal_map></metal></pbr></material>"),
-     {"world.sdf:4: m::l::v: 'gone.png' not found"}},
-    {"object_space_normal_map",
-     model(shape +
-           "<material><pbr><metal><normal_map type=\"object\">n.png</normal_map></metal></pbr></material>"),
-     {"world.sdf:4: m::l::v: object-space normal maps are not supported"}},
     {"duplicate_body", model(shape) + "\n" + model(shape), {"world.sdf:5: another model is called 'm'"}},
     {"nan_pose",
      "<model name=\"m\"><pose>nan 0 0 0 0 0</pose><link name=\"l\"/></model>",

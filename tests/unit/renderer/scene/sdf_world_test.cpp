@@ -381,6 +381,69 @@ TEST(SdfWorld, FallsBackToCollisionsOfAModelWithoutVisuals) {
   EXPECT_THAT(world.warnings[0], HasSubstr("collision shapes"));
 }
 
+TEST(SdfWorld, NamesTheMeshesWhoseUpAxisIsNotApplied) {
+  const test::TempFolder folder;
+  std::ifstream in(shared_worlds / "millimetres.dae");
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  folder.write("upright.dae", text);
+  text.replace(text.find("Z_UP"), 4, "Y_UP");
+  folder.write("buoy.dae", text);
+  folder.write("anchor.dae", text);
+  const auto mesh = [](const std::string& file) {
+    return visual(file, geometry("<mesh><uri>" + file + "</uri></mesh>"));
+  };
+  const World world = load_world(
+      folder.write("w.sdf", world_of(mesh("upright.dae") + mesh("buoy.dae") + mesh("anchor.dae"))), {});
+  EXPECT_THAT(world.warnings, testing::ElementsAre(testing::EndsWith(
+                                  "w.sdf: <up_axis> Y_UP is not applied, as in Gazebo, to anchor.dae, "
+                                  "buoy.dae; if such a mesh lies on "
+                                  "its side, turn it by <pose>0 0 0 1.5708 0 0</pose> in its <visual>")));
+  for (const BodyPart& part : world.bodies.at(0).parts) {
+    EXPECT_NEAR(glm::distance(test::bounds(*part.mesh).high, glm::dvec3(1.0, 2.0, 3.5)), 0.0, 1e-5);
+  }
+}
+
+// Gazebo draws a shape without a map that it cannot use.
+TEST(SdfWorld, LeavesANormalMapOutThatItCannotUse) {
+  const test::TempFolder folder;
+  std::filesystem::copy_file(shared_worlds / "normal_map.png", folder.path() / "ripples.png");
+  std::filesystem::copy_file(shared_worlds / "grey8.png", folder.path() / "grey.png");
+  folder.write("bad.png", "no picture");
+  folder.write("ripples.webp", "a format that is not read");
+  folder.write("bare.obj", "v 5 0 0\nv 5 1 0\nv 5 0 1\nf 1 2 3\n");
+  const auto with_map = [](const std::string& shape, const std::string& map, const std::string& type = "") {
+    return visual("v", shape + "<material><pbr><metal><normal_map" + type + ">" + map +
+                           "</normal_map></metal></pbr></material>");
+  };
+  const std::string grey_map = geometry("<heightmap><uri>grey.png</uri><size>10 10 1</size></heightmap>");
+  struct Case {
+    std::string visual;
+    std::string warning;
+  };
+  for (const Case& given : {
+           Case{with_map(ball, "gone.png"), "the normal map is left out: 'gone.png' not found"},
+           Case{with_map(grey_map, "gone.png"), "the normal map is left out: 'gone.png' not found"},
+           Case{with_map(ball, "model://gone/a.png"), "the normal map is left out: "},
+           Case{with_map(ball, "http://127.0.0.1/a.png"), "the normal map is left out: "},
+           Case{with_map(ball, "bad.png"), "bad.png: "},
+           Case{with_map(ball, "ripples.webp"), "ripples.webp: 'webp' is not a image format"},
+           Case{with_map(ball, "grey.png"), "grey.png: a normal map needs 3 channels, this image has 1"},
+           Case{with_map(ball, "ripples.png", " type=\"object\""),
+                "object-space normal maps are not supported"},
+           Case{
+               visual("v", ball + "<material><shader type=\"normal_map_object_space\"><normal_map>ripples.png"
+                                  "</normal_map></shader></material>"),
+               "object-space normal maps are not supported"},
+           Case{with_map(geometry("<mesh><uri>bare.obj</uri></mesh>"), "ripples.png"),
+                "bare.obj: the normal map is left out where the mesh has no texture coordinates"},
+       }) {
+    const World world = load_world(folder.write("w.sdf", world_of(given.visual)), {});
+    ASSERT_EQ(world.bodies.at(0).parts.size(), 1U) << given.warning;
+    EXPECT_EQ(world.bodies[0].parts[0].normal_map, nullptr) << given.warning;
+    EXPECT_THAT(world.warnings, testing::ElementsAre(HasSubstr(given.warning)));
+  }
+}
+
 TEST(SdfWorld, LoadsNormalMapsOfBothKindsOnce) {
   const test::TempFolder folder;
   std::filesystem::copy_file(shared_worlds / "normal_map.png", folder.path() / "ripples.png");
