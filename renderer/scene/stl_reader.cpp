@@ -31,10 +31,13 @@ bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
+char lower(char c) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+/// @param word in lower case
 bool is_word(std::string_view text, std::string_view word) {
-  return std::ranges::equal(text, word, [](char a, char b) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(a))) == b;
-  });
+  return std::ranges::equal(text, word, [](char a, char b) { return lower(a) == b; });
 }
 
 /// Words of a text, with the number of the line that the last one is in.
@@ -57,10 +60,10 @@ class Words {
   std::string_view name() {
     std::string_view rest = text_.substr(0, text_.find_first_of("\r\n"));
     const std::string_view facet = " facet";
-    const auto found = std::ranges::search(rest, facet, [](char a, char b) {
-      return b == ' ' ? is_blank(a) : static_cast<char>(std::tolower(static_cast<unsigned char>(a))) == b;
-    });
-    rest = rest.substr(0, static_cast<std::size_t>(found.begin() - rest.begin()));
+    const auto* const end =
+        std::search(rest.begin(), rest.end(), facet.begin(), facet.end(),
+                    [](char a, char b) { return b == ' ' ? is_blank(a) : lower(a) == b; });
+    rest = rest.substr(0, static_cast<std::size_t>(end - rest.begin()));
     take(rest.size());
     const std::size_t begin = std::min(rest.size(), rest.find_first_not_of(" \t"));
     return rest.substr(begin, rest.find_last_not_of(" \t") + 1 - begin);

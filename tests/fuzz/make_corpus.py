@@ -17,6 +17,7 @@ mavlink/           datagrams of each message, signed, among others, broken
 pose/              pose messages, and streams of them
 configuration/     configurations that are good, and those with one mistake each
 sdf/               small worlds
+stl/               text and binary, whole and cut
 web/               what a browser sends over one connection
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
@@ -401,6 +402,18 @@ def pcapng_files():
     yield "cut", (section + interface + packet)[:-5]
 
 
+def stl_files():
+    text = (b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex +1e0 2 -0.5\nendloop\nendfacet\n"
+            b"endsolid a\n")
+    binary = b"solid".ljust(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0)
+    yield "text", text
+    yield "capitals", b"  " + 2 * text.upper()
+    yield "text_cut", text[:-30]
+    yield "binary", binary
+    yield "binary_cut", binary[:-7]
+    yield "binary_longer", b"x" + binary[1:] + b"notes"
+
+
 def mavlink_crc(data):
     crc = 0xFFFF
     for byte in data:
@@ -506,7 +519,7 @@ def main():
                             ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
-                            ("configuration", configurations()), ("sdf", sdf_worlds()), ("web", web_connections())):
+                            ("configuration", configurations()), ("sdf", sdf_worlds()), ("stl", stl_files()), ("web", web_connections())):
         for name, script in scripts:
             write(folder, name, script)
 
