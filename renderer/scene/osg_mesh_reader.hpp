@@ -11,8 +11,8 @@
 namespace sonard::render {
 
 /// Reads `file` (and no other: textures, material images and references to further files or servers are
-/// refused), keeps its axes and its unit, applies all transforms inside it. With a `submesh` only the nodes of that name
-/// are taken.
+/// refused), keeps its axes and its unit, applies all transforms inside it. With a `submesh` only the nodes
+/// of that name are taken.
 /// @throws std::runtime_error when osgDB has no node for it.
 RawMesh read_with_osg(const std::filesystem::path& file, const std::string& submesh);
 

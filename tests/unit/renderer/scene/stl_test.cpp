@@ -151,7 +151,7 @@ TEST_F(Stl, NamesTheTrueCause) {
               HasSubstr("hull.stl: the file is cut short: it ends inside a facet"));
   EXPECT_THAT(error_of(replaced(text, " 2 0\n", " 2 blah\n")),
               HasSubstr("hull.stl: line 6: 'blah' is not a number"));
-  EXPECT_THAT(error_of(replaced(text, "vertex 5 2 0\n", "vertx 5 2 0\n")),
+  EXPECT_THAT(error_of(replaced(text, "vertex 5 2 0\n", "corner 5 2 0\n")),
               HasSubstr("hull.stl: line 7: a facet has 2 corners, expected 3"));
 }
 
