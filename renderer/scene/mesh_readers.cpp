@@ -28,10 +28,11 @@ struct Format {
   const MeshReader* second = nullptr;
 };
 
-/// Assimp takes the first bytes of a binary PLY for the end of its header if they look like one.
+/// Assimp is no reader of PLY: it takes the first bytes of a binary one for the end of its header if they
+/// look like one, and does not end on some texts that are cut short.
 constexpr std::array<Format, 11> formats{{{"obj", &assimp, &osg},
                                           {"stl", &stl},
-                                          {"ply", &osg, &assimp},
+                                          {"ply", &osg},
                                           {"dae", &assimp, &osg},
                                           {"glb", &assimp},
                                           {"gltf", &assimp},
