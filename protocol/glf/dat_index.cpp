@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "protocol/common/result.hpp"
 #include "protocol/glf/headers.hpp"
@@ -67,9 +69,41 @@ bool goes_on_at(const PiecewiseBytes& dat, std::uint64_t offset) {
   return terminator_at(dat, offset) || (reader.ok() && header.length >= ci_header_size && spare_is_zero);
 }
 
+/// True where a whole image or status starts that another record or the end follows.
+bool record_starts_at(const PiecewiseBytes& dat, std::uint64_t offset) {
+  Front front{};
+  ByteReader reader{read_front(dat, offset, front)};
+  const CiHeader header = read_ci_header(reader);
+  const bool spare_is_zero = front[19] == 0 && front[20] == 0;
+  if (!reader.ok() || header.version != CiHeader{}.version || !spare_is_zero) {
+    return false;
+  }
+  if (header.type == static_cast<std::uint8_t>(RecordType::image)) {
+    return image_size(dat, offset, reader).has_value();
+  }
+  const std::uint64_t end = offset + ci_header_size + status_body_size;
+  return header.type == static_cast<std::uint8_t>(RecordType::status) && end <= dat.size() &&
+         (end == dat.size() || goes_on_at(dat, end));
+}
+
+/// Where the next record starts behind `offset`.
+std::optional<std::uint64_t> next_record(const PiecewiseBytes& dat, std::uint64_t offset) {
+  std::vector<std::uint8_t> window(std::size_t{1} << 16);
+  for (std::uint64_t start = offset + 1; start < dat.size(); start += window.size()) {
+    window.resize(static_cast<std::size_t>(std::min<std::uint64_t>(window.size(), dat.size() - start)));
+    dat.copy(start, window);
+    for (std::size_t i = 0; i < window.size(); ++i) {
+      if (window[i] == record_id && record_starts_at(dat, start + i)) {
+        return start + i;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 class Indexer {
  public:
-  explicit Indexer(const PiecewiseBytes& dat) : dat_(dat) {}
+  Indexer(const PiecewiseBytes& dat, OnDamage on_damage) : dat_(dat), on_damage_(on_damage) {}
 
   DatIndex run() {
     while (offset_ < dat_.size() && !terminator_at(dat_, offset_) && step()) {
@@ -97,6 +131,10 @@ class Indexer {
                    ? take(header, ci_header_size + status_body_size)
                    : stop({WireErrorReason::truncated, ci_header_size, "status"});
     }
+    if (const auto size = image_size(dat_, offset_, reader)) {
+      skip_to(offset_ + *size, {WireErrorReason::bad_value, 14, "type"});  // an image by all but its type
+      return true;
+    }
     if (header.length < ci_header_size) {
       return stop({WireErrorReason::bad_length, 2, "length"});
     }
@@ -119,8 +157,7 @@ class Indexer {
         !goes_on_at(dat_, offset_ + header.length)) {
       return stop(size.error());
     }
-    ++index_.damaged_records;
-    offset_ += header.length;
+    skip_to(offset_ + header.length, size.error());
     return true;
   }
 
@@ -132,20 +169,32 @@ class Indexer {
     return true;
   }
 
+  void skip_to(std::uint64_t next, const WireError& error) {
+    index_.damaged.push_back({offset_, next - offset_, moved(error, offset_)});
+    offset_ = next;
+  }
+
+  /// True when a record follows that can be read.
   bool stop(const WireError& error) {
-    index_.tail_error = moved(error, offset_);
-    return false;
+    const auto next = on_damage_ == OnDamage::skip ? next_record(dat_, offset_) : std::nullopt;
+    if (next) {
+      skip_to(*next, error);
+    } else {
+      index_.tail_error = moved(error, offset_);
+    }
+    return next.has_value();
   }
 
   const PiecewiseBytes& dat_;
+  OnDamage on_damage_;
   std::uint64_t offset_ = 0;
   DatIndex index_;
 };
 
 }  // namespace
 
-DatIndex index_dat(const PiecewiseBytes& dat) {
-  return Indexer{dat}.run();
+DatIndex index_dat(const PiecewiseBytes& dat, OnDamage on_damage) {
+  return Indexer{dat, on_damage}.run();
 }
 
 }  // namespace sonard::glf

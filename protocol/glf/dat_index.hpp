@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "protocol/common/damage.hpp"
 #include "protocol/common/wire_error.hpp"
 #include "protocol/glf/piecewise_bytes.hpp"
 #include "protocol/glf/records.hpp"
@@ -22,19 +23,21 @@ struct RecordEntry {
 };
 
 struct DatIndex {
-  std::vector<RecordEntry> records;   ///< all whole images and statuses, in the order of the file
-  std::uint64_t other_records = 0;    ///< of types that this library does not know, skipped by their length
-  std::uint64_t damaged_records = 0;  ///< images that make no sense, skipped by their length
-  bool closed = false;                ///< the terminator follows the last record, and nothing follows it
+  std::vector<RecordEntry> records;  ///< all whole images and statuses, in the order of the file
+  std::uint64_t other_records = 0;   ///< of types that this library does not know, skipped by their length
+  std::vector<Damage> damaged;  ///< parts that are no record, although records follow; offsets in the .dat
+  bool closed = false;          ///< the terminator follows the last record, and nothing follows it
   /// Where the last record ends that was found. Cut a .dat that was not closed to this size, append
   /// dat_terminator, and it is a log again. Keep the original where tail_size is more than one record can
-  /// be: then something in the middle is damaged, and what lies behind it would go, too.
+  /// be: then something in the middle is damaged, and what lies behind it would go, too (OnDamage::stop).
   std::uint64_t whole_size = 0;
   std::uint64_t tail_size = 0;          ///< bytes from there on that are neither record nor terminator
   std::optional<WireError> tail_error;  ///< why they are no record; offset in the .dat
 };
 
-/// Reads headers only: whether the pixels of an image unpack shows when it is decoded.
-DatIndex index_dat(const PiecewiseBytes& dat);
+/// Reads headers only: whether the pixels of an image unpack shows when it is decoded. An image that makes no
+/// sense is skipped by its length if that leads to a record or the end. OnDamage::skip searches for the next
+/// image or status behind anything else that cannot be read.
+DatIndex index_dat(const PiecewiseBytes& dat, OnDamage on_damage = OnDamage::stop);
 
 }  // namespace sonard::glf

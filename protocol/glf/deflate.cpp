@@ -69,4 +69,29 @@ std::optional<Bytes> inflate_exactly(std::span<const std::uint8_t> stream, std::
   return out;
 }
 
+Bytes inflate_front(std::span<const std::uint8_t> stream, std::uint64_t max_size) {
+  z_stream state{};
+  if (inflateInit2(&state, -MAX_WBITS) != Z_OK) {
+    throw std::bad_alloc();
+  }
+  Bytes out;
+  Bytes window(std::size_t{1} << 16);
+  state.next_in = const_cast<Bytef*>(stream.data());  // zlib's interface is older than const
+  std::size_t in_left = stream.size();
+  int result = Z_OK;
+  while (result == Z_OK && out.size() < max_size) {
+    state.avail_in = static_cast<uInt>(std::min(in_left, zlib_step));
+    in_left -= state.avail_in;
+    state.next_out = window.data();
+    state.avail_out = static_cast<uInt>(std::min<std::uint64_t>(window.size(), max_size - out.size()));
+    const std::size_t room = state.avail_out;
+    result = inflate(&state, Z_NO_FLUSH);
+    in_left += state.avail_in;
+    out.insert(out.end(), window.begin(),
+               window.begin() + static_cast<std::ptrdiff_t>(room - state.avail_out));
+  }
+  inflateEnd(&state);
+  return out;
+}
+
 }  // namespace sonard::glf

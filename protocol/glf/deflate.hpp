@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three things that logs need of zlib. No state but Crc32's; any thread.
+// What logs need of zlib. No state but Crc32's; any thread.
 #pragma once
 
 #include <cstddef>
@@ -34,5 +34,8 @@ enum class DeflateForm : std::uint8_t { zlib, bare };  ///< with zlib's header a
 /// A `size` that no stream of that many bytes unpacks to is refused before anything is allocated.
 std::optional<Bytes> inflate_exactly(std::span<const std::uint8_t> stream, std::uint64_t size,
                                      DeflateForm form);
+
+/// Unpacks a bare stream as far as it can be read, `max_size` bytes at most.
+Bytes inflate_front(std::span<const std::uint8_t> stream, std::uint64_t max_size);
 
 }  // namespace sonard::glf

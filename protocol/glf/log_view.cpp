@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/glf/deflate.hpp"
 #include "protocol/glf/headers.hpp"
 #include "protocol/glf/zip_entries.hpp"
 
@@ -41,7 +42,7 @@ Result<LogView, WireError> LogView::open(std::span<const std::uint8_t> file,
   }
   LogView log;
   log.dat_ = PiecewiseBytes{file};
-  log.index_ = index_dat(log.dat_);
+  log.index_ = index_dat(log.dat_, OnDamage::skip);
   return log;
 }
 
@@ -65,6 +66,7 @@ Result<LogView, WireError> LogView::open_archive(std::span<const std::uint8_t> a
   }
   if (auto pieces = stored_pieces(*dat)) {
     log.dat_ = std::move(*pieces);
+    log.dat_crc_ = dat->crc;
   } else {
     auto content = unpacked(*dat, max_unpacked_size);
     if (!content) {
@@ -73,19 +75,33 @@ Result<LogView, WireError> LogView::open_archive(std::span<const std::uint8_t> a
     log.unpacked_ = std::move(*content);
     log.dat_ = PiecewiseBytes{log.unpacked_};
   }
-  log.index_ = index_dat(log.dat_);
+  log.index_ = index_dat(log.dat_, OnDamage::skip);
   return log;
 }
 
-std::optional<LogView> LogView::open_cut(std::span<const std::uint8_t> archive) {
-  std::optional<PiecewiseBytes> dat = cut_dat(archive);
-  if (!dat) {
-    return std::nullopt;
-  }
+std::optional<LogView> LogView::open_damaged(std::span<const std::uint8_t> file,
+                                             std::uint64_t max_unpacked_size) {
   LogView log;
-  log.dat_ = std::move(*dat);
-  log.index_ = index_dat(log.dat_);
-  return log;
+  auto dat = damaged_dat(file, max_unpacked_size);
+  if (!dat) {
+    log.dat_ = PiecewiseBytes{file};
+  } else if (dat->unpacked.empty()) {
+    log.dat_ = std::move(dat->pieces);
+  } else {
+    log.unpacked_ = std::move(dat->unpacked);
+    log.dat_ = PiecewiseBytes{log.unpacked_};
+  }
+  log.index_ = index_dat(log.dat_, OnDamage::skip);
+  return dat || !log.index_.records.empty() ? std::optional(std::move(log)) : std::nullopt;
+}
+
+bool LogView::matches_checksum() const {
+  if (!dat_crc_) {
+    return true;
+  }
+  Crc32 crc;
+  dat_.for_each_piece([&](std::span<const std::uint8_t> piece) { crc.add(piece); });
+  return crc.value() == *dat_crc_;
 }
 
 Result<ImageRecord, WireError> LogView::image(const RecordEntry& entry) const {

@@ -22,15 +22,18 @@ class LogView {
  public:
   static constexpr std::uint64_t default_max_unpacked_size = std::uint64_t{1} << 30;
 
-  /// What a file is shows by its first bytes. An empty one is a .dat without records. A .dat that ends in the
-  /// middle of a record is no error: index() says so. Offsets of errors count from the start of the file.
+  /// What a file is shows by its first bytes. An empty one is a .dat without records. A .dat with damaged
+  /// records, or that ends in the middle of one, is no error: index() says so. Offsets of errors count from
+  /// the start of the file.
   /// @param file the whole of it, a .glf or a .dat
   /// @param max_unpacked_size most bytes to unpack, of an archive that is compressed
   static Result<LogView, WireError> open(std::span<const std::uint8_t> file,
                                          std::uint64_t max_unpacked_size = default_max_unpacked_size);
 
-  /// A .glf that open() refuses because its end is missing: whatever records are left of it (cut_dat()).
-  static std::optional<LogView> open_cut(std::span<const std::uint8_t> archive);
+  /// The records of a file that open() refuses: an archive without its end, with a damaged header, directory
+  /// or block (damaged_dat()), or a .dat whose first byte is wrong. nullopt when there are none.
+  static std::optional<LogView> open_damaged(std::span<const std::uint8_t> file,
+                                             std::uint64_t max_unpacked_size = default_max_unpacked_size);
 
   LogView(LogView&&) = default;
   LogView& operator=(LogView&&) = default;
@@ -38,6 +41,8 @@ class LogView {
   const DatIndex& index() const { return index_; }
   /// Text of the .cfg; empty without one.
   const std::string& config_xml() const { return config_xml_; }
+  /// Reads the whole .dat. True unless the archive states another checksum for it.
+  bool matches_checksum() const;
 
   /// @param entry one of index().records; offsets of errors are in the .dat
   Result<ImageRecord, WireError> image(const RecordEntry& entry) const;
@@ -56,6 +61,7 @@ class LogView {
   PiecewiseBytes dat_;
   DatIndex index_;
   std::string config_xml_;
+  std::optional<std::uint32_t> dat_crc_;  ///< as the archive states it
 };
 
 }  // namespace sonard::glf

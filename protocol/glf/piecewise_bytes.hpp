@@ -17,6 +17,13 @@ class PiecewiseBytes {
   void append(std::span<const std::uint8_t> piece);
 
   std::uint64_t size() const { return size_; }
+  /// Calls visit(std::span<const std::uint8_t>) for each piece in order.
+  template <class Visit>
+  void for_each_piece(Visit visit) const {
+    for (const Piece& piece : pieces_) {
+      visit(piece.bytes);
+    }
+  }
   /// Copies out.size() bytes from `offset` on; all of them must be there.
   void copy(std::uint64_t offset, std::span<std::uint8_t> out) const;
 

@@ -6,6 +6,8 @@
 
 #include "protocol/common/byte_reader.hpp"
 #include "protocol/glf/deflate.hpp"
+#include "protocol/glf/headers.hpp"
+#include "protocol/glf/packer.hpp"
 #include "protocol/glf/zip.hpp"
 
 namespace sonard::glf {
@@ -64,21 +66,124 @@ Result<ZipEntry, WireError> located(std::span<const std::uint8_t> archive, const
                   .data = data};
 }
 
-/// Stored blocks from `start` on, the last one as far as it goes.
-PiecewiseBytes stored_front(std::span<const std::uint8_t> archive, std::size_t start) {
+struct BlockHeader {
+  std::uint8_t kind = 0;
+  std::uint16_t size = 0;
+  std::uint16_t inverse = 0;
+
+  bool is_stored() const { return (kind & 0x06) == 0 && (size ^ inverse) == 0xFFFF; }
+};
+
+/// nullopt where the bytes end before it does.
+std::optional<BlockHeader> block_header_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  if (offset + zip::block_header_size > bytes.size()) {
+    return std::nullopt;
+  }
+  ByteReader reader{bytes.subspan(offset)};
+  BlockHeader header;
+  header.kind = reader.u8("block");
+  header.size = reader.u16le("block");
+  header.inverse = reader.u16le("block");
+  return header;
+}
+
+/// The size of the block whose damaged header is at `offset`: one that leads to another block.
+std::optional<std::size_t> size_of_damaged_block(std::span<const std::uint8_t> bytes, std::size_t offset,
+                                                 const BlockHeader& header, std::size_t size_before) {
+  for (const std::size_t size :
+       {std::size_t{header.size}, std::size_t{header.inverse} ^ 0xFFFFU, size_before, pack_block_size}) {
+    const auto next = block_header_at(bytes, offset + zip::block_header_size + size);
+    if (next && next->is_stored()) {
+      return size;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Stored blocks at the front of `bytes`, the last one as far as it goes.
+PiecewiseBytes stored_front(std::span<const std::uint8_t> bytes) {
   PiecewiseBytes pieces;
-  ByteReader reader{archive.subspan(start)};
-  for (bool last = false; !last;) {
-    const std::uint8_t kind = reader.u8("block");
-    const std::uint16_t size = reader.u16le("block");
-    const std::uint16_t inverse = reader.u16le("block");
-    if (!reader.ok() || (kind & 0x06) != 0 || (size ^ inverse) != 0xFFFF) {
+  std::size_t size = 0;
+  for (std::size_t offset = 0; const auto header = block_header_at(bytes, offset);) {
+    const auto found = header->is_stored() ? std::optional(std::size_t{header->size})
+                                           : size_of_damaged_block(bytes, offset, *header, size);
+    // The flag for the last block may be damaged itself: it counts for an empty one, which ends our archives.
+    if (!found || (*found == 0 && (header->kind & 0x01) != 0)) {
       break;
     }
-    pieces.append(reader.bytes(std::min<std::size_t>(size, reader.remaining()), "block"));
-    last = (kind & 0x01) != 0;
+    size = *found;
+    offset += zip::block_header_size;
+    const auto rest = bytes.subspan(offset);
+    pieces.append(rest.first(std::min(size, rest.size())));
+    offset += size;
   }
   return pieces;
+}
+
+bool is_dat(std::string_view name) {
+  return name.ends_with(".dat");
+}
+
+std::string_view text_of(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+bool begins_with_a_record(const DamagedDat& dat) {
+  std::uint8_t first = 0;
+  if (dat.pieces.size() > 0) {
+    dat.pieces.copy(0, std::span{&first, 1});
+  } else if (!dat.unpacked.empty()) {
+    first = dat.unpacked.front();
+  }
+  return first == record_id;
+}
+
+struct Content {
+  std::span<const std::uint8_t> data;  ///< to the end of the archive where the end of the entry is not known
+  bool deflated = false;
+};
+
+/// Behind a local header that names a .dat.
+std::optional<Content> content_by_local_header(std::span<const std::uint8_t> archive) {
+  constexpr std::size_t size = zip::Layout<zip::LocalHeader>::size;
+  for (std::size_t at = 0; at + size <= archive.size(); ++at) {
+    if (archive[at] != (zip::local_signature & 0xFF)) {
+      continue;
+    }
+    ByteReader reader{archive.subspan(at)};
+    zip::LocalHeader local;
+    read_fields<zip::Layout<zip::LocalHeader>>(reader, local);
+    if (local.signature != zip::local_signature) {
+      continue;
+    }
+    const auto name = reader.bytes(local.entry.name_size, "entry_name");
+    reader.skip(local.entry.extra_size, "entry_name");
+    if (reader.ok() && is_dat(text_of(name))) {
+      return Content{archive.subspan(at + reader.offset()), local.entry.method == zip::method_deflate};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Where the directory says that a .dat lies, whatever stands before it there.
+std::optional<Content> content_by_directory(std::span<const std::uint8_t> archive) {
+  const auto end = find_end_record(archive);
+  ByteReader reader{archive};
+  reader.skip(end ? end->directory_offset : archive.size(), "directory");
+  while (reader.ok() && reader.remaining() > 0) {
+    zip::CentralHeader central;
+    read_fields<zip::Layout<zip::CentralHeader>>(reader, central);
+    const auto name = reader.bytes(central.entry.name_size, "entry_name");
+    reader.skip(std::size_t{central.entry.extra_size} + central.comment_size, "entry_name");
+    const std::size_t start = std::size_t{central.local_offset} + zip::Layout<zip::LocalHeader>::size +
+                              central.entry.name_size + central.entry.extra_size;
+    if (reader.ok() && is_dat(text_of(name)) && start <= archive.size()) {
+      const auto rest = archive.subspan(start);
+      return Content{rest.first(std::min<std::size_t>(rest.size(), central.entry.compressed_size)),
+                     central.entry.method == zip::method_deflate};
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -103,7 +208,7 @@ Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_
     if (!reader.ok()) {
       return *reader.error();
     }
-    auto entry = located(archive, central, {reinterpret_cast<const char*>(name.data()), name.size()});
+    auto entry = located(archive, central, text_of(name));
     if (!entry) {
       return entry.error();
     }
@@ -117,37 +222,37 @@ std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry) {
     return PiecewiseBytes{entry.data};
   }
   PiecewiseBytes pieces;
-  ByteReader reader{entry.data};
-  for (bool last = false; !last;) {
-    const std::uint8_t kind = reader.u8("block");
-    const std::uint16_t size = reader.u16le("block");
-    const std::uint16_t inverse = reader.u16le("block");
-    pieces.append(reader.bytes(size, "block"));
-    if (!reader.ok() || (kind & 0x06) != 0 || (size ^ inverse) != 0xFFFF) {
+  bool last = false;
+  for (std::size_t offset = 0; !last;) {
+    const auto header = block_header_at(entry.data, offset);
+    if (!header || !header->is_stored() ||
+        header->size > entry.data.size() - offset - zip::block_header_size) {
       return std::nullopt;
     }
-    last = (kind & 0x01) != 0;
+    pieces.append(entry.data.subspan(offset + zip::block_header_size, header->size));
+    offset += zip::block_header_size + header->size;
+    last = (header->kind & 0x01) != 0;
   }
   return pieces.size() == entry.size ? std::optional{std::move(pieces)} : std::nullopt;
 }
 
-std::optional<PiecewiseBytes> cut_dat(std::span<const std::uint8_t> archive) {
-  ByteReader reader{archive};
-  while (reader.ok()) {
-    zip::LocalHeader local;
-    read_fields<zip::Layout<zip::LocalHeader>>(reader, local);
-    const auto name = reader.bytes(local.entry.name_size, "entry_name");
-    reader.skip(local.entry.extra_size, "entry_name");
-    if (!reader.ok() || local.signature != zip::local_signature) {
-      break;
+std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std::uint64_t max_size) {
+  std::optional<DamagedDat> any;
+  for (const auto& content : {content_by_local_header(archive), content_by_directory(archive)}) {
+    if (!content) {
+      continue;
     }
-    if (std::string_view(reinterpret_cast<const char*>(name.data()), name.size()).ends_with(".dat")) {
-      return local.entry.method == zip::method_deflate ? std::optional(stored_front(archive, reader.offset()))
-                                                       : std::nullopt;
+    DamagedDat dat;
+    dat.pieces = content->deflated ? stored_front(content->data) : PiecewiseBytes{content->data};
+    if (dat.pieces.size() == 0) {
+      dat.unpacked = inflate_front(content->data, max_size);
     }
-    reader.skip(local.entry.compressed_size, "entry_data");
+    if (begins_with_a_record(dat)) {
+      return dat;
+    }
+    any = any ? std::move(any) : std::move(dat);  // its first byte may be damaged
   }
-  return std::nullopt;
+  return any;
 }
 
 Result<std::vector<std::uint8_t>, WireError> unpacked(const ZipEntry& entry, std::uint64_t max_size) {

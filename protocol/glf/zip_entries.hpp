@@ -32,9 +32,15 @@ Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_
 /// one that has to be unpacked.
 std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry);
 
-/// Finds what is left of the first .dat in an archive whose end and directory are missing. Works for a .dat
-/// in stored blocks whose local header has its size; nullopt where there is none.
-std::optional<PiecewiseBytes> cut_dat(std::span<const std::uint8_t> archive);
+/// What can be read of the first .dat in an archive that is damaged or has no end.
+struct DamagedDat {
+  PiecewiseBytes pieces;               ///< of an entry that holds its content as it is
+  std::vector<std::uint8_t> unpacked;  ///< what came out of a compressed entry before it broke
+};
+
+/// Finds the .dat by its local header, or else by the directory. Steps over damaged headers of stored blocks.
+/// nullopt when there is neither. @param max_size most bytes to unpack
+std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std::uint64_t max_size);
 
 /// Unpacks an entry of at most `max_size` bytes and holds it to its CRC.
 Result<std::vector<std::uint8_t>, WireError> unpacked(const ZipEntry& entry, std::uint64_t max_size);

@@ -30,6 +30,76 @@ std::optional<WireError> take(const Record& record, Chunk& chunk) {
     }
     chunk.messages.push_back(*message);
     chunk.indexes[message->channel_id].push_back({message->log_time_ns, record.offset});
+  } else {
+    chunk.has_unknown_records = true;
+  }
+  return std::nullopt;
+}
+
+/// The sizes in the front of a chunk agree with the length of its record. No other content passes by chance.
+bool looks_like_chunk(ByteView content) {
+  ByteReader reader{content};
+  reader.skip(8 + 8 + 8 + 4, "chunk.front");
+  const std::uint32_t compression_size = reader.u32le("chunk.compression");
+  reader.skip(compression_size, "chunk.compression");
+  const std::uint64_t stored_size = reader.u64le("chunk.records");
+  return reader.ok() && stored_size == reader.remaining();
+}
+
+/// Channel and number of entries; nullopt when the record is no message index.
+std::optional<std::pair<std::uint16_t, std::uint64_t>> read_message_index(const Record& record) {
+  constexpr std::size_t entry_size = 16;
+  ByteReader reader{record.content};
+  const std::uint16_t channel_id = reader.u16le("message_index.channel_id");
+  const std::uint32_t size = reader.u32le("message_index.records");
+  if (!record.is(Opcode::message_index) || !reader.ok() || size != reader.remaining() ||
+      size % entry_size != 0) {
+    return std::nullopt;
+  }
+  return std::pair{channel_id, std::uint64_t{size / entry_size}};
+}
+
+/// The record is one of the data section, and its content is as long as the sizes in it say.
+bool is_consistent(const Record& record) {
+  ByteReader reader{record.content};
+  const auto skip_strings = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      reader.skip(reader.u32le("size"), "string");
+    }
+    return reader.ok() && reader.remaining() == 0;
+  };
+  switch (static_cast<Opcode>(record.opcode)) {
+    case Opcode::chunk:
+      return looks_like_chunk(record.content);
+    case Opcode::message_index:
+      return read_message_index(record).has_value();
+    case Opcode::header:
+      return skip_strings(2);
+    case Opcode::schema:
+      reader.skip(2, "schema.id");
+      return skip_strings(3);
+    case Opcode::channel:
+      reader.skip(4, "channel.ids");
+      return skip_strings(3);
+    case Opcode::data_end:
+      return record.content.size() == 4;
+    default:
+      return false;
+  }
+}
+
+/// Where reading may go on after a record at `from` that cannot be read: behind it if the sizes in it agree
+/// with its length, so that its length is right; else at the next consistent record.
+std::optional<std::size_t> next_readable(ByteView file, std::size_t from) {
+  const auto damaged = record_at(file, from);
+  if (damaged && (looks_like_chunk(damaged->content) || is_consistent(*damaged))) {
+    return damaged->end();
+  }
+  for (std::size_t at = from + 1; at < file.size(); ++at) {
+    const auto record = record_at(file, at);
+    if (record && is_consistent(*record)) {
+      return at;
+    }
   }
   return std::nullopt;
 }
@@ -75,7 +145,17 @@ class Scanner {
     return true;
   }
 
+  /// Goes on at `next` and lists what lies between as damaged. @param chunk it was a chunk
+  void skip_to(std::size_t next, bool chunk) {
+    const WireError truncated{WireErrorReason::truncated, section_.end, "record"};
+    section_.damaged.push_back({{section_.end, next - section_.end, section_.error.value_or(truncated)}, {}});
+    section_.error.reset();
+    section_.end = next;
+    behind_damage_ = behind_damage_ || chunk;
+  }
+
   std::size_t end() const { return section_.end; }
+  bool ended() const { return section_.ended; }
   DataSection done() && { return std::move(section_); }
 
  private:
@@ -92,8 +172,9 @@ class Scanner {
     if (record.is(Opcode::channel)) {
       return put(read_channel(record));
     }
+    // An opcode of zero: a part of the disk that was never written.
     if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
-        record.opcode == 0) {  // zeros: a part of the disk that was never written
+        record.opcode == 0 || looks_like_chunk(record.content)) {
       return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
     }
     return std::nullopt;
@@ -113,6 +194,9 @@ class Scanner {
     if (!chunk) {
       return chunk.error();
     }
+    if (!looks_like_chunk(record.content)) {
+      return WireError{WireErrorReason::bad_length, record.offset + 1, "chunk.length"};
+    }
     add(std::move(*chunk), record.offset, record.end(), false);
     return std::nullopt;
   }
@@ -127,16 +211,21 @@ class Scanner {
     index.records_size = chunk.records_size;
     index.stored_size = chunk.stored_size;
     index.compression = chunk.compression;
+    behind_damage_ = false;
     section_.last_chunk_end = end;
     section_.last_chunk_open = open;
     section_.last_indexes = std::move(chunk.indexes);
   }
 
   std::optional<WireError> take_message_index(const Record& record) {
-    ByteReader reader{record.content};
-    const std::uint16_t channel_id = reader.u16le("message_index.channel_id");
-    if (!reader.ok() || section_.summary.chunks.empty()) {
+    const auto index = read_message_index(record);
+    if (!index || (section_.summary.chunks.empty() && !behind_damage_)) {
       return WireError{WireErrorReason::bad_value, record.offset, "message_index"};
+    }
+    const auto [channel_id, messages] = *index;
+    if (behind_damage_) {  // it is the index of a chunk that was skipped
+      section_.damaged.back().lost_messages[channel_id] += messages;
+      return std::nullopt;
     }
     ChunkIndex& chunk = section_.summary.chunks.back();
     chunk.message_index_offsets[channel_id] = record.offset;
@@ -145,6 +234,7 @@ class Scanner {
   }
 
   DataSection section_;
+  bool behind_damage_ = false;  ///< the last chunk was skipped
 };
 
 }  // namespace
@@ -184,6 +274,9 @@ Result<Chunk, WireError> read_chunk(const Record& record) {
   auto chunk = read_chunk_records(records);
   if (!chunk) {
     return shifted(chunk.error(), record.content_offset() + records_offset);
+  }
+  if (crc == no_crc && chunk->has_unknown_records) {  // nothing else tells a later version from damage
+    return WireError{WireErrorReason::bad_value, record.content_offset() + records_offset, "chunk.records"};
   }
   chunk->storage = std::move(storage);
   chunk->compression = compression;
@@ -243,30 +336,58 @@ void add_contents(const Chunk& chunk, Summary& summary) {
   }
 }
 
-Result<DataSection, WireError> scan_data_section(ByteView file) {
+std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const ChunkIndex& index) {
+  std::map<std::uint16_t, std::uint64_t> messages;
+  for (const auto& [channel_id, offset] : index.message_index_offsets) {
+    const auto record = record_at(file, static_cast<std::size_t>(offset));
+    const auto read = record ? read_message_index(*record) : std::nullopt;
+    if (read && read->first == channel_id) {
+      messages.emplace(*read);
+    }
+  }
+  return messages;
+}
+
+Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_damage) {
   if (file.size() < magic.size()) {
     return WireError{WireErrorReason::truncated, file.size(), "magic"};
   }
-  if (!std::ranges::equal(file.first(magic.size()), magic)) {
+  if (!begins_as_mcap(file)) {
     return WireError{WireErrorReason::bad_value, 0, "magic"};
   }
   auto record = record_at(file, magic.size());
-  if (!record) {
-    return WireError{WireErrorReason::truncated, magic.size(), "header"};
+  bool is_header = record && record->is(Opcode::header);
+  if (!is_header && on_damage == OnDamage::stop) {
+    return WireError{record ? WireErrorReason::bad_value : WireErrorReason::truncated, magic.size(),
+                     "header"};
   }
-  if (!record->is(Opcode::header)) {
-    return WireError{WireErrorReason::bad_value, magic.size(), "header"};
+  if (is_header && on_damage == OnDamage::skip) {
+    is_header = is_consistent(*record);  // its length may be damaged
   }
-  Scanner scanner{record->end()};
-  for (bool goes_on = true; goes_on;) {
+  Scanner scanner{is_header ? record->end() : magic.size()};
+  while (true) {
+    bool goes_on = false;
     if (const auto records = open_chunk_records(file, scanner.end())) {
+      const auto whole = record_at(file, scanner.end());
       goes_on = scanner.take_open_chunk(scanner.end(), *records);
+      if (on_damage == OnDamage::skip && goes_on && whole && whole->end() > scanner.end()) {
+        scanner.skip_to(whole->end(), false);  // one of its records has a wrong type or length
+      }
     } else {
       record = record_at(file, scanner.end());
       goes_on = record && scanner.take(*record);
     }
+    if (!goes_on) {
+      const bool skips = on_damage == OnDamage::skip && !scanner.ended() && scanner.end() < file.size();
+      const auto next = skips ? next_readable(file, scanner.end()) : std::nullopt;
+      if (!next) {
+        return std::move(scanner).done();
+      }
+      const bool chunk = file[scanner.end()] == static_cast<std::uint8_t>(Opcode::chunk) ||
+                         (record && looks_like_chunk(record->content));
+      scanner.skip_to(*next, chunk);
+    }
   }
-  return std::move(scanner).done();
 }
 
 }  // namespace sonard::mcap

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/common/damage.hpp"
 #include "protocol/mcap/summary.hpp"
 
 namespace sonard::mcap {
@@ -29,6 +30,7 @@ struct Chunk {
   std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 when there is no message
   std::uint64_t end_time_ns = 0;    ///< latest log time; 0 when there is no message
   std::uint64_t records_size = 0;
+  bool has_unknown_records = false;  ///< of types that do not belong into a chunk
 };
 
 /// Bytes of a chunk before its records, but for the name of the compression.
@@ -49,7 +51,13 @@ std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset);
 /// Schemas and channels that are new, and the number of messages.
 void add_contents(const Chunk& chunk, Summary& summary);
 
-/// What is whole at the front of a file.
+/// A part of the data section that cannot be read.
+struct DamagedChunk : Damage {
+  /// By channel, from the message indexes behind the chunk; empty when these cannot be read either.
+  std::map<std::uint16_t, std::uint64_t> lost_messages;
+};
+
+/// What a scan of a file finds.
 struct DataSection {
   Summary summary;
   std::size_t end = 0;  ///< where the whole records end: of DataEnd, or of the first that is not whole
@@ -60,10 +68,16 @@ struct DataSection {
   /// Why it went no further, when neither DataEnd nor the end of the bytes stopped it. What follows is not
   /// lost to a reader that knows better.
   std::optional<WireError> error;
+  std::vector<DamagedChunk> damaged;  ///< parts that were skipped (OnDamage::skip)
 };
 
 /// Reads all of it, from the magic on. An error when not even magic and header are whole, or are no MCAP
 /// file's. A message outside of a chunk ends the whole part, as a record that cannot be read does.
-Result<DataSection, WireError> scan_data_section(ByteView file);
+/// OnDamage::skip goes on with the next record or chunk that is consistent, and lists what it skipped.
+Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_damage = OnDamage::stop);
+
+/// Number of messages by channel, by the message indexes that `index` names; those that cannot be read are
+/// left out.
+std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const ChunkIndex& index);
 
 }  // namespace sonard::mcap

@@ -20,7 +20,8 @@ bool MessageCursor::Later::operator()(const Due& a, const Due& b) const {
 }
 
 std::optional<Message> MessageCursor::next() {
-  if (!open_due_chunks() || due_.empty()) {
+  open_due_chunks();
+  if (due_.empty()) {
     return std::nullopt;
   }
   last_ = due_.top();
@@ -36,36 +37,33 @@ std::optional<MessagePlace> MessageCursor::place() const {
 }
 
 /// Opens chunks until none that is closed can hold an earlier message than those at hand.
-/// @return false when one cannot be read
-bool MessageCursor::open_due_chunks() {
-  while (!error_ && next_chunk_ < chunks_.size() &&
+void MessageCursor::open_due_chunks() {
+  while (next_chunk_ < chunks_.size() &&
          (due_.empty() || chunks_[next_chunk_].start_time_ns <= due_.top().message.log_time_ns)) {
-    if (!open(chunks_[next_chunk_++])) {
-      return false;
+    const ChunkIndex& index = chunks_[next_chunk_++];
+    if (const auto error = open(index)) {
+      damaged_.push_back({{index.offset, index.length, *error}, indexed_messages(file_, index)});
     }
   }
-  return !error_;
 }
 
-bool MessageCursor::open(const ChunkIndex& index) {
+/// @return why the chunk cannot be read
+std::optional<WireError> MessageCursor::open(const ChunkIndex& index) {
   const auto offset = static_cast<std::size_t>(index.offset);
   const auto record = record_at(file_, offset);
   const auto open_records = open_chunk_records(file_, offset);
   const bool closed = record && record->is(Opcode::chunk) && record->end() - offset == index.length;
   const bool open = open_records && chunk_start_size + open_records->size() == index.length;
   if (!closed && !open) {
-    error_ = WireError{WireErrorReason::bad_value, offset, "chunk_index.chunk_start_offset"};
-    return false;
+    return WireError{WireErrorReason::bad_value, offset, "chunk_index.chunk_start_offset"};
   }
   const auto chunk = open ? read_chunk_records(*open_records) : read_chunk(*record);
   if (!chunk) {
-    error_ = chunk.error();
-    return false;
+    return chunk.error();
   }
   // What a message before the stated start would do to the order is worse than not reading on.
   if (chunk->start_time_ns < index.start_time_ns) {
-    error_ = WireError{WireErrorReason::bad_value, offset, "chunk_index.message_start_time"};
-    return false;
+    return WireError{WireErrorReason::bad_value, offset, "chunk_index.message_start_time"};
   }
   for (const Message& message : chunk->messages) {
     if (channels_.empty() || channels_.contains(message.channel_id)) {
@@ -73,7 +71,7 @@ bool MessageCursor::open(const ChunkIndex& index) {
                  chunk->storage});
     }
   }
-  return true;
+  return std::nullopt;
 }
 
 // ---- Reader
@@ -82,13 +80,16 @@ Result<Reader, WireError> Reader::open(ByteView file) {
   if (auto summary = read_summary(file)) {
     return Reader{file, std::move(*summary)};
   }
-  auto section = scan_data_section(file);
+  auto section = scan_data_section(file, OnDamage::skip);
   if (!section) {
     return section.error();
   }
   Reader reader{file, std::move(section->summary)};
-  reader.finished_ = false;
+  reader.finished_ = section->ended;
+  reader.lacks_summary_ = section->ended;
+  reader.tail_size_ = section->ended ? 0 : file.size() - section->end;
   reader.stopped_by_ = section->error;
+  reader.damaged_ = std::move(section->damaged);
   return reader;
 }
 

@@ -21,15 +21,16 @@ struct MessagePlace {
 };
 
 /// Goes through the messages of a file, earliest log time first, those of equal times in the order of the
-/// file. Takes a chunk apart when the first of its messages is due, and checks its CRC then. Views the file.
+/// file. Takes a chunk apart when the first of its messages is due, and checks its CRC then. A chunk that
+/// cannot be read costs its own messages and no others. Views the file.
 class MessageCursor {
  public:
-  /// nullopt at the end, and where a chunk cannot be read: error() tells them apart.
-  /// What is in it is valid until the next call.
+  /// nullopt at the end. What is in it is valid until the next call.
   std::optional<Message> next();
   /// Where the message that came last is in its chunk; nullopt: its data are a view of the file, which stays.
   std::optional<MessagePlace> place() const;
-  const std::optional<WireError>& error() const { return error_; }
+  /// Chunks that could not be read so far.
+  const std::vector<DamagedChunk>& damaged() const { return damaged_; }
 
  private:
   friend class Reader;
@@ -45,8 +46,8 @@ class MessageCursor {
     bool operator()(const Due& a, const Due& b) const;
   };
 
-  bool open_due_chunks();
-  bool open(const ChunkIndex& index);
+  void open_due_chunks();
+  std::optional<WireError> open(const ChunkIndex& index);
 
   ByteView file_;
   std::vector<ChunkIndex> chunks_;  ///< by start time
@@ -54,11 +55,11 @@ class MessageCursor {
   std::set<std::uint16_t> channels_;  ///< empty: all
   std::priority_queue<Due, std::vector<Due>, Later> due_;
   Due last_;  ///< what next() gave
-  std::optional<WireError> error_;
+  std::vector<DamagedChunk> damaged_;
 };
 
-/// A file in memory, or mapped into it. A file that was finished is read by its summary; one that was not is
-/// gone through once, and has what recover() would keep. Chunks may be compressed with
+/// A file in memory, or mapped into it. A file that was finished is read by its summary. A file without a
+/// readable summary is scanned once, and damaged parts of it are skipped. Chunks may be compressed with
 /// Zstandard; attachments, metadata and unknown records are skipped. Views the file; threads may share it.
 class Reader {
  public:
@@ -66,10 +67,16 @@ class Reader {
   static Result<Reader, WireError> open(ByteView file);
 
   const Summary& summary() const { return summary_; }
-  /// The file ends as one that was finished does.
+  /// The writer finished the file.
   bool finished() const { return finished_; }
-  /// Why it has nothing beyond some place, when a record there cannot be read or is compressed.
+  /// The writer finished the file, and the summary at its end cannot be read.
+  bool lacks_summary() const { return lacks_summary_; }
+  /// Why the scan ended before the file did.
   const std::optional<WireError>& stopped_by() const { return stopped_by_; }
+  /// Bytes at the end of a file that was not finished: a record that was being written, or that is damaged.
+  std::size_t tail_size() const { return tail_size_; }
+  /// Parts that the scan skipped. A file that has a summary is not scanned: MessageCursor::damaged().
+  const std::vector<DamagedChunk>& damaged() const { return damaged_; }
 
   /// @param channels only their messages; empty: all
   MessageCursor messages(std::set<std::uint16_t> channels = {}) const;
@@ -82,6 +89,9 @@ class Reader {
   ByteView file_;
   Summary summary_;
   bool finished_ = true;
+  bool lacks_summary_ = false;
+  std::size_t tail_size_ = 0;
+  std::vector<DamagedChunk> damaged_;
   std::optional<WireError> stopped_by_;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/mcap/records.hpp"
 
+#include <functional>
+#include <numeric>
+
 #include <zlib.h>
 
 #include "protocol/common/byte_writer.hpp"
@@ -146,6 +149,16 @@ std::optional<Record> record_at(ByteView bytes, std::size_t offset) {
     return std::nullopt;
   }
   return Record{opcode, offset, reader.bytes(static_cast<std::size_t>(length), "content")};
+}
+
+bool begins_as_mcap(ByteView file) {
+  if (file.size() < magic.size()) {
+    return false;
+  }
+  const auto differ =
+      std::inner_product(magic.begin(), magic.end(), file.begin(), 0, std::plus{}, std::not_equal_to{});
+  const auto record = differ == 1 ? record_at(file, magic.size()) : std::nullopt;
+  return differ == 0 || (record && record->is(Opcode::header));
 }
 
 std::string read_string(ByteReader& reader, std::string_view field) {

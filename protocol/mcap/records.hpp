@@ -143,6 +143,10 @@ struct Record {
 /// The record at `offset`; nothing when the bytes end before it does.
 std::optional<Record> record_at(ByteView bytes, std::size_t offset);
 
+/// True if `file` begins with the magic of MCAP. One damaged byte in it is tolerated if a header record
+/// follows.
+bool begins_as_mcap(ByteView file);
+
 Result<Schema, WireError> read_schema(const Record& record);
 Result<Channel, WireError> read_channel(const Record& record);
 Result<Message, WireError> read_message(const Record& record);

@@ -100,16 +100,27 @@ void Writer::end_chunk() {
   chunk.length = record.size();
   put_closed_chunk(record);
 
-  Bytes indexes;
-  append_message_indexes(indexes, file_size(), indexes_, chunk);
-  pending_.insert(pending_.end(), indexes.begin(), indexes.end());
-  data_crc_ = crc32(indexes, crc32(record, data_crc_));
+  Bytes behind;
+  append_message_indexes(behind, file_size(), indexes_, chunk);
+  repeat_definitions(behind);
+  pending_.insert(pending_.end(), behind.begin(), behind.end());
+  data_crc_ = crc32(behind, crc32(record, data_crc_));
   records_.clear();
   indexes_.clear();
   start_time_ns_ = 0;
   end_time_ns_ = 0;
   open_at_.reset();
   flushed_size_ = 0;
+}
+
+/// Schemas and channels of the chunk that was closed.
+void Writer::repeat_definitions(Bytes& out) {
+  for (; repeated_schemas_ < summary_.schemas.size(); ++repeated_schemas_) {
+    append(out, summary_.schemas[repeated_schemas_]);
+  }
+  for (; repeated_channels_ < summary_.channels.size(); ++repeated_channels_) {
+    append(out, summary_.channels[repeated_channels_]);
+  }
 }
 
 /// The whole record, compressed where that makes it shorter.

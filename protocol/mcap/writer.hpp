@@ -49,8 +49,9 @@ enum class Compression { none, zstd };
 /// A program that makes the changes of each piece and is killed loses what was not flushed and the piece that
 /// was being appended, and with compression the chunk that it was just closing; recover() finishes what is
 /// there. Schemas and channels stand in the chunk that was
-/// open when they were added, so a file needs no summary to be read. Not thread-safe; holds one chunk and
-/// what has not been taken.
+/// open when they were added, so a file needs no summary to be read. They are repeated behind that chunk: if
+/// it is damaged, the chunks that follow stay readable. Not thread-safe; holds one chunk and what has not
+/// been taken.
 class Writer {
  public:
   /// @param library who writes, for those who look into a file: "sonard 0.1.0"
@@ -88,11 +89,14 @@ class Writer {
   void put_chunk_start(std::uint32_t crc);
   Bytes closed_chunk(ChunkIndex& chunk) const;
   void put_closed_chunk(const Bytes& record);
+  void repeat_definitions(Bytes& out);
 
   std::size_t chunk_bytes_;
   Compression compression_;
   Summary summary_;  ///< without the open chunk, but for schemas, channels and counts
   std::map<std::uint16_t, std::uint32_t> sequences_;
+  std::size_t repeated_schemas_ = 0;
+  std::size_t repeated_channels_ = 0;
 
   Bytes records_;  ///< of the open chunk
   MessageIndexes indexes_;

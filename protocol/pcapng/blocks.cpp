@@ -54,6 +54,22 @@ bool is(const Block& block, BlockType type) {
   return block.type == static_cast<std::uint32_t>(type);
 }
 
+bool is_known(const Block& block) {
+  return is(block, BlockType::section_header) || is(block, BlockType::interface_description) ||
+         (is(block, BlockType::enhanced_packet) && read_packet(block));
+}
+
+/// Where the next block of a known type starts behind `offset`. Blocks lie on multiples of four bytes.
+std::optional<std::size_t> next_block(ByteView file, std::size_t offset) {
+  for (std::size_t at = (offset / 4 + 1) * 4; at < file.size(); at += 4) {
+    const auto block = block_at(file, at);
+    if (block && *block && is_known(**block)) {
+      return at;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Writer::Writer(std::string_view application) {
@@ -139,6 +155,31 @@ Result<Packet, WireError> read_packet(const Block& block) {
     return error;
   }
   return packet;
+}
+
+Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
+                                                      const std::function<void(const Block&)>& take) {
+  std::vector<Damage> damaged;
+  bool found = false;
+  for (std::size_t offset = 0; offset < file.size();) {
+    const auto block = block_at(file, offset);
+    const bool readable =
+        block && *block && (!is(**block, BlockType::enhanced_packet) || read_packet(**block));
+    if (readable) {
+      found = true;
+      take(**block);
+      offset = (*block)->end();
+      continue;
+    }
+    const WireError error = block ? WireError{WireErrorReason::truncated, offset, "block"} : block.error();
+    const std::size_t next = next_block(file, offset).value_or(file.size());
+    damaged.push_back({offset, next - offset, error});
+    offset = next;
+  }
+  if (!found) {
+    return damaged.empty() ? WireError{WireErrorReason::truncated, 0, "section_header"} : damaged[0].error;
+  }
+  return damaged;
 }
 
 Result<Recovery, WireError> recover(ByteView file) {

@@ -6,10 +6,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include "protocol/common/damage.hpp"
 #include "protocol/common/result.hpp"
 #include "protocol/common/wire_error.hpp"
 #include "protocol/pcapng/packets.hpp"
@@ -69,6 +72,12 @@ struct Packet {
 };
 /// Requires a block of type enhanced_packet.
 Result<Packet, WireError> read_packet(const Block& block);
+
+/// Calls `take` for each block that can be read, and goes on behind damaged ones at the next block that is
+/// consistent: a known type, two equal lengths.
+/// @return the parts that cannot be read; an error when no block of the file can be
+Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
+                                                      const std::function<void(const Block&)>& take);
 
 /// What is whole at the front of a file: truncate to `keep_size`, and it is good, and may be appended to.
 struct Recovery {

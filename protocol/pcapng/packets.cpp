@@ -67,11 +67,10 @@ Bytes ip_header(const Endpoint& from, const Endpoint& to, std::uint8_t protocol,
 }
 
 /// The checksum of UDP and TCP: of what follows the IPv4 header, and of addresses, protocol and length.
-std::uint16_t transport_checksum(const Bytes& packet, std::uint8_t protocol) {
-  const ByteView bytes{packet};
-  const std::size_t size = packet.size() - ip_header_size;
-  return folded_complement(sum_words(bytes.subspan(12, 8)) + protocol + size +
-                           sum_words(bytes.subspan(ip_header_size)));
+std::uint16_t transport_checksum(ByteView packet, std::uint8_t protocol,
+                                 std::size_t header_size = ip_header_size) {
+  return folded_complement(sum_words(packet.subspan(12, 8)) + protocol + packet.size() - header_size +
+                           sum_words(packet.subspan(header_size)));
 }
 
 Bytes tcp_packet(const Endpoint& from, const Endpoint& to, std::uint32_t sequence, std::uint32_t acknowledged,
@@ -92,6 +91,28 @@ Bytes tcp_packet(const Endpoint& from, const Endpoint& to, std::uint32_t sequenc
 }
 
 }  // namespace
+
+bool has_right_checksums(ByteView packet) {
+  if (packet.size() < ip_header_size || packet[0] >> 4 != 4) {
+    return true;
+  }
+  const std::size_t header_size = (packet[0] & 0xFU) * 4U;
+  const std::size_t size = std::size_t{packet[2]} << 8 | packet[3];
+  if (header_size < ip_header_size || size < header_size || size > packet.size()) {
+    return false;
+  }
+  // A sum over bytes that hold their own checksum is zero.
+  if (folded_complement(sum_words(packet.first(header_size))) != 0) {
+    return false;
+  }
+  const ByteView whole = packet.first(size);
+  const ByteView content = whole.subspan(header_size);
+  const std::uint8_t protocol = packet[9];
+  const bool none =
+      protocol == protocol_udp && content.size() >= udp_header_size && content[6] == 0 && content[7] == 0;
+  return (protocol != protocol_udp && protocol != protocol_tcp) || none ||
+         transport_checksum(whole, protocol, header_size) == 0;
+}
 
 Bytes udp_packet(const Endpoint& from, const Endpoint& to, ByteView payload) {
   assert(payload.size() <= max_udp_payload);

@@ -7,6 +7,7 @@
 
 #include "protocol/common/byte_reader.hpp"
 #include "protocol/pcapng/blocks.hpp"
+#include "server/logs/damage_text.hpp"
 
 namespace sonard::server {
 namespace {
@@ -55,26 +56,45 @@ void add_packet(LogSummary& log, const pcapng::Packet& packet, const PingFinder&
 }  // namespace
 
 void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& ping_in) {
-  const auto whole = pcapng::recover(file.bytes());
-  if (!whole) {
-    throw file.error(to_string(whole.error()));
-  }
-  count(log, "interfaces", whole->interfaces);
-  for (std::size_t offset = 0; offset < whole->keep_size;) {
-    const auto block = pcapng::block_at(file.bytes(), offset);
-    if (!block || !*block) {
-      break;  // recover() has been here
+  std::uint64_t interfaces = 0;
+  std::uint64_t others = 0;
+  std::uint64_t wrong_checksums = 0;
+  std::uint64_t wrong_times = 0;
+  const auto damaged = pcapng::for_each_block(file.bytes(), [&](const pcapng::Block& block) {
+    switch (static_cast<pcapng::BlockType>(block.type)) {
+      case pcapng::BlockType::section_header:
+        return;
+      case pcapng::BlockType::interface_description:
+        ++interfaces;
+        return;
+      case pcapng::BlockType::enhanced_packet:
+        if (const auto packet = pcapng::read_packet(block)) {
+          wrong_times += plausible_time(static_cast<std::int64_t>(packet->time_ns)) ? 0 : 1;
+          wrong_checksums += pcapng::has_right_checksums(packet->bytes) ? 0 : 1;
+          add_packet(log, *packet, ping_in);
+        }
+        return;
     }
-    if ((*block)->type == static_cast<std::uint32_t>(pcapng::BlockType::enhanced_packet)) {
-      if (const auto packet = pcapng::read_packet(**block)) {
-        add_packet(log, *packet, ping_in);
-      }
-    }
-    offset = (*block)->end();
+    ++others;
+  });
+  if (!damaged) {
+    throw file.error(to_string(damaged.error()));
   }
-  if (const std::size_t tail = file.bytes().size() - whole->keep_size; tail > 0) {
+  log.other_records.insert(log.other_records.begin(), {"interfaces", interfaces});
+  if (others > 0) {
+    count(log, "blocks of other types", others);
+  }
+  add_damage(log.problems, *damaged,
+             [](const Damage&) { return std::string("the packets in them are lost"); });
+  if (wrong_times > 0) {
+    log.problems.push_back(fmt::format("{} packet{} impossible times; their pings are left out", wrong_times,
+                                       wrong_times == 1 ? " has" : "s have"));
+  }
+  if (wrong_checksums > 0) {
     log.problems.push_back(
-        fmt::format("cut or damaged: {} bytes after the last whole block cannot be read", tail));
+        fmt::format("{} packet{} wrong checksums: damaged, or captured before the network card "
+                    "filled them in",
+                    wrong_checksums, wrong_checksums == 1 ? " has" : "s have"));
   }
 }
 

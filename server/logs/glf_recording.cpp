@@ -9,20 +9,19 @@
 #include <fmt/format.h>
 
 #include "protocol/glf/log_time.hpp"
+#include "server/logs/damage_text.hpp"
 
 namespace sonard::server {
 namespace {
 
-glf::LogView opened(const LogFile& file, bool& cut) {
+glf::LogView opened(const LogFile& file, std::optional<WireError>& archive_error) {
   auto view = glf::LogView::open(file.bytes());
   if (view) {
     return std::move(*view);
   }
-  if (file.kind() == LogKind::glf) {
-    if (auto left = glf::LogView::open_cut(file.bytes())) {
-      cut = true;
-      return std::move(*left);
-    }
+  if (auto left = glf::LogView::open_damaged(file.bytes())) {
+    archive_error = view.error();
+    return std::move(*left);
   }
   throw file.error(to_string(view.error()));
 }
@@ -46,7 +45,7 @@ bool makes_sense(const glf::ImageRecord& image) {
 
 }  // namespace
 
-GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file, cut_)) {
+GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file, archive_error_)) {
   const auto& records = view_.index().records;
   for (std::size_t place = 0; place < records.size(); ++place) {
     if (records[place].type != glf::RecordType::image) {
@@ -81,20 +80,37 @@ std::vector<std::uint8_t> GlfRecording::samples(const LoggedPing& ping) const {
 std::vector<std::string> GlfRecording::problems() const {
   const glf::DatIndex& index = view_.index();
   std::vector<std::string> problems;
-  if (cut_) {
-    problems.emplace_back("cut: the end of the archive is missing");
+  if (archive_error_) {
+    problems.push_back(
+        archive_error_->reason == WireErrorReason::truncated
+            ? "cut: the end of the archive is missing"
+            : fmt::format("damaged: the archive around the records ({}); the log was searched for "
+                          "records",
+                          to_string(*archive_error_)));
   }
+  add_damage(problems, index.damaged,
+             [](const Damage&) { return std::string("the images and statuses in them are lost"); });
   if (index.tail_size > 0) {
     problems.push_back(
         fmt::format("cut or damaged: of {} bytes after the last whole record no more can be read ({})",
                     index.tail_size, index.tail_error ? to_string(*index.tail_error) : "no record"));
-  } else if (!index.closed && !cut_) {
+  } else if (!index.closed && !archive_error_) {
     problems.emplace_back("not closed: still being written, or its writer went away");
   }
-  if (const std::uint64_t damaged = index.damaged_records + bad_images_; damaged > 0) {
-    problems.push_back(fmt::format("{} images cannot be decoded and are left out", damaged));
+  if (bad_images_ > 0) {
+    problems.push_back(fmt::format("{} images cannot be decoded and are left out", bad_images_));
   }
   return problems;
+}
+
+std::uint64_t GlfRecording::count_unreadable() const {
+  std::uint64_t unreadable = 0;
+  for (const LoggedHead& head : heads()) {
+    for (const LoggedPing& ping : head.pings) {
+      unreadable += view_.image(view_.index().records.at(ping.place)) ? 0 : 1;
+    }
+  }
+  return unreadable;
 }
 
 }  // namespace sonard::server

@@ -2,6 +2,8 @@
 // The images of a .glf or .dat.
 #pragma once
 
+#include <optional>
+
 #include "protocol/glf/log_view.hpp"
 #include "server/logs/recording.hpp"
 
@@ -14,12 +16,15 @@ class GlfRecording final : public Recording {
 
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;
   std::vector<std::string> problems() const override;
-  bool closed() const override { return view_.index().closed && !cut_; }
+  bool closed() const override { return view_.index().closed && !archive_error_; }
   const glf::LogView& view() const { return view_; }
+  /// Number of pings whose samples do not unpack. Unpacks all of them.
+  std::uint64_t count_unreadable() const;
 
  private:
   const LogFile& file_;
-  bool cut_ = false;  ///< before view_, which sets it
+  std::optional<WireError>
+      archive_error_;  ///< why the archive itself is damaged; before view_, which sets it
   glf::LogView view_;
   std::uint64_t bad_images_ = 0;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -26,7 +28,7 @@ struct Start {
 // A .dat begins with a record, or where it has none with its terminator.
 constexpr std::array starts{
     Start{{'P', 'K', 3, 4}, 4, LogKind::glf},
-    Start{{'*', 0, 0, 0}, 1, LogKind::dat},
+    Start{{'*', 2, 0, 0}, 2, LogKind::dat},
     Start{{0xDE, 0xDE, 0, 0}, 2, LogKind::dat},
     Start{{0x89, 'M', 'C', 'A'}, 4, LogKind::mcap},
     Start{{0x0A, 0x0D, 0x0D, 0x0A}, 4, LogKind::pcapng},
@@ -97,14 +99,24 @@ LogError LogFile::error(std::string_view what) const {
 }
 
 LogKind LogFile::find_kind() const {
+  const auto differing = [&](const Start& start) {
+    return std::inner_product(start.bytes.begin(), start.bytes.begin() + start.count, bytes_.begin(), 0,
+                              std::plus{}, std::not_equal_to{});
+  };
   for (const Start& start : starts) {
-    const auto expected = std::span(start.bytes).first(start.count);
-    if (bytes_.size() >= start.count && std::ranges::equal(bytes_.first(start.count), expected)) {
+    if (bytes_.size() >= start.count && differing(start) == 0) {
       return start.kind;
     }
   }
-  if (bytes_.empty() && path_.extension() == ".dat") {
+  const std::string extension = path_.extension();
+  if (bytes_.empty() && extension == name_of(LogKind::dat)) {
     return LogKind::dat;  // nothing has been written yet
+  }
+  // One of the first bytes may be damaged.
+  for (const Start& start : starts) {
+    if (extension == name_of(start.kind) && bytes_.size() >= start.count && differing(start) == 1) {
+      return start.kind;
+    }
   }
   throw error(bytes_.empty() ? "is empty" : "is no log (expected a .glf, .dat, .mcap or .pcapng)");
 }

@@ -29,7 +29,7 @@ std::string_view name_of(LogKind kind);
 /// ends the program, as every mapped file does: logs that are still being written only grow.
 class LogFile {
  public:
-  /// Tells kinds apart by the first bytes, whatever the file is called; an empty file by its name.
+  /// Tells kinds apart by the first bytes, whatever the file is called. Unknown first bytes: by its name.
   /// @throws LogError when it cannot be read or is none of them
   explicit LogFile(std::filesystem::path path);
   ~LogFile();

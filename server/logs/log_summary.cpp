@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "protocol/glf/log_time.hpp"
 #include "server/logs/capture_summary.hpp"
 #include "server/logs/glf_recording.hpp"
@@ -27,6 +29,17 @@ void summarise_glf(LogSummary& log, const LogFile& file) {
   const GlfRecording recording(file);
   log.local_time = true;
   add_pings(log, recording);
+  if (const std::uint64_t unreadable = recording.count_unreadable(); unreadable > 0) {
+    log.problems.push_back(
+        fmt::format("damaged: the samples of {} images do not unpack; `sonard replay` leaves "
+                    "them out",
+                    unreadable));
+  } else if (log.problems.empty() && !recording.view().matches_checksum()) {
+    log.problems.emplace_back(
+        "damaged: the checksum of the archive does not match; bytes of images without a checksum of their "
+        "own, or "
+        "of statuses, are wrong");
+  }
   const glf::DatIndex& index = recording.view().index();
   for (const glf::RecordEntry& entry : index.records) {
     if (entry.type == glf::RecordType::status) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "protocol/log/log_messages.hpp"
+#include "server/logs/damage_text.hpp"
 
 namespace sonard::server {
 namespace {
@@ -69,25 +70,27 @@ std::vector<std::uint8_t> bytes_of(const std::string& text) {
 }  // namespace
 
 McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(file)) {
-  for_each("sonard.log.SonarImage", false, &McapRecording::add_image);
-  for_each("sonard.log.ScanLine", true, &McapRecording::add_line);
+  damaged_ = reader_.damaged();
+  read_pings();
   sort_by_time();
 }
 
-void McapRecording::for_each(std::string_view schema, bool is_line,
-                             bool (McapRecording::*add)(std::span<const std::uint8_t>)) {
-  const std::set<std::uint16_t> channels = channels_of(schema);
-  if (channels.empty()) {
+void McapRecording::read_pings() {
+  const std::set<std::uint16_t> lines = channels_of("sonard.log.ScanLine");
+  ping_channels_ = channels_of("sonard.log.SonarImage");
+  ping_channels_.insert(lines.begin(), lines.end());
+  if (ping_channels_.empty()) {
     return;  // no channel would mean all of them
   }
-  mcap::MessageCursor cursor = reader_.messages(channels);
+  mcap::MessageCursor cursor = reader_.messages(ping_channels_);
   while (const std::optional<mcap::Message> message = cursor.next()) {
-    if ((this->*add)(message->data)) {
+    const bool is_line = lines.contains(message->channel_id);
+    if (is_line ? add_line(message->data) : add_image(message->data)) {
       const auto place = cursor.place();
       messages_.push_back({place ? std::span<const std::uint8_t>() : message->data, place, is_line});
     }
   }
-  unreadable_ = cursor.error();  // the same place for all schemas
+  damaged_.insert(damaged_.end(), cursor.damaged().begin(), cursor.damaged().end());
 }
 
 bool McapRecording::add_image(std::span<const std::uint8_t> bytes) {
@@ -145,6 +148,17 @@ std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
   throw file_.error("a ping cannot be read");  // it could when the log was opened
 }
 
+std::string McapRecording::lost_pings(const mcap::DamagedChunk& part) const {
+  if (part.lost_messages.empty()) {
+    return "its pings are lost";
+  }
+  std::uint64_t pings = 0;
+  for (const auto& [channel, messages] : part.lost_messages) {
+    pings += ping_channels_.contains(channel) ? messages : 0;
+  }
+  return pings == 0 ? "no ping is lost" : fmt::format("{} ping{} lost", pings, pings == 1 ? " is" : "s are");
+}
+
 std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) const {
   std::set<std::uint16_t> ids;
   for (const mcap::Channel& channel : reader_.summary().channels) {
@@ -160,11 +174,22 @@ std::vector<std::string> McapRecording::problems() const {
   std::vector<std::string> problems;
   if (!reader_.finished()) {
     problems.emplace_back("not closed: cut, still being written, or its writer went away");
+  } else if (reader_.lacks_summary()) {
+    problems.emplace_back("the index at its end is damaged: the whole log was searched for pings");
   }
-  for (const std::optional<WireError>& error : {reader_.stopped_by(), unreadable_}) {
-    if (error) {
-      problems.push_back(fmt::format("damaged: what follows cannot be read ({})", to_string(*error)));
-    }
+  if (const std::optional<WireError>& error = reader_.stopped_by()) {
+    problems.push_back(fmt::format("damaged: the last {} bytes cannot be read ({})", reader_.tail_size(),
+                                   to_string(*error)));
+  } else if (reader_.tail_size() > 0) {
+    problems.push_back(fmt::format("the last {} bytes are no whole record", reader_.tail_size()));
+  }
+  add_damage(problems, damaged_, [&](const mcap::DamagedChunk& part) { return lost_pings(part); });
+  std::uint64_t unknown = 0;
+  for (const auto& [channel, messages] : reader_.summary().message_counts) {
+    unknown += reader_.summary().channel(channel) == nullptr ? messages : 0;
+  }
+  if (unknown > 0) {
+    problems.push_back(fmt::format("{} messages belong to no channel and are left out", unknown));
   }
   if (bad_images_ > 0) {
     problems.push_back(fmt::format("{} images cannot be decoded and are left out", bad_images_));

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <vector>
 
 #include "protocol/mcap/reader.hpp"
 #include "server/logs/recording.hpp"
@@ -29,11 +30,9 @@ class McapRecording final : public Recording {
     bool is_line = false;
   };
 
-  /// Hands every message of one schema, for example "sonard.log.SonarImage", to a function, and keeps those
-  /// that it takes.
-  void for_each(std::string_view schema, bool is_line,
-                bool (McapRecording::*add)(std::span<const std::uint8_t>));
+  void read_pings();
   std::set<std::uint16_t> channels_of(std::string_view schema) const;
+  std::string lost_pings(const mcap::DamagedChunk& part) const;
   bool add_image(std::span<const std::uint8_t> bytes);
   bool add_line(std::span<const std::uint8_t> bytes);
 
@@ -42,7 +41,8 @@ class McapRecording final : public Recording {
   std::vector<Message> messages_;
   std::uint64_t bad_images_ = 0;
   std::uint64_t bad_lines_ = 0;
-  std::optional<WireError> unreadable_;  ///< why the images end before the file does
+  std::vector<mcap::DamagedChunk> damaged_;
+  std::set<std::uint16_t> ping_channels_;
 };
 
 }  // namespace sonard::server

@@ -59,7 +59,7 @@ bool GlfPacking::close_dat() {
   glf::DatIndex index;
   {
     const MappedFile dat(dat_path_);
-    index = glf::index_dat(glf::PiecewiseBytes(dat.bytes()));
+    index = glf::index_dat(glf::PiecewiseBytes(dat.bytes()), OnDamage::skip);
   }
   std::error_code error;
   if (index.records.empty()) {

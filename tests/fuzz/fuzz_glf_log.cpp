@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto log = LogView::open(file, max_unpacked_size);
   if (!log) {
     require(log.error().offset <= size, "an error lies inside the file");
-    if (const auto left = LogView::open_cut(file)) {
+    if (const auto left = LogView::open_damaged(file)) {
       check_index(left->index());
     }
     return 0;

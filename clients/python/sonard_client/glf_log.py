@@ -5,74 +5,141 @@ more of them."""
 from __future__ import annotations
 
 import struct
-import zipfile
 import zlib
 from datetime import datetime, timedelta, tzinfo
 from typing import Any, Iterator, Optional
 
 import numpy as np
 
+from . import glf_archive
+from .damage import warn, warn_of_bytes
+from .glf_archive import Pieces
 from .ping import LoggedPing
 
-MAGIC_OF_GLF, MAGIC_OF_DAT = b"PK\x03\x04", b"*\x02"
+MAGIC_OF_GLF, MAGIC_OF_DAT = glf_archive.LOCAL_SIGNATURE, b"*\x02"
+_TERMINATOR = b"\xde\xde"
+_HEADER_BYTES = 21
 _IMAGE, _STATUS = 0, 3
 _STATUS_BYTES = 218
 _ZLIB = 0
 _MOST_BYTES = 1 << 26  # of one image: far beyond any head's
 
 
-def pings_of_glf(file: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:
-    """`path` is for messages."""
-    try:
-        with zipfile.ZipFile(file) as archive:
-            logs = [name for name in archive.namelist() if name.endswith(".dat")]
-            if len(logs) != 1:
-                raise ValueError(f"{path} holds {len(logs)} .dat logs (expected 1)")
-            with archive.open(logs[0]) as log:
-                yield from pings_of_dat(log, path, zone)
-    except (zipfile.BadZipFile, RuntimeError, OSError) as error:  # all three for bytes that make no sense
-        raise ValueError(f"{path} is damaged: {error}") from error
+def pings_of_glf(data: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:
+    """`data` is the file as bytes or as a memory map, `path` is for messages."""
+    entry = glf_archive.find_dat(data)
+    if entry is None:
+        raise ValueError(f"{path} holds no .dat log")
+    records = _records(entry.content, path)
+    yield from _pings(records, path, zone)
+    if entry.crc is not None and entry.content.crc() != entry.crc:
+        warn(path, "the checksum of its .dat does not match; bytes of images without a checksum of their own may be wrong")
 
 
-def pings_of_dat(file: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:
-    try:
-        while len(head := file.read(21)) == 21:
-            if head[:1] != b"*":
-                raise ValueError(f"a record begins with the bytes {head[:2].hex(' ')}")
-            seconds, kind, device = struct.unpack_from("<dBH", head, 6)
-            if kind == _IMAGE:
-                yield _ping(file, device, seconds, zone)
-            else:
-                _exactly(file, _STATUS_BYTES if kind == _STATUS else struct.unpack_from("<I", head, 2)[0] - 21)
-    except EOFError:
-        return  # the record that is being written
-    except (ValueError, OverflowError, zlib.error) as error:
-        raise ValueError(f"{path} is damaged: {error}") from error
+def pings_of_dat(data: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:
+    yield from _pings(_records(Pieces([data]), path), path, zone)
 
 
-def _exactly(file: Any, size: int) -> bytes:
-    if not 0 <= size <= _MOST_BYTES:
+def _pings(records: Iterator[tuple[int, bytes]], path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:
+    for at, record in records:
+        try:
+            ping = _ping(record, zone)
+        except (ValueError, OverflowError, struct.error, zlib.error) as error:
+            warn_of_bytes(path, at, len(record), str(error), "the image is lost")
+        else:
+            yield ping
+
+
+def _records(dat: Pieces, path: Any) -> Iterator[tuple[int, bytes]]:
+    """Whole images with their offsets, up to the end or the record that is being written."""
+    at = 0
+    while at < dat.size and not (dat.size - at == 2 and dat.read(at, 2) == _TERMINATOR):
+        try:
+            end = _end(dat, at)
+        except (EOFError, ValueError) as error:
+            following = _next_record(dat, at)
+            if following is None:
+                if not isinstance(error, EOFError):
+                    warn_of_bytes(path, at, dat.size - at, str(error), "what follows is lost")
+                return
+            warn_of_bytes(path, at, following - at, str(error), "the images in them are lost")
+            at = following
+            continue
+        if dat.read(at + 14, 1)[0] == _IMAGE:
+            yield at, dat.read(at, end - at)
+        at = end
+
+
+def _end(dat: Pieces, at: int) -> int:
+    """Where the record at `at` ends. Raises EOFError beyond the data, ValueError where there is no record."""
+    head = dat.read(at, _HEADER_BYTES)
+    if head[:1] != b"*":
+        raise ValueError(f"a record begins with the bytes {head[:2].hex(' ')}")
+    (length,) = struct.unpack_from("<I", head, 2)
+    if head[14] == _IMAGE:
+        return _end_of_image(dat, at)
+    size = _HEADER_BYTES + _STATUS_BYTES if head[14] == _STATUS else length
+    if size < _HEADER_BYTES:
         raise ValueError(f"a record of {size} bytes")
-    data: bytes = file.read(size)
-    if len(data) < size:
-        raise EOFError
-    return data
+    if at + size > dat.size:
+        raise EOFError("a record beyond the end")
+    return at + size
 
 
-def _ping(file: Any, device: int, seconds: float, zone: Optional[tzinfo]) -> LoggedPing:
-    """An image record, behind its first 21 bytes."""
-    _, tag, version, first_row, end_row, _, first_beam, end_beam = struct.unpack("<HHHIIHII", _exactly(file, 24))
-    if tag != 0xEFEF or end_row < first_row or end_beam <= first_beam:
+def _end_of_image(dat: Pieces, at: int) -> int:
+    """By what the image itself says: other programs write something else into the header of the record."""
+    _, tag, version, first_row, end_row, _, first_beam, end_beam = struct.unpack("<HHHIIHII", dat.read(at + 21, 24))
+    if tag != 0xEFEF or end_row < first_row or end_beam < first_beam:
         raise ValueError(f"an image with rows {first_row} to {end_row}, beams {first_beam} to {end_beam}")
+    size_at = at + 45 + (2 if version == 3 else 0)
+    end: int = size_at + 4 + struct.unpack("<I", dat.read(size_at, 4))[0] + 8 * (end_beam - first_beam) + 34
+    if end > dat.size:
+        raise EOFError("an image beyond the end")
+    if dat.read(end - 3, 3) != b"\0" + _TERMINATOR:
+        raise ValueError("an image without its end")
+    return end
+
+
+def _next_record(dat: Pieces, at: int) -> Optional[int]:
+    """Where the next whole image, or a status with something behind it, starts."""
+    while (at := dat.find(MAGIC_OF_DAT, at + 1)) >= 0:
+        try:
+            head = dat.read(at, _HEADER_BYTES)
+            end = _end(dat, at)
+            if head[19:21] == b"\0\0" and (head[14] == _IMAGE or (head[14] == _STATUS and (
+                    end == dat.size or dat.read(end, 1) in b"*\xde"))):
+                return at
+        except (EOFError, ValueError):
+            pass
+    return None
+
+
+def _ping(record: bytes, zone: Optional[tzinfo]) -> LoggedPing:
+    """An image record."""
+    seconds, _, device = struct.unpack_from("<dBH", record, 6)
+    _, _, version, first_row, end_row, _, first_beam, end_beam = struct.unpack_from("<HHHIIHII", record, 21)
     rows, beams = end_row - first_row, end_beam - first_beam
-    compression = struct.unpack("<H", _exactly(file, 2))[0] if version == 3 else None
-    samples = _exactly(file, *struct.unpack("<I", _exactly(file, 4)))
+    if rows * beams > _MOST_BYTES or not rows or not beams:
+        raise ValueError(f"an image of {rows} x {beams}")
+    at = 45
+    compression = None
+    if version == 3:
+        (compression,) = struct.unpack_from("<H", record, at)
+        at += 2
+    (size,) = struct.unpack_from("<I", record, at)
+    samples = record[at + 4: at + 4 + size]
+    at += 4 + size
     if len(samples) != rows * beams and compression in (_ZLIB, None):
-        samples = zlib.decompressobj().decompress(samples, _MOST_BYTES)
+        unpacker = zlib.decompressobj()
+        samples = unpacker.decompress(samples, rows * beams + 1)
+        if not unpacker.eof and len(samples) == rows * beams:
+            unpacker.decompress(unpacker.unconsumed_tail, 1)  # its checksum
+            if not unpacker.eof:
+                raise ValueError("samples without their checksum")
     if len(samples) != rows * beams:
         raise ValueError(f"an image of {rows} x {beams} has {len(samples)} samples (compression {compression})")
-    bearings_rad = np.frombuffer(_exactly(file, 8 * beams), "<f8")
-    _, rows_hz, _, _, _, sound_speed_mps, *_ = struct.unpack("<IIfdHfhBBBBH", _exactly(file, 34))
+    bearings_rad = np.frombuffer(record[at: at + 8 * beams], "<f8")
+    _, rows_hz, _, _, _, sound_speed_mps, *_ = struct.unpack_from("<IIfdHfhBBBBH", record, at + 8 * beams)
     if not rows_hz:
         raise ValueError("an image without a rate of its rows")
     row_m = sound_speed_mps / 2 / rows_hz

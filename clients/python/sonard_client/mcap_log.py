@@ -4,69 +4,155 @@ field numbers stand below; the wire format is Protocol Buffers'."""
 
 from __future__ import annotations
 
+import re
 import struct
-from typing import Any, Iterator
+import zlib
+from typing import Any, Iterator, Optional
 
 import numpy as np
 
+from .damage import warn, warn_of_bytes
 from .ping import Array, LoggedPing
 
 MAGIC = b"\x89MCAP0\r\n"
-_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK = 3, 4, 5, 6
+_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 3, 4, 5, 6, 15
+_OF_DATA = (1, _SCHEMA, _CHANNEL, _CHUNK, 7, 9, 12, _DATA_END)  # also header, message index, attachment, metadata
+# The front of a chunk with a compression that there is, and of a schema of ours.
+_READABLE = re.compile(rb"\x06.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4)|\x03.{14}sonard\.log\.", re.DOTALL)
+_MOST_BYTES = 1 << 30  # of one chunk
 
 
-def pings(file: Any, path: Any) -> Iterator[LoggedPing]:
-    """`path` is for messages."""
-    file.read(len(MAGIC))
+class _Damaged(Exception):
+    pass
+
+
+def pings(data: Any, path: Any) -> Iterator[LoggedPing]:
+    """`data` is the file as bytes or as a memory map, `path` is for messages."""
     schemas: dict[int, str] = {}
     channels: dict[int, int] = {}
-    for kind, body in _records_of_file(file):
-        for kind, body in _records_of_chunk(body, path) if kind == _CHUNK else [(kind, body)]:
-            if kind == _SCHEMA:
-                schemas[struct.unpack_from("<H", body)[0]] = _text(body, 2)
-            elif kind == _CHANNEL:
-                number, schema = struct.unpack_from("<HH", body)
-                channels[number] = schema
-            elif kind == _MESSAGE:
-                schema_name = schemas.get(channels.get(struct.unpack_from("<H", body)[0], 0), "")
-                if schema_name in _MAKERS:
-                    yield _MAKERS[schema_name](_fields(body[22:]))
+    for kind, body in _records_of_file(data, path):
+        # Only those in chunks have a checksum, and they come first.
+        if kind == _SCHEMA and len(body) >= 6:
+            schemas.setdefault(struct.unpack_from("<H", body)[0], _text(body, 2))
+        elif kind == _CHANNEL and len(body) >= 4:
+            number, schema = struct.unpack_from("<HH", body)
+            channels.setdefault(number, schema)
+        elif kind == _MESSAGE and len(body) >= 22:
+            schema_name = schemas.get(channels.get(struct.unpack_from("<H", body)[0], 0), "")
+            if schema_name in _MAKERS:
+                try:
+                    ping = _MAKERS[schema_name](_fields(body[22:]))
+                except (IndexError, ValueError, struct.error) as error:
+                    warn(path, f"a {schema_name} cannot be decoded ({error}); it is lost")
+                else:
+                    yield ping
 
 
-def _records_of_file(file: Any) -> Iterator[tuple[int, bytes]]:
-    """Until the end, or the record that is being written."""
-    while len(head := file.read(9)) == 9:
-        kind, length = struct.unpack("<BQ", head)
-        body = file.read(length)
-        if len(body) < length:
-            return
-        yield kind, body
+def _records_of_file(data: Any, path: Any) -> Iterator[tuple[int, bytes]]:
+    """Records outside and inside of chunks, up to the end of the data or the record that is being written."""
+    at = len(MAGIC)
+    while at < len(data) and data[at] != _DATA_END:
+        end = _end(data, at)
+        try:
+            if end is None:
+                raise _Damaged("a length beyond the end")
+            if data[at] == _CHUNK:
+                if not _sizes_agree(data, at):
+                    raise _Damaged("the length of a chunk")
+                yield from _records_of_chunk(data[at + 9: end], path)
+            elif data[at] not in _OF_DATA or _sizes_agree(data, at):
+                raise _Damaged(f"a record of type {data[at]}")
+            else:
+                yield data[at], data[at + 9: end]
+            at = end
+        except _Damaged as why:
+            following = _next_readable(data, at, end)
+            if following is None:
+                if end is not None:
+                    warn_of_bytes(path, at, len(data) - at, str(why), "what follows is lost")
+                return  # else it is the record that is being written
+            warn_of_bytes(path, at, following - at, str(why), "its pings are lost")
+            at = following
+
+
+def _end(data: Any, at: int) -> Optional[int]:
+    """Where the record at `at` ends; None beyond the data."""
+    if at + 9 > len(data):
+        return None
+    end: int = at + 9 + struct.unpack_from("<Q", data, at + 1)[0]
+    return end if end <= len(data) else None
+
+
+def _sizes_agree(data: Any, at: int) -> bool:
+    """The content of the record has the sizes of a chunk, whatever its type says."""
+    end = _end(data, at)
+    if end is None or end < at + 49:
+        return False
+    (name,) = struct.unpack_from("<I", data, at + 37)
+    return bool(name <= end - at - 49 and at + 49 + name + struct.unpack_from("<Q", data, at + 41 + name)[0] == end)
+
+
+def _is_schema(data: Any, at: int) -> bool:
+    end = _end(data, at)
+    place = at + 11  # behind its number
+    for _ in range(3):
+        if end is None or place + 4 > end:
+            return False
+        place += 4 + struct.unpack_from("<I", data, place)[0]
+    return place == end
+
+
+def _next_readable(data: Any, at: int, end: Optional[int]) -> Optional[int]:
+    """Behind a chunk whose sizes agree, so that its length is right; else at the next such chunk or schema."""
+    if end is not None and _sizes_agree(data, at):
+        return end
+    for found in _READABLE.finditer(data, at + 1):
+        if _sizes_agree(data, found.start()) or (data[found.start()] == _SCHEMA and _is_schema(data, found.start())):
+            return found.start()
+    return None
 
 
 def _records_of_chunk(body: bytes, path: Any) -> Iterator[tuple[int, bytes]]:
-    compression = _text(body, 28)
-    at = 32 + len(compression)
-    data = body[at + 8: at + 8 + struct.unpack_from("<Q", body, at)[0]]
-    if compression == "zstd":
+    if len(body) < 40:
+        raise _Damaged("a chunk without its front")
+    size, crc = struct.unpack_from("<QI", body, 16)
+    (name,) = struct.unpack_from("<I", body, 28)
+    at = 32 + name
+    if at + 8 > len(body) or at + 8 + struct.unpack_from("<Q", body, at)[0] != len(body):
+        raise _Damaged("sizes of a chunk")
+    data = _unpacked(body[32: at], body[at + 8:], size, path)
+    if crc not in (0, zlib.crc32(data)):
+        raise _Damaged("the checksum of a chunk")
+    at = 0
+    while at < len(data):
+        end = _end(data, at)
+        if end is None:
+            raise _Damaged("a record beyond its chunk")
+        yield data[at], data[at + 9: end]
+        at = end
+
+
+def _unpacked(compression: bytes, data: bytes, size: int, path: Any) -> bytes:
+    if compression == b"zstd":
         try:
             import zstandard
         except ImportError as error:
             raise ValueError(f"{path} is compressed: pip install zstandard") from error
-        data = zstandard.ZstdDecompressor().decompress(data, struct.unpack_from("<Q", body, 16)[0])
-    elif compression:
-        raise ValueError(f"{path} is compressed by '{compression}', which sonard does not write")
-    at = 0
-    while at + 9 <= len(data):
-        kind, length = struct.unpack_from("<BQ", data, at)
-        if at + 9 + length > len(data):
-            raise ValueError(f"{path} is damaged: a record runs beyond its chunk")
-        yield kind, data[at + 9: at + 9 + length]
-        at += 9 + length
+        try:
+            unpacked: bytes = zstandard.ZstdDecompressor().decompress(data, min(size, _MOST_BYTES))
+        except (zstandard.ZstdError, MemoryError) as error:
+            raise _Damaged("a chunk that does not unpack") from error
+        return unpacked
+    if compression == b"lz4":
+        raise ValueError(f"{path} is compressed by 'lz4', which sonard does not write")
+    if compression:
+        raise _Damaged("the compression of a chunk")
+    return data
 
 
 def _text(body: bytes, at: int) -> str:
     (length,) = struct.unpack_from("<I", body, at)
-    return body[at + 4: at + 4 + length].decode()
+    return body[at + 4: at + 4 + length].decode(errors="replace")
 
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:

@@ -9,7 +9,6 @@ Pings are compared by CRC-32 with what the renderer handed over, and by range an
 """
 
 import argparse
-import contextlib
 import csv
 import glob
 import math
@@ -19,6 +18,7 @@ import subprocess
 import sys
 import time
 import unittest
+import warnings
 import zlib
 
 import numpy
@@ -26,7 +26,7 @@ import numpy
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 sys.path[:0] = [os.path.join(SOURCE, "tests", "system", "gemini"), os.path.join(SOURCE, "clients", "python")]
 from lab import OwnMachine, Program  # noqa: E402
-from sonard_client import Gemini, Micron, NoHead, NoPing, read_log  # noqa: E402
+from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, read_log  # noqa: E402
 from sonard_client import micron  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
@@ -137,21 +137,30 @@ class PythonClient(OwnMachine):
             numpy.testing.assert_allclose(ping.ranges_m, kept_in_glf.ranges_m, rtol=1e-4)  # whole hertz
             numpy.testing.assert_allclose(ping.bearings_rad, kept_in_glf.bearings_rad, atol=1e-6)
             self.assertAlmostEqual(kept_in_mcap.time_ns, kept_in_glf.time_ns, delta=2e6)
-        self.expect_errors_of_logs(glf)
-
-    def expect_errors_of_logs(self, glf):
         with self.assertRaisesRegex(ValueError, "sonard.yaml is no .mcap, .glf or .dat log"):
             next(read_log(os.path.join(self.folder.name, "sonard.yaml")))
-        with open(glf, "rb") as file:
+        written = {ping.samples.tobytes() for ping in pings}
+        self.assertEqual(len(written), 3)
+        self.expect_damage(glf, written, most_lost=1)
+        self.expect_damage(log, written, most_lost=3)  # they share a chunk
+
+    def expect_damage(self, log, written, most_lost):
+        """A log with a wrong bit: what is lost at most, and that the reader says so."""
+        with open(log, "rb") as file:
             whole = file.read()
-        for size in range(100, len(whole), len(whole) // 50):  # each without its end, and with a byte turned over
-            for name, damaged in (("cut.glf", whole[:size]),
-                                  ("turned.glf", whole[:size] + bytes([whole[size] ^ 0xFF]) + whole[size + 1:])):
-                path = os.path.join(self.folder.name, name)
-                with open(path, "wb") as file:
-                    file.write(damaged)
-                with contextlib.suppress(ValueError):
-                    list(read_log(path))
+        for at in [*range(0, 200, 3), *range(200, len(whole) - 400, len(whole) // 40), *range(len(whole) - 400, len(whole), 5)]:
+            path = os.path.join(self.folder.name, "damaged" + os.path.splitext(log)[1])
+            with open(path, "wb") as file:
+                file.write(whole[:at] + bytes([whole[at] ^ (1 << at % 8)]) + whole[at + 1:])
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                read = [ping.samples.tobytes() for ping in read_log(path)]
+            lost = len(written.difference(read))
+            self.assertLessEqual(lost, most_lost, at)
+            if lost or len(read) < 3:
+                self.assertTrue(any(issubclass(one.category, DamagedLog) for one in caught), at)
+            for one in caught:
+                self.assertIn(path, str(one.message))
 
     def test_a_head_that_is_silent(self):
         with self.assertRaisesRegex(NoHead, "is the head on"):

@@ -104,7 +104,7 @@ TEST(Crash, of_an_archive_without_its_end_every_whole_record_is_left) {
   for (std::size_t size = 1; size < whole.size(); ++size) {
     const std::span cut(whole.data(), size);
     ASSERT_FALSE(LogView::open(cut)) << size;
-    const auto left = LogView::open_cut(cut);
+    const auto left = LogView::open_damaged(cut);
     if (size < start) {
       EXPECT_TRUE(!left || left->index().records.empty()) << size;
       continue;
@@ -124,7 +124,7 @@ TEST(Crash, of_several_blocks_none_is_lost) {
   dat.insert(dat.end(), dat_terminator.begin(), dat_terminator.end());
   Bytes archive = packed(dat);
   archive.resize(archive.size() - 30);  // into the end record
-  const auto left = LogView::open_cut(archive);
+  const auto left = LogView::open_damaged(archive);
   ASSERT_TRUE(left);
   ASSERT_EQ(left->index().records.size(), 40U);
   EXPECT_EQ(*left->image(left->index().records[39]), patterned_image(39));

@@ -33,13 +33,18 @@ TEST(Hostile, other_types_are_skipped_by_their_length_and_counted) {
   EXPECT_EQ(*view->status(view->index().records[1]), small_status());
 }
 
-TEST(Hostile, other_types_of_impossible_length_end_the_index) {
+TEST(Hostile, other_types_of_impossible_length_cost_themselves) {
   Bytes other = other_record(99, 40);
   for (const std::uint32_t length : {0U, 20U}) {
     patch(other, 2, length);
     const Bytes dat = joined({encode(small_image()), other, encode(small_status())});
-    EXPECT_EQ(LogView::open(dat)->index().tail_error,
-              (WireError{WireErrorReason::bad_length, 115 + 2, "length"}));
+    const DatIndex index = LogView::open(dat)->index();
+    EXPECT_EQ(index.records.size(), 2U);
+    ASSERT_EQ(index.damaged.size(), 1U);
+    EXPECT_EQ(index.damaged[0].offset, 115U);
+    EXPECT_EQ(index.damaged[0].size, 40U);
+    EXPECT_EQ(index.damaged[0].error, (WireError{WireErrorReason::bad_length, 115 + 2, "length"}));
+    EXPECT_EQ(index_dat(PiecewiseBytes{dat}).tail_error, index.damaged[0].error) << "OnDamage::stop";
   }
   patch(other, 2, 0xFFFFFFFFU);
   EXPECT_EQ(LogView::open(joined({encode(small_image()), other}))->index().tail_error,
@@ -65,7 +70,7 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
     // More raw lines than pixels are found only when the image is decoded.
     const bool found_later = offset == 31;
     EXPECT_EQ(index.records.size(), found_later ? 3U : 2U) << offset;
-    EXPECT_EQ(index.damaged_records, found_later ? 0U : 1U) << offset;
+    EXPECT_EQ(index.damaged.size(), found_later ? 0U : 1U) << offset;
     EXPECT_TRUE(index.closed);
     EXPECT_EQ(*view->image(index.records.back()), small_image());
     if (found_later) {
@@ -75,8 +80,8 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
   }
 }
 
-// Where the length leads to what only looks like a header, the index ends instead of listing noise.
-TEST(Hostile, damaged_images_whose_length_leads_nowhere_end_the_index) {
+// If the length leads to what only looks like a header, the next whole record counts, and no noise before it.
+TEST(Hostile, damaged_images_whose_length_leads_nowhere_do_not_hide_what_comes_after_them) {
   constexpr std::size_t next = 60;  // inside the bearings
   Bytes image = encode(small_image());
   patch<std::uint16_t>(image, 23, 0xEFEE);
@@ -84,10 +89,14 @@ TEST(Hostile, damaged_images_whose_length_leads_nowhere_end_the_index) {
   std::fill_n(image.begin() + next, 21, std::uint8_t{0});
   const auto ends_there = [&] {
     const Bytes dat = joined({image, encode(small_status()), {0xDE, 0xDE}});
-    const auto view = LogView::open(dat);
-    EXPECT_EQ(view->index().damaged_records, 0U);
-    EXPECT_EQ(view->index().whole_size, 0U);
-    return view->index().tail_error == WireError{WireErrorReason::bad_value, 23, "record_tag"};
+    const DatIndex index = LogView::open(dat)->index();
+    EXPECT_EQ(index.records.size(), 1U);
+    EXPECT_EQ(index.damaged.size(), 1U);
+    EXPECT_EQ(index.damaged.at(0).size, image.size());
+    const DatIndex front = index_dat(PiecewiseBytes{dat});
+    EXPECT_EQ(front.whole_size, 0U) << "OnDamage::stop";
+    EXPECT_EQ(front.tail_error, index.damaged.at(0).error);
+    return index.damaged.at(0).error == WireError{WireErrorReason::bad_value, 23, "record_tag"};
   };
   EXPECT_TRUE(ends_there()) << "no header";
   image[next] = '*';

@@ -12,16 +12,37 @@ namespace {
 
 constexpr std::size_t first_chunk = 8 + 9 + 12;  // behind magic and a header that holds "test"
 
-TEST(McapBroken, a_wrong_byte_in_a_chunk_is_an_error_that_names_its_crc) {
+TEST(McapBroken, a_wrong_byte_in_a_chunk_costs_its_messages_and_names_its_crc) {
   Bytes file = finished_file();
   file[first_chunk + 9 + 40 + 20] ^= 1;  // among the records
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
   MessageCursor cursor = reader->messages();
-  EXPECT_FALSE(cursor.next());
-  ASSERT_TRUE(cursor.error());
-  EXPECT_EQ(cursor.error()->field, "chunk.uncompressed_crc");
-  EXPECT_EQ(cursor.error()->offset, first_chunk + 9 + 24);
+  std::size_t messages = 0;
+  for (; cursor.next(); ++messages) {
+  }
+  EXPECT_EQ(messages, 5U) << "two of seven are in the first chunk";
+  ASSERT_EQ(cursor.damaged().size(), 1U);
+  const DamagedChunk& damaged = cursor.damaged()[0];
+  EXPECT_EQ(damaged.error.field, "chunk.uncompressed_crc");
+  EXPECT_EQ(damaged.error.offset, first_chunk + 9 + 24);
+  EXPECT_EQ(damaged.offset, first_chunk);
+  EXPECT_EQ(damaged.lost_messages, (std::map<std::uint16_t, std::uint64_t>{{1, 2}}));
+}
+
+TEST(McapBroken, without_a_summary_chunks_behind_a_damaged_one_are_found) {
+  const Bytes whole = finished_file();
+  const std::uint64_t second_chunk = read_summary(whole)->chunks[1].offset;
+  Bytes file{whole.begin(), whole.end() - 1};
+  for (std::size_t i = 1; i <= 8; ++i) {
+    file[first_chunk + i] = 0xFF;  // the length of the first chunk
+  }
+  const auto reader = Reader::open(file);
+  ASSERT_TRUE(reader);
+  ASSERT_FALSE(reader->damaged().empty());
+  EXPECT_EQ(reader->damaged().front().offset, first_chunk);
+  EXPECT_LE(reader->damaged().back().offset + reader->damaged().back().size, second_chunk);
+  EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
 TEST(McapBroken, a_compressed_chunk_is_refused_and_never_cut_off) {
@@ -37,8 +58,9 @@ TEST(McapBroken, a_compressed_chunk_is_refused_and_never_cut_off) {
   EXPECT_EQ(recovery.error().field, "chunk.compression");
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
-  ASSERT_TRUE(reader->stopped_by());
-  EXPECT_EQ(reader->stopped_by()->field, "chunk.compression");
+  ASSERT_EQ(reader->damaged().size(), 1U);
+  EXPECT_EQ(reader->damaged()[0].error.field, "chunk.compression");
+  EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
 TEST(McapBroken, sizes_beyond_the_file_are_no_whole_record) {
@@ -59,7 +81,8 @@ TEST(McapBroken, a_summary_with_a_wrong_byte_is_not_used) {
   file[summary_start + 9] ^= 1;
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
-  EXPECT_FALSE(reader->finished());
+  EXPECT_TRUE(reader->finished());
+  EXPECT_TRUE(reader->lacks_summary());
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 
@@ -73,7 +96,7 @@ TEST(McapBroken, a_summary_whose_chunks_overlap_is_not_used) {
   append(hostile, make_end(twice, hostile.size(), 0));
   const auto reader = Reader::open(hostile);
   ASSERT_TRUE(reader);
-  EXPECT_FALSE(reader->finished());
+  EXPECT_TRUE(reader->lacks_summary());
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 

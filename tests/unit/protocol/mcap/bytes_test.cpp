@@ -35,13 +35,13 @@ const Bytes chunk_index{0x08, 74, 0, 0, 0, 0, 0, 0, 0,
                         10, 0, 0, 0,  1, 0,  178, 0, 0, 0, 0, 0, 0, 0,
                         31, 0, 0, 0, 0, 0, 0, 0,  0, 0, 0, 0,
                         103, 0, 0, 0, 0, 0, 0, 0,  103, 0, 0, 0, 0, 0, 0, 0};
-// DataEnd stands at 209 and has 13 bytes: schema at 222, channel at 251, statistics at 292, chunk index at 357,
-// summary offsets at 440.
-const Bytes offsets{0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x03,  222, 0, 0, 0, 0, 0, 0, 0,  29, 0, 0, 0, 0, 0, 0, 0,
-                    0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x04,  251, 0, 0, 0, 0, 0, 0, 0,  41, 0, 0, 0, 0, 0, 0, 0,
-                    0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x0B,  0x24, 1, 0, 0, 0, 0, 0, 0,  65, 0, 0, 0, 0, 0, 0, 0,
-                    0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x08,  0x65, 1, 0, 0, 0, 0, 0, 0,  83, 0, 0, 0, 0, 0, 0, 0};
-const Bytes footer{0x02, 20, 0, 0, 0, 0, 0, 0, 0,  222, 0, 0, 0, 0, 0, 0, 0,  0xB8, 1, 0, 0, 0, 0, 0, 0};
+// Behind the message index schema and channel are repeated. DataEnd stands at 279 and has 13 bytes: schema at 292,
+// channel at 321, statistics at 362, chunk index at 427, summary offsets at 510.
+const Bytes offsets{0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x03,  0x24, 1, 0, 0, 0, 0, 0, 0,  29, 0, 0, 0, 0, 0, 0, 0,
+                    0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x04,  0x41, 1, 0, 0, 0, 0, 0, 0,  41, 0, 0, 0, 0, 0, 0, 0,
+                    0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x0B,  0x6A, 1, 0, 0, 0, 0, 0, 0,  65, 0, 0, 0, 0, 0, 0, 0,
+                    0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x08,  0xAB, 1, 0, 0, 0, 0, 0, 0,  83, 0, 0, 0, 0, 0, 0, 0};
+const Bytes footer{0x02, 20, 0, 0, 0, 0, 0, 0, 0,  0x24, 1, 0, 0, 0, 0, 0, 0,  0xFE, 1, 0, 0, 0, 0, 0, 0};
 // clang-format on
 
 Bytes joined(std::initializer_list<Bytes> parts) {
@@ -53,13 +53,15 @@ Bytes joined(std::initializer_list<Bytes> parts) {
 }
 
 const Bytes chunk_crc{0x70, 0xFE, 0x5F, 0x79};
-const Bytes data_crc{0x36, 0x6B, 0x71, 0x0C};
-const Bytes summary_crc{0x01, 0x81, 0xB1, 0xC6};
+const Bytes data_crc{0xE9, 0x36, 0xC4, 0x94};
+const Bytes summary_crc{0xEF, 0xFF, 0x0F, 0x44};
 
 Bytes by_hand() {
-  return joined({magic_bytes, header, chunk_head, chunk_crc, chunk_middle, schema, channel, message,
-                 message_index, Bytes{0x0F, 4, 0, 0, 0, 0, 0, 0, 0}, data_crc, schema, channel, statistics,
-                 chunk_index, offsets, footer, summary_crc, magic_bytes});
+  return joined(
+      {magic_bytes, header,      chunk_head,    chunk_crc,  chunk_middle, schema,
+       channel,     message,     message_index, schema,     channel,      Bytes{0x0F, 4, 0, 0, 0, 0, 0, 0, 0},
+       data_crc,    schema,      channel,       statistics, chunk_index,  offsets,
+       footer,      summary_crc, magic_bytes});
 }
 
 constexpr std::uint64_t log_time = 0x01000000'0000002A;

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How the readers of logs report what they cannot read."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+
+class DamagedLog(UserWarning):
+    """Part of a log cannot be read. The reader skips that part and goes on with the next one."""
+
+
+def warn(path: Any, what: str) -> None:
+    warnings.warn(f"{path} is damaged: {what}", DamagedLog, stacklevel=2)
+
+
+def warn_of_bytes(path: Any, offset: int, size: int, why: str, lost: str) -> None:
+    warn(path, f"{size} bytes at byte {offset} cannot be read ({why}); {lost}")

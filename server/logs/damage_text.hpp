@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// One phrase for each damaged part of a log, as `sonard info` and `sonard replay` print it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "protocol/common/damage.hpp"
+
+namespace sonard::server {
+
+/// Appends a phrase for each part: where it is, how large it is, and what is lost. After ten phrases one more
+/// counts the rest.
+/// @param lost what is lost with a part, for example "3 pings are lost"
+template <class Part, class Lost>
+void add_damage(std::vector<std::string>& problems, const std::vector<Part>& parts, const Lost& lost) {
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 0; i < parts.size() && i < most; ++i) {
+    const Damage& damage = parts[i];
+    problems.push_back(fmt::format("damaged: {} bytes at byte {} cannot be read ({}); {}", damage.size,
+                                   damage.offset, to_string(damage.error), lost(parts[i])));
+  }
+  if (parts.size() > most) {
+    problems.push_back(fmt::format("damaged: {} more parts cannot be read", parts.size() - most));
+  }
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// Logs with one wrong bit, at every byte: a damaged part costs its own pings and no others. The truth is what
+// was written into the undamaged log.
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "protocol/glf/codec.hpp"
+#include "protocol/glf/headers.hpp"
+#include "protocol/glf/packer.hpp"
+#include "protocol/log/log_messages.hpp"
+#include "protocol/mcap/writer.hpp"
+#include "protocol/pcapng/blocks.hpp"
+#include "server/logs/log_summary.hpp"
+#include "server/logs/recording.hpp"
+#include "tests/unit/server/logs/temporary_log.hpp"
+
+namespace sonard::server {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Samples of each ping by its number.
+using Pings = std::map<int, std::string>;
+
+std::string samples_of(int number) {
+  std::string samples;
+  for (int i = 0; i < 60; ++i) {
+    samples += static_cast<char>((31 * number + 7 * i * i) % 251);
+  }
+  return samples;
+}
+
+Pings pings_written(int count) {
+  Pings pings;
+  for (int number = 0; number < count; ++number) {
+    pings[number] = samples_of(number);
+  }
+  return pings;
+}
+
+constexpr std::int64_t first_ping_ns = 1'795'184'553'000'000'000;
+
+/// Two images in a chunk.
+Bytes mcap_log(int images, bool compressed, bool finished) {
+  mcap::Writer writer{"test", 100'000, compressed ? mcap::Compression::zstd : mcap::Compression::none};
+  const auto schema = writer.add_schema("sonard.log.SonarImage", log::encoding_name, Bytes{1, 2, 3});
+  const auto channel = writer.add_channel(schema, "/bow/image", log::encoding_name);
+  for (int number = 0; number < images; ++number) {
+    log::SonarImage image;
+    image.set_head("bow");
+    image.set_device_id(600);
+    image.set_transmit_time_ns(first_ping_ns + number * 100'000'000);
+    image.set_range_lines(20);
+    image.set_beams(3);
+    image.set_pixels(samples_of(number));
+    for (const double bearing : {0.5, 0.0, -0.5}) {
+      image.add_bearings_rad(bearing);
+    }
+    image.set_metres_per_line(0.25);
+    image.set_sound_speed_mps(1500.0);
+    const auto time = static_cast<std::uint64_t>(image.transmit_time_ns());
+    writer.add_message(channel, time, time, log::encode(image));
+    if (number % 2 == 1) {
+      writer.end_chunk();
+    }
+  }
+  if (finished) {
+    writer.finish();
+  } else {
+    writer.flush();
+  }
+  return writer.take().append;
+}
+
+glf::ImageRecord glf_image(int number) {
+  glf::ImageRecord image;
+  image.origin = {.time_s = 1000.0 + number, .device_id = 600, .node_id = 1};
+  image.lines = 20;
+  image.beams = 3;
+  const std::string samples = samples_of(number);
+  image.pixels.assign(samples.begin(), samples.end());
+  image.bearings_rad = {0.5, 0.0, -0.5};
+  image.transmit_time_s = 1000.0 + number;
+  image.modulation_frequency_hz = 3000;
+  image.sound_speed_mps = 1500.0F;
+  return image;
+}
+
+Bytes dat_log(int images) {
+  Bytes dat;
+  for (int number = 0; number < images; ++number) {
+    const Bytes record = glf::encode(glf_image(number));
+    dat.insert(dat.end(), record.begin(), record.end());
+  }
+  dat.insert(dat.end(), glf::dat_terminator.begin(), glf::dat_terminator.end());
+  return dat;
+}
+
+Bytes glf_log(int images) {
+  const Bytes dat = dat_log(images);
+  const glf::CivilTime closed{.year = 2026, .month = 11, .day = 20, .hour = 14, .minute = 22, .second = 33};
+  // The CRC of ZIP is that of MCAP.
+  const glf::Packer packer{"2026-11-20-142233", "<genesisLog/>\n", {dat.size(), mcap::crc32(dat)}, closed};
+  Bytes archive = packer.head();
+  const auto header = glf::Packer::block_header(dat.size());
+  archive.insert(archive.end(), header.begin(), header.end());
+  archive.insert(archive.end(), dat.begin(), dat.end());
+  const auto tail = packer.tail();
+  archive.insert(archive.end(), tail.begin(), tail.end());
+  return archive;
+}
+
+Bytes::iterator place_of(const std::string& samples, Bytes& in) {
+  const Bytes bytes(samples.begin(), samples.end());
+  return std::search(in.begin(), in.end(), bytes.begin(), bytes.end());
+}
+
+struct Outcome {
+  bool opened = false;
+  std::size_t pings = 0;  ///< that have samples
+  std::size_t lost = 0;   ///< of those written, whose samples came back nowhere
+  std::vector<std::string> problems;
+};
+
+Outcome outcome_of(const std::string& suffix, const Bytes& bytes, const Pings& written) {
+  Outcome outcome;
+  const test::TemporaryLog temporary(suffix, bytes);
+  std::vector<std::string> read;
+  try {
+    const LogFile file(temporary.path());
+    const auto recording = open_recording(file);
+    for (const LoggedHead& head : recording->heads()) {
+      for (const LoggedPing& ping : head.pings) {
+        try {
+          const auto samples = recording->samples(ping);
+          read.emplace_back(samples.begin(), samples.end());
+        } catch (const LogError&) {
+        }
+      }
+    }
+    outcome.problems = summarise(file, [](auto) { return std::nullopt; }).problems;
+    outcome.opened = true;
+  } catch (const LogError& error) {
+    outcome.problems.emplace_back(error.what());
+  }
+  outcome.pings = read.size();
+  for (const auto& [number, samples] : written) {
+    outcome.lost += std::ranges::find(read, samples) == read.end() ? 1 : 0;
+  }
+  return outcome;
+}
+
+/// Flips one bit of each byte in turn.
+void expect_at_most(std::size_t most_lost, const std::string& suffix, const Bytes& whole,
+                    const Pings& written) {
+  const Outcome undamaged = outcome_of(suffix, whole, written);
+  ASSERT_EQ(undamaged.lost, 0U);
+  std::size_t flips_that_lose = 0;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    Bytes damaged = whole;
+    damaged[at] ^= static_cast<std::uint8_t>(1U << at % 8);
+    const Outcome outcome = outcome_of(suffix, damaged, written);
+    ASSERT_TRUE(outcome.opened) << "byte " << at << ": " << outcome.problems.at(0);
+    ASSERT_LE(outcome.lost, most_lost) << "byte " << at << ": " << testing::PrintToString(outcome.problems);
+    if (outcome.pings < written.size()) {
+      ASSERT_GT(outcome.problems.size(), undamaged.problems.size()) << "a loss is said: byte " << at;
+    }
+    flips_that_lose += outcome.lost > 0 ? 1 : 0;
+  }
+  EXPECT_GT(flips_that_lose, whole.size() / 4) << "most bytes are those of pings";
+}
+
+TEST(Damage, a_flipped_bit_in_an_mcap_costs_its_chunk) {
+  expect_at_most(2, ".mcap", mcap_log(6, false, true), pings_written(6));
+}
+
+TEST(Damage, a_flipped_bit_in_a_compressed_mcap_costs_its_chunk) {
+  expect_at_most(2, ".mcap", mcap_log(6, true, true), pings_written(6));
+}
+
+TEST(Damage, a_flipped_bit_in_an_mcap_that_was_not_closed_costs_its_chunk) {
+  expect_at_most(2, ".mcap", mcap_log(7, false, false), pings_written(7));
+  expect_at_most(2, ".mcap", mcap_log(6, true, false), pings_written(6));
+}
+
+TEST(Damage, a_flipped_bit_in_a_dat_costs_its_record) {
+  expect_at_most(1, ".dat", dat_log(5), pings_written(5));
+}
+
+TEST(Damage, a_flipped_bit_in_a_glf_costs_its_record) {
+  expect_at_most(1, ".glf", glf_log(5), pings_written(5));
+}
+
+TEST(Damage, info_says_where_a_chunk_is_damaged_and_how_many_pings_are_lost) {
+  Bytes bytes = mcap_log(6, false, true);
+  const auto place = place_of(samples_of(2), bytes);
+  ASSERT_NE(place, bytes.end());
+  *place ^= 1U;
+  const Outcome outcome = outcome_of(".mcap", bytes, pings_written(6));
+  EXPECT_EQ(outcome.lost, 2U);
+  EXPECT_THAT(outcome.problems, Contains(HasSubstr("chunk.uncompressed_crc at byte")));
+  EXPECT_THAT(outcome.problems, Contains(HasSubstr("; 2 pings are lost")));
+  EXPECT_THAT(outcome.problems, Not(Contains(HasSubstr("what follows"))));
+}
+
+TEST(Damage, a_wrong_byte_among_raw_pixels_of_a_glf_shows_in_its_checksum) {
+  Bytes bytes = glf_log(5);
+  const auto place = place_of(samples_of(2), bytes);
+  ASSERT_NE(place, bytes.end()) << "zlib makes 60 such bytes no shorter";
+  *place ^= 1U;
+  EXPECT_THAT(outcome_of(".glf", bytes, pings_written(5)).problems,
+              Contains(HasSubstr("the checksum of the archive does not match")));
+  EXPECT_THAT(outcome_of(".glf", glf_log(5), pings_written(5)).problems, IsEmpty());
+}
+
+/// Datagrams of 7, 7, ... bytes: each is a ping of the head 7.
+TEST(Damage, a_flipped_bit_in_a_capture_costs_its_packet) {
+  pcapng::Writer writer("test");
+  const std::uint32_t lan = writer.add_interface("lan");
+  constexpr std::size_t count = 8;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const Bytes payload(20, static_cast<std::uint8_t>(i));
+    writer.add_packet(lan, 1'000'000'000 + i, pcapng::udp_packet({0x7F000002, 1}, {0x7F000001, 2}, payload));
+  }
+  const Bytes whole = writer.take();
+  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
+    return datagram.size() == 20 ? std::optional(PingSeen{"fan", 7, {}}) : std::nullopt;
+  };
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    Bytes damaged = whole;
+    damaged[at] ^= static_cast<std::uint8_t>(1U << at % 8);
+    const test::TemporaryLog temporary(".pcapng", damaged);
+    const LogSummary log = summarise(LogFile(temporary.path()), find);
+    ASSERT_FALSE(log.heads.empty()) << at;
+    const std::size_t pings = log.heads[0].pings();
+    ASSERT_GE(pings, count - 1) << at;
+    if (pings < count) {
+      const bool other_block = std::ranges::any_of(
+          log.other_records, [](const auto& other) { return other.first == "blocks of other types"; });
+      const bool other_packet = std::ranges::any_of(
+          log.other_records, [](const auto& other) { return other.first == "other packets"; });
+      ASSERT_TRUE(!log.problems.empty() || other_block || other_packet) << "a loss is said: byte " << at;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sonard::server
