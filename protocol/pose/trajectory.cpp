@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -196,8 +197,11 @@ Trajectory load_trajectory(const std::filesystem::path& file, Axes axes) {
   std::ifstream stream{file, std::ios::binary};
   std::ostringstream text;
   // An empty file sets failbit on `text`; only the file itself tells whether it could be read.
+  const std::error_code why = std::filesystem::is_directory(file)
+                                  ? std::make_error_code(std::errc::is_a_directory)
+                                  : std::error_code(errno, std::generic_category());
   if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf(), !stream.bad())) {
-    throw TrajectoryError(file.string() + ": cannot be read");
+    throw TrajectoryError(file.string() + ": cannot be read: " + why.message());
   }
   return parse_trajectory(text.str(), file.string(), axes);
 }

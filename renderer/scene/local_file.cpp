@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/local_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -41,6 +45,15 @@ std::string head_of(const std::filesystem::path& file, std::size_t limit) {
   return text;
 }
 
+void require_readable(const std::filesystem::path& file) {
+  if (faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) != 0) {
+    const std::error_code why(errno, std::generic_category());
+    throw WorldError(
+        fmt::format("{}: cannot be read: {} (expected a file that the user who runs this may read)",
+                    file.string(), why.message()));
+  }
+}
+
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
                         std::string_view what) {
   if (file.string().find("://") != std::string::npos) {
@@ -54,6 +67,7 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
   if (!std::filesystem::is_regular_file(file, error)) {
     throw WorldError(fmt::format("{}: not a file", file.string()));
   }
+  require_readable(file);
   const std::string extension = lower_extension(file);
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
     throw WorldError(fmt::format("{}: '{}' is not a {} format that can be read; supported: {}", file.string(),

@@ -16,6 +16,9 @@ namespace sonard::render {
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
                         std::string_view what);
 
+/// @throws WorldError naming the file and the system's reason, if this process may not read it.
+void require_readable(const std::filesystem::path& file);
+
 /// Processor time that reading the file may take: the plugins need about 0.05 s for a megabyte, and on some
 /// damaged files they never end.
 unsigned int reading_limit_s(const std::filesystem::path& file);

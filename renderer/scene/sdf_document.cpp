@@ -13,6 +13,7 @@
 #include <tinyxml2.h>
 
 #include "renderer/scene/fuel_cache.hpp"
+#include "renderer/scene/local_file.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -95,6 +96,7 @@ const SdfReader::Document& SdfReader::open(const fs::path& file) {
   if (const auto known = documents_.find(file); known != documents_.end()) {
     return known->second;
   }
+  require_readable(file);
   std::error_code ignored;
   if (fs::file_size(file, ignored) > most_bytes) {
     throw WorldError(fmt::format("{}: more than {} MiB are not read", file.string(), most_bytes >> 20U));

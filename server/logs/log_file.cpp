@@ -3,18 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <functional>
 #include <numeric>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace sonard::server {
 namespace {
@@ -34,19 +29,6 @@ constexpr std::array starts{
     Start{{0x0A, 0x0D, 0x0D, 0x0A}, 4, LogKind::pcapng},
 };
 
-std::string reason() {
-  return std::generic_category().message(errno);
-}
-
-std::span<const std::uint8_t> map(int file, std::size_t size) {
-  if (size == 0) {
-    return {};
-  }
-  void* const start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
-  return start == MAP_FAILED ? std::span<const std::uint8_t>{}
-                             : std::span(static_cast<const std::uint8_t*>(start), size);
-}
-
 }  // namespace
 
 std::string_view name_of(LogKind kind) {
@@ -63,35 +45,14 @@ std::string_view name_of(LogKind kind) {
   return ".pcapng";
 }
 
-LogFile::LogFile(std::filesystem::path path) : path_(std::move(path)) {
-  const int file = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) {
-    throw error(fmt::format("cannot be opened: {}", reason()));
-  }
-  struct stat status {};
-  const bool regular = fstat(file, &status) == 0 && S_ISREG(status.st_mode);
-  const std::size_t size = regular ? static_cast<std::size_t>(status.st_size) : 0;
-  bytes_ = map(file, size);
-  const std::string why = reason();
-  close(file);
-  if (!regular) {
+LogFile::LogFile(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
+  if (file_.error() == std::errc::invalid_argument) {
     throw error("is no file (expected a log)");
   }
-  if (bytes_.size() != size) {
-    throw error(fmt::format("cannot be read: {}", why));
+  if (file_.error()) {
+    throw error(fmt::format("cannot be opened: {}", file_.error().message()));
   }
-  try {
-    kind_ = find_kind();
-  } catch (...) {
-    munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
-    throw;
-  }
-}
-
-LogFile::~LogFile() {
-  if (!bytes_.empty()) {
-    munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
-  }
+  kind_ = find_kind();
 }
 
 LogError LogFile::error(std::string_view what) const {
@@ -100,25 +61,25 @@ LogError LogFile::error(std::string_view what) const {
 
 LogKind LogFile::find_kind() const {
   const auto differing = [&](const Start& start) {
-    return std::inner_product(start.bytes.begin(), start.bytes.begin() + start.count, bytes_.begin(), 0,
-                              std::plus{}, std::not_equal_to{});
+    return std::inner_product(start.bytes.begin(), start.bytes.begin() + start.count, file_.bytes().begin(),
+                              0, std::plus{}, std::not_equal_to{});
   };
   for (const Start& start : starts) {
-    if (bytes_.size() >= start.count && differing(start) == 0) {
+    if (file_.bytes().size() >= start.count && differing(start) == 0) {
       return start.kind;
     }
   }
   const std::string extension = path_.extension();
-  if (bytes_.empty() && extension == name_of(LogKind::dat)) {
+  if (file_.bytes().empty() && extension == name_of(LogKind::dat)) {
     return LogKind::dat;  // nothing has been written yet
   }
   // One of the first bytes may be damaged.
   for (const Start& start : starts) {
-    if (extension == name_of(start.kind) && bytes_.size() >= start.count && differing(start) == 1) {
+    if (extension == name_of(start.kind) && file_.bytes().size() >= start.count && differing(start) == 1) {
       return start.kind;
     }
   }
-  throw error(bytes_.empty() ? "is empty" : "is no log (expected a .glf, .dat, .mcap or .pcapng)");
+  throw error(file_.bytes().empty() ? "is empty" : "is no log (expected a .glf, .dat, .mcap or .pcapng)");
 }
 
 }  // namespace sonard::server

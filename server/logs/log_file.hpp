@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "server/logs/mapped_file.hpp"
+
 namespace sonard::server {
 
 /// A log that cannot be used. what() is one line that names the file.
@@ -25,19 +27,15 @@ enum class LogKind {
 /// ".glf", ".dat", ".mcap", ".pcapng".
 std::string_view name_of(LogKind kind);
 
-/// Read-only; the bytes stay where they are as long as the object lives. A file that is cut meanwhile
-/// ends the program, as every mapped file does: logs that are still being written only grow.
+/// Read-only. The bytes stay in place while the object lives (MappedFile).
 class LogFile {
  public:
   /// Tells kinds apart by the first bytes, whatever the file is called. Unknown first bytes: by its name.
   /// @throws LogError when it cannot be read or is none of them
   explicit LogFile(std::filesystem::path path);
-  ~LogFile();
-  LogFile(const LogFile&) = delete;
-  LogFile& operator=(const LogFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  std::span<const std::uint8_t> bytes() const { return bytes_; }
+  std::span<const std::uint8_t> bytes() const { return file_.bytes(); }
   LogKind kind() const { return kind_; }
 
   /// "PATH: what"
@@ -47,7 +45,7 @@ class LogFile {
   LogKind find_kind() const;
 
   std::filesystem::path path_;
-  std::span<const std::uint8_t> bytes_;
+  MappedFile file_;
   LogKind kind_;
 };
 

@@ -2,7 +2,6 @@
 #include "server/recording/append_file.hpp"
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -98,27 +97,6 @@ void sync_directory(const std::filesystem::path& directory) {
   if (fd >= 0) {
     fsync(fd);
     ::close(fd);
-  }
-}
-
-MappedFile::MappedFile(const std::filesystem::path& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status {};
-  if (fd >= 0 && fstat(fd, &status) == 0 && status.st_size > 0) {
-    const auto size = static_cast<std::size_t>(status.st_size);
-    void* const start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
-    if (start != MAP_FAILED) {
-      bytes_ = {static_cast<const std::uint8_t*>(start), size};
-    }
-  }
-  if (fd >= 0) {
-    ::close(fd);
-  }
-}
-
-MappedFile::~MappedFile() {
-  if (!bytes_.empty()) {
-    munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
   }
 }
 

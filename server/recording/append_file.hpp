@@ -45,18 +45,4 @@ class AppendFile {
 /// So that a name that was made, changed or removed survives a power cut.
 void sync_directory(const std::filesystem::path& directory);
 
-/// A file mapped for reading; empty where that failed, or the file is.
-class MappedFile {
- public:
-  explicit MappedFile(const std::filesystem::path& path);
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  std::span<const std::uint8_t> bytes() const { return bytes_; }
-
- private:
-  std::span<const std::uint8_t> bytes_;
-};
-
 }  // namespace sonard::server

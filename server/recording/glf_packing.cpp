@@ -12,6 +12,7 @@
 #include "protocol/glf/dat_index.hpp"
 #include "protocol/glf/headers.hpp"
 #include "protocol/glf/log_config.hpp"
+#include "server/logs/mapped_file.hpp"
 #include "server/recording/log_names.hpp"
 
 namespace sonard::server {
@@ -59,6 +60,9 @@ bool GlfPacking::close_dat() {
   glf::DatIndex index;
   {
     const MappedFile dat(dat_path_);
+    if (!good(dat.error())) {
+      return false;
+    }
     index = glf::index_dat(glf::PiecewiseBytes(dat.bytes()), OnDamage::skip);
   }
   std::error_code error;

@@ -14,6 +14,7 @@
 #include "protocol/mcap/data_section.hpp"
 #include "protocol/mcap/recovery.hpp"
 #include "protocol/pcapng/blocks.hpp"
+#include "server/logs/mapped_file.hpp"
 #include "server/recording/append_file.hpp"
 #include "server/recording/log_names.hpp"
 
@@ -190,6 +191,13 @@ void recover_file(const fs::path& path, std::vector<fs::path>& dats) {
   if (ours && fs::file_size(path, ignored) == 0) {
     fs::remove(path, ignored);
     spdlog::info("recording: removed {}, which is empty", path.string());
+    return;
+  }
+  if (const MappedFile file(path); ours && file.error()) {  // not damaged: nothing is known of it
+    spdlog::warn(
+        "recording: cannot read {}: {}. The log stays as it is; to recover it, give the user that "
+        "runs sonard the right to read and write it",
+        path.string(), file.error().message());
     return;
   }
   if (!stem_of_dat(path).empty()) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
@@ -65,7 +66,8 @@ void check_file(const std::filesystem::path& file) {
     throw std::runtime_error(fmt::format("{}: no such file", file.string()));
   }
   if (!std::ifstream(file)) {
-    throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+    const std::error_code why(errno, std::generic_category());
+    throw std::runtime_error(fmt::format("{}: cannot be opened: {}", file.string(), why.message()));
   }
 }
 

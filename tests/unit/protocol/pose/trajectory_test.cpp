@@ -5,8 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/without_rights.hpp"
 #include "tests/unit/protocol/pose/pose_matchers.hpp"
 
 namespace sonard::pose {
@@ -119,13 +123,28 @@ INSTANTIATE_TEST_SUITE_P(
                 "t.csv:2: t '1700000000000000000' is beyond 4e9 s; time is in seconds"}),
     [](const auto& tested) { return tested.param.name; });
 
+TEST(TrajectoryFile, ThatMayNotBeReadIsToldWithTheReason) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "motion.csv";
+  std::ofstream(file) << "t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n";
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  const test::WithoutRights nobody;
+  try {
+    load_trajectory(file);
+    FAIL() << "it was read";
+  } catch (const TrajectoryError& error) {
+    EXPECT_EQ(error.what(), file.string() + ": cannot be read: Permission denied");
+  }
+}
+
 TEST(TrajectoryFile, AMissingFileIsNamed) {
   EXPECT_THROW(
       {
         try {
           load_trajectory("/nowhere/motion.csv");
         } catch (const TrajectoryError& error) {
-          EXPECT_STREQ(error.what(), "/nowhere/motion.csv: cannot be read");
+          EXPECT_STREQ(error.what(), "/nowhere/motion.csv: cannot be read: No such file or directory");
           throw;
         }
       },

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/scene/world.hpp"
+#include "tests/support/without_rights.hpp"
 #include "tests/unit/renderer/scene/scene_files.hpp"
 
 namespace sonard::render {
@@ -332,6 +333,30 @@ TEST(BadWorldFile, HasPosesThatAreRelativeToEachOther) {
                                   "<link name=\"l\"><pose relative_to=\"a\"/><visual name=\"v\">" +
                                       shape + "</visual></link></model></sdf>")),
       HasSubstr("is relative to itself, by way of others"));
+}
+
+TEST(BadWorldFile, MayNotBeRead) {
+  const test::TempFolder folder;
+  folder.write("m/model.sdf", "<sdf version=\"1.9\"><model name=\"m\"/></sdf>");
+  folder.write("quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string mesh = "<geometry><mesh><uri>quad.obj</uri></mesh></geometry>";
+  const auto world = [&](const std::string& name, const std::string& content) {
+    return folder.write(name, "<sdf version=\"1.9\"><world name=\"w\">" + content + "</world></sdf>");
+  };
+  const auto closed = world("closed.sdf", model(mesh));
+  const auto with_mesh = world("mesh.sdf", model(mesh));
+  const auto with_include = world("include.sdf", "<include><uri>m</uri></include>");
+  using std::filesystem::perms;
+  for (const char* const name : {"closed.sdf", "quad.obj", "m/model.sdf"}) {
+    std::filesystem::permissions(folder.path() / name, perms::none);
+  }
+  for (const auto& path : {folder.path(), folder.path() / "m"}) {
+    std::filesystem::permissions(path, perms::all);
+  }
+  const sonard::test::WithoutRights nobody;
+  EXPECT_THAT(error_of_world(closed), HasSubstr("closed.sdf: cannot be read: Permission denied"));
+  EXPECT_THAT(error_of_world(with_mesh), HasSubstr("quad.obj: cannot be read: Permission denied"));
+  EXPECT_THAT(error_of_world(with_include), HasSubstr("m/model.sdf: cannot be read: Permission denied"));
 }
 
 TEST(BadWorldFile, IsNamed) {

@@ -48,12 +48,5 @@ TEST(AppendFile, GoesOnBehindWhatIsThere) {
   EXPECT_EQ(test::contents(folder.path() / "a"), (Bytes{7, 2, 9}));
 }
 
-TEST(MappedFile, OfWhatIsEmptyOrNotThereIsEmpty) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder.path() / "a", {});
-  EXPECT_TRUE(MappedFile(folder.path() / "a").bytes().empty());
-  EXPECT_TRUE(MappedFile(folder.path() / "b").bytes().empty());
-}
-
 }  // namespace
 }  // namespace sonard::server

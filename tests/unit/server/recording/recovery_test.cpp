@@ -17,6 +17,7 @@
 #include "server/recording/glf_packing.hpp"
 #include "server/recording/mcap_log.hpp"
 #include "server/recording/pcapng_log.hpp"
+#include "tests/support/without_rights.hpp"
 #include "tests/unit/server/recording/fixture.hpp"
 
 namespace sonard::server {
@@ -24,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr int pings = 3;
@@ -115,6 +117,25 @@ TEST_F(RecoveryTest, CutsAnMcapFileAnywhere) {
   }
   EXPECT_GE(before, 2U * pings - 1);
   EXPECT_EQ(folder.names().size(), 1U);
+}
+
+TEST_F(RecoveryTest, LeavesAloneWhatItMayNotRead) {
+  for (const char* const name : {"log_a.mcap", "log_b.pcapng", "log_c.dat"}) {
+    test::write_file(folder.path() / name, {1, 2, 3});
+    fs::permissions(folder.path() / name, fs::perms::none);
+  }
+  fs::permissions(folder.path(), fs::perms::all);
+  std::string log;
+  {
+    const test::WithoutRights nobody;
+    log = told();
+  }
+  for (const char* const name : {"log_a.mcap", "log_b.pcapng", "log_c.dat"}) {
+    EXPECT_THAT(log, HasSubstr(std::string("cannot read ") + (folder.path() / name).string() +
+                               ": Permission denied"));
+  }
+  EXPECT_THAT(log, Not(HasSubstr("damaged")));
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"log_a.mcap", "log_b.pcapng", "log_c.dat"}));
 }
 
 TEST_F(RecoveryTest, LeavesAloneWhatIsWhole) {
