@@ -106,8 +106,9 @@ void TcpListener::on_accepted(const error_code& error, tcp::socket socket) {
 }
 
 void TcpListener::refuse(const Endpoint& peer, const char* reason) {
-  if (std::has_single_bit(++refused_)) {
-    spdlog::warn("{}: {} refused: {} ({} so far)", description(), endpoint_text(peer), reason, refused_);
+  ++refused_;
+  if (const std::uint64_t count = refusals_.count(reason); std::has_single_bit(count)) {
+    spdlog::warn("{}: {} refused: {} ({} so far)", description(), endpoint_text(peer), reason, count);
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "server/net/addresses.hpp"
 #include "server/program_log/peer_log.hpp"
+#include "server/program_log/reasons.hpp"
 
 namespace sonard::server {
 
@@ -53,6 +54,7 @@ class TcpListener : public std::enable_shared_from_this<TcpListener> {
   boost::asio::steady_timer retry_;
   Accepted accepted_;
   std::uint64_t refused_ = 0;
+  Reasons refusals_;
   PeerLog log_;
 };
 

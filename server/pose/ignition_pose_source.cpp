@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "server/pose/entity_poses.hpp"
+#include "server/program_log/reasons.hpp"
 #ifdef SONARD_GAZEBO_GZ
 #include <gz/msgs/pose.pb.h>
 #include <gz/msgs/pose_v.pb.h>
@@ -98,7 +99,7 @@ struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSourc
   void on_message(const char* data, std::size_t size, const std::string& type);
   void take(const Message& message);
   void deliver(const pose::PoseSample& sample, TimePoint arrival);
-  void complain(std::uint64_t count, const std::string& problem) const;
+  void complain(const std::string& problem);
 
   asio::io_context& io;
   IgnitionPoseInput input;
@@ -106,6 +107,7 @@ struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSourc
   PoseSink sink;
   EntityMap entities;
   PoseSourceCounters counters;
+  Reasons complaints;
   std::mutex mutex;
   int waiting = 0;
   std::uint64_t crowded = 0;
@@ -139,11 +141,13 @@ void IgnitionPoseSource::Impl::take(const Message& message) {
     dropped = std::exchange(crowded, 0);
   }
   for (; dropped > 0; --dropped) {
-    complain(++counters.refused, "too many wait");
+    ++counters.refused;
+    complain("too many wait");
   }
   const auto parsed = parse(message);
   if (!parsed) {
-    complain(++counters.malformed, parsed.error());
+    ++counters.malformed;
+    complain(parsed.error());
     return;
   }
   const auto mapped = entities.map(*parsed);
@@ -151,7 +155,8 @@ void IgnitionPoseSource::Impl::take(const Message& message) {
     spdlog::info("ignition {}: entities without a part here: {}", input.topic, fmt::join(ignored, ", "));
   }
   if (!mapped) {
-    complain(++counters.bad_value, mapped.error());
+    ++counters.bad_value;
+    complain(mapped.error());
     return;
   }
   deliver(*mapped, message.arrival);
@@ -166,8 +171,8 @@ void IgnitionPoseSource::Impl::deliver(const pose::PoseSample& sample, TimePoint
   sink(sample, arrival);
 }
 
-void IgnitionPoseSource::Impl::complain(std::uint64_t count, const std::string& problem) const {
-  if (std::has_single_bit(count)) {
+void IgnitionPoseSource::Impl::complain(const std::string& problem) {
+  if (const std::uint64_t count = complaints.count(problem); std::has_single_bit(count)) {
     spdlog::warn("ignition {}: message dropped: {} ({} so far)", input.topic, problem, count);
   }
 }

@@ -94,7 +94,8 @@ std::optional<pose::PoseSample> MavlinkPoses::add(std::int64_t time_ns, Heading 
   }
   pose::Transform checked{{}, heading.q_ned_frd};
   if (const auto fault = normalize(checked); fault != pose::TransformFault::none) {
-    complain(++counters_.bad_value, std::string("attitude: ") + describe(fault));
+    ++counters_.bad_value;
+    complain(std::string("attitude: ") + describe(fault));
     return std::nullopt;
   }
   heading.q_ned_frd = checked.orientation;
@@ -136,7 +137,8 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Global
   }
   const double latitude_deg = 1e-7 * position.lat, longitude_deg = 1e-7 * position.lon;
   if (std::abs(latitude_deg) > 90.0 || std::abs(longitude_deg) > 180.0) {
-    complain(++counters_.bad_value, "GLOBAL_POSITION_INT: no place on Earth");
+    ++counters_.bad_value;
+    complain("GLOBAL_POSITION_INT: no place on Earth");
     return std::nullopt;
   }
   const render::Pose T_world_place = earth_->T_world_place(latitude_deg, longitude_deg, 1e-3 * position.alt);
@@ -163,7 +165,8 @@ std::optional<pose::PoseSample> MavlinkPoses::add(const Place& place, TimePoint 
 std::optional<pose::PoseSample> MavlinkPoses::joined(const Place& place,
                                                      const std::optional<Heading>& heading) {
   if (!heading) {
-    complain(++counters_.without_attitude, "a position without an attitude of its time");
+    ++counters_.without_attitude;
+    complain("a position without an attitude of its time");
     return std::nullopt;
   }
   std::optional<pose::Velocity> twist_frd;
@@ -245,7 +248,8 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odomet
     return std::nullopt;
   }
   if (odometry.time_usec > static_cast<std::uint64_t>(pose::max_time_ns / 1000)) {
-    complain(++counters_.bad_value, "ODOMETRY: time_usec is out of range");
+    ++counters_.bad_value;
+    complain("ODOMETRY: time_usec is out of range");
     return std::nullopt;
   }
   const std::int64_t time_ns = static_cast<std::int64_t>(odometry.time_usec) * 1000;
@@ -314,7 +318,8 @@ std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns,
                                                      pose::Transform T_ned_frd,
                                                      const std::optional<pose::Velocity>& twist_frd) {
   if (const auto fault = normalize(T_ned_frd); fault != pose::TransformFault::none) {
-    complain(++counters_.bad_value, describe(fault));
+    ++counters_.bad_value;
+    complain(describe(fault));
     return std::nullopt;
   }
   pose::PoseSample result;
@@ -326,8 +331,8 @@ std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns,
   return result;
 }
 
-void MavlinkPoses::complain(std::uint64_t count, const std::string& problem) const {
-  if (std::has_single_bit(count)) {
+void MavlinkPoses::complain(const std::string& problem) {
+  if (const std::uint64_t count = complaints_.count(problem); std::has_single_bit(count)) {
     spdlog::warn("mavlink: message dropped: {} ({} so far)", problem, count);
   }
 }

@@ -14,6 +14,7 @@
 #include "renderer/scene/geographic_frame.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
+#include "server/program_log/reasons.hpp"
 
 namespace sonard::server {
 
@@ -92,8 +93,9 @@ class MavlinkPoses {
                                          pose::Transform T_ned_frd,
                                          const std::optional<pose::Velocity>& twist_frd);
   std::optional<pose::Velocity> twist_of(const mavlink::Odometry& odometry);
-  void complain(std::uint64_t count, const std::string& problem) const;
+  void complain(const std::string& problem);
 
+  Reasons complaints_;
   MavlinkMessages wanted_;
   pose::Transform T_world_local_;
   std::optional<render::GeographicFrame> earth_;

@@ -14,6 +14,7 @@
 #include "server/net/tcp_listener.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/program_log/peer_log.hpp"
+#include "server/program_log/reasons.hpp"
 
 namespace sonard::server {
 
@@ -146,9 +147,10 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       return;
     }
     ++source_->counters.bad_value;
-    if (std::has_single_bit(++bad_values_)) {
+    const std::string problem = to_string(sample.error());
+    if (const std::uint64_t count = complaints_.count(problem); std::has_single_bit(count)) {
       spdlog::warn("{}: message from {} dropped: {} ({} so far)", source_->listener->description(),
-                   endpoint_text(peer_), to_string(sample.error()), bad_values_);
+                   endpoint_text(peer_), problem, count);
     }
   }
 
@@ -192,7 +194,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   std::vector<std::uint8_t> buffer_;
   std::size_t filled_ = 0;
   bool unfinished_ = false;  // the timer runs for a message that has begun
-  std::uint64_t bad_values_ = 0;
+  Reasons complaints_;
 };
 
 void TcpPoseSource::Impl::admit(tcp::socket socket, const Endpoint& peer) {

@@ -9,6 +9,7 @@
 
 #include "server/net/addresses.hpp"
 #include "server/pose/udp_listener.hpp"
+#include "server/program_log/reasons.hpp"
 
 namespace sonard::server {
 
@@ -17,20 +18,21 @@ struct UdpPoseSource::Impl : std::enable_shared_from_this<UdpPoseSource::Impl> {
       : listener(io, "pose stream udp", input.bind, input.allow, clock), sink(std::move(poses_go_to)) {}
 
   void take(std::span<const std::uint8_t> datagram, TimePoint arrival);
-  /// Logs what happened for the `count`th time.
-  void complain(std::uint64_t count, const std::string& problem) const;
+  void complain(const std::string& problem);
 
   UdpListener listener;
   PoseSink sink;
   std::optional<Endpoint> publisher;  // of the newest pose
   PoseSourceCounters counters;
+  Reasons complaints;
 };
 
 void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint arrival) {
   const auto sample = pose::decode(datagram);
   if (!sample) {
     const bool malformed = sample.error().kind == pose::PoseError::Kind::malformed;
-    complain(++(malformed ? counters.malformed : counters.bad_value), to_string(sample.error()));
+    ++(malformed ? counters.malformed : counters.bad_value);
+    complain(to_string(sample.error()));
     return;
   }
   ++counters.samples;
@@ -38,8 +40,8 @@ void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint
   sink(*sample, arrival);
 }
 
-void UdpPoseSource::Impl::complain(std::uint64_t count, const std::string& problem) const {
-  if (std::has_single_bit(count)) {
+void UdpPoseSource::Impl::complain(const std::string& problem) {
+  if (const std::uint64_t count = complaints.count(problem); std::has_single_bit(count)) {
     spdlog::warn("{}: datagram from {} dropped: {} ({} so far)", listener.description(),
                  endpoint_text(listener.peer()), problem, count);
   }

@@ -20,11 +20,12 @@ void PeerLog::say(spdlog::level::level_enum level, const std::string& text) {
   const auto earned = (now - refilled_at_) / refill;
   tokens_ = static_cast<int>(std::min<std::int64_t>(burst, tokens_ + earned));
   refilled_at_ += earned * refill;
-  if (tokens_ == 0) {
+  const bool new_reason = reasons_.count(text) == 1;
+  if (tokens_ == 0 && !new_reason) {
     ++left_out_;
     return;
   }
-  --tokens_;
+  tokens_ = std::max(0, tokens_ - 1);
   if (const std::uint64_t missing = std::exchange(left_out_, 0); missing > 0) {
     spdlog::log(level, "{} ({} lines before it were left out: too many in a short time)", text, missing);
   } else {

@@ -11,12 +11,13 @@
 #include <spdlog/common.h>
 
 #include "server/clock/clock.hpp"
+#include "server/program_log/reasons.hpp"
 
 namespace sonard::server {
 
 /// For one source of such lines: the clients of a port, the settings of a head. So many may come at once, and
 /// one more for every `refill`; what goes beyond is left out and counted, and the next line says how many
-/// were. Belongs to one thread.
+/// were. The first line of each reason (Reasons) always comes. Belongs to one thread.
 class PeerLog {
  public:
   static constexpr int burst = 10;
@@ -43,6 +44,7 @@ class PeerLog {
   void say(spdlog::level::level_enum level, const std::string& text);
 
   const Clock& clock_;
+  Reasons reasons_;
   int tokens_ = burst;
   TimePoint refilled_at_{};
   std::uint64_t left_out_ = 0;

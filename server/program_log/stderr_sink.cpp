@@ -46,7 +46,7 @@ void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
   formatter_->format(message, line);
   std::string text = std::exchange(cut_, false) ? "\n" : "";
   if (dropped_ > 0) {
-    text += fmt::format("{} lines of this log were dropped: nobody read them in time\n", dropped_);
+    text += dropped_text(message);
   }
   text.append(line.data(), line.size());
   if (write(text)) {
@@ -54,6 +54,15 @@ void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
   } else {
     ++dropped_;
   }
+}
+
+/// In the form of the lines around it.
+std::string StderrSink::dropped_text(const spdlog::details::log_msg& next) {
+  const std::string text =
+      fmt::format("{} lines of this log were dropped: nobody read them in time", dropped_);
+  spdlog::memory_buf_t line;
+  formatter_->format({next.time, {}, next.logger_name, spdlog::level::warn, text}, line);
+  return {line.data(), line.size()};
 }
 
 bool StderrSink::write(std::string_view text) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <string>
 #include <string_view>
 
 #include <spdlog/sinks/base_sink.h>
@@ -32,6 +33,7 @@ class StderrSink final : public spdlog::sinks::base_sink<std::mutex> {
 
   void sink_it_(const spdlog::details::log_msg& message) override;
   void flush_() override {}
+  std::string dropped_text(const spdlog::details::log_msg& next);
   bool write(std::string_view text);
 
   int descriptor_;

@@ -68,6 +68,19 @@ TEST_F(PeerLogTest, one_line_for_each_refill_goes_on_for_ever) {
   EXPECT_NEAR(static_cast<double>(lines->texts.size()), 10 + 250, 2);
 }
 
+TEST_F(PeerLogTest, the_first_line_of_each_reason_comes_through) {
+  for (int i = 0; i < 100; ++i) {
+    log.warn("datagram {} is too short", i);
+  }
+  log.warn("the checksum of datagram {} is wrong", 100);
+  log.warn("client 10.0.0.7:{} is not in the allow list", 4000);
+  log.warn("the checksum of datagram {} is wrong", 101);
+  ASSERT_EQ(lines->texts.size(), 12U);
+  EXPECT_THAT(lines->texts[10],
+              testing::StartsWith("the checksum of datagram 100 is wrong (90 lines before it"));
+  EXPECT_EQ(lines->texts[11], "client 10.0.0.7:4000 is not in the allow list");
+}
+
 TEST_F(PeerLogTest, rest_fills_it_up_and_no_further) {
   for (int i = 0; i < 10; ++i) {
     log.info("{}", i);
