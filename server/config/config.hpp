@@ -26,6 +26,7 @@ namespace sonard::server {
 class HeadKind;
 
 enum class LogLevel { trace, debug, info, warn, error };
+enum class LogFormat { text, json };
 
 /// What the sonars swim in. What follows from it (absorption, true speed of sound) is already in the heads'
 /// settings; kept for the log and `sonard check`.
@@ -193,6 +194,7 @@ struct WebConfig {
 struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
+  LogFormat log_format = LogFormat::text;
   std::filesystem::path world_file;  ///< SDF
   bool skips_missing_files = false;  ///< of the world
   /// Where the world is on Earth, in the place of what its file says.

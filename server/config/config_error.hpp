@@ -48,8 +48,11 @@ class ConfigError : public std::runtime_error {
 
   /// One line per problem, in the order of the file.
   const std::vector<std::string>& lines() const { return lines_; }
+  /// The same as data.
+  const std::vector<ConfigProblem>& problems() const { return problems_; }
 
  private:
+  std::vector<ConfigProblem> problems_;
   std::vector<std::string> lines_;
 };
 

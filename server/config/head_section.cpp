@@ -249,9 +249,13 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context,
     types.emplace_back(kind->type(), kind);
     names.push_back(kind->type());
   }
-  const HeadKind* kind = kinds.front();  // where the type is wrong the other keys are still read
+  const HeadKind* kind = kinds.front();
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
-  section.choice("type", kind, types, "device");
+  const bool known = section.choice("type", kind, types, "device") && section.has("type");
+  if (!known && !section.describing()) {
+    section.ignore_rest();  // which keys a head of another type has is not known
+    return {};
+  }
   return kind->read(section, context);
 }
 

@@ -93,7 +93,7 @@ YAML::Node parse_yaml(const std::filesystem::path& file) {
   }
 }
 
-void read_log(YamlSection& section, LogLevel& level) {
+void read_log(YamlSection& section, LogLevel& level, LogFormat& format) {
   section.choice("level", level,
                  {{"trace", LogLevel::trace},
                   {"debug", LogLevel::debug},
@@ -101,6 +101,9 @@ void read_log(YamlSection& section, LogLevel& level) {
                   {"warn", LogLevel::warn},
                   {"error", LogLevel::error}},
                  "least severe events shown; `--log-level` overrides it");
+  section.choice("format", format, {{"text", LogFormat::text}, {"json", LogFormat::json}},
+                 "`json` writes each line as a JSON object for programs that collect logs "
+                 "([deploy.md](deploy.md#logs-for-programs)); `--log-format` overrides it");
 }
 
 void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
@@ -425,7 +428,7 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
 void read_web(YamlSection& section, WebConfig& web) {
   section.introduce(
       "A page in the browser that shows each head's pictures, the world, poses and what is wrong "
-      "([page.md](page.md)), and what monitors ask: `/metrics`, `/health`, `/api/status`.");
+      "([page.md](page.md)), and what monitors ask: `/health`, `/ready`, `/metrics`, `/api/status`.");
   read_socket(section, web.bind, web.allow, endpoint_form, "the demo uses 127.0.0.1:8014",
               "who may look; all may see what all see");
   section.text("token", web.token,
@@ -440,7 +443,8 @@ void read_web(YamlSection& section, WebConfig& web) {
 void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config) {
   HeadContext context;
   context.folder = config.file.parent_path();
-  root.section("log", "the log", [&](YamlSection& section) { read_log(section, config.log_level); });
+  root.section("log", "the log",
+               [&](YamlSection& section) { read_log(section, config.log_level, config.log_format); });
   root.require("world", "a mapping with the world's file");
   root.section("world", "what the sonars see",
                [&](YamlSection& section) { read_world(section, context.folder, config); });
@@ -451,7 +455,8 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
        {"cpu", render::EngineKind::cpu}},
       "what renders: OpenGL 4.5 on the graphics card, or the cores of the CPU, which needs no OpenGL. "
       "`auto` renders the first ping of each head with both and takes the faster; the log gives both "
-      "times. Where a GPU fails while it serves, the CPU goes on with the same ping. The images agree "
+      "times. If OpenGL runs in software, `auto` takes the CPU at once. Where a GPU fails while it serves, "
+      "the CPU goes on with the same ping. The images agree "
       "within the error of the preset ([accuracy.md](accuracy.md))");
   root.section("gpu", "what engine `gpu` runs on",
                [&](YamlSection& section) { read_gpu(section, config.gpu); });
@@ -512,6 +517,7 @@ LoadedConfig load_config(const std::filesystem::path& file, std::span<const Head
   loaded.positions = std::move(findings.positions);
   for (const ConfigWarning& warning : findings.warnings) {
     loaded.warnings.push_back(loaded.problem_with(warning.key, warning.message));
+    loaded.warnings_as_data.push_back(loaded.problem_at(warning.key, warning.message));
   }
   return loaded;
 }
@@ -526,7 +532,11 @@ std::vector<KeyReference> describe_config(const HeadKind& kind) {
 }
 
 std::string LoadedConfig::problem_with(std::string_view key, const std::string& message) const {
-  return problem_text(config.file, {nearest_position(positions, key), std::string(key), message});
+  return problem_text(config.file, problem_at(key, message));
+}
+
+ConfigProblem LoadedConfig::problem_at(std::string_view key, const std::string& message) const {
+  return {nearest_position(positions, key), std::string(key), message};
 }
 
 }  // namespace sonard::server

@@ -19,11 +19,14 @@ struct LoadedConfig {
   DaemonConfig config;
   /// Place of the value of every key that the file gives; "heads[0].network.bind" is the form of a key.
   KeyPositions positions;
-  std::vector<std::string> warnings;  ///< one line each, with place and key
+  std::vector<std::string> warnings;            ///< one line each, with place and key
+  std::vector<ConfigProblem> warnings_as_data;  ///< the same
 
   /// A problem that showed only when the value of a key was used (a mesh that is missing, an address in use),
   /// in one line with the place of the key or of the nearest mapping around it that the file gives.
   std::string problem_with(std::string_view key, const std::string& message) const;
+  /// The same as data.
+  ConfigProblem problem_at(std::string_view key, const std::string& message) const;
 };
 
 /// Reads and checks a configuration without touching what it names: no world is loaded, no socket opened.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -99,6 +100,39 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+/// In lower case, with what parts words left out: "Gemini-720i" as "gemini720i".
+std::string letters_of(std::string_view word) {
+  std::string letters;
+  for (const char c : word) {
+    if (c != '_' && c != '-' && c != ' ' && c != '.') {
+      letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return letters;
+}
+
+/// The word of a choice that was probably meant, or an empty text: one that differs in little, or that is a
+/// part of the other ("gemini" and "gemini_720i", "oculus_m750d" and "oculus").
+std::string_view closest_word(std::string_view given, const std::vector<std::string_view>& words) {
+  constexpr std::size_t shortest_part = 4;
+  const std::string name = letters_of(given.substr(0, longest_known_key));
+  std::string_view best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  for (const std::string_view word : words) {
+    const std::string candidate = letters_of(word);
+    const bool part =
+        std::min(name.size(), candidate.size()) >= shortest_part &&
+        (name.find(candidate) != std::string::npos || candidate.find(name) != std::string::npos);
+    const std::size_t distance = part ? 1 : edit_distance(name, candidate);
+    const std::size_t limit = std::max<std::size_t>(1, (std::min(name.size(), candidate.size()) + 1) / 3);
+    if (distance <= limit && distance < best_distance) {
+      best = word;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
 /// The known key that was probably meant, or an empty text.
 std::string_view closest(std::string_view name, const std::vector<KeyReference>& known) {
   std::string_view best;
@@ -139,6 +173,11 @@ std::string quoted_words(const std::vector<std::string_view>& words, char quote)
   return text;
 }
 
+/// The parser places an empty value at what comes next in the file, which is another key.
+SourcePosition place_of(const YAML::Node& node, const SourcePosition& otherwise) {
+  return node.IsNull() && otherwise.line > 0 ? otherwise : position_of(node.Mark());
+}
+
 double ns_per_unit(std::string_view key) {
   return key.ends_with("_us") ? 1e3 : key.ends_with("_ms") ? 1e6 : 60e9;
 }
@@ -149,28 +188,29 @@ SourcePosition position_of(const YAML::Mark& mark) {
   return mark.is_null() ? SourcePosition{} : SourcePosition{mark.line + 1, mark.column + 1};
 }
 
-YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path)
-    : findings_(findings), path_(std::move(path)), at_(position_of(node.Mark())) {
+YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path,
+                         SourcePosition key_at)
+    : findings_(findings), path_(std::move(path)), at_(place_of(node, key_at)) {
   if (!node.IsMap()) {
     problem(at_, path_, fmt::format("is {} (expected a mapping, key: value)", describe(node)));
     is_map_ = false;
     return;
   }
   for (const auto& pair : node) {
-    const SourcePosition key_at = position_of(pair.first.Mark());
+    const SourcePosition name_at = position_of(pair.first.Mark());
     if (!pair.first.IsScalar()) {
-      problem(key_at, path_, fmt::format("{} stands as a key (expected a word)", describe(pair.first)));
+      problem(name_at, path_, fmt::format("{} stands as a key (expected a word)", describe(pair.first)));
       continue;
     }
     const std::string& name = pair.first.Scalar();
     // yaml-cpp keeps every occurrence and looks up the first one.
     if (const Entry* first = peek(name)) {
-      problem(key_at, path_of(name),
+      problem(name_at, path_of(name),
               fmt::format("duplicate key (expected once; first given on line {})", first->key_at.line));
       continue;
     }
     entry_of_.emplace(name, entries_.size());
-    entries_.push_back({name, key_at, pair.second});
+    entries_.push_back({name, name_at, place_of(pair.second, name_at), pair.second});
   }
 }
 
@@ -179,6 +219,12 @@ YamlSection::~YamlSection() {
     if (!entry.read) {
       report_unknown(entry);
     }
+  }
+}
+
+void YamlSection::ignore_rest() {
+  for (Entry& entry : entries_) {
+    entry.read = true;
   }
 }
 
@@ -200,7 +246,7 @@ void YamlSection::require(std::string_view key, std::string_view expected) {
 
 void YamlSection::report(std::string_view key, const std::string& message) {
   const Entry* entry = peek(key);
-  problem(entry != nullptr ? position_of(entry->value.Mark()) : at_, path_of(key), message);
+  problem(entry != nullptr ? entry->value_at : at_, path_of(key), message);
 }
 
 void YamlSection::warn_of(std::string path, std::string message) {
@@ -222,7 +268,7 @@ std::string YamlSection::path_of(std::string_view key) const {
 
 void YamlSection::place_default(std::string_view key, std::string_view source) {
   if (const Entry* entry = peek(source); entry != nullptr && !has(key)) {
-    findings_.positions.emplace(path_of(key), position_of(entry->value.Mark()));
+    findings_.positions.emplace(path_of(key), entry->value_at);
   }
 }
 
@@ -236,7 +282,7 @@ void YamlSection::number(std::string_view key, double& out, const Range& range, 
   double value = out * units_per_one;
   document(key, range_text(range), range_schema(range), number_text(value), meaning);
   if (const Entry* entry = find(key)) {
-    value = number_of(entry->value, path_of(key), range).value_or(value);
+    value = number_of(entry->value, entry->value_at, path_of(key), range).value_or(value);
   }
   out = value / units_per_one;
 }
@@ -269,7 +315,7 @@ void YamlSection::number_or_word(std::string_view key, double& out, const Range&
     }
   }
   const std::size_t problems_before = findings_.problems.size();
-  if (const std::optional<double> value = number_of(entry->value, path_of(key), range)) {
+  if (const std::optional<double> value = number_of(entry->value, entry->value_at, path_of(key), range)) {
     out = *value;
   } else if (findings_.problems.size() > problems_before) {
     std::string& message = findings_.problems.back().message;
@@ -293,7 +339,8 @@ void YamlSection::angle(std::string_view key, double& out_rad, const Range& rang
   document(key, range_text(range_deg), range_schema(range_deg),
            number_text(out_rad * 180.0 / std::numbers::pi), meaning);
   if (const Entry* entry = find(key)) {
-    if (const std::optional<double> degrees = number_of(entry->value, path_of(key), range_deg)) {
+    if (const std::optional<double> degrees =
+            number_of(entry->value, entry->value_at, path_of(key), range_deg)) {
       out_rad = *degrees * std::numbers::pi / 180.0;
     }
   }
@@ -310,7 +357,7 @@ void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& ra
     return;
   }
   if (!entry->value.IsSequence() || entry->value.size() != 3) {
-    problem(position_of(entry->value.Mark()), path_of(key),
+    problem(entry->value_at, path_of(key),
             fmt::format("is {} (expected a list of three numbers{})",
                         entry->value.IsSequence() ? fmt::format("a list of {}", entry->value.size())
                                                   : describe(entry->value),
@@ -319,7 +366,8 @@ void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& ra
   }
   for (int axis = 0; axis < 3; ++axis) {
     const std::string path = fmt::format("{}[{}]", path_of(key), axis);
-    if (const std::optional<double> value = number_of(entry->value[axis], path, range)) {
+    if (const std::optional<double> value =
+            number_of(entry->value[axis], place_of(entry->value[axis], entry->value_at), path, range)) {
       out[axis] = *value;
     }
   }
@@ -336,8 +384,7 @@ void YamlSection::boolean(std::string_view key, bool& out, std::string_view mean
   if (plain && (node.Scalar() == "true" || node.Scalar() == "false")) {
     out = node.Scalar() == "true";
   } else {
-    problem(position_of(node.Mark()), path_of(key),
-            fmt::format("is {} (expected true or false)", describe(node)));
+    problem(entry->value_at, path_of(key), fmt::format("is {} (expected true or false)", describe(node)));
   }
 }
 
@@ -358,7 +405,8 @@ void YamlSection::section(std::string_view key, std::string_view meaning,
                           const std::function<void(YamlSection&)>& read) {
   document(key, "mapping", "", "", meaning);
   if (const Entry* entry = find(key); entry != nullptr || findings_.describing) {
-    read_inner(key, entry == nullptr ? YAML::Node(YAML::NodeType::Map) : entry->value, path_of(key), read);
+    read_inner(key, entry == nullptr ? YAML::Node(YAML::NodeType::Map) : entry->value, path_of(key),
+               entry == nullptr ? at_ : entry->value_at, read);
   }
 }
 
@@ -367,28 +415,29 @@ void YamlSection::sections(std::string_view key, std::string_view meaning,
   document(key, "list of mappings", "", "", meaning);
   known_key(key).is_list = true;
   if (findings_.describing) {
-    read_inner(key, YAML::Node(YAML::NodeType::Map), path_of(key), read);
+    read_inner(key, YAML::Node(YAML::NodeType::Map), path_of(key), at_, read);
   }
   const Entry* entry = find(key);
   if (entry == nullptr) {
     return;
   }
   if (!entry->value.IsSequence()) {
-    problem(position_of(entry->value.Mark()), path_of(key),
+    problem(entry->value_at, path_of(key),
             fmt::format("is {} (expected a list, each item starting with '-')", describe(entry->value)));
     return;
   }
   for (std::size_t i = 0; i < entry->value.size(); ++i) {
     const YAML::Node item = entry->value[i];
     const std::string path = fmt::format("{}[{}]", path_of(key), i);
-    findings_.positions.emplace(path, position_of(item.Mark()));
-    read_inner(key, item, path, read);
+    const SourcePosition at = place_of(item, entry->value_at);
+    findings_.positions.emplace(path, at);
+    read_inner(key, item, path, at, read);
   }
 }
 
 void YamlSection::read_inner(std::string_view key, const YAML::Node& node, std::string path,
-                             const std::function<void(YamlSection&)>& read) {
-  YamlSection inner(findings_, node, std::move(path));
+                             SourcePosition key_at, const std::function<void(YamlSection&)>& read) {
+  YamlSection inner(findings_, node, std::move(path), key_at);
   read(inner);
   known_key(key).introduction = inner.introduction_;
   known_key(key).keys = inner.known_;
@@ -436,7 +485,7 @@ const YamlSection::Entry* YamlSection::find(std::string_view key) {
   }
   Entry& entry = entries_[found->second];
   entry.read = true;
-  findings_.positions.emplace(path_of(key), position_of(entry.value.Mark()));
+  findings_.positions.emplace(path_of(key), entry.value_at);
   return &entry;
 }
 
@@ -484,12 +533,11 @@ void YamlSection::report_unknown(const Entry& entry) {
   problem(entry.key_at, path_of(too_long ? in_quotes(entry.name) : entry.name), std::move(message));
 }
 
-std::optional<double> YamlSection::number_of(const YAML::Node& node, const std::string& path,
-                                             const Range& range) {
+std::optional<double> YamlSection::number_of(const YAML::Node& node, const SourcePosition& at,
+                                             const std::string& path, const Range& range) {
   const std::string_view unit = unit_of(last_key(path));
   const std::string expected = fmt::format("a number {}{}{}{}", range.above_min ? "" : "from ",
                                            range_text(range), unit.empty() ? "" : ", in ", unit);
-  const SourcePosition at = position_of(node.Mark());
   if (!node.IsScalar() || node.Tag() != plain_tag) {
     const std::string what =
         node.IsScalar() ? fmt::format("a quoted text, {}", describe(node)) : describe(node);
@@ -542,7 +590,7 @@ void YamlSection::whole_number(std::string_view key, std::uint64_t& out, std::ui
       return;
     }
   }
-  problem(position_of(node.Mark()), path_of(key),
+  problem(entry->value_at, path_of(key),
           fmt::format("is {} (expected a whole number from {} to {})", describe(node), min, max));
 }
 
@@ -558,7 +606,13 @@ std::optional<std::size_t> YamlSection::word_index(std::string_view key,
   }
   const auto found = std::find(words.begin(), words.end(), *word);
   if (found == words.end()) {
-    report_bad_value(key, *word, expected);
+    const std::string_view meant = closest_word(*word, words);
+    if (meant.empty()) {
+      report_bad_value(key, *word, expected);
+    } else {
+      report(key, fmt::format("{} is not understood, did you mean '{}'? (expected {})", in_quotes(*word),
+                              meant, expected));
+    }
     return std::nullopt;
   }
   return static_cast<std::size_t>(found - words.begin());
@@ -570,7 +624,7 @@ std::optional<std::string> YamlSection::plain_text(std::string_view key, std::st
     return std::nullopt;
   }
   if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
-    problem(position_of(entry->value.Mark()), path_of(key),
+    problem(entry->value_at, path_of(key),
             fmt::format("is {} (expected {})", describe_with_ipv6(entry->value), expected));
     return std::nullopt;
   }
@@ -584,7 +638,7 @@ bool YamlSection::each_text(std::string_view key, std::string_view expected,
     return false;
   }
   if (!entry->value.IsSequence()) {
-    problem(position_of(entry->value.Mark()), path_of(key),
+    problem(entry->value_at, path_of(key),
             fmt::format("is {} (expected a list, each item {})", describe(entry->value), expected));
     return false;
   }
@@ -592,7 +646,7 @@ bool YamlSection::each_text(std::string_view key, std::string_view expected,
   for (std::size_t i = 0; i < entry->value.size(); ++i) {
     const YAML::Node item = entry->value[i];
     if (!item.IsScalar() || !take(item.Scalar())) {
-      problem(position_of(item.Mark()), fmt::format("{}[{}]", path_of(key), i),
+      problem(place_of(item, entry->value_at), fmt::format("{}[{}]", path_of(key), i),
               item.IsScalar() && is_ipv6(item.Scalar())
                   ? ipv6_text(item.Scalar(), expected)
                   : fmt::format("is {} (expected {})", describe(item), expected));

@@ -62,7 +62,8 @@ class YamlSection {
  public:
   /// @param path of the mapping, "" for the document. A node that is not a mapping is reported and read as
   /// empty.
-  YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path);
+  /// @param key_at the place of the key or list that the node belongs to, which stands for an empty one
+  YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path, SourcePosition key_at = {});
   /// Reports the keys that no reader asked for.
   ~YamlSection();
   YamlSection(const YamlSection&) = delete;
@@ -72,6 +73,8 @@ class YamlSection {
   bool is_list(std::string_view key) const;
   /// Reports the key when it is missing.
   void require(std::string_view key, std::string_view expected);
+  /// Leaves the keys that no reader asked for without a complaint: what they mean is not known.
+  void ignore_rest();
   /// Reports a problem with the value of a key that a reader accepted, or with the key's absence.
   void report(std::string_view key, const std::string& message);
   /// Something about a key that is worth saying but no reason to stop.
@@ -121,8 +124,9 @@ class YamlSection {
     out = static_cast<Integer>(value);
   }
 
+  /// @return false if the value is none of the words; true without one
   template <typename Value>
-  void choice(std::string_view key, Value& out,
+  bool choice(std::string_view key, Value& out,
               const std::vector<std::pair<std::string_view, std::type_identity_t<Value>>>& choices,
               std::string_view meaning) {
     std::vector<std::string_view> words;
@@ -131,9 +135,11 @@ class YamlSection {
       words.push_back(word);
       default_word = value == out ? word : default_word;
     }
-    if (const std::optional<std::size_t> index = word_index(key, words, default_word, meaning)) {
+    const std::optional<std::size_t> index = word_index(key, words, default_word, meaning);
+    if (index) {
       out = choices[*index].second;
     }
+    return index.has_value() || !has(key);
   }
 
   /// A text that `parse` understands. Returns whether `out` stands, read or left as it was.
@@ -184,6 +190,7 @@ class YamlSection {
   struct Entry {
     std::string name;
     SourcePosition key_at;
+    SourcePosition value_at;  ///< of an empty value: that of the key
     YAML::Node value;
     bool read = false;
   };
@@ -194,14 +201,15 @@ class YamlSection {
                 std::string_view default_json, std::string_view meaning);
   void document_list(std::string_view key, const TextForm& form, std::string_view meaning, bool may_be_empty);
   /// Reads a mapping of a key, or of a list that the key has.
-  void read_inner(std::string_view key, const YAML::Node& node, std::string path,
+  void read_inner(std::string_view key, const YAML::Node& node, std::string path, SourcePosition key_at,
                   const std::function<void(YamlSection&)>& read);
   const Entry* find(std::string_view key);
   const Entry* peek(std::string_view key) const;
   void problem(const SourcePosition& at, std::string path, std::string message);
   void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);
   void report_unknown(const Entry& entry);
-  std::optional<double> number_of(const YAML::Node& node, const std::string& path, const Range& range);
+  std::optional<double> number_of(const YAML::Node& node, const SourcePosition& at, const std::string& path,
+                                  const Range& range);
   void whole_number(std::string_view key, std::uint64_t& out, std::uint64_t min, std::uint64_t max,
                     std::string_view meaning);
   std::optional<std::size_t> word_index(std::string_view key, const std::vector<std::string_view>& words,

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "server/config/yaml_unclosed.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -75,6 +77,9 @@ int column(std::size_t offset) {
 }  // namespace
 
 ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint) {
+  if (const auto unclosed = find_unclosed(text, at.line)) {
+    return *unclosed;
+  }
   Indents indents;
   for (int number = 1; number <= at.line && !text.empty(); ++number) {
     const std::string_view whole = next_line(text);

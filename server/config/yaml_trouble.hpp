@@ -10,7 +10,8 @@
 namespace sonard::server {
 
 /// What is wrong with a text that the YAML parser gave up on at `at`, where it said `complaint`. Tabs,
-/// indents and IPv6 addresses are named as such, at their own place; all else is what the parser says.
+/// indents, IPv6 addresses, and quotes and brackets that nothing closes, are named as such, at their own
+/// place; all else is what the parser says.
 ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint);
 
 /// "20,5" as "20.5"; empty for what is no number with a decimal comma.

@@ -568,13 +568,99 @@ TEST_F(Loader, names_the_types_that_a_head_can_be_of) {
   text.replace(text.find("gemini_720i"), 11, "gemini_7200");
   EXPECT_THAT(complaints(text),
               ElementsAre(fmt::format(
-                  "config.yaml:6:11: heads[0].type: 'gemini_7200' is not understood (expected one of {})",
+                  "config.yaml:6:11: heads[0].type: 'gemini_7200' is not understood, did you mean "
+                  "'gemini_720i'? (expected one of {})",
                   fmt::join(types, ", "))));
   text = minimal_config;
   text.erase(text.find("    type"), std::string("    type: gemini_720i\n").size());
   EXPECT_THAT(complaints(text),
               ElementsAre(fmt::format("config.yaml:5:5: heads[0].type: missing (expected {})",
                                       fmt::join(types, " or "))));
+}
+
+// What a head of another type may have is not known, so its other keys are no mistakes.
+TEST_F(Loader, ends_the_complaints_about_a_head_with_its_unknown_type) {
+  const auto complaint = [this](const std::string& type) {
+    std::string text = minimal_config + "    wibble: 1\n    serial: {}\n";
+    text.replace(text.find("gemini_720i"), 11, type);
+    return complaints(text);
+  };
+  for (const auto& [given, meant] :
+       std::vector<std::pair<std::string, std::string>>{{"gemini", "gemini_720i"},
+                                                        {"Gemini-720i", "gemini_720i"},
+                                                        {"'Gemini 720i'", "gemini_720i"},
+                                                        {"oculus_m750d", "oculus"},
+                                                        {"ping-360", "ping360"},
+                                                        {"tritech_micron", "micron"},
+                                                        {"micorn", "micron"}}) {
+    EXPECT_THAT(
+        complaint(given),
+        ElementsAre(AllOf(StartsWith("config.yaml:6:11: heads[0].type: "),
+                          HasSubstr("is not understood, did you mean '" + meant + "'? (expected one of "))))
+        << given;
+  }
+  EXPECT_THAT(complaint("norbit"),
+              ElementsAre(HasSubstr("heads[0].type: 'norbit' is not understood (expected one of ")));
+}
+
+TEST_F(Loader, says_which_word_was_probably_meant) {
+  EXPECT_THAT(
+      complaints(minimal_config + "engine: CPU\n"),
+      ElementsAre("config.yaml:11:9: engine: 'CPU' is not understood, did you mean 'cpu'? (expected one of "
+                  "auto, gpu, cpu)"));
+  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: refrence}\n"),
+              ElementsAre(HasSubstr("did you mean 'reference'?")));
+  EXPECT_THAT(
+      complaints(minimal_config + "log: {format: xml}\n"),
+      ElementsAre("config.yaml:11:15: log.format: 'xml' is not understood (expected one of text, json)"));
+}
+
+// The parser places an empty value at what follows it.
+TEST_F(Loader, places_an_empty_value_at_its_key) {
+  EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m:\n  ph: 8\n"),
+              ElementsAre(StartsWith("config.yaml:12:3: water.depth_m: is empty (expected a number")));
+  EXPECT_THAT(complaints(minimal_config + "engine:\nlog: {level: info}\n"),
+              ElementsAre(StartsWith("config.yaml:11:1: engine: is empty (expected one of")));
+  EXPECT_THAT(complaints(minimal_config + "log:\nengine: cpu\n"),
+              ElementsAre(StartsWith("config.yaml:11:1: log: is empty (expected a mapping")));
+  EXPECT_THAT(complaints(minimal_config + "    hides_vehicle:\nengine: cpu\n"),
+              ElementsAre(StartsWith("config.yaml:11:5: heads[0].hides_vehicle: is empty (expected true")));
+  EXPECT_THAT(complaints(minimal_config + "sampling:\n  preset: grid\n  views:\n  rows: 16\n"),
+              ElementsAre(StartsWith("config.yaml:13:3: sampling.views: is empty (expected a whole number")));
+  EXPECT_THAT(complaints(minimal_config + "skip:\n  off:\nengine: cpu\n"),
+              ElementsAre(StartsWith("config.yaml:12:3: skip.off: is empty (expected a list")));
+  EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {}}\nheads:\n  -\nengine: cpu\n"),
+              Contains(StartsWith("config.yaml:4:3: heads[0]: is empty (expected a mapping")));
+}
+
+// Places are counted by hand; columns count from 1.
+TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
+  const std::string rest = "poses: {initial: {}}\nheads:\n  - name: \"bow\"\n    type: micron\n";
+  const std::string quote = "the quote that begins here is not closed (expected another ";
+  EXPECT_THAT(complaints("world:\n  file: \"w.sdf\n" + rest),
+              ElementsAre("config.yaml:2:9: " + quote + "\" at its end)"));
+  EXPECT_THAT(complaints("world:\n  file: 'w.sdf\n" + rest),
+              ElementsAre("config.yaml:2:9: " + quote + "' at its end)"));
+  EXPECT_THAT(complaints("world: {file: \"w.sdf}\n# don't\nposes: {initial: {}}\n"),
+              ElementsAre("config.yaml:1:15: " + quote + "\" at its end)"));
+  EXPECT_THAT(complaints("world: {file: 'w.sdf}\n# don't\nposes: {initial: {}}\n"),
+              ElementsAre("config.yaml:1:15: " + quote + "' at its end)"));
+  EXPECT_THAT(complaints("a: 'it''s'\nworld:\n  - \"x\n  - \"y\"\n"),
+              ElementsAre("config.yaml:3:5: " + quote + "\" at its end)"));
+  const std::string bracket = "the bracket that begins here is not closed (expected ";
+  EXPECT_THAT(
+      complaints("world: {file: w}\nposes:\n  initial:\n    position_m: [1, 2, 3\n    rpy_deg: [0, 0, 0]\n"),
+      ElementsAre("config.yaml:4:17: " + bracket + "])"));
+  EXPECT_THAT(complaints("world: {file: w\nposes: {initial: {}}\n"),
+              ElementsAre("config.yaml:1:8: " + bracket + "})"));
+}
+
+TEST_F(Loader, blames_no_quote_that_is_closed) {
+  // Over two lines, and in a comment, and within a word; what is wrong is the indent of the last line.
+  EXPECT_THAT(complaints("world:\n  file: \"a\n    b.sdf\" # it's\n  missing: don't\n   x: 1\n"),
+              ElementsAre(StartsWith("config.yaml:5:4: this line is indented by 3 space(s)")));
+  EXPECT_THAT(complaints("world: {file: [a,\n  b], x: \"y\"}\n  z: 1\n"),
+              ElementsAre(testing::Not(HasSubstr("not closed"))));
 }
 
 TEST_F(Loader, takes_no_other_types_than_it_is_given) {
@@ -622,7 +708,9 @@ TEST_F(Loader, reads_the_error_that_is_aimed_at) {
 TEST_F(Loader, points_at_malformed_yaml) {
   EXPECT_THAT(complaints(minimal_config + "water: {ph: 8\n"),
               ElementsAre(AllOf(StartsWith("config.yaml:1"), HasSubstr("(expected valid YAML)"))));
-  EXPECT_THAT(complaints("world: [\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
+  EXPECT_THAT(complaints("world: [\n"),
+              ElementsAre("config.yaml:1:8: the bracket that begins here is not closed (expected ])"));
+  EXPECT_THAT(complaints("world: a: b\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
 }
 
 // Places are counted by hand; columns count from 1.
