@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "renderer/engines/gpu/gl_devices.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/pipeline/image_difference.hpp"
 #include "renderer/stopwatch.hpp"
@@ -125,7 +127,25 @@ EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> f
   return trial;
 }
 
+EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const StreamPing> first_pings,
+                                   const GpuOptions& gpu) {
+  std::string software = software_gl(gpu.device);
+  if (software.empty()) {
+    return choose_engine(renderer, first_pings);
+  }
+  EngineTrial trial;
+  renderer.use_engine(EngineKind::cpu);
+  trial.cpu = renderer.engine_description();
+  trial.software_gl = std::move(software);
+  return trial;
+}
+
 std::string describe(const EngineTrial& trial) {
+  if (!trial.software_gl.empty()) {
+    return fmt::format(
+        "cpu is taken ({}): OpenGL runs in software here ({}) and is not timed; engine: gpu uses it",
+        trial.cpu, trial.software_gl);
+  }
   const std::string cpu = fmt::format("cpu takes {:.1f} ms a ping ({})", trial.cpu_ms, trial.cpu);
   const std::string gpu =
       trial.gpu.empty() ? "gpu cannot be had: " + trial.gpu_problem

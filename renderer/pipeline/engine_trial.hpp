@@ -6,6 +6,7 @@
 #include <string>
 
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "renderer/renderer_options.hpp"
 
 namespace sonard::render {
 
@@ -19,6 +20,7 @@ struct EngineTrial {
   double difference = 0.0;
   std::string cpu, gpu;     ///< what they run on; `gpu` is empty when it cannot be had
   std::string gpu_problem;  ///< why it is not taken, whatever its time; empty: that decides
+  std::string software_gl;  ///< set: OpenGL runs on the CPU, by this device, and nothing was timed
 };
 
 /// Renders these pings with both engines, for a quarter of a second and a ping each, and lets the renderer go
@@ -26,6 +28,13 @@ struct EngineTrial {
 /// preset of each ping promises. The GPU makes some beams of each before that, so that its shaders are built.
 /// @throws RequestError, RendererError when the CPU cannot render them.
 EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings);
+
+/// The same for a program that starts, which does not wait for OpenGL that runs on the CPU: it is never
+/// faster than the CPU engine, and takes seconds to say so. No ping is rendered then, and the CPU engine is
+/// taken.
+/// @throws RequestError, RendererError when the CPU cannot render them.
+EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const StreamPing> first_pings,
+                                   const GpuOptions& gpu);
 
 /// "cpu takes 14.2 ms a ping, gpu 410.0 ms (vendor / renderer / version): cpu is taken".
 std::string describe(const EngineTrial& trial);

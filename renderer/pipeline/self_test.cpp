@@ -116,7 +116,7 @@ EngineTrial time_engines(const RendererOptions& options) {
   SonarRenderer renderer(make_wall(), options);
   StreamPing ping;
   ping.request.settings = wall_settings(256, 1000);
-  return choose_engine(renderer, std::vector{ping});
+  return choose_engine_at_start(renderer, std::vector{ping}, options.gpu);
 }
 
 }  // namespace sonard::render

@@ -19,7 +19,7 @@ struct SelfTestResult {
 /// @throws RendererError when the engine fails, the image is empty or the error exceeds 5 %.
 SelfTestResult run_self_test(RendererOptions options = {});
 
-/// choose_engine() on a fan of 256 beams and 1000 lines of 20 mm before that wall.
+/// choose_engine_at_start() on a fan of 256 beams and 1000 lines of 20 mm before that wall.
 EngineTrial time_engines(const RendererOptions& options = {});
 
 }  // namespace sonard::render

@@ -100,7 +100,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// In lower case, with what parts words left out: "Gemini-720i" as "gemini720i".
+/// In lower case, with what parts words left out: "Fixed-Seed" as "fixedseed".
 std::string letters_of(std::string_view word) {
   std::string letters;
   for (const char c : word) {
@@ -112,7 +112,7 @@ std::string letters_of(std::string_view word) {
 }
 
 /// The word of a choice that was probably meant, or an empty text: one that differs in little, or that is a
-/// part of the other ("gemini" and "gemini_720i", "oculus_m750d" and "oculus").
+/// part of the other, as a maker's name is of a model's.
 std::string_view closest_word(std::string_view given, const std::vector<std::string_view>& words) {
   constexpr std::size_t shortest_part = 4;
   const std::string name = letters_of(given.substr(0, longest_known_key));

@@ -58,13 +58,13 @@ class WorldRenderer final : public PingRenderer {
     if (const std::optional<KeptChoice> kept = choices_.find(situation); kept && take(*kept)) {
       return false;
     }
-    const render::EngineTrial trial = render::choose_engine(renderer_, first_pings);
+    const render::EngineTrial trial = render::choose_engine_at_start(renderer_, first_pings, options_.gpu);
     spdlog::info("engine auto: {}", describe(trial));
     // A GPU that cannot be had is looked for again: that takes no time, and a driver may come.
     if (!trial.gpu.empty()) {
       choices_.keep(situation, {trial.taken, describe(trial)});
     }
-    return true;
+    return trial.software_gl.empty();
   }
 
   /// @return false where that engine cannot be had any more

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/gpu/egl_device.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -11,6 +12,7 @@
 #include <osg/GL>
 
 #include "renderer/engines/gpu/gl_devices.hpp"
+#include "renderer/errors.hpp"
 
 namespace sonard::render {
 
@@ -110,12 +112,27 @@ std::vector<GlDevice> list_gl_devices() {
     }
     if (eglMakeCurrent(device.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) {
       listed.description = describe_current_gl();
+      listed.software = listed.software || is_software_renderer(listed.description);
       listed.memory_mib = memory_mib_of_current();
       eglMakeCurrent(device.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
     eglDestroyContext(device.display, context);
   }
   return list;
+}
+
+std::string software_gl(const std::string& wanted) {
+  const std::vector<EglDevice> found = egl_devices();
+  if (!found.empty() && std::ranges::all_of(found, [](const EglDevice& device) { return device.software; })) {
+    return "EGL lists no other device";
+  }
+  try {
+    const std::vector<GlDevice> devices = list_gl_devices();
+    const GlDevice& taken = devices[choose_gl_device(devices, wanted).number];
+    return taken.software ? taken.description : "";
+  } catch (const RendererError&) {
+    return "";  // there is no OpenGL, or not that device: making the engine says so
+  }
 }
 
 }  // namespace sonard::render

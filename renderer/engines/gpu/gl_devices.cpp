@@ -2,8 +2,10 @@
 #include "renderer/engines/gpu/gl_devices.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
+#include <string_view>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -45,6 +47,14 @@ GlDeviceChoice asked_for(const std::vector<GlDevice>& devices, const std::string
 }
 
 }  // namespace
+
+bool is_software_renderer(const std::string& description) {
+  constexpr std::array<std::string_view, 6> names{"llvmpipe",    "softpipe", "swrast", "software rasterizer",
+                                                  "swiftshader", "openswr"};
+  const std::string text = lower_case(description);
+  return std::ranges::any_of(names,
+                             [&](std::string_view name) { return text.find(name) != std::string::npos; });
+}
 
 std::vector<std::string> describe(const std::vector<GlDevice>& devices) {
   std::vector<std::string> lines;

@@ -13,13 +13,20 @@ namespace sonard::render {
 struct GlDevice {
   std::string description;       ///< "vendor / renderer / version"; empty: OpenGL 4.5 does not run on it
   std::string node;              ///< "/dev/dri/card0"; empty: it has none
-  bool software = false;         ///< as its driver says
+  bool software = false;         ///< as its driver says, or is_software_renderer()
   std::uint64_t memory_mib = 0;  ///< of its own; 0: none, or the driver does not tell
 };
 
 /// What there is, in the order of EGL. Where EGL cannot list devices, the surfaceless platform is the only
 /// one. Makes a context on each, so it takes some tenths of a second.
 std::vector<GlDevice> list_gl_devices();
+
+/// Whether OpenGL runs on the CPU, by a description of GlDevice: llvmpipe, softpipe, swrast and their like.
+bool is_software_renderer(const std::string& description);
+
+/// The device that choose_gl_device() would take, if OpenGL runs on the CPU there; empty: it runs on a GPU,
+/// or not at all. Makes contexts only if EGL lists hardware.
+std::string software_gl(const std::string& wanted);
 
 struct GlDeviceChoice {
   std::size_t number = 0;  ///< in the list

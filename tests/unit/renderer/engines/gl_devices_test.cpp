@@ -63,6 +63,16 @@ TEST(GlDevices, WhatIsNotThereIsToldWithWhatIs) {
   EXPECT_THAT(complaint({software}, "radeon"), HasSubstr("'radeon'"));
 }
 
+// Names that Mesa, ANGLE and OpenSWR give themselves, and two GPUs.
+TEST(GlDevices, SoftwareIsKnownByItsName) {
+  EXPECT_TRUE(is_software_renderer(software.description));
+  EXPECT_TRUE(is_software_renderer("Mesa/X.org / softpipe / 3.3 (Compatibility Profile) Mesa 22.3.6"));
+  EXPECT_TRUE(is_software_renderer("Mesa Project / Software Rasterizer / 2.1 Mesa 20.3.5"));
+  EXPECT_TRUE(is_software_renderer("Google Inc. / ANGLE (SwiftShader Device (Subzero)) / 3.0"));
+  EXPECT_FALSE(is_software_renderer(intel.description));
+  EXPECT_FALSE(is_software_renderer(nvidia.description));
+}
+
 TEST(GlDevices, ALineSaysWhatADeviceIs) {
   EXPECT_THAT(describe({nvidia, software}),
               ElementsAre("0: NVIDIA Corporation / NVIDIA GeForce RTX 3060/PCIe/SSE2 / 4.6.0 NVIDIA 525.85, "

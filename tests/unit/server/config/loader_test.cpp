@@ -608,8 +608,8 @@ TEST_F(Loader, says_which_word_was_probably_meant) {
       complaints(minimal_config + "engine: CPU\n"),
       ElementsAre("config.yaml:11:9: engine: 'CPU' is not understood, did you mean 'cpu'? (expected one of "
                   "auto, gpu, cpu)"));
-  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: refrence}\n"),
-              ElementsAre(HasSubstr("did you mean 'reference'?")));
+  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: defaultx}\n"),
+              ElementsAre(HasSubstr("did you mean 'default'?")));
   EXPECT_THAT(
       complaints(minimal_config + "log: {format: xml}\n"),
       ElementsAre("config.yaml:11:15: log.format: 'xml' is not understood (expected one of text, json)"));
