@@ -47,7 +47,7 @@ Json pairs_in(const std::string& line) {
 
 Json members_of(std::string_view line) {
   static const std::regex head(R"(^head=([^\s:]+):? ?)");
-  static const std::regex area(R"(^([a-z][a-z0-9_-]*)[^:]*: )");
+  static const std::regex area(R"(^([a-z][a-z0-9_-]*)[^=]*?: )");
   Json members;
   std::string text(line);
   std::smatch found;

@@ -55,7 +55,7 @@ TEST_F(PeerLogTest, says_with_the_next_line_how_many_are_missing) {
   }
   clock.time += PeerLog::refill;
   log.warn("again");
-  log.warn("and again");
+  log.warn("again");
   ASSERT_EQ(lines->texts.size(), 11U);
   EXPECT_THAT(lines->texts.back(), HasSubstr("again (20 lines"));
 }
