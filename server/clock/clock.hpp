@@ -2,6 +2,8 @@
 // The one place where the daemon reads time.
 #pragma once
 
+#include <time.h>
+
 #include <chrono>
 
 namespace sonard::server {
@@ -31,6 +33,21 @@ inline std::chrono::nanoseconds unix_time_offset() {
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   const TimePoint after = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(wall) - (before + (after - before) / 2);
+}
+
+/// Processor time that was used so far; it stands still while a thread waits, or others have the core.
+struct ProcessorTime {
+  std::chrono::nanoseconds thread{};   ///< by the calling thread
+  std::chrono::nanoseconds process{};  ///< by all threads
+};
+
+inline ProcessorTime processor_time() {
+  const auto read = [](clockid_t clock) {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+  };
+  return {read(CLOCK_THREAD_CPUTIME_ID), read(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
 /// Converts to the time type of an Asio steady_timer.

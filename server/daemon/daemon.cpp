@@ -127,6 +127,7 @@ class Daemon {
   RenderService& renderer_of(const HeadConfig& head) const {
     return *(kind_of(head).scanning() ? beam_renderer_ : fan_renderer_);
   }
+  std::string engine_text() const;
   void warm_up(const std::vector<HeadConfig>& heads) const;
   void start_inputs();
   void poses_changed();
@@ -204,8 +205,14 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
   warm_up(config.heads);
   start_page(config, world);
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} engine=\"{}\"", heads_.size(),
-                            world.name, world.triangle_count(),
-                            (fan_renderer_ ? fan_renderer_ : beam_renderer_)->renderer_description());
+                            world.name, world.triangle_count(), engine_text());
+}
+
+// Of the renderers in use: the GPU may be lost to one of them alone.
+std::string Daemon::engine_text() const {
+  const std::string fans = fan_renderer_ ? fan_renderer_->renderer_description() : "";
+  const std::string beams = beam_renderer_ ? beam_renderer_->renderer_description() : fans;
+  return fans.empty() || fans == beams ? beams : fmt::format("{}; scanning heads: {}", fans, beams);
 }
 
 std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const DaemonConfig& config,
@@ -240,7 +247,6 @@ void Daemon::start_page(const DaemonConfig& config, const render::World& world) 
     return;
   }
   recorded_into_ = config.recording ? config.recording->directory : "";
-  const RenderService& renderer = *(fan_renderer_ ? fan_renderer_ : beam_renderer_);
   page_->start({.ask_status =
                     [this](std::function<void(DaemonStatus)> take) {
                       asio::post(io_, [this, take = std::move(take)] {
@@ -249,8 +255,7 @@ void Daemon::start_page(const DaemonConfig& config, const render::World& world) 
                     },
                 .turn_recording =
                     recorder_ ? std::function<void(bool)>([this](bool on) { recorder_->turn(on); }) : nullptr,
-                .identity = {config.file.string(), renderer.renderer_description(), world.name,
-                             world.water_surface_z_m},
+                .identity = {config.file.string(), world.name, world.water_surface_z_m},
                 .world = world});
   spdlog::info("page: {}", page_->address());
 }
@@ -259,6 +264,7 @@ void Daemon::start_page(const DaemonConfig& config, const render::World& world) 
 DaemonStatus Daemon::status() const {
   DaemonStatus status;
   status.at = clock_.now();
+  status.engine = engine_text();
   for (const std::unique_ptr<Head>& head : heads_) {
     status.heads.push_back(head->status());
   }

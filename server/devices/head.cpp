@@ -223,6 +223,7 @@ HeadStatus Head::Impl::status() const {
           .newest = newest,
           .spent = rendering.newest_statistics(),
           .latency = recent_pings.latency(),
+          .since_last_ping = recent_pings.silence(now),
           .findings = diagnosis.findings()};
 }
 
@@ -318,12 +319,12 @@ void Head::Impl::send(std::vector<Outgoing> messages) {
 
 void Head::Impl::record(TimePoint now, PingRecord ping) {
   recent_pings.sent(now, ping.transmit_time);
-  if (services.viewer != nullptr && services.viewer->wants(stream)) {
-    services.viewer->show(std::make_shared<const ShownPing>(
-        ShownPing{stream, now, ping, newest ? newest->T_world_mount : std::nullopt}));
-  }
   if (recording.on() && poses_to_record.poses && poses_to_record.number == ping.number) {
-    recording.ping({std::move(ping), poses_to_record.poses});
+    recording.ping({ping, poses_to_record.poses});
+  }
+  if (services.viewer != nullptr) {
+    services.viewer->show(std::make_shared<const ShownPing>(
+        ShownPing{stream, now, std::move(ping), newest ? newest->T_world_mount : std::nullopt}));
   }
 }
 

@@ -49,7 +49,8 @@ struct HeadStatus {
   render::PingStatistics spent;  ///< on the newest ping that was rendered
   /// From its transmission to when the newest ping went out.
   std::optional<std::chrono::nanoseconds> latency;
-  std::vector<Finding> findings;  ///< what looks wrong about its place in the world
+  std::optional<std::chrono::nanoseconds> since_last_ping;  ///< that went out; nullopt: none did
+  std::vector<Finding> findings;                            ///< what looks wrong about its place in the world
 };
 
 }  // namespace sonard::server

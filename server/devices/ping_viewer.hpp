@@ -27,8 +27,7 @@ class PingViewer {
   PingViewer(const PingViewer&) = delete;
   PingViewer& operator=(const PingViewer&) = delete;
 
-  /// Whether somebody watches this head. Where nobody does, no ping is copied.
-  virtual bool wants(int head) const = 0;
+  /// Takes each ping that goes out, whether anybody watches or not: the next viewer begins with the newest.
   virtual void show(std::shared_ptr<const ShownPing> ping) = 0;
 };
 

@@ -37,6 +37,10 @@ void RecentPings::sent(TimePoint now, TimePoint transmit_time) {
   latency_ = now - transmit_time;
 }
 
+std::optional<std::chrono::nanoseconds> RecentPings::silence(TimePoint now) const {
+  return times_.empty() ? std::nullopt : std::optional<std::chrono::nanoseconds>(now - times_.back());
+}
+
 double RecentPings::per_s(TimePoint now) const {
   const auto first =
       std::find_if(times_.begin(), times_.end(), [now](TimePoint time) { return now - time <= period; });

@@ -34,6 +34,8 @@ class RecentPings {
   /// Mean rate of the last `period`, or since the first ping where that is later.
   double per_s(TimePoint now) const;
   std::optional<std::chrono::nanoseconds> latency() const { return latency_; }
+  /// Time since the newest ping; nullopt without one.
+  std::optional<std::chrono::nanoseconds> silence(TimePoint now) const;
 
   static constexpr std::chrono::seconds period{5};
 

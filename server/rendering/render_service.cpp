@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rendering/render_service.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdlib>
 #include <deque>
 #include <exception>
+#include <fstream>
 #include <future>
 #include <mutex>
 #include <new>
@@ -23,10 +26,25 @@ namespace {
 
 constexpr std::size_t most_unknown_bodies = 16;
 
+/// Whether the kernel may refuse memory to this process. Elsewhere a request always succeeds, and proves
+/// nothing.
+bool memory_is_limited() {
+  static const bool strict = [] {
+    int policy = 0;
+    std::ifstream("/proc/sys/vm/overcommit_memory") >> policy;
+    return policy == 2;
+  }();
+  rlimit limit{};
+  return strict || (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY);
+}
+
 /// Room for what becomes of a ping on other threads, which cannot give it up half done: its messages, records
 /// and pictures.
 /// @throws std::bad_alloc
 void make_sure_of_room(const render::PingSamples& samples) {
+  if (!memory_is_limited()) {
+    return;
+  }
   constexpr std::size_t at_least_bytes = 4 << 20;
   constexpr std::size_t copies = 12;
   const std::size_t bytes = at_least_bytes + copies * (samples.u8.size() + 2 * samples.u16.size());
@@ -45,7 +63,7 @@ struct RenderService::Impl {
     std::promise<void> done;
   };
   struct Entry {
-    RenderJob job;
+    std::shared_ptr<const RenderJob> job;  ///< null: a warm-up
     Done done;
     std::optional<WarmUp> warm_up{};  ///< set: this is no ping, and has no `done`
   };
@@ -53,10 +71,10 @@ struct RenderService::Impl {
   // Constant once the constructor has returned.
   RenderServiceHooks hooks;
   std::size_t capacity = 0;
-  std::string description;  // and changed by the warm-up, while its caller waits
 
   // Shared, under the mutex.
   std::mutex mutex;
+  std::string description;
   std::condition_variable wake;
   std::deque<Entry> queue;
   bool stopping = false;
@@ -68,6 +86,7 @@ struct RenderService::Impl {
 
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
+  void describe(const PingRenderer& renderer);
   std::vector<render::StreamPing> next_pings(const RenderJob& first);
   void serve(PingRenderer& renderer);
   void warm_up(PingRenderer& renderer, WarmUp& warm_up);
@@ -97,6 +116,7 @@ RenderService::~RenderService() {
 }
 
 void RenderService::submit(RenderJob job, Done done) {
+  Impl::Entry entry{std::make_shared<const RenderJob>(std::move(job)), std::move(done)};
   {
     const std::lock_guard lock(impl_->mutex);
     if (impl_->stopping) {
@@ -105,7 +125,7 @@ void RenderService::submit(RenderJob job, Done done) {
     if (impl_->queue.size() >= impl_->capacity) {
       throw std::logic_error("render queue is full: a stream has more than one job outstanding");
     }
-    impl_->queue.push_back({std::move(job), std::move(done)});
+    impl_->queue.push_back(std::move(entry));
   }
   impl_->wake.notify_one();
 }
@@ -129,7 +149,7 @@ bool RenderService::withdraw(int stream) {
   const std::lock_guard lock(impl_->mutex);
   const auto entry = std::find_if(
       impl_->queue.begin(), impl_->queue.end(),
-      [stream](const Impl::Entry& waiting) { return waiting.done && waiting.job.stream == stream; });
+      [stream](const Impl::Entry& waiting) { return waiting.job && waiting.job->stream == stream; });
   if (entry == impl_->queue.end()) {
     return false;
   }
@@ -145,8 +165,15 @@ void RenderService::stop() {
   }
 }
 
-const std::string& RenderService::renderer_description() const {
+std::string RenderService::renderer_description() const {
+  const std::lock_guard lock(impl_->mutex);
   return impl_->description;
+}
+
+void RenderService::Impl::describe(const PingRenderer& renderer) {
+  std::string now = renderer.description();
+  const std::lock_guard lock(mutex);
+  description.swap(now);
 }
 
 void RenderService::Impl::close_queue() {
@@ -164,7 +191,7 @@ void RenderService::Impl::run(const RendererFactory& make_renderer, std::promise
   std::unique_ptr<PingRenderer> renderer;
   try {
     renderer = make_renderer();
-    description = renderer->description();
+    describe(*renderer);
   } catch (...) {
     ready.set_exception(std::current_exception());
     return;
@@ -196,9 +223,10 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
       warm_up(renderer, *entry->warm_up);
       continue;
     }
-    RenderResult result = render(renderer, entry->job, next_pings(entry->job));
+    RenderResult result = render(renderer, *entry->job, next_pings(*entry->job));
+    describe(renderer);
     if (result.error.empty() && hooks.observe) {
-      hooks.observe(entry->job, result.samples);
+      hooks.observe(*entry->job, result.samples);
     }
     // std::function wants copyable captures, so the samples travel behind a pointer.
     auto shared = std::make_shared<RenderResult>(std::move(result));
@@ -209,25 +237,31 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
 void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
   try {
     renderer.warm_up(warm_up.first_pings);
-    description = renderer.description();
+    describe(renderer);
     warm_up.done.set_value();
   } catch (...) {
     warm_up.done.set_exception(std::current_exception());
   }
 }
 
-/// This one and those that wait behind it while all bodies stay where they are; none when nothing waits.
+/// This one and those that wait behind it while all bodies stay where they are; none if it is alone.
 std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob& first) {
-  std::vector<render::StreamPing> pings;
-  const std::lock_guard lock(mutex);
-  if (!queue.empty()) {
-    pings.push_back({first.stream, first.request});
+  std::vector<std::shared_ptr<const RenderJob>> waiting;
+  {
+    const std::lock_guard lock(mutex);
+    for (const Entry& entry : queue) {
+      waiting.push_back(entry.job);
+    }
   }
-  for (const Entry& entry : queue) {
-    if (!entry.done || entry.job.bodies != first.bodies) {
+  std::vector<render::StreamPing> pings;
+  for (const auto& job : waiting) {  // copied without the lock
+    if (job == nullptr || job->bodies != first.bodies) {
       break;
     }
-    pings.push_back({entry.job.stream, entry.job.request});
+    if (pings.empty()) {
+      pings.push_back({first.stream, first.request});
+    }
+    pings.push_back({job->stream, job->request});
   }
   return pings;
 }

@@ -22,7 +22,7 @@ namespace sonard::server {
 class PingRenderer {
  public:
   virtual ~PingRenderer() = default;
-  /// The engine, one line for the log.
+  /// The engine in use, one line.
   virtual std::string description() const = 0;
   /// @return false when the world has no such body.
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
@@ -102,8 +102,8 @@ class RenderService {
   /// Ends the render thread after the ping it is working on. Harmless when called again.
   void stop();
 
-  /// As of when the renderer was made or, if that came since, warmed up.
-  const std::string& renderer_description() const;
+  /// PingRenderer::description() as of the newest ping: a GPU may have been lost since the start.
+  std::string renderer_description() const;
 
  private:
   struct Impl;

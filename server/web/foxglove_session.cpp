@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/web/foxglove_session.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <limits>
+#include <set>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -151,15 +154,19 @@ void FoxgloveSession::take(const std::string& text) {
                              : "";
   try {
     if (op == "subscribe") {
+      std::set<std::size_t> heads;
       for (const json& wish : message.at("subscriptions")) {
         const auto channel = channels_.find(id_of(wish.at("channelId")));
         if (channel == channels_.end()) {
           complain(fmt::format("There is no channel {}.", text_of(wish["channelId"])));
         } else {
           subscriptions_[channel->second] = id_of(wish.at("id"));
-          shown_.erase(channel->second.head);
+          if (channel->second.kind != Kind::status) {
+            heads.insert(channel->second.head);
+          }
         }
       }
+      std::ranges::for_each(heads, [this](std::size_t head) { show_last(head); });
     } else if (op == "unsubscribe") {
       for (const json& id : message.at("subscriptionIds")) {
         std::erase_if(subscriptions_, [&](const auto& known) { return known.second == id_of(id); });
@@ -178,12 +185,9 @@ void FoxgloveSession::complain(const std::string& what) {
 
 // ---- What it gets
 
-/// Keeps the pings of heads coming whose channels are subscribed to, and sends the status.
 void FoxgloveSession::every_second() {
   for (const auto& [channel, id] : subscriptions_) {
-    if (channel.kind != Kind::status) {
-      site().want(channel.head);
-    } else if (has_room()) {
+    if (channel.kind == Kind::status && has_room()) {
       site().with_status_text(
           [weak = weak<FoxgloveSession>()](const std::shared_ptr<const std::string>& text) {
             if (const auto self = weak.lock()) {
@@ -230,6 +234,19 @@ void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
                                           {"format", "png"}}));
   }
   shown_[head] = site().now();
+}
+
+/// A subscriber begins with the newest ping, or turn.
+void FoxgloveSession::show_last(std::size_t head) {
+  const Pings& pings = site().last_pings(static_cast<int>(head));
+  if (pings.empty()) {
+    return;
+  }
+  shown_.erase(head);
+  for (const std::shared_ptr<const ShownPing>& line : std::span(pings).first(pings.size() - 1)) {
+    pictures_[head].keep(line->record);
+  }
+  show(pings.back());
 }
 
 /// Message data: the opcode 1, the subscription, the time, and the message.

@@ -43,6 +43,7 @@ class FoxgloveSession final : public WebSocket {
   void take(const std::string& text) override;
   void advertise(const DaemonStatus& status);
   void every_second();
+  void show_last(std::size_t head);
   void send_on(const Channel& channel, std::string_view json_text);
   void complain(const std::string& what);
 

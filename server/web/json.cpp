@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace sonard::server {
 
 using nlohmann::json;
@@ -98,12 +100,16 @@ json head_json(const HeadStatus& status, TimePoint at) {
             {"render_ms", nullptr},
             {"latency_ms", nullptr},
             {"pose_age_ms", nullptr},
+            {"last_ping_age_s", nullptr},
             {"stages_ms", stages_json(status.spent)},
             {"skipped", skipped_json(status.counts.rendering.skipped)},
             {"counters", counters_json(status.counts)},
             {"findings", findings_json(status.findings)}};
   if (status.counts.rendering.pings_rendered > 0) {
     head["render_ms"] = render_ms(status.spent);
+  }
+  if (status.since_last_ping) {
+    head["last_ping_age_s"] = seconds(*status.since_last_ping);
   }
   if (status.latency) {
     head["latency_ms"] = 1e3 * seconds(*status.latency);
@@ -144,15 +150,8 @@ json poses_json(const DaemonStatus& status) {
           {"bodies", std::move(bodies)}};
 }
 
-/// Of the newest pose of any input.
-std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status) {
-  std::optional<std::chrono::nanoseconds> least;
-  for (const PoseInputStatus& input : status.inputs) {
-    if (input.poses.age && (!least || *input.poses.age < *least)) {
-      least = input.poses.age;
-    }
-  }
-  return least;
+json seconds_json(const std::optional<std::chrono::nanoseconds>& time) {
+  return time ? json(seconds(*time)) : json(nullptr);
 }
 
 json recording_json(const std::optional<RecordingStatus>& recording) {
@@ -191,11 +190,54 @@ json status_json(const DaemonIdentity& identity, const DaemonStatus& status,
   return {{"version", SONARD_VERSION},
           {"configuration", identity.configuration},
           {"uptime_s", uptime.count()},
-          {"engine", identity.engine},
+          {"engine", status.engine},
           {"world", {{"name", identity.world}, {"water_surface_z_m", surface}}},
           {"heads", std::move(heads)},
           {"poses", poses_json(status)},
           {"recording", recording_json(status.recording)}};
+}
+
+std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status) {
+  std::optional<std::chrono::nanoseconds> least;
+  for (const PoseInputStatus& input : status.inputs) {
+    if (input.poses.age && (!least || *input.poses.age < *least)) {
+      least = input.poses.age;
+    }
+  }
+  return least;
+}
+
+std::vector<std::string> why_not_ready(const DaemonStatus& status) {
+  std::vector<std::string> reasons;
+  if (!status.T_world_vehicle) {
+    reasons.push_back(status.inputs.empty() ? std::string("no pose of the vehicle is known")
+                                            : fmt::format("no pose of the vehicle is known: send poses to {}",
+                                                          status.inputs.front().input));
+  }
+  for (const HeadStatus& head : status.heads) {
+    if (head.serves.empty()) {
+      reasons.push_back(fmt::format("head '{}' serves no address", head.name));
+    }
+  }
+  return reasons;
+}
+
+json readiness_json(const DaemonStatus& status) {
+  const std::vector<std::string> reasons = why_not_ready(status);
+  json heads = json::array();
+  for (const HeadStatus& head : status.heads) {
+    heads.push_back({{"name", head.name},
+                     {"serves", head.serves},
+                     {"clients", head.clients.size()},
+                     {"pings", head.counts.pings.sent},
+                     {"last_ping_age_s", seconds_json(head.since_last_ping)}});
+  }
+  return {{"ready", reasons.empty()},
+          {"reasons", reasons},
+          {"engine", status.engine},
+          {"pose_known", status.T_world_vehicle.has_value()},
+          {"pose_age_s", seconds_json(age_of_poses(status))},
+          {"heads", std::move(heads)}};
 }
 
 std::string text_of(const json& value) {

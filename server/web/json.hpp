@@ -3,6 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +22,15 @@ nlohmann::json placed_json(const render::Pose& pose);
 /// The answer to GET /api/status.
 nlohmann::json status_json(const DaemonIdentity& identity, const DaemonStatus& status,
                            std::chrono::duration<double> uptime);
+
+/// Age of the newest pose of any input; nullopt: none came.
+std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status);
+
+/// Why a client that asks now gets no picture, one sentence each; empty: the daemon is ready.
+std::vector<std::string> why_not_ready(const DaemonStatus& status);
+
+/// The answer to GET /ready (docs/page.md); 503 goes with "ready": false.
+nlohmann::json readiness_json(const DaemonStatus& status);
 
 /// Text of JSON; bytes that are no UTF-8, as a name from the network may have, are replaced.
 std::string text_of(const nlohmann::json& value);

@@ -17,13 +17,14 @@ int rows_in_one(int rows, int most) {
   return std::max(1, (rows + most - 1) / most);
 }
 
-nlohmann::json header_of(const ShownPing& newest, std::size_t lines, int step) {
+nlohmann::json header_of(const ShownPing& newest, std::size_t lines, int step, TimePoint now) {
   const PingRecord& record = newest.record;
   const bool scanning = record.settings.beams == 1;
   nlohmann::json header{{"type", "ping"},
                         {"head", newest.head},
                         {"number", record.number},
                         {"time_s", std::chrono::duration<double>(newest.time).count()},
+                        {"age_s", std::chrono::duration<double>(now - newest.time).count()},
                         {"beams", record.settings.beams},
                         {"rows", (record.settings.bins + step - 1) / step},
                         {"bin_m", record.settings.bin_m * step},
@@ -64,10 +65,10 @@ void append_samples(std::string& out, const PingRecord& record, int step) {
 
 }  // namespace
 
-std::string live_frame(std::span<const std::shared_ptr<const ShownPing>> pings, int max_rows) {
+std::string live_frame(std::span<const std::shared_ptr<const ShownPing>> pings, int max_rows, TimePoint now) {
   const ShownPing& newest = *pings.back();
   const int step = rows_in_one(newest.record.settings.bins, max_rows);
-  std::string header = text_of(header_of(newest, pings.size(), step));
+  std::string header = text_of(header_of(newest, pings.size(), step, now));
   header.resize((header.size() + 3) / 4 * 4, ' ');
 
   std::string out;

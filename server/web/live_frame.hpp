@@ -16,6 +16,7 @@ namespace sonard::server {
 /// far, each from port to starboard; of a scanning head line after line, each from near to far.
 /// @param pings one or more
 /// @param max_rows >= 1; a ping of more is reduced: each row shows the largest of its neighbours
-std::string live_frame(std::span<const std::shared_ptr<const ShownPing>> pings, int max_rows);
+/// @param now for the age in the header, on the clock of ShownPing::time
+std::string live_frame(std::span<const std::shared_ptr<const ShownPing>> pings, int max_rows, TimePoint now);
 
 }  // namespace sonard::server

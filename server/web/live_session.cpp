@@ -13,7 +13,7 @@ namespace sonard::server {
 namespace {
 
 constexpr std::size_t most_message_bytes = 4096;
-constexpr std::size_t most_lines = 400;  // of a scanning head: one sweep of its finest steps
+constexpr std::uint64_t most_heads = 64;
 constexpr int most_rows = 4096;
 constexpr std::chrono::milliseconds status_interval{500};
 
@@ -34,13 +34,10 @@ void LiveSession::take(const std::string& text) {
   const std::string type = message.is_object() ? message.value("type", nlohmann::json()).dump() : "";
   if (type == "\"want\"" && message.value("head", nlohmann::json()).is_number_unsigned() &&
       message.value("max_rows", nlohmann::json()).is_number_unsigned()) {
-    const auto head = message["head"].get<std::size_t>();
-    if (head < Site::most_heads) {
-      Wanted& wanted = wanted_[head];
-      wanted.asked = true;
-      wanted.max_rows =
-          static_cast<int>(std::clamp<std::uint64_t>(message["max_rows"].get<std::uint64_t>(), 1, most_rows));
-      site().want(head);
+    const auto head = message["head"].get<std::uint64_t>();
+    if (head < most_heads) {
+      want(static_cast<int>(head), static_cast<int>(std::clamp<std::uint64_t>(
+                                       message["max_rows"].get<std::uint64_t>(), 1, most_rows)));
     }
   } else if (type == "\"want_status\"") {
     if (!std::exchange(status_asked_, true)) {
@@ -52,6 +49,19 @@ void LiveSession::take(const std::string& text) {
   }
 }
 
+void LiveSession::want(int head, int max_rows) {
+  const auto [place, is_new] = wanted_.try_emplace(head);
+  Wanted& wanted = place->second;
+  wanted.asked = true;
+  wanted.max_rows = max_rows;
+  if (is_new) {
+    wanted.pings = site().last_pings(head);
+    if (!wanted.pings.empty() && is_due(wanted)) {
+      answer(wanted);
+    }
+  }
+}
+
 // ---- What it gets
 
 bool LiveSession::is_due(const Wanted& wanted) const {
@@ -59,39 +69,23 @@ bool LiveSession::is_due(const Wanted& wanted) const {
 }
 
 void LiveSession::show(const std::shared_ptr<const ShownPing>& ping) {
-  const auto found = wanted_.find(static_cast<std::size_t>(ping->head));
-  if (found == wanted_.end()) {
-    return;
-  }
-  Wanted& wanted = found->second;
-  const bool scanning = ping->record.settings.beams == 1;
-  if (scanning) {
-    keep_line(wanted, ping);
-  }
-  if (!is_due(wanted)) {
-    return;
-  }
-  wanted.asked = false;
-  wanted.answered = site().now();
-  if (scanning) {
-    const auto lines = std::exchange(wanted.lines, {});
-    send({std::make_shared<const std::string>(live_frame(lines, wanted.max_rows)), true});
-  } else {
-    send({site().frame_of(ping, wanted.max_rows), true});
+  if (const auto found = wanted_.find(ping->head); found != wanted_.end()) {
+    keep_newest(found->second.pings, ping);
+    if (is_due(found->second)) {
+      answer(found->second);
+    }
   }
 }
 
-void LiveSession::keep_line(Wanted& wanted, const std::shared_ptr<const ShownPing>& ping) const {
-  const auto size_of = [](const ShownPing& of) {
-    return std::pair(of.record.settings.bins, of.record.settings.bin_m);
-  };
-  if (!wanted.lines.empty() && size_of(*wanted.lines.back()) != size_of(*ping)) {
-    wanted.lines.clear();
+void LiveSession::answer(Wanted& wanted) {
+  wanted.asked = false;
+  wanted.answered = site().now();
+  const Pings pings = std::exchange(wanted.pings, {});
+  if (pings.back()->record.settings.beams == 1) {
+    send({std::make_shared<const std::string>(live_frame(pings, wanted.max_rows, site().now())), true});
+  } else {
+    send({site().frame_of(pings.back(), wanted.max_rows), true});
   }
-  if (wanted.lines.size() == most_lines) {
-    wanted.lines.erase(wanted.lines.begin());
-  }
-  wanted.lines.push_back(ping);
 }
 
 void LiveSession::send_status() {

@@ -29,17 +29,17 @@ class LiveSession final : public WebSocket {
     bool asked = false;  ///< and not answered
     int max_rows = 1;
     TimePoint answered{};
-    /// Lines of a scanning head since the last answer, all of one size.
-    std::vector<std::shared_ptr<const ShownPing>> lines;
+    Pings pings;  ///< since the last answer, as Site::last_pings()
   };
 
   void take(const std::string& text) override;
-  void keep_line(Wanted& wanted, const std::shared_ptr<const ShownPing>& ping) const;
+  void want(int head, int max_rows);
   bool is_due(const Wanted& wanted) const;
+  void answer(Wanted& wanted);
   void send_status();
   void send_error(const std::string& text);
 
-  std::map<std::size_t, Wanted> wanted_;  ///< by head
+  std::map<int, Wanted> wanted_;  ///< by head
   bool status_asked_ = false;
   TimePoint status_sent_{};
   boost::asio::steady_timer status_timer_;

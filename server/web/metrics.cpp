@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "server/web/json.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -61,6 +63,12 @@ void add_pings(std::string& out, const std::vector<HeadStatus>& heads) {
   Metric rate(out, "sonard_pings_per_second", "gauge", "Pings a second over the last five seconds.");
   for (const HeadStatus& head : heads) {
     rate.value({{"head", head.name}}, head.pings_per_s);
+  }
+  Metric age(out, "sonard_last_ping_age_seconds", "gauge", "Time since the newest ping went out.");
+  for (const HeadStatus& head : heads) {
+    if (head.since_last_ping) {
+      age.value({{"head", head.name}}, std::chrono::duration<double>(*head.since_last_ping).count());
+    }
   }
   Metric rendered(out, "sonard_pings_rendered_total", "counter", "Pings that were rendered.");
   for (const HeadStatus& head : heads) {
@@ -169,8 +177,10 @@ std::string metrics_text(const DaemonIdentity& identity, const DaemonStatus& sta
                          std::chrono::duration<double> uptime) {
   std::string out;
   Metric(out, "sonard_info", "gauge", "What runs.")
-      .value({{"version", SONARD_VERSION}, {"world", identity.world}, {"engine", identity.engine}}, 1);
+      .value({{"version", SONARD_VERSION}, {"world", identity.world}, {"engine", status.engine}}, 1);
   Metric(out, "sonard_uptime_seconds", "gauge", "Time since the start.").value({}, uptime.count());
+  Metric(out, "sonard_ready", "gauge", "1 if /ready answers 200.")
+      .value({}, why_not_ready(status).empty() ? 1 : 0);
   add_pings(out, status.heads);
   add_stages(out, status.heads);
   add_clients(out, status.heads);

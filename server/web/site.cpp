@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,10 +22,10 @@ namespace http = boost::beast::http;
 namespace {
 
 constexpr std::chrono::milliseconds status_age{250};
-constexpr std::chrono::seconds want_lasts{5};
 constexpr std::chrono::milliseconds least_interval{50};
 constexpr std::chrono::milliseconds interval_of_each{15};
-constexpr std::size_t most_frames = 8;  // of different heads and sizes, at one moment
+constexpr std::size_t most_frames = 8;   // of different heads and sizes, at one moment
+constexpr std::size_t most_lines = 400;  // of a scanning head: one turn of its finest steps
 
 std::string_view as_view(boost::beast::string_view text) {
   return {text.data(), text.size()};
@@ -67,6 +68,18 @@ bool reads(const HttpRequest& request) {
 
 }  // namespace
 
+void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping) {
+  const auto size_of = [](const ShownPing& of) {
+    return std::tuple(of.record.settings.beams, of.record.settings.bins, of.record.settings.bin_m);
+  };
+  if (ping->record.settings.beams > 1 || (!pings.empty() && size_of(*pings.back()) != size_of(*ping))) {
+    pings.clear();
+  } else if (pings.size() == most_lines) {
+    pings.erase(pings.begin());
+  }
+  pings.push_back(ping);
+}
+
 Site::Site(WebConfig config, WebSources sources)
     : config_(std::move(config)), sources_(std::move(sources)), started_(clock_.now()) {}
 
@@ -103,9 +116,15 @@ void Site::answer(const HttpRequest& request, const Endpoint& peer, std::functio
                     metrics_text(sources_.identity, status, uptime())));
     });
   } else if (path == "/health") {
-    // Who gets an answer knows that the I/O thread runs; a renderer that fails ends the daemon.
+    // An answer proves that the I/O thread runs; a renderer that fails ends the daemon.
     with_status([request, send](const DaemonStatus&) {
       send(json_response(request, http::status::ok, {{"status", "ok"}}));
+    });
+  } else if (path == "/ready") {
+    with_status([request, send](const DaemonStatus& status) {
+      const nlohmann::json answer = readiness_json(status);
+      const bool ready = answer["ready"].get<bool>();
+      send(json_response(request, ready ? http::status::ok : http::status::service_unavailable, answer));
     });
   } else if (auto world = world_answer(request, path)) {
     send(std::move(*world));
@@ -201,6 +220,7 @@ void Site::add(const std::shared_ptr<Viewer>& viewer) {
 }
 
 void Site::show(const std::shared_ptr<const ShownPing>& ping) {
+  keep_newest(last_pings_[ping->head], ping);
   std::erase_if(frames_, [&](const Frame& frame) { return frame.ping->head == ping->head; });
   for (const std::weak_ptr<Viewer>& weak : viewers_) {
     if (const auto viewer = weak.lock()) {
@@ -217,14 +237,10 @@ void Site::close_viewers() {
   }
 }
 
-void Site::want(std::size_t head) {
-  if (head < wanted_until_ns_.size()) {
-    wanted_until_ns_[head] = TimePoint(now() + want_lasts).count();
-  }
-}
-
-bool Site::wants(std::size_t head) const {
-  return head < wanted_until_ns_.size() && wanted_until_ns_[head] > now().count();
+const Pings& Site::last_pings(int head) const {
+  static const Pings none;
+  const auto found = last_pings_.find(head);
+  return found == last_pings_.end() ? none : found->second;
 }
 
 std::chrono::milliseconds Site::interval() const {
@@ -233,16 +249,18 @@ std::chrono::milliseconds Site::interval() const {
 
 std::shared_ptr<const std::string> Site::frame_of(const std::shared_ptr<const ShownPing>& ping,
                                                   int max_rows) {
+  // A frame says how old its ping is, so it does not serve for long.
+  std::erase_if(frames_, [this](const Frame& frame) { return now() - frame.made > status_age; });
   const auto known = std::ranges::find_if(
       frames_, [&](const Frame& frame) { return frame.ping == ping && frame.max_rows == max_rows; });
   if (known != frames_.end()) {
     return known->bytes;
   }
-  auto bytes = std::make_shared<const std::string>(live_frame(std::array{ping}, max_rows));
+  auto bytes = std::make_shared<const std::string>(live_frame(std::array{ping}, max_rows, now()));
   if (frames_.size() == most_frames) {
     frames_.erase(frames_.begin());
   }
-  frames_.push_back({ping, max_rows, bytes});
+  frames_.push_back({ping, max_rows, now(), bytes});
   return bytes;
 }
 

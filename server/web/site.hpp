@@ -2,11 +2,10 @@
 // What all connections of the page share.
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +32,12 @@ struct WebSources {
   const render::World& world;  ///< outlives the page
 };
 
+using Pings = std::vector<std::shared_ptr<const ShownPing>>;
+
+/// Adds a ping behind those of the same head. A fan replaces the one before; the lines of a scanning head
+/// stay for a turn of its finest steps, if they have the size of the new one.
+void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping);
+
 /// A connection that shows pings.
 class Viewer {
  public:
@@ -48,7 +53,7 @@ class Viewer {
 using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
 using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
 
-/// Belongs to the thread of the page, except wants().
+/// Belongs to the thread of the page.
 class Site {
  public:
   Site(WebConfig config, WebSources sources);
@@ -71,12 +76,13 @@ class Site {
   bool open_connection();
   void close_connection() { --connections_; }
   void add(const std::shared_ptr<Viewer>& viewer);
+  /// Keeps the ping, and gives it to all viewers.
   void show(const std::shared_ptr<const ShownPing>& ping);
+  /// What a new viewer of a head begins with: the newest ping, or the last lines of a scanning head, all of
+  /// one size, the oldest first. Empty: no ping went out yet.
+  const Pings& last_pings(int head) const;
   void close_viewers();
 
-  /// Pings of a head are wanted for the next five seconds.
-  void want(std::size_t head);
-  bool wants(std::size_t head) const;  ///< any thread
   /// Between two pings of one head to one viewer: the more there are, the longer.
   std::chrono::milliseconds interval() const;
   /// live_frame() of one ping; made once for all viewers who want it in one size.
@@ -84,7 +90,6 @@ class Site {
   TimePoint now() const { return clock_.now(); }
 
   static constexpr int most_connections = 128;
-  static constexpr std::size_t most_heads = 64;
 
  private:
   void took_status(DaemonStatus status);
@@ -98,7 +103,7 @@ class Site {
   const TimePoint started_;
   int connections_ = 0;
   std::vector<std::weak_ptr<Viewer>> viewers_;
-  std::array<std::atomic<std::int64_t>, most_heads> wanted_until_ns_{};
+  std::map<int, Pings> last_pings_;  ///< by head
 
   std::optional<DaemonStatus> status_;  ///< the newest
   TimePoint status_at_{};
@@ -107,6 +112,7 @@ class Site {
   struct Frame {
     std::shared_ptr<const ShownPing> ping;
     int max_rows = 0;
+    TimePoint made{};
     std::shared_ptr<const std::string> bytes;
   };
   std::vector<Frame> frames_;  ///< of the newest pings

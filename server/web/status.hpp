@@ -21,7 +21,6 @@ namespace sonard::server {
 /// What stays as it is while a daemon runs.
 struct DaemonIdentity {
   std::string configuration;  ///< the file
-  std::string engine;         ///< one line
   std::string world;
   std::optional<double> water_surface_z_m;
 };
@@ -43,6 +42,7 @@ struct RecordingStatus {
 /// The daemon at one moment.
 struct DaemonStatus {
   TimePoint at{};
+  std::string engine;  ///< the one in use now, one line
   std::vector<HeadStatus> heads;
   std::vector<PoseInputStatus> inputs;
   std::optional<render::Pose> T_world_vehicle;

@@ -26,6 +26,7 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr int nice_value = 19;
+constexpr int most_pings_waiting = 64;  // where this thread gets no time, pings are not kept for it
 
 }  // namespace
 
@@ -61,6 +62,7 @@ struct WebServer::Impl {
   asio::executor_work_guard<asio::io_context::executor_type> work{asio::make_work_guard(io)};
   std::shared_ptr<TcpListener> listener;
   std::atomic<bool> serving{false};
+  std::atomic<int> pings_waiting{0};  // for this thread, which has the lowest priority
   std::thread thread;
 };
 
@@ -102,12 +104,15 @@ std::string WebServer::address() const {
   return "http://" + endpoint_text(impl_->listener->local());
 }
 
-bool WebServer::wants(int head) const {
-  return impl_->serving && impl_->site->wants(static_cast<std::size_t>(head));
-}
-
 void WebServer::show(std::shared_ptr<const ShownPing> ping) {
-  on_page([impl = impl_.get(), ping = std::move(ping)] { impl->site->show(ping); });
+  if (!impl_->serving || impl_->pings_waiting >= most_pings_waiting) {
+    return;
+  }
+  ++impl_->pings_waiting;
+  on_page([impl = impl_.get(), ping = std::move(ping)] {
+    --impl->pings_waiting;
+    impl->site->show(ping);
+  });
 }
 
 }  // namespace sonard::server

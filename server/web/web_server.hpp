@@ -9,8 +9,8 @@
 
 namespace sonard::server {
 
-/// Its thread has the lowest priority: people who watch take no time from pings. wants() and show() are
-/// called on the I/O thread, everything else on main.
+/// Its thread has the lowest priority: viewers do not slow down pings. show() is called on the I/O
+/// thread, everything else on main.
 class WebServer final : public PingViewer {
  public:
   /// Opens the port. @throws SocketError
@@ -28,7 +28,6 @@ class WebServer final : public PingViewer {
   /// "http://127.0.0.1:8014"
   std::string address() const;
 
-  bool wants(int head) const override;
   void show(std::shared_ptr<const ShownPing> ping) override;
 
  private:

@@ -54,7 +54,7 @@ struct Page {
   Site site{WebConfig{},
             WebSources{.ask_status = [](const std::function<void(DaemonStatus)>& take) { take(status()); },
                        .turn_recording = [](bool) {},
-                       .identity = {"sonard.yaml", "cpu", "wall", 0.0},
+                       .identity = {"sonard.yaml", "wall", 0.0},
                        .world = world}};
   tcp::acceptor acceptor{io, tcp::endpoint(asio::ip::address_v4::loopback(), 0)};
 };

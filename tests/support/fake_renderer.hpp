@@ -21,6 +21,7 @@ struct FakeRendererControl {
   std::function<void(const render::PingRequest&, int stream)> before_ping;
   /// Called for each ping that nobody gets, on the render thread; may throw.
   std::function<void(const render::PingRequest&, int stream)> warming_up;
+  std::string engine = "fake";  ///< PingRenderer::description(); to be changed on the render thread alone
   /// Streams of the pings that came next, each time; to be read when the service has ended.
   std::vector<std::vector<int>> begun;
   std::atomic<int> attempts{0};   ///< pings asked for
@@ -69,7 +70,7 @@ class FakeRenderer final : public server::PingRenderer {
   explicit FakeRenderer(std::shared_ptr<FakeRendererControl> control) : control_(std::move(control)) {}
   ~FakeRenderer() override { control_->destroyed = true; }
 
-  std::string description() const override { return "fake"; }
+  std::string description() const override { return control_->engine; }
   bool set_body_pose(const std::string& body, const render::Pose& T_world_body) override {
     control_->record_body(body, T_world_body);
     return true;

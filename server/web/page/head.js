@@ -28,7 +28,7 @@ export class Head {
     this.kind = make("span", { class: "kind" });
     this.fault = make("span", { class: "fault", hidden: true });
     this.findings = make("ul", { class: "findings", hidden: true });
-    this.empty = make("p", { class: "empty", text: "No ping yet. The picture begins when a client asks this sonar for one." });
+    this.empty = make("p", { class: "empty" });
     this.age = make("p", { class: "age", hidden: true });
     this.picture.stage.append(this.empty, this.age);
     this.facts = make("dl", { class: "facts" });
@@ -107,7 +107,7 @@ export class Head {
   }
 
   take(ping) {
-    this.pingAt = performance.now();
+    this.pingAt = performance.now() - 1000 * (ping.age_s ?? 0);
     if (this.frozen) {
       return;
     }
@@ -132,7 +132,19 @@ export class Head {
     }
   }
 
-  update(status) {
+  /** Says what the first picture waits for. */
+  updateEmpty({ clients = [], serves = [], pings_without_pose: withoutPose }, poses) {
+    const inputs = poses.inputs.map((input) => input.input).join(", ");
+    if (!clients.length) {
+      setText(this.empty, `No client has connected. Start your driver, or sonarview: this sonar serves ${serves.join(", ")}.`);
+    } else if (!poses.vehicle && withoutPose > 0) {
+      setText(this.empty, `A client requests pings, but no pose of the vehicle has arrived. Send poses to ${inputs || "an input of the configuration"}.`);
+    } else {
+      setText(this.empty, "A client is connected. The picture begins with its next ping.");
+    }
+  }
+
+  update(status, poses) {
     this.name = status.name;
     this.picture.stage.dataset.scanning = status.scanning;
     setText(this.title, status.name);
@@ -140,6 +152,7 @@ export class Head {
     this.fault.hidden = !status.link_faults;
     setText(this.fault, status.link_faults ? `Link faults: ${status.link_faults}` : "");
     setFindings(this.findings, status.findings ?? []);
+    this.updateEmpty(status, poses);
     this.updateFacts(status);
     onChange(this.stages, status.stages_ms, () => this.updateStages(status.stages_ms ?? {}));
     onChange(this.clients, [status.serves, status.clients], () => this.updateClients(status));

@@ -45,13 +45,13 @@ function showState(state) {
 }
 
 /** The heads of a daemon never change while it runs; another one may have others. */
-function showHeads(all) {
+function showHeads(all, poses) {
   onChange(at("heads"), all.map((head) => [head.name, head.kind]), () => {
     heads = all.map((_, index) => new Head(index, () => live.ask()));
     at("heads").dataset.count = heads.length;
     at("heads").replaceChildren(...heads.map((head) => head.element));
   });
-  all.forEach((status, index) => heads[index].update(status));
+  all.forEach((status, index) => heads[index].update(status, poses));
 }
 
 function showStatus(status) {
@@ -63,7 +63,7 @@ function showStatus(status) {
   onChange(at("about"), [status.version, status.configuration, status.engine, status.world?.name], () =>
     at("about").replaceChildren(...[status.version, status.configuration, status.world?.name, status.engine].filter(Boolean).map((text) => make("span", { text }))));
   at("state").title = `The daemon has run for ${duration(status.uptime_s)}.`;
-  showHeads(status.heads);
+  showHeads(status.heads, status.poses);
   setFindings(at("pose-findings"), poseFindings(status.poses));
   if (at("poses").open) {
     showPoses(at("pose-body"), status.poses);

@@ -3,7 +3,7 @@
 import { colourTable, drawBar } from "./colour.js";
 import { Grid } from "./grid.js";
 import { make, setText } from "./dom.js";
-import { Lookup, makeProjection } from "./projection.js";
+import { heightOfFan, Lookup, makeProjection } from "./projection.js";
 import { Fan, Sweep } from "./samples.js";
 import { degrees, number } from "./text.js";
 
@@ -78,6 +78,14 @@ export class Picture {
     this.changeView();
   }
 
+  /** The box of a fan is as high as the fan; that of a B-scan has the height of the style sheet. */
+  fit() {
+    const high = this.mode === "fan" && this.model?.samples ? `${Math.round(heightOfFan(this.model, this.stage.clientWidth))}px` : "";
+    if (this.stage.style.height !== high) {
+      this.stage.style.height = high;
+    }
+  }
+
   changeView() {
     this.viewChanged = true;
     this.schedule("image");
@@ -97,6 +105,7 @@ export class Picture {
       return;
     }
     if (this.viewChanged) {
+      this.fit();
       this.prepare();
     }
     if (this.imageChanged) {

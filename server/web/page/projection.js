@@ -16,10 +16,22 @@ function bounds(model, value) {
   return [Math.min(...values), Math.max(...values)];
 }
 
+/** Height at which a fan as wide as this fills its box, in the same pixels. */
+export function heightOfFan(model, width) {
+  const margin = marginOfFan(model);
+  const [left, right] = bounds(model, Math.sin);
+  const [bottom, top] = bounds(model, Math.cos);
+  return ((width - margin.left - margin.right) / (right - left)) * (top - bottom) + margin.top + margin.bottom;
+}
+
+function marginOfFan(model) {
+  return { ...MARGIN.fan, ...(model.turns && { bottom: MARGIN.fan.top }) };
+}
+
 /** The scene from above. */
 class FanProjection {
   constructor(model, width, height, scale) {
-    const margin = { ...MARGIN.fan, ...(model.turns && { bottom: MARGIN.fan.top }) };
+    const margin = marginOfFan(model);
     this.range_m = model.rows * model.bin_m;
     const [left, right] = bounds(model, Math.sin);
     const [bottom, top] = bounds(model, Math.cos);

@@ -59,14 +59,14 @@ function message(header, directions, samples) {
   return Buffer.concat([length, Buffer.from(text), Buffer.from(directions.map((toStarboard) => -toStarboard).buffer), Buffer.from(samples.buffer)]);
 }
 
-function fanMessage(number, rows) {
+function fanMessage(number, rows, age_s = 0) {
   const samples = new Uint8Array(rows * BEAMS);
   for (let row = 0, place = 0; row < rows; ++row) {
     for (let beam = 0; beam < BEAMS; ++beam, ++place) {
       samples[place] = echo(TARGETS[0], ((row + 0.5) * RANGE_M) / rows, bearings[beam], RANGE_M / rows / 2);
     }
   }
-  return message({ type: "ping", head: 0, number, time_s: number / 10, beams: BEAMS, rows, bin_m: RANGE_M / rows, range_m: RANGE_M,
+  return message({ type: "ping", head: 0, number, time_s: number / 10, age_s, beams: BEAMS, rows, bin_m: RANGE_M / rows, range_m: RANGE_M,
     sector_rad: 120 * RADIAN, scanning: false, bits: 8, pose: null }, bearings, samples);
 }
 
@@ -78,7 +78,7 @@ function linesMessage(from, lines) {
   const samples = new Uint8Array(lines * LINE_ROWS);
   const cell_m = LINE_RANGE_M / LINE_ROWS;
   samples.forEach((_, i) => (samples[i] = 40 + 0.8 * echo(TARGETS[1], ((i % LINE_ROWS) + 0.5) * cell_m, directions[Math.floor(i / LINE_ROWS)], cell_m / 2)));
-  return message({ type: "ping", head: 1, number: from + lines - 1, time_s: from / 10, beams: 1, rows: LINE_ROWS, bin_m: cell_m, range_m: LINE_RANGE_M,
+  return message({ type: "ping", head: 1, number: from + lines - 1, time_s: from / 10, age_s: 0, beams: 1, rows: LINE_ROWS, bin_m: cell_m, range_m: LINE_RANGE_M,
     sector_rad: 0, scanning: true, bits: 8, lines, pose: null }, directions, samples);
 }
 
@@ -106,6 +106,11 @@ export class MockDaemon {
     this.pings = 0;
     this.line = 0;
     this.sentLine = 0;
+    this.idle = false;  // no ping goes out; who asks first gets the last one
+    this.last = null;  // frame of the first head that an idle daemon gives
+    this.clients = [{ address: "127.0.0.1:52901", idle_s: 0.2, messages: 1234 }];  // of the first head
+    this.withoutPose = 0;
+    this.vehicle = MOUNT;
   }
 
   /** Listens at a port of 127.0.0.1, one of the kernel's for 0. */
@@ -173,6 +178,9 @@ export class MockDaemon {
       const asked = JSON.parse(data);
       if (asked.type === "want") {
         ++this.wants[asked.head];
+        if (this.last && !socket.credit.has(asked.head) && asked.head === 0) {
+          socket.send(this.last);
+        }
         socket.credit.set(asked.head, asked.max_rows);
       } else if (asked.type === "want_status") {
         ++this.statusWants;
@@ -182,7 +190,16 @@ export class MockDaemon {
     });
   }
 
+  /** From now on no ping goes out. The last one, if there is one, is so old. */
+  becomeIdle(age_s = null) {
+    this.idle = true;
+    this.last = age_s === null ? null : fanMessage(this.pings, NATIVE_ROWS, age_s);
+  }
+
   ping() {
+    if (this.idle) {
+      return;
+    }
     ++this.pings;
     this.line += 4;
     for (const socket of this.sockets.clients) {
@@ -217,13 +234,13 @@ export class MockDaemon {
       version: "1.9.0", configuration: "configs/two-heads.yaml", uptime_s: (Date.now() - this.began) / 1000, engine: "cpu, 8 threads",
       world: { name: "mock world", water_surface_z_m: 0 },
       heads: [
-        this.head("bow", "multibeam", { findings: this.findings }),
+        this.head("bow", "multibeam", { findings: this.findings, clients: this.clients, pings_without_pose: this.withoutPose }),
         this.head("stern", "scanner", { scanning: true, serves: ["tcp 127.0.0.1:4001"], link_faults: "2 % loss, 10 ms delay", range_m: LINE_RANGE_M,
           aperture: { azimuth_rad: 0.05, elevation_rad: 0.6 }, bearing_rad: -bearing_rad, clients: [] }),
       ],
       poses: {
         inputs: [{ input: "pose stream udp 127.0.0.1:14600", publisher: "127.0.0.1:41234", poses: 4321, rate_hz: 50, age_s: 0.01, gaps: 0, jumps: 0, clock_restarts: 0, bad_messages: 0, refused: 0, findings: this.poseFindings }],
-        vehicle: MOUNT, bodies: [{ name: "door", position_m: [-9, 1.5, -13], orientation_wxyz: [1, 0, 0, 0] }],
+        vehicle: this.vehicle, bodies: [{ name: "door", position_m: [-9, 1.5, -13], orientation_wxyz: [1, 0, 0, 0] }],
       },
       recording: { directory: "recordings", on: this.recordingOn, bytes: 12345678, dropped: 0 },
     };

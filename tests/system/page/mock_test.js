@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import { framesAdvance, framesOf, head, open, PHONE, readsTarget, savesPng, startBrowser, state, until } from "./browser.js";
-import { MockDaemon, TARGETS } from "./mock_daemon.js";
+import { MockDaemon, MOUNT, TARGETS } from "./mock_daemon.js";
 
 const [folder] = process.argv.slice(2);
 const QUIET_MS = 1500;
@@ -79,6 +79,55 @@ test("gain and colours change the picture and the bar", async () => {
   await head(page, 0).locator("select").selectOption("Grey");
   await until("a grey bar", async () => Math.max(...(await brightness())) - Math.min(...(await brightness())) < 8);
 });
+
+test("a viewer that comes late sees the last ping, and how old it is", async () => {
+  mock.becomeIdle(75);
+  await openPage();
+  await framesAdvance(page, 0, 1);
+  await until("the age of the ping", async () => /^The last ping came 7[5-9] s ago\.$/.test(await head(page, 0).locator(".age").textContent()));
+  assert.ok(await head(page, 0).locator(".empty").isHidden());
+});
+
+test("an empty picture says what it waits for: a client, a pose, or the next ping", async () => {
+  mock.becomeIdle();
+  const says = (text) => until(text, async () => (await head(page, 0).locator(".empty").textContent()).includes(text));
+  const clients = mock.clients;
+  mock.clients = [];
+  await openPage();
+  await says("No client has connected. Start your driver, or sonarview: this sonar serves udp 127.0.0.2:52900.");
+  Object.assign(mock, { clients, withoutPose: 3, vehicle: null });
+  await says("A client requests pings, but no pose of the vehicle has arrived. Send poses to pose stream udp 127.0.0.1:14600.");
+  mock.vehicle = MOUNT;
+  await says("A client is connected. The picture begins with its next ping.");
+  assert.ok(await head(page, 0).locator(".empty").isVisible());
+});
+
+// By the law of the picture: a fan of 120 degrees is 2 sin 60 = 1.73 times as wide as high, a turn is as wide as high.
+for (const [name, viewport, most] of [["a desk", undefined, 0.8], ["a phone", PHONE, 0.72]]) {
+  test(`a picture fills its box on ${name}`, async () => {
+    await openPage(viewport);
+    for (const index of [0, 1]) {
+      await head(page, index).scrollIntoViewIfNeeded();
+      await framesAdvance(page, index, index ? 60 : 2);
+      const share = await head(page, index).locator("canvas.echoes").evaluate((canvas) => {
+        const { width, height } = canvas;
+        const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+        const drawn = { left: width, right: 0, top: height, bottom: 0 };
+        for (let i = 3, place = 0; i < data.length; i += 4, ++place) {
+          if (data[i]) {
+            drawn.left = Math.min(drawn.left, place % width);
+            drawn.right = Math.max(drawn.right, place % width);
+            drawn.top = Math.min(drawn.top, Math.floor(place / width));
+            drawn.bottom = Math.max(drawn.bottom, Math.floor(place / width));
+          }
+        }
+        return { across: (drawn.right - drawn.left) / width, up: (drawn.bottom - drawn.top) / height };
+      });
+      assert.ok(share.up > most, `head ${index} fills ${share.up} of the height`);
+      assert.ok(share.across > most, `head ${index} fills ${share.across} of the width`);
+    }
+  });
+}
 
 test("a frozen picture stays and asks for nothing", async () => {
   await openPage();

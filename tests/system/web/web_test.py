@@ -35,7 +35,7 @@ PORT = 8014
 CONFIG = """
 engine: cpu
 world: {{file: {world}}}
-poses: {{initial: {{position_m: [0, 0, 0]}}}}
+poses: {{{initial}udp: {{bind: 127.0.0.1:14600}}}}
 sampling: {{preset: fast}}
 web:
   bind: 127.0.0.1:{port}
@@ -53,10 +53,10 @@ heads:
 
 
 class Web(OwnMachine):
-    def start(self, more=""):
+    def start(self, more="", initial="initial: {position_m: [0, 0, 0]}, "):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=WORLD, port=PORT, more=more))
+            file.write(CONFIG.format(world=WORLD, port=PORT, more=more, initial=initial))
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", START_S)
@@ -98,6 +98,58 @@ class Web(OwnMachine):
         self.assertEqual(self.ask("GET", "/nothing")[0], 404)
         self.assertEqual(self.ask("DELETE", "/api/status")[0], 405)
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def send_pose(self):
+        """The newest version of the message of protocol/pose/pose.proto, by posecast's own code."""
+        path = os.path.join(self.folder.name, "way.csv")
+        with open(path, "w", encoding="ascii") as file:
+            file.write("t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n60,0,0,0,0,0,0,1\n")
+        caster = Program([os.path.join(PROGRAMS, "posecast"), path], "posecast")
+        self.addCleanup(caster.kill)
+
+    def test_readiness_waits_for_a_pose_and_for_no_client(self):
+        self.start(initial="")
+        status, text, _ = self.ask("GET", "/ready")
+        answer = json.loads(text)
+        self.assertEqual((status, answer["ready"], answer["pose_known"], answer["pose_age_s"]), (503, False, False, None))
+        self.assertEqual(answer["reasons"],
+                         ["no pose of the vehicle is known: send poses to pose stream udp 127.0.0.1:14600"])
+        self.assertEqual(self.ask("GET", "/health")[0], 200, "it is alive all the same")
+        self.send_pose()
+        end = time.monotonic() + PATIENCE_S
+        while self.ask("GET", "/ready")[0] != 200:
+            self.assertLess(time.monotonic(), end, "a pose made nobody ready")
+            time.sleep(0.1)
+        answer = json.loads(self.ask("GET", "/ready")[1])
+        self.assertTrue(answer["pose_known"])
+        self.assertLess(answer["pose_age_s"], PATIENCE_S)
+        self.assertEqual(answer["reasons"], [])
+        head = answer["heads"][0]
+        self.assertEqual((head["name"], head["clients"], head["pings"], head["last_ping_age_s"]), ("bow", 0, 0, None))
+        self.assertIn("127.0.0.2:52901", " ".join(head["serves"]))
+
+    def test_a_late_viewer_gets_the_last_ping(self):
+        self.start()
+        client = self.client(600)
+        client.terminate(PATIENCE_S)
+        time.sleep(1)  # its last ping ages, and no other comes
+
+        async def late(wanted):
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_size=None) as live:
+                await live.send(wanted)
+                frame = await asyncio.wait_for(live.recv(), PATIENCE_S)
+                header = json.loads(frame[4:4 + struct.unpack_from("<I", frame)[0]])
+                await live.send(wanted)
+                with self.assertRaises(asyncio.TimeoutError):
+                    await asyncio.wait_for(live.recv(), 1)
+                return header
+
+        header = asyncio.run(late('{"type": "want", "head": 0, "max_rows": 500}'))
+        self.assertGreater(header["number"], 0)
+        self.assertGreater(header["age_s"], 0.9)
+        age_s = json.loads(self.ask("GET", "/ready")[1])["heads"][0]["last_ping_age_s"]
+        self.assertGreater(age_s, header["age_s"])
+        self.assertLess(age_s, header["age_s"] + PATIENCE_S)
 
     def test_other_sites_are_refused(self):
         self.start()

@@ -42,6 +42,15 @@ TEST(RecentClients, ComeNewestFirstAndAreForgotten) {
   EXPECT_EQ(clients.since(seconds{0}).size(), 1U);
 }
 
+TEST(RecentPings, KnowHowLongAgoTheNewestWas) {
+  RecentPings pings;
+  EXPECT_EQ(pings.silence(seconds{1}), std::nullopt);
+  pings.sent(seconds{10}, seconds{9});
+  pings.sent(seconds{12}, seconds{11});
+  EXPECT_EQ(pings.silence(seconds{12}), seconds{0});
+  EXPECT_EQ(pings.silence(seconds{3612}), seconds{3600});
+}
+
 TEST(RecentClients, TakeNoMoreMemoryForAPeerThatChangesItsPort) {
   RecentClients clients;
   for (std::uint16_t port = 1; port <= 1000; ++port) {

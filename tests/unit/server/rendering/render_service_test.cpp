@@ -206,6 +206,21 @@ TEST_F(RenderServiceTest, MemoryThatRunsOutFailsOnePingOnly) {
   EXPECT_EQ(failure, "");
 }
 
+TEST_F(RenderServiceTest, TellsWhichEngineMadeTheNewestPing) {
+  control->before_ping = [this](const render::PingRequest& request, int) {
+    control->engine = request.ping_number == 2 ? "cpu, for the GPU is lost" : "gpu";
+  };
+  RenderService service(fake_renderer_factory(control), 1, hooks());
+  EXPECT_EQ(service.renderer_description(), "fake");
+  for (const auto& [number, engine] : std::vector<std::pair<std::uint64_t, std::string>>{
+           {1, "gpu"}, {2, "cpu, for the GPU is lost"}, {3, "gpu"}}) {
+    bool answered = false;
+    service.submit(small_job(number), [&](const RenderResult&) { answered = true; });
+    ASSERT_TRUE(inbox.run_until([&] { return answered; }));
+    EXPECT_EQ(service.renderer_description(), engine);
+  }
+}
+
 TEST_F(RenderServiceTest, RendererErrorIsReportedOnceAndEndsTheService) {
   control->before_ping = [](const render::PingRequest&, int) { throw render::RendererError("context lost"); };
   RenderService service(fake_renderer_factory(control), 2, hooks());

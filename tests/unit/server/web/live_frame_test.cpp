@@ -49,12 +49,12 @@ TEST(LiveFrame, ShowsAmplitudesWhereSamplesAreTheirSquareRoots) {
   auto roots = std::make_shared<ShownPing>(*ping(2, 2, {0, 16, 128, 255}, {-0.25, 0.25}));
   roots->record.settings.amplitude_exponent = 0.5;
   const std::array<std::shared_ptr<const ShownPing>, 1> pings{roots};
-  EXPECT_EQ(decoded(live_frame(pings, 600), 2).samples, (std::vector<int>{0, 1, 64, 255}));
+  EXPECT_EQ(decoded(live_frame(pings, 600, {}), 2).samples, (std::vector<int>{0, 1, 64, 255}));
 }
 
 TEST(LiveFrame, CarriesAFanRowByRow) {
   const Decoded frame =
-      decoded(live_frame(std::array{ping(2, 3, {1, 2, 3, 4, 5, 255}, {-0.25, 0.25})}, 600), 2);
+      decoded(live_frame(std::array{ping(2, 3, {1, 2, 3, 4, 5, 255}, {-0.25, 0.25})}, 600, {}), 2);
   EXPECT_EQ(frame.header["head"], 3);
   EXPECT_EQ(frame.header["number"], 17);
   EXPECT_EQ(frame.header["rows"], 3);
@@ -65,10 +65,17 @@ TEST(LiveFrame, CarriesAFanRowByRow) {
   EXPECT_EQ(frame.samples, (std::vector<int>{1, 2, 3, 4, 5, 255}));
 }
 
+TEST(LiveFrame, SaysHowOldItsPingIs) {
+  auto old = std::make_shared<ShownPing>(*ping(1, 1, {9}, {0.0}));
+  old->time = std::chrono::seconds{100};
+  const std::array<std::shared_ptr<const ShownPing>, 1> pings{old};
+  EXPECT_EQ(decoded(live_frame(pings, 600, std::chrono::milliseconds{175'500}), 1).header["age_s"], 75.5);
+}
+
 TEST(LiveFrame, ShowsTheLargestOfRowsThatBecomeOne) {
   // Five rows, at most three: two become one, and the last is alone. 200 must not be taken for negative.
   const Decoded frame =
-      decoded(live_frame(std::array{ping(2, 5, {1, 9, 200, 2, 3, 3, 4, 1, 7, 8}, {0, 1})}, 3), 2);
+      decoded(live_frame(std::array{ping(2, 5, {1, 9, 200, 2, 3, 3, 4, 1, 7, 8}, {0, 1})}, 3, {}), 2);
   EXPECT_EQ(frame.header["rows"], 3);
   EXPECT_EQ(frame.header["bin_m"], 1.0);
   EXPECT_EQ(frame.header["range_m"], 2.5);
@@ -77,7 +84,7 @@ TEST(LiveFrame, ShowsTheLargestOfRowsThatBecomeOne) {
 
 TEST(LiveFrame, CarriesLinesOfAScanningHeadOneAfterTheOther) {
   const Decoded frame =
-      decoded(live_frame(std::array{ping(1, 2, {1, 2}, {0.5}), ping(1, 2, {3, 4}, {0.75})}, 600), 2);
+      decoded(live_frame(std::array{ping(1, 2, {1, 2}, {0.5}), ping(1, 2, {3, 4}, {0.75})}, 600, {}), 2);
   EXPECT_EQ(frame.header["lines"], 2);
   EXPECT_EQ(frame.header["scanning"], true);
   EXPECT_EQ(frame.bearings_rad, (std::vector<float>{-0.5F, -0.75F}));

@@ -15,12 +15,14 @@ namespace {
 
 DaemonStatus status_of_two_heads() {
   DaemonStatus status;
+  status.engine = "cpu, for the GPU is lost: reset";
   for (const char* name : {"bow", "st\"ern\\\n"}) {
     HeadStatus head;
     head.name = name;
     head.counts.pings.sent = 42;
     head.counts.device = {{.name = "lines_resent", .value = 7}};
     head.latency = std::chrono::milliseconds{20};
+    head.since_last_ping = std::chrono::milliseconds{1500};
     status.heads.push_back(head);
   }
   status.inputs.emplace_back().input = "pose stream udp 127.0.0.1:14600";
@@ -29,7 +31,7 @@ DaemonStatus status_of_two_heads() {
 }
 
 std::string text() {
-  return metrics_text({"demo.yaml", "cpu", "tank", {}}, status_of_two_heads(), std::chrono::seconds{3});
+  return metrics_text({"demo.yaml", "tank", {}}, status_of_two_heads(), std::chrono::seconds{3});
 }
 
 TEST(Metrics, HaveHelpTypeAndValuesOfEachNameTogether) {
@@ -65,6 +67,15 @@ TEST(Metrics, EscapeNames) {
 
 TEST(Metrics, AreInSeconds) {
   EXPECT_NE(text().find("sonard_ping_latency_seconds{head=\"bow\"} 0.02\n"), std::string::npos);
+}
+
+TEST(Metrics, NameTheEngineInUse) {
+  EXPECT_NE(text().find("engine=\"cpu, for the GPU is lost: reset\"} 1\n"), std::string::npos);
+}
+
+TEST(Metrics, SayHowOldTheLastPingIsAndWhetherTheDaemonIsReady) {
+  EXPECT_NE(text().find("sonard_last_ping_age_seconds{head=\"bow\"} 1.5\n"), std::string::npos);
+  EXPECT_NE(text().find("\nsonard_ready 0\n"), std::string::npos) << "no pose is known";
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules are those of docs/page.md: the pose of the vehicle is known, and each head serves an address.
+#include <chrono>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/web/json.hpp"
+
+namespace sonard::server {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+DaemonStatus ready_status() {
+  DaemonStatus status;
+  status.engine = "cpu";
+  status.T_world_vehicle = render::Pose{};
+  PoseInputStatus& input = status.inputs.emplace_back();
+  input.input = "pose stream udp 127.0.0.1:14600";
+  HeadStatus& head = status.heads.emplace_back();
+  head.name = "bow";
+  head.serves = {"udp 127.0.0.2:52901"};
+  return status;
+}
+
+TEST(Readiness, NeedsNoClientAndNoPing) {
+  EXPECT_THAT(why_not_ready(ready_status()), IsEmpty());
+  EXPECT_EQ(
+      readiness_json(ready_status()),
+      json::parse(R"({"ready": true, "reasons": [], "engine": "cpu", "pose_known": true, "pose_age_s": null,
+                            "heads": [{"name": "bow", "serves": ["udp 127.0.0.2:52901"], "clients": 0, "pings": 0,
+                                       "last_ping_age_s": null}]})"));
+}
+
+TEST(Readiness, TellsAgesInSeconds) {
+  DaemonStatus status = ready_status();
+  status.inputs[0].poses.age = std::chrono::milliseconds{250};
+  status.inputs.emplace_back().poses.age = std::chrono::milliseconds{40};
+  status.heads[0].since_last_ping = std::chrono::seconds{90};
+  const json answer = readiness_json(status);
+  EXPECT_EQ(answer["pose_age_s"], 0.04) << "of the newest";
+  EXPECT_EQ(answer["heads"][0]["last_ping_age_s"], 90.0);
+}
+
+TEST(Readiness, NamesWhatIsMissing) {
+  DaemonStatus status = ready_status();
+  status.T_world_vehicle.reset();
+  status.heads.emplace_back().name = "stern";
+  EXPECT_THAT(why_not_ready(status),
+              ElementsAre("no pose of the vehicle is known: send poses to pose stream udp 127.0.0.1:14600",
+                          "head 'stern' serves no address"));
+  EXPECT_EQ(readiness_json(status)["ready"], false);
+  status.inputs.clear();
+  EXPECT_EQ(why_not_ready(status)[0], "no pose of the vehicle is known");
+}
+
+}  // namespace
+}  // namespace sonard::server
