@@ -6,12 +6,19 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 namespace sonard::server {
 namespace {
@@ -31,6 +38,62 @@ bool is_part(const std::string& name) {
 
 bool is_frame_or_log(const std::string& name) {
   return name.starts_with("ping_") || name.starts_with("scan_") || name.starts_with("log_");
+}
+
+/// Members of a manifest by their path: "settings.range_m".
+std::map<std::string, std::string> members_of(const std::string& manifest) {
+  std::map<std::string, std::string> members;
+  const auto json = nlohmann::json::parse(manifest, nullptr, false);
+  if (json.is_object()) {
+    for (const auto& [path, value] : json.flatten().items()) {
+      if (path.empty()) {
+        continue;  // an empty object
+      }
+      std::string name = path.substr(1);
+      std::ranges::replace(name, '/', '.');
+      members[name] = value.dump();
+    }
+  }
+  return members;
+}
+
+std::string difference(const std::string& name, const std::string& before, const std::string& now) {
+  constexpr std::string_view file = "_crc32";
+  if (const std::size_t end = name.find(file); end != std::string::npos) {
+    const std::string body = name.substr(end + file.size());  // ".NAME" of a body's trajectory
+    return name.substr(0, end) + body + " is another file, or was changed";
+  }
+  const auto text = [](const std::string& value) { return value.empty() ? std::string("not set") : value; };
+  return fmt::format("{} was {} and is {} now", name, text(before), text(now));
+}
+
+/// What two manifests do not share, the first few of it.
+std::string differences(const std::string& before, const std::string& now) {
+  constexpr std::size_t most = 5;
+  const auto was = members_of(before);
+  const auto is = members_of(now);
+  if (was.empty()) {
+    return "its run.json cannot be read";
+  }
+  std::set<std::string> names;
+  for (const auto* members : {&was, &is}) {
+    for (const auto& [name, value] : *members) {
+      names.insert(name);
+    }
+  }
+  const auto value_in = [](const auto& members, const std::string& name) {
+    const auto found = members.find(name);
+    return found == members.end() ? std::string() : found->second;
+  };
+  std::vector<std::string> found;
+  for (const std::string& name : names) {
+    if (value_in(was, name) != value_in(is, name)) {
+      found.push_back(difference(name, value_in(was, name), value_in(is, name)));
+    }
+  }
+  const std::size_t more = found.size() > most ? found.size() - most : 0;
+  found.resize(found.size() - more);
+  return fmt::format("{}{}", fmt::join(found, "; "), more > 0 ? fmt::format("; and {} more", more) : "");
 }
 
 }  // namespace
@@ -126,14 +189,15 @@ std::optional<std::string> OutputFolder::manifest() const {
 
 void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
   if (has(manifest_name)) {
-    if (read(manifest_name) == manifest) {
+    const std::string before = read(manifest_name);
+    if (before == manifest) {
       return;
     }
     if (!overwrite) {
-      throw OutputError(
-          folder_ / manifest_name,
-          "the folder holds a run with other settings or files (expected the same ones, another "
-          "folder, or --overwrite)");
+      throw OutputError(folder_ / manifest_name,
+                        fmt::format("the folder holds another run: {} (expected the same settings and files, "
+                                    "another folder, or --overwrite)",
+                                    differences(before, manifest)));
     }
     remove_if(is_frame_or_log);
   }

@@ -247,7 +247,7 @@ void RenderRun::choose_engine() {
   const std::vector<render::StreamPing> first{
       {static_cast<int>(head_),
        usual_ping(config_.heads[head_], trajectory_.T_world_vehicle(trajectory_.start_ns()))}};
-  spdlog::info("engine auto: {}", describe(render::choose_engine(renderer_, first)));
+  spdlog::info("engine auto: {}", describe(render::choose_engine_at_start(renderer_, first, config_.gpu)));
 }
 
 // All that the bytes of frames follow from, as far as it is not in the program; nothing of this process.

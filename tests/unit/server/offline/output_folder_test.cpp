@@ -92,6 +92,32 @@ TEST_F(OutputFolderTest, AnotherRunIsRefusedByName) {
   EXPECT_EQ(folder.read("run.json"), "{1}");
 }
 
+TEST_F(OutputFolderTest, AnotherRunIsToldByWhatDiffers) {
+  const auto complaint = [this](const std::string& before, const std::string& now) {
+    folder.remove("run.json");
+    folder.claim(before, false);
+    try {
+      folder.claim(now, false);
+    } catch (const OutputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_THAT(complaint(R"({"head": "bow", "settings": {"range_m": 30.0, "bits": 8}})",
+                        R"({"head": "bow", "settings": {"range_m": 50.0, "bits": 8}})"),
+              HasSubstr("another run: settings.range_m was 30.0 and is 50.0 now (expected"));
+  EXPECT_THAT(
+      complaint(R"({"world_crc32": "1", "truth": false})", R"({"world_crc32": "2", "truth": true})"),
+      HasSubstr("another run: truth was false and is true now; world is another file, or was changed ("));
+  EXPECT_THAT(complaint(R"({"head": "bow"})", R"({"head": "bow", "seed": 7})"),
+              HasSubstr("another run: seed was not set and is 7 now ("));
+  EXPECT_THAT(complaint(R"({"bodies_crc32": {"crab": "1"}})", R"({"bodies_crc32": {"crab": "2"}})"),
+              HasSubstr("another run: bodies.crab is another file, or was changed ("));
+  EXPECT_THAT(complaint(R"({"a": 1, "b": 1, "c": 1, "d": 1, "e": 1, "f": 1, "g": 1})", "{}"),
+              HasSubstr("e was 1 and is not set now; and 2 more ("));
+  EXPECT_THAT(complaint("cut", "{}"), HasSubstr("another run: its run.json cannot be read ("));
+}
+
 TEST_F(OutputFolderTest, OverwritingTakesFramesAndLogsOfTheOtherRunAndNothingElse) {
   folder.claim("{1}", false);
   for (const char* name : {"ping_000000.png", "scan_000001.npy", "log_1980-01-01-000000.glf", "notes.txt"}) {
