@@ -2,6 +2,7 @@
 #include "clients/sonarview/gemini/watched_head.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
@@ -9,9 +10,12 @@
 #include <chrono>
 #include <cstdio>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "clients/sonarview/gemini/sockets.hpp"
 #include "protocol/common/endpoint.hpp"
+#include "protocol/gemini/codec.hpp"
 
 namespace sonard::client {
 namespace {
@@ -52,7 +56,34 @@ void WatchedHead::start(TimePoint at) {
 void WatchedHead::on_datagram(TimePoint at, std::span<const std::uint8_t> datagram) {
   if (!ended_ && !drop_rx_.drop()) {
     topside_.on_datagram(at, datagram);
+    note_other_head(datagram);
   }
+}
+
+/// Until the head that is wanted speaks.
+void WatchedHead::note_other_head(std::span<const std::uint8_t> datagram) {
+  if (head_met_ || topside_.head()) {
+    return;
+  }
+  const auto report = gemini::decode_report(datagram);
+  if (const auto* const status = report ? std::get_if<gemini::Status>(&*report) : nullptr) {
+    others_[status->sonar_id] = status->alternate_ip;
+  }
+}
+
+/// What to do where no status of the wanted head came.
+std::string WatchedHead::advice() const {
+  if (others_.empty()) {
+    return "is sonard running, does it send its status to this address or broadcast it on this network, and "
+           "does a "
+           "firewall let UDP in?";
+  }
+  std::vector<std::string> received;
+  for (const auto& [id, address] : others_) {
+    received.push_back(fmt::format("{} at {}", id, address_text(address)));
+  }
+  return fmt::format("what came is from head {} (view it with --sonar-id {})", fmt::join(received, ", head "),
+                     others_.begin()->first);
 }
 
 void WatchedHead::advance(TimePoint at) {
@@ -152,11 +183,9 @@ void WatchedHead::check_limits(TimePoint at) {
     end();
   } else if (!head_met_ && at - started_ >= options_.run.wait) {
     fail(ExitStatus::no_head,
-         fmt::format(
-             "no status{} on port {} within {:.1f} s: is sonard running, does it send its status to this "
-             "address or broadcast it on this network, and does a firewall let UDP in?",
-             sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::topside_port,
-             std::chrono::duration<double>(options_.run.wait).count()));
+         fmt::format("no status{} on port {} within {:.1f} s: {}",
+                     sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::topside_port,
+                     std::chrono::duration<double>(options_.run.wait).count(), advice()));
   } else if (head_met_ && options_.run.ping_wait.count() > 0 &&
              at - last_ping_at_ >= options_.run.ping_wait) {
     fail(ExitStatus::incomplete,

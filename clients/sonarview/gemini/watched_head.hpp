@@ -5,6 +5,7 @@
 #include <boost/asio/ip/udp.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,6 +44,8 @@ class WatchedHead {
   ExitStatus sum_up(std::uint64_t kernel_drops);
 
  private:
+  void note_other_head(std::span<const std::uint8_t> datagram);
+  std::string advice() const;
   void send_commands();
   void take_ping(gemini::ReceivedPing ping);
   void greet_head();
@@ -61,6 +64,7 @@ class WatchedHead {
 
   TimePoint started_{};
   std::optional<TimePoint> head_met_;
+  std::map<std::uint16_t, Ipv4> others_;  ///< heads that sent a status meanwhile, with their addresses
   TimePoint last_ping_at_{};
   TimePoint progress_due_{};
   std::uint64_t pings_at_progress_ = 0;

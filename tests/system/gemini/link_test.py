@@ -255,6 +255,15 @@ class Topsides(LinkTest):
             self.assertTrue(os.path.exists(os.path.join(out, sonar_id, "fan-last.png")))
         self.end_daemon(daemon)
 
+    def test_a_head_that_is_not_there_is_told_with_those_that_are(self):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config(), self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
+        viewer = lab.start(lab.topside, os.path.join(PROGRAMS, "sonarview"), "--sonar-id", "600", "--wait", "4", "--pings", "1")
+        self.assertEqual(viewer.wait(PATIENCE_S), 3, viewer.tail())
+        self.assertIn(f"no status of head 600 on port 52900 within 4.0 s: what came is from head 513 at {HEAD_ADDRESS}, head 514 "
+                      f"at {SECOND_HEAD_ADDRESS} (view it with --sonar-id 513)", viewer.output())
+        self.end_daemon(daemon)
+
     def test_daemon_ends_within_a_second_while_it_pings(self):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config())
