@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -41,7 +42,7 @@ constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes: a multibeam hea
 class Check {
  public:
   explicit Check(const LoadedConfig& loaded) : loaded_(loaded), config_(loaded.config) {
-    report_.warnings = loaded.warnings;
+    report_.warnings = loaded.warnings_as_data;
   }
 
   CheckReport run(bool try_addresses) {
@@ -61,10 +62,10 @@ class Check {
 
  private:
   void problem(const std::string& key, const std::string& message) {
-    report_.problems.push_back(loaded_.problem_with(key, message));
+    report_.problems.push_back(loaded_.problem_at(key, message));
   }
   void warning(const std::string& key, const std::string& message) {
-    report_.warnings.push_back(loaded_.problem_with(key, message));
+    report_.warnings.push_back(loaded_.problem_at(key, message));
   }
 
   void check_world();
@@ -179,6 +180,19 @@ std::optional<std::pair<const char*, render::Pose>> Check::start() const {
   return std::nullopt;
 }
 
+/// Of three pings, as other programs on this machine make each look longer, none shorter.
+double least_cost_ms(TrialPings& pings, std::size_t head, render::Pose T_world_vehicle) {
+  constexpr int most = 3;
+  constexpr double long_ms = 2000.0;  // one such ping is enough to wait for
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most && (i == 0 || least < long_ms); ++i) {
+    T_world_vehicle.position_m.x += 1e-3;  // a world that stands still is not looked at again
+    pings.ping(head, T_world_vehicle);
+    least = std::min(least, pings.last_ms());
+  }
+  return least;
+}
+
 /// What the heads would see where the vehicle begins, and what a ping takes here.
 void Check::check_start(const render::World& world) {
   const auto beginning = start();
@@ -186,15 +200,12 @@ void Check::check_start(const render::World& world) {
     return;
   }
   const auto& [key, T_world_vehicle] = *beginning;
-  render::Pose T_world_beside = T_world_vehicle;
-  T_world_beside.position_m.x += 1e-3;  // a world that stands still is not looked at again
   TrialPings pings(config_, world);
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
     for (const Finding& finding : pings.ping(i, T_world_vehicle)) {
       warning(key, fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
     }
-    pings.ping(i, T_world_beside);
-    report_cost(config_.heads[i], pings.last_ms(), world.triangle_count());
+    report_cost(config_.heads[i], least_cost_ms(pings, i, T_world_vehicle), world.triangle_count());
   }
 }
 
@@ -204,6 +215,7 @@ void Check::report_cost(const HeadConfig& head, double ms, std::size_t triangles
   const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.{}f} ms on this machine's CPU",
                                        usual_settings(head).range.sampled_range_m(), ms, ms < 10.0 ? 1 : 0);
   report_.summary.push_back(fmt::format("cost     {}: {}", head.name, cost));
+  report_.cost_ms[head.name] = ms;
   if (ms > slow_ms && triangles > many_triangles) {
     warning("world.file",
             fmt::format("head '{}': {}, with {} triangles in the world: a heightmap for the ground "
@@ -339,7 +351,7 @@ void Check::check_poses() {
   } else if (poses.trajectory) {
     problem("poses.trajectory.file", trajectory_trouble_);
   }
-  report_.summary.push_back(fmt::format("engine  {}", render::name_of(config_.engine)));
+  report_.summary.push_back(fmt::format("engine   {}", render::name_of(config_.engine)));
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));
 }
 

@@ -2,6 +2,7 @@
 // `sonard check`: everything that can be known before serving, assets and addresses included.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,9 +13,10 @@
 namespace sonard::server {
 
 struct CheckReport {
-  std::vector<std::string> problems;           ///< one line each: file, line, key, what is wrong
-  std::vector<std::string> warnings;           ///< in the form of `problems`
+  std::vector<ConfigProblem> problems;
+  std::vector<ConfigProblem> warnings;
   std::vector<std::string> summary;            ///< what was found, for people
+  std::map<std::string, double> cost_ms;       ///< of a ping by the CPU, by head
   DaemonConfig config;                         ///< with what it takes from its world
   std::shared_ptr<const render::World> world;  ///< null when it cannot be read
 };

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -18,6 +18,7 @@
 #include "renderer/errors.hpp"
 #include "renderer/renderer_options.hpp"
 #include "server/check.hpp"
+#include "server/check_report.hpp"
 #include "server/config/loader.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exhaustion.hpp"
@@ -25,6 +26,7 @@
 #include "server/daemon/process.hpp"
 #include "server/demo.hpp"
 #include "server/devices/kinds/kinds.hpp"
+#include "server/help_formatter.hpp"
 #include "server/info/info.hpp"
 #include "server/listen.hpp"
 #include "server/logs/log_file.hpp"
@@ -32,6 +34,7 @@
 #include "server/offline/output_folder.hpp"
 #include "server/offline/render_run.hpp"
 #include "server/offline/vehicle_trajectory.hpp"
+#include "server/program_log/json_lines.hpp"
 #include "server/program_log/stderr_sink.hpp"
 #include "server/reload.hpp"
 #include "server/replay/replay.hpp"
@@ -54,10 +57,13 @@ constexpr const char* exit_code_help =
 
 struct CommandLine {
   std::filesystem::path config;
-  std::string log_level;  ///< empty: as the configuration says
+  std::string log_level;   ///< empty: as the configuration says
+  std::string log_format;  ///< the same
+  bool json = false;       ///< of check and selftest
   bool no_network = false;
   double listen_s = 0.0;  ///< 0: check does not listen
   render::RendererOptions selftest;
+  std::string selftest_engine = "auto";
   std::filesystem::path log;  ///< of replay and info
   ReplayTiming timing;
   InfoOptions info;
@@ -88,9 +94,23 @@ void start_log() {
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
 }
 
-/// Problems go out bare, so that editors can jump to the place they name.
+/// Problems go out bare, so that editors can jump to the place they name; among lines of JSON they are one,
+/// too.
+bool logs_json = false;
 void print_error(const std::string& line) {
-  fmt::print(stderr, "{}\n", line);
+  if (logs_json) {
+    spdlog::error("{}", line);
+  } else {
+    fmt::print(stderr, "{}\n", line);
+  }
+}
+
+void set_log(const std::string& level, const std::string& format) {
+  spdlog::set_level(spdlog::level::from_str(level));
+  logs_json = format == "json";
+  if (logs_json) {
+    spdlog::set_formatter(std::make_unique<JsonLines>());
+  }
 }
 
 /// All that a StartError says, with the places of its key.
@@ -103,11 +123,14 @@ void print_start_error(const LoadedConfig& loaded, const StartError& error) {
 
 /// Loads CONFIG, and logs as it says from then on.
 LoadedConfig load_and_log(const CommandLine& arguments) {
+  if (!arguments.log_format.empty()) {
+    set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
+  }
   LoadedConfig loaded = load_config(arguments.config, head_kinds());
-  const spdlog::level::level_enum level = arguments.log_level.empty()
-                                              ? spdlog_level(loaded.config.log_level)
-                                              : spdlog::level::from_str(arguments.log_level);
-  spdlog::set_level(level);
+  const std::string level{spdlog::level::to_string_view(spdlog_level(loaded.config.log_level)).data()};
+  const std::string format = loaded.config.log_format == LogFormat::json ? "json" : "text";
+  set_log(arguments.log_level.empty() ? level : arguments.log_level,
+          arguments.log_format.empty() ? format : arguments.log_format);
   spdlog::info("sonard " SONARD_BUILD_INFO ": {}", arguments.config.string());
   for (const std::string& warning : loaded.warnings) {
     spdlog::warn("{}", warning);
@@ -134,7 +157,7 @@ int run(const CommandLine& arguments, char** argv) {
 int replay(const CommandLine& arguments) {
   LoadedConfig loaded;
   if (arguments.config.empty()) {
-    spdlog::set_level(spdlog::level::from_str(arguments.log_level.empty() ? "info" : arguments.log_level));
+    set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
   } else {
     loaded = load_and_log(arguments);
   }
@@ -151,30 +174,31 @@ int replay(const CommandLine& arguments) {
   }
 }
 
+/// @throws ConfigError, unless it goes out as JSON
 int check(const CommandLine& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config, head_kinds());
-  const CheckReport report = check_config(loaded, !arguments.no_network);
-  for (const std::string& line : report.summary) {
-    fmt::print("{}\n", line);
-  }
-  for (const std::string& warning : report.warnings) {
-    print_error("warning: " + warning);
-  }
-  for (const std::string& problem : report.problems) {
-    print_error(problem);
-  }
-  if (report.problems.empty()) {
-    fmt::print("{}: good\n", arguments.config.string());
-    if (arguments.listen_s > 0.0) {
+  const auto json_goes_out = [](const std::string& json) { fmt::print("{}\n", json); };
+  try {
+    const LoadedConfig loaded = load_config(arguments.config, head_kinds());
+    const CheckReport report = check_config(loaded, !arguments.no_network);
+    const int code = report.problems.empty() ? exit_clean : exit_config;
+    if (arguments.json) {
+      json_goes_out(report_json(arguments.config, report));
+      return code;
+    }
+    print_report(arguments.config, report);
+    if (code == exit_clean && arguments.listen_s > 0.0) {
       spdlog::set_level(spdlog::level::warn);  // who sends what is in the report
       return listen_to_poses(report.config, *report.world,
                              std::chrono::nanoseconds(std::llround(1e9 * arguments.listen_s)));
     }
-    return exit_clean;
+    return code;
+  } catch (const ConfigError& error) {
+    if (!arguments.json) {
+      throw;
+    }
+    json_goes_out(report_json(arguments.config, error));
+    return exit_config;
   }
-  fmt::print("{}: {} problem{}\n", arguments.config.string(), report.problems.size(),
-             report.problems.size() == 1 ? "" : "s");
-  return exit_config;
 }
 
 int render_offline(const OfflineArguments& arguments) {
@@ -240,8 +264,19 @@ std::string names_of_demos() {
   }
 }
 
+void add_log_format(CLI::App& command, std::string& format) {
+  command.add_option("--log-format", format, "Form of the log on stderr: text, or a JSON object a line")
+      ->check(CLI::IsMember({"text", "json"}));
+}
+
+render::EngineKind engine_named(const std::string& name) {
+  using render::EngineKind;
+  return name == "gpu" ? EngineKind::gpu : name == "cpu" ? EngineKind::cpu : EngineKind::automatic;
+}
+
 int main_program(int argc, char** argv) {
   CLI::App app{"sonard - an imaging sonar on the network, rendered from a 3D world", "sonard"};
+  app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("sonard " SONARD_BUILD_INFO));
   app.footer(exit_code_help);
   app.require_subcommand(1);
@@ -252,6 +287,8 @@ int main_program(int argc, char** argv) {
   run_command->add_option("CONFIG", arguments.config, "YAML file (docs/configuration.md)")->required();
   run_command->add_option("--log-level", arguments.log_level, "Log level; overrides the one in CONFIG")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
+
+  add_log_format(*run_command, arguments.log_format);
 
   CLI::App* demo_command = app.add_subcommand(
       "demo", "Show sonard at work: the daemon, moving poses, a client, and a page in the browser");
@@ -271,7 +308,9 @@ int main_program(int argc, char** argv) {
           "--listen", arguments.listen_s,
           "Then listen to the pose inputs for this many seconds and report what arrives; exit code 0 when "
           "a pose of the vehicle did")
-      ->check(CLI::Range(0.1, 86'400.0));
+      ->check(CLI::Range(0.1, 86'400.0))
+      ->excludes(check_command->add_flag(
+          "--json", arguments.json, "Print one JSON object on stdout (docs/deploy.md); not with --listen"));
 
   CLI::App* render_command = app.add_subcommand(
       "render", "Render a trajectory to pictures, arrays and a log, without serving (docs/offline.md)");
@@ -279,12 +318,10 @@ int main_program(int argc, char** argv) {
 
   CLI::App* selftest_command = app.add_subcommand(
       "selftest", "Show what can render here, compare a scene with its closed form, and time both engines");
-  selftest_command->add_option("--engine", arguments.selftest.engine, "auto, gpu or cpu")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, render::EngineKind>{{"auto", render::EngineKind::automatic},
-                                                    {"gpu", render::EngineKind::gpu},
-                                                    {"cpu", render::EngineKind::cpu}}));
-
+  selftest_command->add_option("--engine", arguments.selftest_engine, "Engine to test; auto: both")
+      ->check(CLI::IsMember({"auto", "gpu", "cpu"}))
+      ->capture_default_str();
+  selftest_command->add_flag("--json", arguments.json, "Print one JSON object on stdout (docs/deploy.md)");
   selftest_command->add_option("--gpu-device", arguments.selftest.gpu.device,
                                "As the key gpu.device: the number of an EGL device, or a part of its name");
 
@@ -314,6 +351,8 @@ int main_program(int argc, char** argv) {
       ->default_str("ping");
   replay_command->add_option("--log-level", arguments.log_level, "Log level")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error"}));
+
+  add_log_format(*replay_command, arguments.log_format);
 
   CLI::App* info_command = app.add_subcommand("info", "Show what is in a .glf, .dat, .mcap or .pcapng");
   info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
@@ -371,7 +410,11 @@ int main_program(int argc, char** argv) {
     if (replay_command->parsed()) {
       return replay(arguments);
     }
-    return check_command->parsed() ? check(arguments) : selftest(arguments.selftest);
+    if (check_command->parsed()) {
+      return check(arguments);
+    }
+    arguments.selftest.engine = engine_named(arguments.selftest_engine);
+    return selftest(arguments.selftest, arguments.json);
   });
 }
 

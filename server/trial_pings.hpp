@@ -27,7 +27,8 @@ class TrialPings {
   std::vector<Finding> ping(std::size_t head, const render::Pose& T_world_vehicle,
                             std::vector<PosedBody> moved = {});
 
-  /// How long the newest ping took, in milliseconds.
+  /// What the newest ping would take with the machine to itself, in milliseconds: from processor time, as
+  /// time by the clock grows with what else runs.
   double last_ms() const { return last_ms_; }
 
  private:

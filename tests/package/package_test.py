@@ -97,7 +97,7 @@ class Package(unittest.TestCase):
         words = self.system.run("apt-get install --yes bash-completion >/dev/null 2>&1; bash -c '. /usr/share/bash-completion/completions/sonard; "
                                 "COMP_WORDS=(sonard re); COMP_CWORD=1; _sonard; echo ${COMPREPLY[@]}; "
                                 "COMP_WORDS=(sonard replay --l); COMP_CWORD=2; _sonard; echo ${COMPREPLY[@]}'")
-        self.assertEqual(words.split("\n")[:2], ["render replay", "--loop --log-level"])
+        self.assertEqual(words.split("\n")[:2], ["render replay", "--loop --log-level --log-format"])
 
     def test_6_the_unit_is_sound(self):
         unit = str(self.system.root / "usr/lib/systemd/system/sonard.service")

@@ -19,6 +19,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/run_process.hpp"
 
@@ -28,6 +29,7 @@ namespace {
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 const std::string source_folder = SONARD_SOURCE_DIR;
@@ -215,7 +217,7 @@ TEST_P(ShippedConfig, is_good_without_a_warning) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
                          testing::Values("demo.yaml", "gemini-netns.yaml", "ssiv.yaml", "manifold.yaml",
-                                         "paper.yaml", "gazebo.yaml"),
+                                         "paper.yaml", "gazebo.yaml", "gemini-and-ping360.yaml"),
                          [](const auto& test) {
                            std::string name = test.param;
                            name.resize(name.find('.'));
@@ -270,6 +272,75 @@ TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
   EXPECT_THAT(result.out,
               testing::ContainsRegex("cost     bow: a ping to [0-9]+ m takes about [0-9.e+]+ ms"));
   EXPECT_THAT(result.err, HasSubstr("body 'hall' is 3000 x 3000 x 0 m: is its mesh in millimetres?"));
+}
+
+TEST_F(CheckedWorld, is_told_of_as_json) {
+  write("world.sdf", "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\">\n" +
+                         model("ball", "<sphere><radius>1</radius></sphere>") + "</world></sdf>");
+  const std::string config =
+      write("sonard.yaml",
+            "world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nengine: cpu\nheads:\n"
+            "  - name: bow\n    type: gemini_720i\n    sonar_id: 513\n"
+            "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n");
+  const ProcessResult result = run_process({SONARD_PROGRAM, "check", "--no-network", "--json", config});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["configuration"], config);
+  EXPECT_EQ(report["good"], true);
+  EXPECT_EQ(report["problems"], nlohmann::json::array());
+  EXPECT_GT(report["cost_ms"]["bow"].get<double>(), 0.0);
+  EXPECT_THAT(report["findings"], Contains(nlohmann::json{{"area", "engine"}, {"text", "cpu"}}));
+  std::vector<std::string> areas;
+  for (const auto& finding : report["findings"]) {
+    areas.push_back(finding["area"]);
+  }
+  EXPECT_THAT(areas, testing::IsSupersetOf({"world", "body", "poses", "head", "cost"}));
+}
+
+TEST_F(CheckedWorld, is_told_of_as_json_with_the_places_of_what_is_wrong) {
+  const std::string config =
+      write("sonard.yaml",
+            "world: {file: gone.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nheads:\n  - name: bow\n"
+            "    type: gemini_720i\n    sonar_id: 513\n    network: {alternate_address: 127.0.0.2, netmask: "
+            "255.0.0.0}\n");
+  const ProcessResult missing = run_process({SONARD_PROGRAM, "check", "--no-network", "--json", config});
+  EXPECT_EQ(missing.exit_code, 2);
+  const auto report = nlohmann::json::parse(missing.out);
+  EXPECT_EQ(report["good"], false);
+  ASSERT_EQ(report["problems"].size(), 1U);
+  const auto& problem = report["problems"][0];
+  EXPECT_EQ(problem["file"], config);
+  EXPECT_EQ(problem["key"], "world.file");
+  EXPECT_EQ(problem["line"], 1);
+  EXPECT_EQ(problem["column"], 15);
+  EXPECT_THAT(problem["message"].get<std::string>(), HasSubstr("gone.sdf: world file not found"));
+
+  // A file that cannot be loaded at all has the same form.
+  const auto broken = nlohmann::json::parse(
+      run_process({SONARD_PROGRAM, "check", "--json", write("broken.yaml", "wibble: 1\n")}).out);
+  EXPECT_EQ(broken["good"], false);
+  EXPECT_THAT(broken["problems"],
+              Contains(testing::ResultOf([](const auto& one) { return one["key"]; }, "wibble")));
+  const auto absent =
+      nlohmann::json::parse(run_process({SONARD_PROGRAM, "check", "--json", "/nowhere.yaml"}).out);
+  EXPECT_EQ(absent["problems"][0]["line"], nullptr);
+}
+
+TEST(Help, names_values_in_words) {
+  for (const char* const command : {"run", "check", "render", "selftest", "replay", "info", "demo"}) {
+    const std::string help = run_process({SONARD_PROGRAM, command, "--help"}).out;
+    for (const char* const raw : {"ENUM", "FLOAT", "UINT", "INT:", "TEXT:", "->", " in [", "e+0"}) {
+      EXPECT_THAT(help, Not(HasSubstr(raw))) << command;
+    }
+  }
+  const auto help_of = [](const char* command) {
+    return run_process({SONARD_PROGRAM, command, "--help"}).out;
+  };
+  EXPECT_THAT(help_of("selftest"), HasSubstr("--engine {auto,gpu,cpu} [auto]"));
+  EXPECT_THAT(help_of("render"), AllOf(HasSubstr("--bits {8,16}"), HasSubstr("--gain 0..100"),
+                                       HasSubstr("--rate NUMBER"), HasSubstr("--trajectory TEXT REQUIRED")));
+  EXPECT_THAT(help_of("check"), HasSubstr("--json "));
 }
 
 TEST_F(CheckedWorld, is_told_of_with_all_that_is_wrong) {

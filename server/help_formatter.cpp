@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/help_formatter.hpp"
+
+#include <regex>
+
+#include <fmt/format.h>
+
+namespace sonard::server {
+
+std::string value_text(const std::string& type) {
+  constexpr std::size_t longest_limit = 6;  // 1e+06 and 2^53 say nothing to a reader
+  static const std::regex range(R"(in \[(\S+) - (\S+)\])");
+  std::smatch found;
+  if (const std::size_t brace = type.find('{'); brace != std::string::npos) {
+    return type.substr(brace, type.find('}') - brace + 1);
+  }
+  const bool number = type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT");
+  if (std::regex_search(type, found, range)) {
+    const std::string low = found[1];
+    const std::string high = found[2];
+    const bool shown = low.size() <= longest_limit && high.size() <= longest_limit &&
+                       (low + high).find('e') == std::string::npos;
+    return shown ? fmt::format("{}..{}", low, high) : "NUMBER";
+  }
+  return number ? "NUMBER" : type;
+}
+
+std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
+  if (option->get_type_size() == 0) {
+    return "";  // a flag
+  }
+  std::string text = " " + value_text(option->get_type_name());
+  if (!option->get_default_str().empty()) {
+    text += " [" + option->get_default_str() + "]";
+  }
+  if (option->get_expected_min() > 1) {
+    text += fmt::format(" x {}", option->get_expected_min());
+  }
+  return text + (option->get_required() ? " REQUIRED" : "");
+}
+
+}  // namespace sonard::server
