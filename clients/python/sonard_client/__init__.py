@@ -6,14 +6,32 @@
     with Gemini() as sonar:                # the head of configs/demo.yaml
         ping = sonar.ping(range_m=20)
     print(ping.samples.shape, ping.ranges_m[-1], ping.bearings_rad[[0, -1]])
+
+PosePublisher and encode_pose() need no NumPy; all else does, when it is first asked for.
 """
 
-from .damage import DamagedLog
-from .gemini import Gemini
-from .log import read_log
-from .micron import Micron
-from .ping import LoggedPing, NoHead, NoPing, Ping
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from .poses import PosePublisher, encode_pose
+
+if TYPE_CHECKING:
+    from .damage import DamagedLog
+    from .gemini import Gemini
+    from .log import read_log
+    from .micron import Micron
+    from .ping import LoggedPing, NoHead, NoPing, Ping
 
 __all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Ping", "PosePublisher", "encode_pose",
            "read_log"]
+
+_MODULES = {"DamagedLog": "damage", "Gemini": "gemini", "LoggedPing": "ping", "Micron": "micron", "NoHead": "ping",
+            "NoPing": "ping", "Ping": "ping", "read_log": "log"}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module("." + _MODULES[name], __name__), name)

@@ -176,11 +176,15 @@ class Gemini:
 
     def pings(self, interval_s: float, range_m: float = 20.0, gain_percent: float = 50.0,
               sound_speed_mps: float = 1500.0, compression: int = 0, bits: int = 8) -> Iterator[Ping]:
-        """Pings that the head makes by itself, until the iterator is closed."""
+        """Pings that the head makes by itself, until the iterator is closed. The head is asked for them at once."""
         config = _ping_config(self.status.sonar_id, range_m, gain_percent, sound_speed_mps, compression, bits, interval_s)
         self._send(config)
-        while True:
-            yield self._receive(config, range_m, sound_speed_mps)
+
+        def received() -> Iterator[Ping]:
+            while True:
+                yield self._receive(config, range_m, sound_speed_mps)
+
+        return received()
 
     # ---- Sockets
 

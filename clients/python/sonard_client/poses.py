@@ -90,11 +90,23 @@ def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequ
 
 
 class PosePublisher:
-    """Sends poses to sonard by UDP (`poses.udp.bind` of its configuration). One thread at a time."""
+    """Sends poses to sonard. One thread at a time.
 
-    def __init__(self, host: str = "127.0.0.1", port: int = 14600) -> None:
+    host, port  where sonard listens: `poses.udp.bind` of its configuration, or `poses.tcp.bind`
+    tcp         connect by TCP. No pose is lost then, and in lock-step (`poses.clock: lock_step`) send() waits while
+                sonard still renders the pings of earlier poses
+
+    Raises OSError where nobody listens by TCP.
+    """
+
+    def __init__(self, host: str = "127.0.0.1", port: int = 14600, tcp: bool = False) -> None:
         self._receiver = (host, port)
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._tcp = tcp
+        if tcp:
+            self._socket = socket.create_connection(self._receiver)
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        else:
+            self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
     def __enter__(self) -> PosePublisher:
         return self
@@ -106,9 +118,24 @@ class PosePublisher:
              linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
              axes: str = "enu_flu") -> None:
         """One pose, as encode_pose() takes it; 20 a second or more. Raises OSError where the host has no address or
-        no route; whether sonard listens there is not known."""
-        self._socket.sendto(encode_pose(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, axes),
-                            self._receiver)
+        no route, and by TCP where sonard closed the connection; by UDP it is not known whether sonard listens."""
+        message = encode_pose(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, axes)
+        if self._tcp:
+            self._socket.sendall(_varint(len(message)) + message)
+        else:
+            self._socket.sendto(message, self._receiver)
+
+    def finish(self, timeout_s: Optional[float] = None) -> None:
+        """Ends the stream; by TCP waits until sonard has taken all poses. Raises TimeoutError."""
+        if self._tcp:
+            self._socket.shutdown(socket.SHUT_WR)
+            self._socket.settimeout(timeout_s)
+            try:
+                while self._socket.recv(1024):
+                    pass
+            except socket.timeout as error:
+                raise TimeoutError(f"sonard has not taken all poses within {timeout_s} s") from error
+        self.close()
 
     def close(self) -> None:
         self._socket.close()

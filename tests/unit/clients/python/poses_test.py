@@ -9,6 +9,7 @@ import argparse
 import math
 import os
 import socket
+import subprocess
 import sys
 import unittest
 
@@ -82,6 +83,51 @@ class Encoding(unittest.TestCase):
             with PosePublisher("127.0.0.1", sonard.getsockname()[1]) as poses:
                 poses.send(7, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd")
             self.assertEqual(sonard.recv(2048), encode_pose(7, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd"))
+
+    def test_publisher_by_tcp(self):
+        """Each message behind its length as a varint, as docs/poses.md has it."""
+        with socket.create_server(("127.0.0.1", 0)) as sonard:
+            poses = PosePublisher("127.0.0.1", sonard.getsockname()[1], tcp=True)
+            connection, _ = sonard.accept()
+            with connection:
+                connection.settimeout(5)
+                poses.send(7, POSITION_M, QUATERNION_XYZW)
+                poses.send(8, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd")
+                with self.assertRaises(TimeoutError):
+                    poses.finish(timeout_s=0.05)
+                received = b""
+                while piece := connection.recv(2048):
+                    received += piece
+        expected = b""
+        for message in (encode_pose(7, POSITION_M, QUATERNION_XYZW),
+                        encode_pose(8, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd")):
+            # 7 bits a byte, low ones first, the highest bit set in all but the last.
+            length = bytes([len(message)]) if len(message) < 128 else bytes([len(message) % 128 + 128, len(message) // 128])
+            expected += length + message
+        self.assertEqual(received, expected)
+        self.assertRaises(ConnectionRefusedError, PosePublisher, "127.0.0.1", self.closed_port(), tcp=True)
+
+    @staticmethod
+    def closed_port():
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            return probe.getsockname()[1]
+
+    def test_needs_no_numpy(self):
+        """With a module in the place of NumPy that cannot be imported."""
+        program = ("import sys; sys.modules['numpy'] = None\n"
+                   "from sonard_client import PosePublisher, encode_pose\n"
+                   "PosePublisher().send(1, (0, 0, 0), (0, 0, 0, 1))\n"
+                   "try:\n    from sonard_client import Gemini\nexcept ImportError as error:\n    print(error.name)\n")
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": os.path.join(SOURCE, "clients", "python")})
+        self.assertEqual((done.returncode, done.stdout), (0, "numpy\n"), done.stderr)
+
+    def test_everything_that_is_named_is_there(self):
+        import sonard_client
+        for name in sonard_client.__all__:
+            self.assertIsNotNone(getattr(sonard_client, name))
+        self.assertRaises(AttributeError, getattr, sonard_client, "Sonar")
 
 
 def main():
