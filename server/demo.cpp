@@ -178,6 +178,9 @@ class Demo {
     auto arguments = entry_["client"].as<std::vector<std::string>>();
     if (!options_.out.empty()) {
       arguments.insert(arguments.end(), {"--out", options_.out.string()});
+      for (const YAML::Node& option : entry_["pictures"]) {
+        arguments.push_back(option.as<std::string>());
+      }
     }
     if (options_.time) {
       arguments.insert(arguments.end(), {"--seconds", std::to_string(options_.time->count())});
