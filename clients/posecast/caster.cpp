@@ -20,8 +20,23 @@ struct Caster::Impl {
   nanoseconds time_of_tick(std::int64_t number) const {
     return nanoseconds{std::llround(static_cast<double>(number) * 1e9 / settings.rate_hz)};
   }
+  /// Of real time from the first tick to this one.
+  nanoseconds due(std::int64_t number) const {
+    const double pace = settings.stamps_of_file ? settings.playback.speed : 1.0;
+    return nanoseconds{std::llround(static_cast<double>(number) * 1e9 / (settings.rate_hz * pace))};
+  }
+  pose::Playback playback() const {
+    pose::Playback playback = settings.playback;
+    if (settings.stamps_of_file) {
+      playback.speed = 1.0;
+    }
+    return playback;
+  }
+  void send(nanoseconds elapsed);
   void run_tick();
+  void hold_until(steady_clock::time_point end);
   void wait_for_next_tick();
+  void wait_until(steady_clock::time_point time, std::function<void()> then);
 
   const pose::Trajectory& trajectory;
   CastSettings settings;
@@ -32,29 +47,55 @@ struct Caster::Impl {
   std::function<void()> on_end;
 };
 
-void Caster::Impl::run_tick() {
-  const nanoseconds elapsed = time_of_tick(tick);
-  pose::PoseSample sample = pose::play(trajectory, settings.playback, elapsed);
-  sample.time_ns = nanoseconds{begin.time_since_epoch()}.count() + elapsed.count();
+void Caster::Impl::send(nanoseconds elapsed) {
+  pose::PoseSample sample = pose::play(trajectory, playback(), elapsed);
+  sample.time_ns =
+      elapsed.count() + (settings.stamps_of_file ? trajectory.start_ns() + settings.playback.from_ns
+                                                 : nanoseconds{begin.time_since_epoch()}.count());
   if (!settings.twist) {
     sample.twist.reset();
   }
   link.send(sample);
-  wait_for_next_tick();
+}
+
+void Caster::Impl::run_tick() {
+  send(time_of_tick(tick));
+  if (settings.stamps_of_file) {
+    link.when_sent([this] { wait_for_next_tick(); });
+  } else {
+    wait_for_next_tick();
+  }
+}
+
+void Caster::Impl::hold_until(steady_clock::time_point end) {
+  begin = steady_clock::now();
+  if (begin >= end) {
+    run_tick();
+    return;
+  }
+  send(nanoseconds{0});
+  link.when_sent([this, end] { wait_until(begin + due(1), [this, end] { hold_until(end); }); });
 }
 
 void Caster::Impl::wait_for_next_tick() {
-  const bool played = pose::finished(trajectory, settings.playback, time_of_tick(tick));
-  const double passed_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
-  tick = std::max(tick + 1, static_cast<std::int64_t>(std::ceil(passed_s * settings.rate_hz)));
+  const bool played = pose::finished(trajectory, playback(), time_of_tick(tick));
+  ++tick;
+  if (!settings.stamps_of_file) {
+    const double passed_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
+    tick = std::max(tick, static_cast<std::int64_t>(std::ceil(passed_s * settings.rate_hz)));
+  }
   if (played || (settings.duration && time_of_tick(tick) >= *settings.duration)) {
     on_end();
     return;
   }
-  timer.expires_at(begin + time_of_tick(tick));
-  timer.async_wait([this](const boost::system::error_code& cancelled) {
+  wait_until(begin + due(tick), [this] { run_tick(); });
+}
+
+void Caster::Impl::wait_until(steady_clock::time_point time, std::function<void()> then) {
+  timer.expires_at(time);
+  timer.async_wait([then = std::move(then)](const boost::system::error_code& cancelled) {
     if (!cancelled) {
-      run_tick();
+      then();
     }
   });
 }
@@ -67,8 +108,7 @@ Caster::~Caster() = default;
 
 void Caster::start(std::function<void()> on_end) {
   impl_->on_end = std::move(on_end);
-  impl_->begin = steady_clock::now();
-  impl_->run_tick();
+  impl_->hold_until(steady_clock::now() + impl_->settings.hold);
 }
 
 }  // namespace sonard::client

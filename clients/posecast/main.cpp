@@ -36,6 +36,9 @@ struct Arguments {
   double from_s = 0.0;
   double seconds = 0.0;
   bool no_twist = false;
+  std::string stamps = "clock";
+  double hold_s = 0.0;
+  bool quiet = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -60,6 +63,17 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(duration);
   app.add_option("--seconds", arguments.seconds, "End after this many seconds")->check(positive);
   app.add_flag("--no-twist", arguments.no_twist, "Send poses without velocity");
+  app.add_option(
+         "--stamps", arguments.stamps,
+         "Times in the poses: of this machine's clock, or of the file. With file every run sends the same "
+         "poses, --rate and --seconds count seconds of the file, and by TCP it waits while the receiver "
+         "does not read, as sonard does in lock-step")
+      ->check(CLI::IsMember({"clock", "file"}))
+      ->capture_default_str();
+  app.add_option("--hold", arguments.hold_s,
+                 "First send the first pose for this many seconds, while clients ask for their pings")
+      ->check(duration);
+  app.add_flag("--quiet", arguments.quiet, "Print errors only");
 }
 
 /// @throws CLI::ValidationError
@@ -81,6 +95,8 @@ client::CastSettings settings(const Arguments& arguments, const pose::Trajectory
   settings.playback = {arguments.speed, arguments.loop, to_ns(arguments.from_s).count()};
   settings.rate_hz = arguments.rate_hz;
   settings.twist = !arguments.no_twist;
+  settings.stamps_of_file = arguments.stamps == "file";
+  settings.hold = to_ns(arguments.hold_s);
   if (arguments.seconds > 0.0) {
     settings.duration = to_ns(arguments.seconds);
   }
@@ -127,8 +143,10 @@ int cast(const Arguments& arguments) {
   io.run();
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
-  fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
-             link->description(), counters.refused, counters.skipped);
+  if (!arguments.quiet) {
+    fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
+               link->description(), counters.refused, counters.skipped);
+  }
   // Nothing comes back for the last datagram: there was no time.
   if (failure.empty() && counters.refused > 0 && counters.refused + 1 >= counters.sent) {
     failure = link->description() + ": nobody listens there";

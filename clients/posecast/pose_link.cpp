@@ -87,6 +87,7 @@ class UdpLink final : public ConnectedLink<udp> {
     ++counters_.sent;
   }
 
+  void when_sent(std::function<void()> done) override { done(); }
   void finish(std::function<void()> done) override { done(); }
 };
 
@@ -113,24 +114,37 @@ class TcpLink final : public ConnectedLink<tcp> {
         return;
       }
       ++counters_.sent;
-      if (done_) {
-        done_();
+      if (const auto sent = std::exchange(sent_, nullptr)) {
+        sent();
       }
     });
   }
 
-  void finish(std::function<void()> done) override {
+  void when_sent(std::function<void()> done) override {
     if (writing_) {
-      done_ = std::move(done);
+      sent_ = std::move(done);
     } else {
       done();
     }
+  }
+
+  // A receiver that has read all closes its end, too.
+  void finish(std::function<void()> done) override {
+    when_sent([this, done = std::move(done)]() mutable {
+      finished_ = std::move(done);
+      error_code ignored;
+      socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    });
   }
 
  private:
   /// The receiver never says anything; a read ends when it closes.
   void watch_for_end() {
     socket_.async_read_some(asio::buffer(received_), [this](const error_code& error, std::size_t) {
+      if (error && finished_) {
+        finished_();
+        return;
+      }
       if (error) {
         fail("closed by the receiver");
         return;
@@ -140,7 +154,8 @@ class TcpLink final : public ConnectedLink<tcp> {
   }
 
   bool writing_ = false;
-  std::function<void()> done_;
+  std::function<void()> sent_;
+  std::function<void()> finished_;
   std::vector<std::uint8_t> frame_;
   std::array<std::uint8_t, 64> received_{};
 };

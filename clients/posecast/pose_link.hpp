@@ -34,7 +34,10 @@ class PoseLink {
   virtual ~PoseLink() = default;
   /// Sends one pose, or gives it up and counts it: a pose that waits is worth nothing.
   virtual void send(const pose::PoseSample& sample) = 0;
-  /// Calls `done` when what send() took is on its way; nothing may be sent after this.
+  /// Calls `done` when what send() took is on its way.
+  virtual void when_sent(std::function<void()> done) = 0;
+  /// Calls `done` when the receiver has taken all, as far as the transport tells; nothing may be sent after
+  /// this.
   virtual void finish(std::function<void()> done) = 0;
   /// "udp 127.0.0.1:14600"
   virtual const std::string& description() const = 0;

@@ -8,6 +8,7 @@
 import argparse
 import csv
 import os
+import subprocess
 import sys
 import time
 import unittest
@@ -19,7 +20,7 @@ sys.path[:0] = [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "
 
 import link_test  # noqa: E402
 import wire  # noqa: E402
-from lab import Deadline  # noqa: E402
+from lab import Deadline, OwnMachine, Program  # noqa: E402
 from link_test import PATIENCE_S, key_values  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -65,16 +66,19 @@ def first_echo_m(path):
 class SimulatedTime(link_test.LinkTest):
     life = 0  # daemons started by this test
 
-    def run_daemon(self, steps, clock="lock_step", noisy=True, transport="tcp"):
+    def run_daemon(self, steps, clock="lock_step", noisy=True, transport="tcp", posecast=()):
         """A daemon and a client that listens; then a simulator that takes these steps, after a stand at time 0 in which the
-        client asks for its pings. Returns [(time of the pose in ns, CRC-32)] of the pings."""
+        client asks for its pings, or posecast with these arguments. Returns [(time of the pose in ns, CRC-32)] of the pings."""
         head = self.head_config(noisy=False).replace(f"directory: {self.folder.name}", f"directory: {self.next_dump()}")
         if noisy:
             head = head.replace("speckle: off", "speckle: ou").replace("noise: false", "noise: true")
         lab = self.start(head, clock, transport)
         viewer = self.start_viewer(lab, "--continuous", str(PERIOD_MS), range_m=7)
         self.daemon.wait_for_line(r"topside 10\.61\.19\.10 connected", PATIENCE_S)
-        self.simulate(lab, steps, transport)
+        if posecast:
+            self.publish(lab.start(lab.head, os.path.join(link_test.PROGRAMS, "posecast"), *posecast))
+        else:
+            self.simulate(lab, steps, transport)
         viewer.terminate(PATIENCE_S)
         self.end_daemon(self.daemon)
         self.received = {line["crc32"] for line in map(key_values, viewer.lines) if line.get("lines_lost") == "0"}
@@ -107,6 +111,9 @@ class SimulatedTime(link_test.LinkTest):
     def simulate(self, lab, steps, transport):
         publisher = lab.start(lab.head, sys.executable, os.path.join(HERE, "publish_stamps.py"), "--modules", MODULES, "--to",
                               "127.0.0.1:14601", *(["--udp"] if transport == "udp" else []), "stand:1.5", *steps)
+        self.publish(publisher)
+
+    def publish(self, publisher):
         self.wait_while_pinging(publisher)
         self.assertEqual(publisher.wait(PATIENCE_S), 0, publisher.tail())
         self.wait_for_last_ping()
@@ -147,6 +154,16 @@ class SimulatedTime(link_test.LinkTest):
         for steps in (["run:1.5@0.25"], ["run:1.5@5"], ["run:1.5@0"],
                       ["run:0.4@1", "stand:1", "run:0.5@5", "silent:2", "run:0.6@0.5"]):
             self.assertEqual(self.run_daemon(steps), real_time, steps)
+
+    def test_posecast_sends_the_same_stamps_however_fast(self):
+        way = os.path.join(self.folder.name, "way.csv")
+        with open(way, "w", encoding="utf-8") as file:
+            file.write(f"t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1.5,{1.5 * SPEED_MPS},0,0,0,0,0,1\n")
+        cast = [way, "--tcp", "--to", "127.0.0.1:14601", "--stamps", "file", "--hold", "1.5", "--quiet"]
+        slow = self.run_daemon([], posecast=[*cast, "--speed", "1"])
+        self.check_grid(slow, 0, 1440)
+        self.assertEqual(len({crc for _, crc in slow}), len(slow), "noise and motion change every image")
+        self.assertEqual(self.run_daemon([], posecast=[*cast, "--speed", "1000"]), slow)
 
     def test_a_publisher_by_tcp_waits_for_the_pings(self):
         """45 s of simulated time at once are 4500 poses, of which 4096 are kept."""
@@ -197,6 +214,27 @@ class SimulatedTime(link_test.LinkTest):
     def test_poses_by_udp_do_as_well(self):
         by_tcp = self.run_daemon(["run:1@1"])
         self.assertEqual(self.run_daemon(["run:1@1"], transport="udp"), by_tcp)
+
+
+class LockStepExample(OwnMachine):
+    """clients/examples/lock_step.py beside configs/lock-step.yaml, as docs/ci.md has it."""
+
+    def one_run(self):
+        daemon = Program([os.path.join(link_test.PROGRAMS, "sonard"), "run", os.path.join(SOURCE, "configs", "lock-step.yaml")], "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", link_test.START_S)
+        done = subprocess.run([sys.executable, os.path.join(SOURCE, "clients", "examples", "lock_step.py"), "--pings", "4"],
+                              env={**os.environ, "PYTHONPATH": os.path.join(SOURCE, "clients", "python")}, capture_output=True,
+                              text=True, timeout=PATIENCE_S, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+        return done.stdout.splitlines()
+
+    def test_two_runs_agree(self):
+        first = self.one_run()
+        self.assertEqual([line.split()[0] for line in first], ["0.000", "0.100", "0.200", "0.300"])
+        self.assertEqual(len({line.split()[1] for line in first}), 4)
+        self.assertEqual(self.one_run(), first)
 
 
 def main():

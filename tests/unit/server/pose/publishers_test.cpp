@@ -2,6 +2,7 @@
 // Programs that publish poses, as processes of their own: posecast and the Python example of docs/poses.md.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -68,6 +69,49 @@ TEST_F(PublishersTest, PosecastByTcpAtDoubleSpeed) {
   EXPECT_EQ(run(posecast), 0) << posecast.output();
   EXPECT_TRUE(run_until([&] { return source.client_count() == 0; }));
   expect_motion(2.0);
+}
+
+// Every 10 ms of the file from its first stamp to its last, whatever the speed, so that every run sends the
+// same.
+TEST_F(PublishersTest, PosecastSendsTheStampsOfTheFile) {
+  TcpPoseSource source{io_, {{localhost, 0}, loopback, 8}, clock_, sink_};
+  source.start();
+  const std::string way = file("100.25 0 0 -5 0 0 0 1\n100.5 0 0.5 -5 0 0 0 1\n100.75 0 1 -5 0 0 0 1\n");
+  for (const char* const speed : {"1000", "4"}) {
+    delivered_.clear();
+    ChildProcess posecast{{POSECAST, way, "--tcp", "--to", endpoint_text(source.local_endpoint()), "--rate",
+                           "100", "--speed", speed, "--stamps", "file", "--quiet"}};
+    EXPECT_EQ(run(posecast), 0);
+    EXPECT_EQ(posecast.output(), "");
+    ASSERT_EQ(delivered_.size(), 51U) << speed;
+    for (std::size_t k = 0; k < delivered_.size(); ++k) {
+      const pose::PoseSample& sample = delivered_[k].sample;
+      EXPECT_EQ(sample.time_ns, 100'250'000'000 + 10'000'000 * static_cast<std::int64_t>(k));
+      EXPECT_NEAR(sample.T_world_vehicle.position_m.y, 0.02 * static_cast<double>(k), 1e-9);
+    }
+    ASSERT_TRUE(delivered_[0].sample.twist);
+    EXPECT_NEAR(delivered_[0].sample.twist->linear_mps.y, 2.0, 1e-9) << "metres per second of the file";
+  }
+}
+
+// Beyond the end of the file the way begins again, and stamps go on.
+TEST_F(PublishersTest, PosecastGoesOnWithTheStampsInALoop) {
+  UdpPoseSource source{io_, {{localhost, 0}, loopback}, clock_, sink_};
+  source.start();
+  ChildProcess posecast{{POSECAST, file("2 0 0 -5 0 0 0 1\n3 0 1 -5 0 0 0 1\n"), "--to",
+                         endpoint_text(source.local_endpoint()), "--rate", "10", "--speed", "10", "--stamps",
+                         "file", "--loop", "--from-time", "0.45", "--seconds", "1", "--hold", "0.1"}};
+  EXPECT_EQ(run(posecast), 0) << posecast.output();
+  const auto moving = std::ranges::find_if(
+      delivered_, [](const Delivery& one) { return one.sample.time_ns > 2'450'000'000; });
+  EXPECT_GT(moving - delivered_.begin(), 2) << "the first pose is held";
+  ASSERT_EQ(delivered_.end() - moving, 9);
+  for (std::int64_t k = 1; k < 10; ++k) {
+    const pose::PoseSample& sample = moving[k - 1].sample;
+    EXPECT_EQ(sample.time_ns, 2'450'000'000 + 100'000'000 * k);
+    EXPECT_NEAR(sample.T_world_vehicle.position_m.y, std::fmod(0.45 + 0.1 * static_cast<double>(k), 1.0),
+                1e-6);
+  }
 }
 
 TEST_F(PublishersTest, PosecastConvertsNed) {
