@@ -2,7 +2,9 @@
 // What one ping asks of the renderer: aperture, range lines, water, receiver. All angles in radians.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace sonard::render {
@@ -39,6 +41,9 @@ struct Aperture {
   /// amplitude as a share of it, >= 0, and of the phase.
   double element_amplitude_sd = 0.0;
   double element_phase_sd_rad = 0.0;
+  /// Draws these errors in the place of PingRequest::seed, so that one array can be given many seeds of
+  /// noise.
+  std::optional<std::uint64_t> element_seed{};
 
   int beam_count() const { return beam_edges_rad.empty() ? 0 : static_cast<int>(beam_edges_rad.size()) - 1; }
   /// Half of the rendered elevation fan.

@@ -29,7 +29,8 @@ void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t s
     skipped.add(SkipRule::unchanged_settings);
   } else {
     // The elements are those of the sonar: the same in all its pings.
-    pattern_.emplace(settings.aperture, make_random_key(seed, stream, RandomField::array_elements, 0));
+    pattern_.emplace(settings.aperture, make_random_key(settings.aperture.element_seed.value_or(seed), stream,
+                                                        RandomField::array_elements, 0));
     aperture_ = settings.aperture;
     seed_ = seed;
   }

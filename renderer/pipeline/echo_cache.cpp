@@ -38,10 +38,10 @@ bool same_echo(const SonarSettings& a, const SonarSettings& b) {
                                     : echo_part(a.paper) == echo_part(b.paper);
 }
 
-/// Whether the echo goes with the seed, as errors of elements do.
+/// Whether the echo depends on the seed of the ping, as errors of elements without a seed of their own do.
 bool has_random_array(const SonarSettings& settings) {
   const Aperture& aperture = settings.aperture;
-  return has_array_beams(settings) &&
+  return has_array_beams(settings) && !aperture.element_seed &&
          (aperture.element_amplitude_sd > 0 || aperture.element_phase_sd_rad > 0);
 }
 

@@ -308,6 +308,14 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
                  "strong echoes leak into all beams. The errors belong to `seed`");
   section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0),
                 "the same of their phase errors");
+  std::uint64_t element_seed = 0;
+  section.integer("element_seed", element_seed, 0, max_u64,
+                  "draws the errors of the elements in the place of `seed`: with a fixed value every `seed` "
+                  "gives other noise of the same array");
+  section.default_is("element_seed", "`seed`");
+  if (section.has("element_seed")) {
+    aperture.element_seed = element_seed;
+  }
 }
 
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {

@@ -227,6 +227,26 @@ TEST_P(Reception, ConesReachBeyondTheFan) {
   EXPECT_EQ(std::max_element(sums.begin(), sums.end()) - sums.begin(), beam);
 }
 
+// One array, and noise of many seeds: the mean echo is that of the array.
+TEST_P(Reception, ElementsHaveASeedOfTheirOwn) {
+  PingRequest request;
+  request.settings.aperture.beam_edges_rad = equal_sine_edges(64, 60 * degree);
+  request.settings.aperture.azimuth = Aperture::Azimuth::array;
+  request.settings.aperture.element_amplitude_sd = 0.12;
+  request.settings.range = {160, 0.1, 0, false};
+  SonarRenderer renderer(ball_at(10, 0.3, 0.5), options());
+  const auto echo = [&](std::uint64_t seed, std::optional<std::uint64_t> element_seed) {
+    request.seed = seed;
+    request.settings.aperture.element_seed = element_seed;
+    return renderer.render_echo(request).intensity;
+  };
+  const std::vector<float> first = echo(1, 5);
+  EXPECT_EQ(echo(2, 5), first);
+  EXPECT_EQ(echo(5, std::nullopt), first) << "without one, the seed of the ping draws them";
+  EXPECT_NE(echo(1, std::nullopt), first);
+  EXPECT_NE(echo(1, 6), first);
+}
+
 // docs/physics.md 2.16, as a client gets it: the median of a row beyond 60 beams from a strong target is some
 // 35 dB below its peak with the errors that a Gemini has by default.
 TEST_P(Reception, AStrongTargetLeaksAlongItsRow) {
