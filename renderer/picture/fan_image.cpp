@@ -23,6 +23,11 @@ std::vector<int> bearing_lines_deg(const SectorGeometry& geometry) {
 
 }  // namespace
 
+cv::Mat finer(const cv::Mat& map, int samples, int mapped) {
+  const double ratio = static_cast<double>(samples) / mapped;
+  return (map + 0.5) * ratio - 0.5;
+}
+
 cv::Mat raw_polar_image(const cv::Mat& polar) {
   cv::Mat upwards;
   cv::flip(polar, upwards, 0);
@@ -59,15 +64,20 @@ void FanImage::map_pixels() {
   }
 }
 
-cv::Mat FanImage::project(const cv::Mat& polar) const {
+cv::Mat FanImage::project(const cv::Mat& polar, Resampling resampling) const {
   CV_Assert(polar.type() == CV_8UC1 && polar.rows == geometry_.shape().lines &&
             polar.cols == static_cast<int>(geometry_.shape().bearings_rad.size()));
-  cv::Mat source = polar;
-  if (mapped_lines_ < polar.rows) {
-    cv::resize(polar, source, {polar.cols, mapped_lines_}, 0.0, 0.0, cv::INTER_AREA);
-  }
   cv::Mat fan;
-  cv::remap(source, fan, map_beams_, map_lines_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  if (resampling == Resampling::nearest) {
+    cv::remap(polar, fan, map_beams_, finer(map_lines_, polar.rows, mapped_lines_), cv::INTER_NEAREST,
+              cv::BORDER_REPLICATE);
+  } else {
+    cv::Mat source = polar;
+    if (mapped_lines_ < polar.rows) {
+      cv::resize(polar, source, {polar.cols, mapped_lines_}, 0.0, 0.0, cv::INTER_AREA);
+    }
+    cv::remap(source, fan, map_beams_, map_lines_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  }
   cv::Mat masked = cv::Mat::zeros(fan.size(), fan.type());
   fan.copyTo(masked, inside_);
   return masked;

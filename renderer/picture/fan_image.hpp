@@ -14,6 +14,10 @@ struct FanStyle {
   bool grid = true;     ///< range arcs with metres, bearing lines with degrees, caption
 };
 
+/// How a pixel is made of the samples around it: of samples by `smooth`; of labels by `nearest`, which makes
+/// no values up.
+enum class Resampling { smooth, nearest };
+
 /// Draws pings of one shape; the way from pixel to sample is worked out once. Any thread, one at a time.
 class FanImage {
  public:
@@ -22,9 +26,9 @@ class FanImage {
   const FanGeometry& geometry() const { return geometry_; }
 
   /// Samples in place of pixels: CV_8UC1 of geometry().size(), 0 outside the fan. `polar`: CV_8UC1, one row
-  /// per line, near lines first, one column per beam. Bilinear; where lines are finer than pixels they are
-  /// averaged first.
-  cv::Mat project(const cv::Mat& polar) const;
+  /// per line, near lines first, one column per beam. Smooth: bilinear; where lines are finer than pixels
+  /// they are averaged first.
+  cv::Mat project(const cv::Mat& polar, Resampling resampling = Resampling::smooth) const;
 
   /// project() in colour (CV_8UC3, BGR) with the grid, and `caption` in the top left corner.
   cv::Mat draw(const cv::Mat& polar, const std::string& caption) const;
@@ -40,6 +44,9 @@ class FanImage {
   cv::Mat inside_;     ///< CV_8UC1: 255 within the fan
   cv::Mat grid_;       ///< CV_8UC3, black where nothing is drawn
 };
+
+/// A map into `mapped` samples as one into `samples` that cover the same; the centre of sample k is at k.
+cv::Mat finer(const cv::Mat& map, int samples, int mapped);
 
 /// Samples as they came, CV_8UC1: one column per beam, port on the left; one row per line, range upwards.
 cv::Mat raw_polar_image(const cv::Mat& polar);

@@ -99,14 +99,15 @@ void SweepImage::map_pixels() {
   }
 }
 
-SweepImage::Projection SweepImage::project(const std::vector<SweepLine>& lines) const {
+SweepImage::Projection SweepImage::project(const std::vector<SweepLine>& lines, Resampling resampling) const {
   const cv::Size size = geometry_.size();
   Projection projection{cv::Mat::zeros(size, CV_8UC1), cv::Mat::zeros(size, CV_8UC1)};
   if (lines.empty()) {
     return projection;
   }
   cv::Mat source = matrix_of(lines, shape_.bins);
-  if (mapped_bins_ < source.cols) {
+  const bool smooth = resampling == Resampling::smooth;
+  if (smooth && mapped_bins_ < source.cols) {
     cv::resize(source, source, {mapped_bins_, source.rows}, 0.0, 0.0, cv::INTER_AREA);
   }
   const std::vector<int> seen = lines_in_slots(lines, shape_.step);
@@ -122,7 +123,8 @@ SweepImage::Projection SweepImage::project(const std::vector<SweepLine>& lines) 
     }
   }
   cv::Mat samples;
-  cv::remap(source, samples, map_bins_, map_lines, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::remap(source, samples, smooth ? map_bins_ : finer(map_bins_, shape_.bins, mapped_bins_), map_lines,
+            smooth ? cv::INTER_LINEAR : cv::INTER_NEAREST, cv::BORDER_REPLICATE);
   samples.copyTo(projection.samples, projection.covered);
   return projection;
 }

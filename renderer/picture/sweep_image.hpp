@@ -49,10 +49,10 @@ class SweepImage {
   const SectorGeometry& geometry() const { return geometry_; }
 
   struct Projection {
-    cv::Mat samples;  ///< CV_8UC1 of geometry().size(), linear between bins; 0 where nothing was received
+    cv::Mat samples;  ///< CV_8UC1 of geometry().size(); smooth: linear between bins; 0: nothing was received
     cv::Mat covered;  ///< CV_8UC1, 255 where something was
   };
-  Projection project(const std::vector<SweepLine>& lines) const;
+  Projection project(const std::vector<SweepLine>& lines, Resampling resampling = Resampling::smooth) const;
 
   /// project() in colour (CV_8UC3, BGR) with the grid, and `caption` in the top left corner.
   cv::Mat draw(const std::vector<SweepLine>& lines, const std::string& caption) const;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct SurveyOptions {
   std::optional<double> sound_speed_mps;
   std::optional<int> compression_log2;
   std::optional<int> bits;
+  std::optional<std::string> frequency;  ///< "low" or "high", of a head with two
   std::optional<int> bins;
   std::optional<double> step_deg;
   std::vector<double> sector_deg;  ///< FROM and TO, or nothing
@@ -57,11 +59,9 @@ class Survey {
 
   /// Settings of the frames as a JSON object, without the period.
   virtual nlohmann::ordered_json settings_json() const = 0;
-  /// A ping as a log keeps it, whose samples these are: 8 bits each, or the high ones of 16.
-  /// nullopt where the users of such heads know no .glf.
-  virtual std::optional<PingRecord> record(int /*ping*/, std::vector<std::uint8_t> /*samples*/) const {
-    return std::nullopt;
-  }
+  /// A ping as a log keeps it, whose samples these are: 8 bits each, or the high ones of 16. Its transmit
+  /// time is left out, and the message on the wire where a kind does not override this.
+  virtual PingRecord record(int ping, std::vector<std::uint8_t> samples) const;
 };
 
 }  // namespace sonard::server

@@ -36,6 +36,16 @@ void OfflineArguments::declare_run(CLI::App& app) {
                  "Of speckle, noise, clutter and element errors: another for each trajectory of a data set; "
                  "default: acoustics.seed of the head")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  app.add_option("--element-seed", options_.element_seed,
+                 "Of element errors alone: with a fixed value, --seed gives other noise of the same sonar; "
+                 "default: acoustics.element_seed of the head, or as --seed")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  CLI::Option* const still = app.add_flag("--still", still_,
+                                          "The sonar is at rest in each ping; without --rate, one frame for "
+                                          "each pose of the trajectory. Default: "
+                                          "at rest where the trajectory moves as no vehicle does");
+  app.add_flag("--no-still", never_still_, "The sonar moves in each ping as the trajectory does")
+      ->excludes(still);
   app.add_option(
       "--shard", shard_,
       "I/N: render share I of N, for N processes that fill one folder together; I counts from 0 or "
@@ -43,6 +53,11 @@ void OfflineArguments::declare_run(CLI::App& app) {
   app.add_flag("--overwrite", options_.overwrite, "Render existing frames again, whatever their settings");
   app.add_flag("--truth", options_.truth,
                "Also write which body echoes most in each bin; renders an echo for each body near");
+  app.add_flag(
+      "--clean-png", options_.clean_pictures,
+      "Also write grey pictures without labels, of the samples (_grey.png) and of the fan (_fan.png); "
+      "with --truth also their masks. The JSON says bearing and range of each pixel");
+  app.add_flag("--mcap", options_.mcap, "Also write a log with topics for Foxglove (docs/logs.md)");
   app.add_option("--picture-every", options_.picture_every, "A picture of every so-many-th frame; 0: none")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
@@ -63,6 +78,8 @@ void OfflineArguments::declare_sonar(CLI::App& app) {
       "Multibeam: 0..4: average 1, 2, 4, 8 or 16 range lines into one [0]")
       ->check(CLI::Range(0, 4));
   add("--bits", survey.bits, "Multibeam: bits of a sample [8]")->check(CLI::IsMember({8, 16}));
+  add("--frequency", survey.frequency, "Heads with two frequencies: low or high [low]")
+      ->check(CLI::IsMember({"low", "high"}));
   add("--bins", survey.bins, "Scanning: bins of a line")->check(CLI::Range(1, 65'535));
   add("--step", survey.step_deg, "Scanning: degrees from line to line [1.8]");
   add("--sector", survey.sector_deg,
@@ -80,6 +97,9 @@ OfflineOptions OfflineArguments::options() const {
                                fmt::format("expected I/N with 0 <= I <= N and N >= 1, found '{}'", shard_));
   }
   options.shard = *shard;
+  if (still_ || never_still_) {
+    options.still = still_;
+  }
   for (const std::string& body : bodies_) {
     const std::size_t equals = body.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == body.size()) {

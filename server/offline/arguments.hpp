@@ -34,6 +34,8 @@ class OfflineArguments {
   std::string axes_ = "enu_flu";
   std::string shard_ = "0/1";
   std::vector<std::string> bodies_;
+  bool still_ = false;
+  bool never_still_ = false;
 };
 
 }  // namespace sonard::server

@@ -120,9 +120,8 @@ render::SonarRenderer& BodyTruth::renderer_of(std::size_t body) {
 }
 
 std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& request) {
-  render::PingRequest at_rest = request;
-  at_rest.settings = truth_settings(request.settings);
-  at_rest.T_world_sonar_at_end.reset();
+  render::PingRequest alone = request;
+  alone.settings = truth_settings(request.settings);
   const render::RangeLines& range = request.settings.range;
   const auto bins = static_cast<std::size_t>(range.output_count()) *
                     static_cast<std::size_t>(request.settings.aperture.beam_count());
@@ -133,7 +132,7 @@ std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& reque
   for (std::size_t body = 0; body < balls_.size(); ++body) {
     const double distance_m = glm::length(balls_[body].centre_m - request.T_world_sonar.position_m);
     if (distance_m - balls_[body].radius_m < range.max_range_m()) {
-      keep_loudest(renderer_of(body).render_echo(at_rest), range.compression_log2,
+      keep_loudest(renderer_of(body).render_echo(alone), range.compression_log2,
                    static_cast<std::uint16_t>(body + 1), loudest, ids);
     }
   }

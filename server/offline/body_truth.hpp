@@ -18,7 +18,8 @@ namespace sonard::server {
 
 /// Renders the mean echo of each body that is near enough, with all others there but silent, and compares.
 /// What counts is what lies in a bin: beams receive nothing from beside them and pulses have no length, there
-/// are no mirror images, and the sonar is at rest while it listens. Always by the CPU. One thread uses it.
+/// are no mirror images. The sonar moves while it listens as in the request. Always by the CPU. One thread
+/// uses it.
 ///
 /// It takes a renderer for each body that was ever near, and the time of one echo for each that is.
 class BodyTruth {

@@ -13,6 +13,7 @@
 
 #include "protocol/npy/npy_file.hpp"
 #include "server/devices/device_kind.hpp"
+#include "server/offline/frame_times.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
 #include "server/recording/glf_records.hpp"
@@ -42,13 +43,17 @@ FanFrames::FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique
       place_(place),
       trajectory_(trajectory),
       survey_(std::move(survey)),
-      times_{trajectory.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
-                                                    : static_cast<double>(survey_->natural_period().count())},
+      times_(frame_times(trajectory, options, *survey_)),
       count_(count_of(*survey_, times_.count_until(trajectory.end_ns()))),
       job_(survey_->job(0)),
       bearings_rad_(survey_->bearings_rad()),
       truth_(truth),
-      fan_({bearings_rad_, job_.bins(), survey_->client_bin_m()}, {.radius_px = options.radius_px}) {}
+      fan_({bearings_rad_, job_.bins(), survey_->client_bin_m()}, {.radius_px = options.radius_px}) {
+  if (options.clean_pictures) {
+    clean_fan_.emplace(fan_.geometry().shape(),
+                       picture::FanStyle{.radius_px = options.radius_px, .grid = false});
+  }
+}
 
 std::string FanFrames::name(int frame) const {
   return fmt::format("ping_{:06}", frame);
@@ -62,7 +67,8 @@ render::PingRequest FanFrames::request(int frame) const {
   const std::int64_t time_ns = times_.at(frame);
   return {T_world_sonar(time_ns), kind_of(head_).sonar_settings(job_, head_),
           static_cast<std::uint64_t>(frame), head_.seed,
-          T_world_sonar(time_ns + job_.listening_time.count())};
+          trajectory_.T_world_vehicle_at_end(time_ns, time_ns + job_.listening_time.count()) *
+              head_.T_vehicle_sonar};
 }
 
 void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
@@ -81,8 +87,14 @@ Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
       npy::Table{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
   Frame made;
   made.npy = npy::encode(*samples);
+  cv::Mat ids;
   if (truth_ != nullptr) {
-    made.bodies_npy = npy::encode(truth_->table(samples->rows, samples->columns, truth_->bodies_in(ping)));
+    const npy::Table bodies = truth_->table(samples->rows, samples->columns, truth_->bodies_in(ping));
+    made.bodies_npy = npy::encode(bodies);
+    ids = mask_matrix(bodies);
+  }
+  if (options_.clean_pictures) {
+    made.draw_clean = [this, samples, ids, frame] { return clean_pictures(frame, *samples, ids); };
   }
   made.sidecar = sidecar(frame, ping);
   made.draw = [this, samples, frame] { return fan_.draw(eight_bit_matrix(*samples), caption(frame)); };
@@ -98,14 +110,37 @@ bool FanFrames::makes_glf() const {
   return kind_of(head_).writes_glf();
 }
 
-std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view npy) const {
+std::optional<PingRecord> FanFrames::ping_record(int frame, std::string_view npy) const {
   Result<npy::Table, std::string> samples = npy::parse(npy);
   if (!samples || samples->rows != job_.bins() || samples->columns != std::ssize(bearings_rad_) ||
       samples->u8.empty() != job_.sixteen_bit) {
     return std::nullopt;
   }
-  std::optional<PingRecord> ping =
-      survey_->record(frame, job_.sixteen_bit ? high_bytes(samples->u16) : std::move(samples->u8));
+  return survey_->record(frame, job_.sixteen_bit ? high_bytes(samples->u16) : std::move(samples->u8));
+}
+
+std::vector<PingSent> FanFrames::pings(int frame, std::string_view npy) const {
+  std::optional<PingRecord> ping = ping_record(frame, npy);
+  if (!ping) {
+    return {};
+  }
+  return {sent_ping(std::move(*ping), unix_ns(frame), trajectory_.T_world_vehicle(times_.at(frame)), head_)};
+}
+
+std::vector<CleanPicture> FanFrames::clean_pictures(int frame, const npy::Table& samples,
+                                                    const cv::Mat& ids) const {
+  const CleanNames names(name(frame));
+  const cv::Mat grey = eight_bit_matrix(samples);
+  std::vector<CleanPicture> pictures{{names.grey, grey}, {names.fan, clean_fan_->project(grey)}};
+  if (!ids.empty()) {
+    pictures.push_back({names.grey_mask, ids});
+    pictures.push_back({names.fan_mask, clean_fan_->project(ids, picture::Resampling::nearest)});
+  }
+  return pictures;
+}
+
+std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view npy) const {
+  std::optional<PingRecord> ping = ping_record(frame, npy);
   if (!ping) {
     return std::nullopt;
   }
@@ -115,7 +150,7 @@ std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view np
 
 Json FanFrames::settings_json() const {
   Json settings = survey_->settings_json();
-  settings["period_s"] = 1e-9 * times_.period_ns;
+  add_times(settings, times_, options_);
   return settings;
 }
 
@@ -127,10 +162,16 @@ std::string FanFrames::sidecar(int frame, const render::PingRequest& request) co
   json["ping_number"] = frame;
   json["stream"] = place_.stream;
   json["seed"] = head_.seed;
+  if (const auto& element_seed = head_.acoustics.aperture.element_seed) {
+    json["element_seed"] = *element_seed;
+  }
   if (options_.draws(frame)) {
     json["picture"] = picture_name(name(frame));
   }
   json["samples"] = samples_json(name(frame), job_.sixteen_bit, {"line", job_.bins()}, {"beam", beams});
+  if (clean_fan_) {
+    json["clean_pictures"] = clean_json(name(frame), truth_ != nullptr, clean_fan_->geometry());
+  }
   std::vector<double> to_port_rad;  // as in REP-103; devices count to starboard
   std::ranges::transform(bearings_rad_, std::back_inserter(to_port_rad), std::negate<>{});
   json["geometry"] = {{"line_step_m", job_.bin_m()},

@@ -36,6 +36,7 @@ class FanFrames final : public FrameSource {
   nlohmann::ordered_json settings_json() const override;
   bool makes_glf() const override;
   std::optional<glf::ImageRecord> record(int frame, std::string_view npy) const override;
+  std::vector<PingSent> pings(int frame, std::string_view npy) const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(frame)); }
 
   /// What the renderer is asked for.
@@ -43,6 +44,8 @@ class FanFrames final : public FrameSource {
 
  private:
   render::Pose T_world_sonar(std::int64_t time_ns) const;
+  std::optional<PingRecord> ping_record(int frame, std::string_view npy) const;
+  std::vector<CleanPicture> clean_pictures(int frame, const npy::Table& samples, const cv::Mat& ids) const;
   std::string sidecar(int frame, const render::PingRequest& request) const;
   std::string caption(int frame) const;
 
@@ -57,6 +60,7 @@ class FanFrames final : public FrameSource {
   std::vector<double> bearings_rad_;
   BodyTruth* truth_;
   picture::FanImage fan_;
+  std::optional<picture::FanImage> clean_fan_;  ///< without labels, where those are asked for
 };
 
 }  // namespace sonard::server

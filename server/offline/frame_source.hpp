@@ -7,12 +7,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 #include <opencv2/core/mat.hpp>
 
 #include "protocol/glf/records.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "server/recording/events.hpp"
 
 namespace sonard::server {
 
@@ -22,12 +24,20 @@ struct HeadPlace {
   int glf_number = 0;  ///< among those whose users know .glf logs
 };
 
+/// A picture without labels, and the file that holds it.
+struct CleanPicture {
+  std::string file;
+  cv::Mat pixels;  ///< CV_8UC1
+};
+
 /// One ping of a fan, or one sweep of a scanning head, as the files that hold it.
 struct Frame {
   std::string npy;                ///< samples
   std::string bodies_npy;         ///< ids of bodies; empty: not asked for
   std::string sidecar;            ///< JSON
   std::function<cv::Mat()> draw;  ///< the picture; of all frames one at a time
+  /// Those of OfflineOptions::clean_pictures; of all frames one at a time.
+  std::function<std::vector<CleanPicture>()> draw_clean;
 };
 
 /// Frames depend on nothing but what a source was made of, and on the frames before, which the renderer must
@@ -62,6 +72,9 @@ class FrameSource {
                                                  [[maybe_unused]] std::string_view npy) const {
     return std::nullopt;
   }
+  /// The pings of a frame for a log, of its samples as they stand in its file; transmit times are Unix times.
+  /// Empty where those are not of this frame.
+  virtual std::vector<PingSent> pings(int frame, std::string_view npy) const = 0;
   /// When it was sent.
   virtual std::int64_t unix_ns(int frame) const = 0;
 };

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <deque>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <iterator>
 #include <memory>
@@ -36,11 +37,14 @@
 #include "server/offline/fan_frames.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/glf_file.hpp"
+#include "server/offline/jumps.hpp"
+#include "server/offline/mcap_file.hpp"
 #include "server/offline/output_folder.hpp"
 #include "server/offline/progress.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/sweep_frames.hpp"
 #include "server/offline/vehicle_trajectory.hpp"
+#include "server/recording/log_names.hpp"
 
 namespace sonard::server {
 namespace {
@@ -61,11 +65,14 @@ std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
                    fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")));
 }
 
-/// With the seed of the command line, where it has one, in the place of the head's own.
+/// With the seeds of the command line, where it has them, in the place of the head's own.
 DaemonConfig seeded(const LoadedConfig& loaded, const OfflineOptions& options) {
   DaemonConfig config = loaded.config;
   HeadConfig& head = config.heads[chosen_head(loaded, options.head)];
   head.seed = options.seed.value_or(head.seed);
+  if (options.element_seed) {
+    head.acoustics.aperture.element_seed = options.element_seed;
+  }
   return config;
 }
 
@@ -96,6 +103,35 @@ VehicleTrajectory trajectory_with_bodies(const OfflineOptions& options, const re
           fmt::format("--body: '{}' cannot be moved (expected one of {})", way.body, fmt::join(names, ", ")));
     }
     trajectory.add({way.body, pose::load_trajectory(way.trajectory, options.axes)});
+  }
+  return trajectory;
+}
+
+/// Pings in which the vehicle is taken to be at rest: all with --still, none with --no-still, else those for
+/// which the trajectory moves as no vehicle does.
+VehicleTrajectory with_rests(VehicleTrajectory trajectory, const OfflineOptions& options) {
+  if (options.still) {
+    if (*options.still) {
+      trajectory.rest_in_all_pings();
+    }
+    return trajectory;
+  }
+  Jumps jumps = find_jumps(trajectory.points());
+  const std::string file = options.trajectory.string();
+  if (jumps.independent) {
+    trajectory.rest_in_all_pings();
+    spdlog::warn(
+        "{}: no vehicle moves like this ({}), so each ping is rendered with the sonar at rest. Add --still "
+        "to render "
+        "one frame for each pose, or --no-still to render the motion",
+        file, jumps.first);
+  } else if (jumps.count > 0) {
+    spdlog::warn(
+        "{}: {} of {} steps are jumps that no vehicle makes ({}); pings in them are rendered with the sonar "
+        "at "
+        "rest. Add --no-still to render the motion",
+        file, jumps.count, jumps.steps.size(), jumps.first);
+    trajectory.rest_in(std::move(jumps.steps));
   }
   return trajectory;
 }
@@ -132,6 +168,10 @@ std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, s
                                      options, truth);
 }
 
+OutputError not_of_this_frame(const std::filesystem::path& file) {
+  return {file, "does not hold the samples of this frame (delete it, and it is rendered again)"};
+}
+
 std::uint32_t crc_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -154,12 +194,16 @@ class RenderRun {
   void choose_engine();
   std::string manifest() const;
   bool whole(int frame) const;
+  bool has_clean_pictures(const std::string& name) const;
   bool wanted(int frame) const { return options_.shard.has(frame) && (options_.overwrite || !whole(frame)); }
   std::vector<int> wanted_frames() const;
-  cv::Mat draw(const Frame& made);
+  template <class Drawn>
+  Drawn draw(const std::function<Drawn()>& draw_it);
   void write(int frame, const Frame& made);
   bool all_whole() const;
+  std::string log_stamp() const { return glf::log_stamp(glf::glf_time_s(frames_->unix_ns(0), 0)); }
   void make_glf() const;
+  void make_mcap() const;
 
   DaemonConfig config_;
   const OfflineOptions& options_;
@@ -218,13 +262,22 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       options_(options),
       head_(chosen_head(loaded, options.head)),
       world_(world_without_hidden(config_, head_)),
-      trajectory_(trajectory_with_bodies(options, world_,
-                                         config_.heads[head_].hides_vehicle ? "" : config_.vehicle_model)),
+      trajectory_(
+          with_rests(trajectory_with_bodies(options, world_,
+                                            config_.heads[head_].hides_vehicle ? "" : config_.vehicle_model),
+                     options)),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
       folder_(options.out) {
   warn_of_rate(*frames_, config_.heads[head_].name);
+  if (options.clean_pictures && options.truth && world_.bodies.size() > 255) {
+    throw StartError(
+        "world.file", exit_config,
+        fmt::format("--clean-png: a mask has 8 bits, too few for the {} bodies of the world (expected at "
+                    "most 255; omit --truth or --clean-png)",
+                    world_.bodies.size()));
+  }
   const OutputFolder::Lock lock(folder_);
   choose_engine();
   folder_.claim(manifest(), options.overwrite);
@@ -268,6 +321,15 @@ std::string RenderRun::manifest() const {
   if (options_.seed) {
     json["seed"] = *options_.seed;
   }
+  if (options_.element_seed) {
+    json["element_seed"] = *options_.element_seed;
+  }
+  if (options_.still) {
+    json["still"] = *options_.still;
+  }
+  if (options_.clean_pictures) {
+    json["clean_png"] = true;
+  }
   for (const OfflineOptions::BodyWay& way : options_.bodies) {
     json["bodies_crc32"][way.body] = fmt::format("{:08x}", crc_of(way.trajectory));
   }
@@ -278,7 +340,14 @@ bool RenderRun::whole(int frame) const {
   const std::string name = frames_->name(frame);
   return folder_.has(sidecar_name(name)) && folder_.has(npy_name(name)) &&
          (!options_.draws(frame) || folder_.has(picture_name(name))) &&
-         (!options_.truth || folder_.has(bodies_name(name)));
+         (!options_.truth || folder_.has(bodies_name(name))) &&
+         (!options_.clean_pictures || has_clean_pictures(name));
+}
+
+bool RenderRun::has_clean_pictures(const std::string& name) const {
+  const CleanNames names(name);
+  return folder_.has(names.grey) && folder_.has(names.fan) &&
+         (!options_.truth || (folder_.has(names.grey_mask) && folder_.has(names.fan_mask)));
 }
 
 std::vector<int> RenderRun::wanted_frames() const {
@@ -291,9 +360,10 @@ std::vector<int> RenderRun::wanted_frames() const {
   return wanted_ones;
 }
 
-cv::Mat RenderRun::draw(const Frame& made) {
+template <class Drawn>
+Drawn RenderRun::draw(const std::function<Drawn()>& draw_it) {
   const std::lock_guard<std::mutex> lock(drawing_);
-  return made.draw();
+  return draw_it();
 }
 
 // The sidecar comes last: it says that the others are there.
@@ -304,7 +374,12 @@ void RenderRun::write(int frame, const Frame& made) {
     folder_.write(bodies_name(name), made.bodies_npy);
   }
   if (options_.draws(frame)) {
-    folder_.write(picture_name(name), picture::png_file(draw(made), png_level));
+    folder_.write(picture_name(name), picture::png_file(draw(made.draw), png_level));
+  }
+  if (made.draw_clean) {
+    for (const CleanPicture& picture : draw(made.draw_clean)) {
+      folder_.write(picture.file, picture::png_file(picture.pixels, png_level));
+    }
   }
   folder_.write(sidecar_name(name), made.sidecar);
 }
@@ -374,12 +449,15 @@ void RenderRun::finish() {
   if (frames_->makes_glf()) {
     make_glf();
   }
+  if (options_.mcap) {
+    make_mcap();
+  }
   folder_.remove_parts();
   fmt::print("{}: {} frames\n", out, frames_->count());
 }
 
 void RenderRun::make_glf() const {
-  const std::string first = glf::log_name(glf::log_stamp(glf::glf_time_s(frames_->unix_ns(0), 0)));
+  const std::string first = glf::log_name(log_stamp());
   if (folder_.has(first) && !options_.overwrite) {
     return;
   }
@@ -388,12 +466,30 @@ void RenderRun::make_glf() const {
     const std::string file = npy_name(frames_->name(frame));
     const std::optional<glf::ImageRecord> record = frames_->record(frame, folder_.read(file));
     if (!record) {
-      throw OutputError(folder_.path() / file,
-                        "does not hold the samples of this frame (delete it, and it is rendered again)");
+      throw not_of_this_frame(folder_.path() / file);
     }
     log.add(*record);
   }
   log.close();
+}
+
+void RenderRun::make_mcap() const {
+  const std::string name = mcap_path("", log_stamp()).string();
+  if (folder_.has(name) && !options_.overwrite) {
+    return;
+  }
+  McapFile log(folder_, config_.heads);
+  for (int frame = 0; frame < frames_->count(); ++frame) {
+    const std::string file = npy_name(frames_->name(frame));
+    const std::vector<PingSent> pings = frames_->pings(frame, folder_.read(file));
+    if (pings.empty()) {
+      throw not_of_this_frame(folder_.path() / file);
+    }
+    for (const PingSent& ping : pings) {
+      log.add(static_cast<int>(head_), ping);
+    }
+  }
+  log.publish(name);
 }
 
 }  // namespace

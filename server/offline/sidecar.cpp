@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/offline/sidecar.hpp"
 
+#include <chrono>
+#include <memory>
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace sonard::server {
@@ -40,6 +44,40 @@ Json pose_json(const render::Pose& pose) {
   const glm::dvec3& p = pose.position_m;
   const glm::dquat& q = pose.orientation;
   return {{"position_m", {p.x, p.y, p.z}}, {"quaternion_xyzw", {q.x, q.y, q.z, q.w}}};
+}
+
+void add_times(Json& settings, const PingTimes& times, const OfflineOptions& options) {
+  settings["period_s"] = options.frame_for_each_pose() ? Json(nullptr) : Json(times.period_ns / 1e9);
+  if (options.still.value_or(false)) {
+    settings["still"] = true;
+  }
+}
+
+PingSent sent_ping(PingRecord record, std::int64_t unix_ns, const render::Pose& T_world_vehicle,
+                   const HeadConfig& head) {
+  auto poses = std::make_shared<PosesUsed>();
+  poses->time = record.transmit_time = TimePoint{std::chrono::nanoseconds{unix_ns}};
+  poses->T_world_vehicle = T_world_vehicle;
+  poses->T_world_sonar = T_world_vehicle * head.T_vehicle_sonar;
+  return {std::move(record), std::move(poses)};
+}
+
+cv::Mat mask_matrix(const npy::Table& ids) {
+  return cv::Mat(ids.rows, ids.columns, CV_8UC1, const_cast<std::uint8_t*>(ids.u8.data())).clone();
+}
+
+Json clean_json(const std::string& name, bool with_masks, const picture::SectorGeometry& fan) {
+  const CleanNames names(name);
+  Json grey{{"file", names.grey}, {"rows", "as those of samples"}, {"columns", "as those of samples"}};
+  Json in_fan{{"file", names.fan},
+              {"size_px", {fan.size().width, fan.size().height}},
+              {"apex_px", {fan.apex().x, fan.apex().y}},
+              {"metres_per_px", 1.0 / fan.pixels_per_metre()}};
+  if (with_masks) {
+    grey["mask"] = names.grey_mask;
+    in_fan["mask"] = names.fan_mask;
+  }
+  return {{"grey", grey}, {"fan", in_fan}};
 }
 
 std::string sidecar_text(const Json& object) {

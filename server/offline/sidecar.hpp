@@ -9,8 +9,13 @@
 #include <opencv2/core/mat.hpp>
 
 #include "protocol/npy/npy_file.hpp"
+#include "renderer/picture/sector_geometry.hpp"
 #include "renderer/pose.hpp"
+#include "server/config/config.hpp"
 #include "server/offline/body_truth.hpp"
+#include "server/offline/options.hpp"
+#include "server/offline/vehicle_trajectory.hpp"
+#include "server/recording/events.hpp"
 
 namespace sonard::server {
 
@@ -37,11 +42,33 @@ Json samples_json(const std::string& name, bool sixteen_bit, const Axis& rows, c
 Json truth_json(const std::string& name, const BodyTruth* truth);
 Json pose_json(const render::Pose& pose);
 
+/// Adds how pings follow each other to the settings of frames.
+void add_times(Json& settings, const PingTimes& times, const OfflineOptions& options);
+
+/// A ping as a log takes it, with the pose that it was rendered from.
+PingSent sent_ping(PingRecord record, std::int64_t unix_ns, const render::Pose& T_world_vehicle,
+                   const HeadConfig& head);
+
 /// One object, a member to a line. The same values give the same text everywhere.
 std::string sidecar_text(const Json& object);
 
 /// Samples for a picture: CV_8UC1, a row for each row.
 cv::Mat eight_bit_matrix(const npy::Table& samples);
+
+/// Ids of bodies as a mask: CV_8UC1. Requires a table of 8 bits.
+cv::Mat mask_matrix(const npy::Table& ids);
+
+/// Files of OfflineOptions::clean_pictures, by FrameSource::name().
+struct CleanNames {
+  explicit CleanNames(const std::string& name)
+      : grey(name + "_grey.png"),
+        fan(name + "_fan.png"),
+        grey_mask(name + "_grey_bodies.png"),
+        fan_mask(name + "_fan_bodies.png") {}
+  std::string grey, fan, grey_mask, fan_mask;
+};
+/// Their files, and where bearing and range of a pixel come from.
+Json clean_json(const std::string& name, bool with_masks, const picture::SectorGeometry& fan);
 
 // Files of a frame, by its name.
 std::string npy_name(const std::string& name);

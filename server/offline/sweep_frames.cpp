@@ -9,6 +9,7 @@
 
 #include "protocol/npy/npy_file.hpp"
 #include "server/devices/device_kind.hpp"
+#include "server/offline/frame_times.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
 
@@ -40,12 +41,16 @@ SweepFrames::SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Sur
       stream_(stream),
       trajectory_(trajectory),
       survey_(std::move(survey)),
-      times_{trajectory.start_ns(), options.rate_hz ? 1e9 / *options.rate_hz
-                                                    : static_cast<double>(survey_->natural_period().count())},
+      times_(frame_times(trajectory, options, *survey_)),
       first_lines_(survey_->frames(times_.count_until(trajectory.end_ns()))),
       bins_(bins_of(*survey_, first_lines_)),
       truth_(truth),
-      picture_(shape_of(*survey_, bins_), {.radius_px = options.radius_px}) {}
+      picture_(shape_of(*survey_, bins_), {.radius_px = options.radius_px}) {
+  if (options.clean_pictures) {
+    clean_picture_.emplace(shape_of(*survey_, bins_),
+                           picture::FanStyle{.radius_px = options.radius_px, .grid = false});
+  }
+}
 
 std::string SweepFrames::name(int frame) const {
   return fmt::format("scan_{:06}", frame);
@@ -54,11 +59,12 @@ std::string SweepFrames::name(int frame) const {
 render::PingRequest SweepFrames::request(int line) const {
   const PingJob ping = survey_->job(line);
   const std::int64_t time_ns = times_.at(line);
-  const auto pose_at = [&](std::int64_t time) {
-    return T_world_transducer(trajectory_.T_world_vehicle(time) * head_.T_vehicle_sonar, ping.bearing_rad);
+  const auto transducer_at = [&](const render::Pose& T_world_vehicle) {
+    return T_world_transducer(T_world_vehicle * head_.T_vehicle_sonar, ping.bearing_rad);
   };
-  return {pose_at(time_ns), kind_of(head_).sonar_settings(ping, head_), static_cast<std::uint64_t>(line),
-          head_.seed, pose_at(time_ns + ping.listening_time.count())};
+  return {transducer_at(trajectory_.T_world_vehicle(time_ns)), kind_of(head_).sonar_settings(ping, head_),
+          static_cast<std::uint64_t>(line), head_.seed,
+          transducer_at(trajectory_.T_world_vehicle_at_end(time_ns, time_ns + ping.listening_time.count()))};
 }
 
 void SweepFrames::pass(render::SonarRenderer& renderer, int frame) {
@@ -98,8 +104,15 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   }
   Frame made;
   made.npy = npy::encode(samples);
+  std::shared_ptr<const npy::Table> ids;
   if (truth_ != nullptr) {
-    made.bodies_npy = npy::encode(truth_->table(samples.rows, samples.columns, bodies));
+    ids = std::make_shared<const npy::Table>(truth_->table(samples.rows, samples.columns, bodies));
+    made.bodies_npy = npy::encode(*ids);
+  }
+  if (options_.clean_pictures) {
+    made.draw_clean = [this, kept = std::make_shared<const npy::Table>(std::move(samples)), ids, frame] {
+      return clean_pictures(frame, *kept, ids.get());
+    };
   }
   made.sidecar = sidecar(frame);
   made.draw = [this, lines, frame] {
@@ -109,9 +122,54 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   return made;
 }
 
+std::vector<CleanPicture> SweepFrames::clean_pictures(int frame, const npy::Table& samples,
+                                                      const npy::Table* bodies) const {
+  const CleanNames names(name(frame));
+  const auto lines_of = [&](const cv::Mat& columns) {
+    std::vector<picture::SweepLine> lines;
+    for (int column = 0; column < columns.cols; ++column) {
+      const cv::Mat line = columns.col(column).clone();
+      lines.push_back({picture::turn_bearing(survey_->job(first_line(frame) + column).bearing_rad),
+                       std::vector<std::uint8_t>(line.begin<std::uint8_t>(), line.end<std::uint8_t>())});
+    }
+    return lines;
+  };
+  const cv::Mat grey = eight_bit_matrix(samples);
+  std::vector<CleanPicture> pictures{{names.grey, grey},
+                                     {names.fan, clean_picture_->project(lines_of(grey)).samples}};
+  if (bodies != nullptr) {
+    const cv::Mat ids = mask_matrix(*bodies);
+    pictures.push_back({names.grey_mask, ids});
+    pictures.push_back(
+        {names.fan_mask, clean_picture_->project(lines_of(ids), picture::Resampling::nearest).samples});
+  }
+  return pictures;
+}
+
+std::vector<PingSent> SweepFrames::pings(int frame, std::string_view npy) const {
+  const int first = first_line(frame);
+  const int columns = first_line(frame + 1) - first;
+  const Result<npy::Table, std::string> samples = npy::parse(npy);
+  if (!samples || samples->rows != bins_ || samples->columns != columns || samples->u8.empty()) {
+    return {};
+  }
+  std::vector<PingSent> sent;
+  for (int column = 0; column < columns; ++column) {
+    std::vector<std::uint8_t> line;
+    for (std::size_t at = static_cast<std::size_t>(column); at < samples->u8.size();
+         at += static_cast<std::size_t>(columns)) {
+      line.push_back(samples->u8[at]);
+    }
+    const std::int64_t time_ns = times_.at(first + column);
+    sent.push_back(sent_ping(survey_->record(first + column, std::move(line)), trajectory_.unix_ns(time_ns),
+                             trajectory_.T_world_vehicle(time_ns), head_));
+  }
+  return sent;
+}
+
 Json SweepFrames::settings_json() const {
   Json settings = survey_->settings_json();
-  settings["period_s"] = times_.period_ns / 1e9;
+  add_times(settings, times_, options_);
   return settings;
 }
 
@@ -134,10 +192,16 @@ std::string SweepFrames::sidecar(int frame) const {
   json["first_ping_number"] = first;
   json["stream"] = stream_;
   json["seed"] = head_.seed;
+  if (const auto& element_seed = head_.acoustics.aperture.element_seed) {
+    json["element_seed"] = *element_seed;
+  }
   if (options_.draws(frame)) {
     json["picture"] = picture_name(name(frame));
   }
   json["samples"] = samples_json(name(frame), false, {"bin", bins_}, {"line", end - first});
+  if (clean_picture_) {
+    json["clean_pictures"] = clean_json(name(frame), truth_ != nullptr, clean_picture_->geometry());
+  }
   json["geometry"] = {{"line_step_m", ping.bin_m()},
                       {"range_m", ping.range_m()},
                       {"sound_speed_mps", ping.sound_speed_mps},

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ class SweepFrames final : public FrameSource {
   }
   double period_s() const override { return times_.period_ns / 1e9; }
   nlohmann::ordered_json settings_json() const override;
+  std::vector<PingSent> pings(int frame, std::string_view npy) const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(first_line(frame))); }
 
   /// What the renderer is asked for, by the number of the line since the beginning.
@@ -43,6 +45,8 @@ class SweepFrames final : public FrameSource {
   int first_line(int frame) const { return first_lines_[static_cast<std::size_t>(frame)]; }
 
  private:
+  std::vector<CleanPicture> clean_pictures(int frame, const npy::Table& samples,
+                                           const npy::Table* bodies) const;
   std::string sidecar(int frame) const;
 
   const HeadConfig& head_;
@@ -55,6 +59,7 @@ class SweepFrames final : public FrameSource {
   int bins_;
   BodyTruth* truth_;
   picture::SweepImage picture_;
+  std::optional<picture::SweepImage> clean_picture_;  ///< without labels, where those are asked for
 };
 
 }  // namespace sonard::server

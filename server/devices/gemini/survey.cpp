@@ -19,6 +19,7 @@ namespace {
 
 gemini::PingSettings client_settings(const SurveyOptions& options) {
   const OptionsOf taken("Gemini");
+  taken.refuse("--frequency", options.frequency.has_value());
   taken.refuse("--bins", options.bins.has_value());
   taken.refuse("--step", options.step_deg.has_value());
   taken.refuse("--sector", !options.sector_deg.empty());
@@ -75,7 +76,7 @@ class GeminiSurvey final : public Survey {
             {"native_lines", plan_.job.native_bins}};
   }
 
-  std::optional<PingRecord> record(int ping, std::vector<std::uint8_t> samples) const override {
+  PingRecord record(int ping, std::vector<std::uint8_t> samples) const override {
     PingRecord record = gemini::record_of(plan_.head, {static_cast<std::uint64_t>(ping), {}, {}});
     record.number = static_cast<std::uint64_t>(ping);
     record.settings.gain_percent = plan_.job.gain_percent;

@@ -9,6 +9,7 @@
 
 #include "protocol/micron/line_job.hpp"
 #include "protocol/micron/line_timing.hpp"
+#include "protocol/micron/recorded_form.hpp"
 #include "protocol/micron/scan_settings.hpp"
 #include "protocol/micron/sweep.hpp"
 #include "protocol/micron/units.hpp"
@@ -23,6 +24,7 @@ constexpr double unit_rad = 2.0 * std::numbers::pi / micron::units_per_turn;
 
 micron::ScanSettings scan_settings(const SurveyOptions& options) {
   const OptionsOf taken("Micron");
+  taken.refuse("--frequency", options.frequency.has_value());
   taken.refuse("--compression", options.compression_log2.has_value());
   taken.refuse("--bits", options.bits.has_value());
   micron::ScanSettings settings;
@@ -127,6 +129,12 @@ class MicronSurvey final : public Survey {
             {"bins", asked_.bins},
             {"step_deg", asked_.step * micron::step_unit_deg},
             {"sector_deg", sector}};
+  }
+
+  PingRecord record(int ping, std::vector<std::uint8_t> samples) const override {
+    PingRecord record = Survey::record(ping, std::move(samples));
+    record.settings.frequency_hz = micron::carrier_hz;
+    return record;
   }
 
  private:

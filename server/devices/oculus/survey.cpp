@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -15,8 +16,7 @@
 namespace sonard::server {
 namespace {
 
-/// At the low frequency, with 512 beams and linear samples,
-/// as of other heads.
+/// With 512 beams and linear samples, as of other heads.
 oculus::SimpleFire fire_of(const SurveyOptions& options, const oculus::Model& model) {
   const OptionsOf taken("Oculus");
   taken.refuse("--compression", options.compression_log2.has_value());
@@ -24,14 +24,16 @@ oculus::SimpleFire fire_of(const SurveyOptions& options, const oculus::Model& mo
   taken.refuse("--step", options.step_deg.has_value());
   taken.refuse("--sector", !options.sector_deg.empty());
   oculus::SimpleFire fire;
-  fire.fire.master_mode = 1;
+  const bool high = options.frequency == "high";
+  const oculus::Mode& mode = model.modes[high ? 1 : 0];
+  fire.fire.master_mode = high ? 2 : 1;
   fire.fire.ping_rate = 2;
   fire.fire.gamma = 255;
   fire.fire.flags =
       oculus::fire_flags::range_in_metres | oculus::fire_flags::simple_result | oculus::fire_flags::beams_512;
-  fire.fire.range = 20.0;
+  fire.fire.range = std::min(20.0, mode.most_range_m);
   fire.fire.sound_speed_mps = 1500.0;
-  taken.take("--range", options.range_m, oculus::least_range_m, model.modes[0].most_range_m, fire.fire.range);
+  taken.take("--range", options.range_m, oculus::least_range_m, mode.most_range_m, fire.fire.range);
   taken.take("--gain", options.gain_percent, 0.0, 100.0, fire.fire.gain_percent);
   taken.take("--sound-speed", options.sound_speed_mps, 1400.0, 1600.0, fire.fire.sound_speed_mps);
   if (options.bits == 16) {
@@ -77,6 +79,12 @@ class OculusSurvey final : public Survey {
             {"beams", plan_.result.beams},
             {"bits", plan_.result.data_size == oculus::DataSize::bits_8 ? 8 : 16},
             {"bins", plan_.result.ranges}};
+  }
+
+  PingRecord record(int ping, std::vector<std::uint8_t> samples) const override {
+    PingRecord record = Survey::record(ping, std::move(samples));
+    record.settings.frequency_hz = plan_.result.frequency_hz;
+    return record;
   }
 
  private:

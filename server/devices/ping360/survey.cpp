@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/ping360/make_job.hpp"
+#include "protocol/ping360/recorded_form.hpp"
 #include "protocol/ping360/sweep.hpp"
 #include "protocol/ping360/units.hpp"
 #include "protocol/ping360/usual_scan.hpp"
@@ -59,6 +60,7 @@ void take_sector(const std::vector<double>& sector_deg, int ahead, Asked& asked)
 
 Asked asked_of(const SurveyOptions& options, const ping360::DeviceConfig& device) {
   const OptionsOf taken("Ping360");
+  taken.refuse("--frequency", options.frequency.has_value());
   taken.refuse("--compression", options.compression_log2.has_value());
   taken.refuse("--bits", options.bits.has_value());
   Asked asked;
@@ -155,6 +157,14 @@ class Ping360Survey final : public Survey {
       settings["sector_deg"] = {degrees(asked_.scan.start_angle), degrees(asked_.scan.stop_angle)};
     }
     return settings;
+  }
+
+  PingRecord record(int ping, std::vector<std::uint8_t> samples) const override {
+    const ping360::PingForm form = ping360::form_of(asked_.scan, angles_.at(static_cast<std::size_t>(ping)));
+    PingRecord record = Survey::record(ping, std::move(samples));
+    record.settings.frequency_hz = 1e3 * asked_.scan.transmit_frequency_khz;
+    record.wire = ping360::recorded_wire(form, device_.id);
+    return record;
   }
 
  private:

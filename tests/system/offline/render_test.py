@@ -20,6 +20,7 @@ import time
 import unittest
 import uuid
 import zipfile
+import zlib
 
 import numpy
 
@@ -230,6 +231,118 @@ class Files(Case):
                 seen |= {round(range_m, 1) for range_m in ahead[:1]}
             self.assertEqual(seen, expected)
 
+    def test_clean_pictures_have_the_bearing_and_range_that_the_json_says(self):
+        """The sphere at (3, 2, 0), in the fan and its mask, by apex and scale alone; of both kinds of head."""
+        for head, stem, more in (("bow", "ping_000000", []), ("mast", "scan_000000", ["--rate", "300", "--bins", "200"])):
+            out = self.path(head)
+            render(self.config(), "--trajectory", self.way(1.0), "--out", out, "--head", head, "--range", "6", "--truth",
+                   "--clean-png", "--picture-every", "0", *(more or ["--rate", "1"]))
+            clean = self.sidecar(out, stem)["clean_pictures"]
+            samples = numpy.load(os.path.join(out, stem + ".npy"))
+            ids = numpy.load(os.path.join(out, stem + "_bodies.npy"))
+            numpy.testing.assert_array_equal(self.grey_png(out, clean["grey"]["file"]), samples)
+            numpy.testing.assert_array_equal(self.grey_png(out, clean["grey"]["mask"]), ids)
+            fan, mask = (self.grey_png(out, clean["fan"][name]) for name in ("file", "mask"))
+            self.assertEqual((fan.shape, mask.shape), 2 * (tuple(reversed(clean["fan"]["size_px"])),))
+            self.assertEqual(set(mask.flat), {0, 1})
+            y, x = numpy.nonzero(mask)
+            apex_x, apex_y = clean["fan"]["apex_px"]
+            ranges_m = numpy.hypot(x - apex_x, y - apex_y) * clean["fan"]["metres_per_px"]
+            bearings_rad = numpy.arctan2(apex_x - x, apex_y - y)
+            centre_rad = (bearings_rad.max() + bearings_rad.min()) / 2
+            self.assertAlmostEqual(math.degrees(centre_rad), math.degrees(math.atan2(2, 3)), delta=1.5, msg=head)
+            self.assertAlmostEqual(ranges_m.min(), math.sqrt(13) - 0.5, delta=0.05, msg=head)
+            self.assertGreater(fan[mask > 0].mean(), 2 * fan[mask == 0].mean(), head)
+
+    @staticmethod
+    def grey_png(folder, name):
+        """A grey PNG of 8 bits, by the filters of RFC 2083."""
+        with open(os.path.join(folder, name), "rb") as file:
+            data = file.read()
+        assert data[:8] == PNG_MAGIC
+        at, packed = 8, b""
+        while at < len(data):
+            length, kind = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+            body = data[at + 8:at + 8 + length]
+            if kind == b"IHDR":
+                width, height = int.from_bytes(body[:4], "big"), int.from_bytes(body[4:8], "big")
+                assert body[8:10] == b"\x08\x00", "8 bits, grey"
+            elif kind == b"IDAT":
+                packed += body
+            at += 12 + length
+        rows = numpy.frombuffer(zlib.decompress(packed), numpy.uint8).reshape(height, width + 1)
+        out = numpy.zeros((height, width), numpy.int64)
+        above = numpy.zeros(width, numpy.int64)
+        for y, (kind, *line) in enumerate(rows.tolist()):
+            made = out[y]
+            if kind in (0, 2):
+                made[:] = numpy.array(line) + (above if kind == 2 else 0)
+            else:
+                left = 0
+                for k, value in enumerate(line):
+                    up, corner = int(above[k]), int(above[k - 1]) if k else 0
+                    if kind == 1:
+                        guess = left
+                    elif kind == 3:
+                        guess = (left + up) // 2
+                    else:
+                        estimate = left + up - corner
+                        guess = min((left, up, corner), key=lambda one: abs(estimate - one))
+                    left = (value + guess) & 255
+                    made[k] = left
+            made &= 255
+            above = made
+        return out.astype(numpy.uint8)
+
+    def test_log_for_foxglove(self):
+        sys.path.insert(0, os.path.join(SOURCE, "clients", "python"))
+        from sonard_client import read_log
+        arguments = [self.config(), "--trajectory", self.way(1.0, speed=0.5), "--range", "6", "--picture-every", "0", "--mcap"]
+        for head, more in (("bow", ["--rate", "4", "--compression", "2"]),
+                           ("mast", ["--head", "mast", "--rate", "300", "--bins", "200"])):
+            out = self.path(head)
+            render(*arguments, *more, "--out", out)
+            log = os.path.join(out, "log_1980-01-01-000000.mcap")
+            with open(log, "rb") as file:
+                content = file.read()
+            for topic in ("picture", "echoes", "transform"):
+                self.assertIn(f"/{head}/{topic}".encode(), content)
+            self.assertIn(b"foxglove.CompressedImage", content)
+            pings = list(read_log(log))
+            if head == "bow":
+                self.assertEqual(len(pings), 5)
+                for k, ping in enumerate(pings):
+                    numpy.testing.assert_array_equal(ping.samples, numpy.load(os.path.join(out, f"ping_{k:06}.npy")))
+                    self.assertAlmostEqual(ping.sonar_position_m[0], 0.5 * k / 4)
+                    self.assertEqual(ping.time_ns, 315_532_800_000_000_000 + k * 250_000_000)
+            else:
+                samples = numpy.load(os.path.join(out, "scan_000000.npy"))
+                self.assertEqual(len(pings), samples.shape[1])
+                for k, bearing_rad in enumerate(self.sidecar(out, "scan_000000")["geometry"]["bearings_rad"]):
+                    numpy.testing.assert_array_equal(pings[k].samples.ravel(), samples[:, k])
+                    self.assertAlmostEqual(float(pings[k].bearings_rad[0]), bearing_rad)
+            before = sums(out)
+            os.unlink(log)
+            render(*arguments, *more, "--out", out)
+            self.assertEqual(sums(out), before, "of the frames that are there, the same bytes")
+
+    def test_the_narrow_fan_of_an_oculus(self):
+        """docs/protocols/oculus.md: an M750d has 130 degrees at 750 kHz and 70 degrees at 1.2 MHz."""
+        config = os.path.join(SOURCE, "configs", "demo-oculus.yaml")
+        way = self.write("way.csv", CSV_HEADER + "0,-2,-12,-25.6,0,0,0.64,0.77\n")
+        for frequency, width_deg, hertz in ((None, 130, 750e3), ("low", 130, 750e3), ("high", 70, 1.2e6)):
+            out = self.path(str(frequency))
+            render(config, "--trajectory", way, "--out", out, "--picture-every", "0", "--range", "5",
+                   *(["--frequency", frequency] if frequency else []))
+            sidecar = self.sidecar(out, "ping_000000")
+            bearings = sidecar["geometry"]["bearings_rad"]
+            self.assertAlmostEqual(math.degrees(bearings[0] - bearings[-1]), width_deg, delta=1.0)
+            self.assertEqual(sidecar["settings"]["frequency_hz"], hertz)
+        refused = render(self.config(), "--trajectory", self.way(1.0), "--out", self.path("out"), "--frequency", "high",
+                         check=False)
+        self.assertEqual(refused.returncode, 64)
+        self.assertIn("--frequency: means nothing to a Gemini", refused.stderr)
+
     def test_sweeps_of_a_micron(self):
         out = self.path("out")
         render(self.config(), "--trajectory", self.way(2.0, speed=0.5), "--out", out, "--head", "mast", "--rate", "150",
@@ -249,6 +362,98 @@ class Files(Case):
         self.assertAlmostEqual(math.degrees(bearings[brightest]), 33.7, delta=6.0)
         last = self.sidecar(out, "scan_000005")
         self.assertAlmostEqual(last["T_world_vehicle"][-1]["position_m"][0], 0.5 * last["stamps_s"][-1])
+
+
+class Stills(Case):
+    """Poses around the sphere at (3, 2, 0), each heading about towards it, in no order that a vehicle could follow."""
+
+    POSES = 11
+
+    def random_way(self, step_s=1.0):
+        seeded = random.Random(46)
+        self.poses, lines = [], [CSV_HEADER]
+        for k in range(self.POSES):
+            side = seeded.uniform(-math.pi, math.pi)
+            x, y = 3 + 4 * math.cos(side), 2 + 4 * math.sin(side)
+            heading = side + math.pi + seeded.uniform(-0.6, 0.6)
+            self.poses.append((x, y, heading))
+            lines.append(f"{k * step_s},{x},{y},0,0,0,{math.sin(heading / 2)},{math.cos(heading / 2)}\n")
+        return self.write("random.csv", "".join(lines))
+
+    def expect_sphere_where_it_is(self, out):
+        """Image and mask against the bearing of the sphere from the pose."""
+        for k, (x, y, heading) in enumerate(self.poses):
+            name = f"ping_{k:06}"
+            bearings = numpy.array(self.sidecar(out, name)["geometry"]["bearings_rad"])
+            expected = math.remainder(math.atan2(2 - y, 3 - x) - heading, 2 * math.pi)
+            columns = numpy.load(os.path.join(out, name + "_bodies.npy")).any(axis=0).nonzero()[0]
+            middle = (bearings[columns[0]] + bearings[columns[-1]]) / 2
+            self.assertAlmostEqual(math.degrees(middle), math.degrees(expected), delta=0.5, msg=f"mask of {name}")
+            brightest = numpy.load(os.path.join(out, name + ".npy")).astype(float).sum(axis=0).argmax()
+            self.assertAlmostEqual(math.degrees(bearings[brightest]), math.degrees(expected), delta=1.0, msg=f"image of {name}")
+
+    def config_without_noise(self):
+        return self.write("config.yaml", CONFIG.format(world=SPHERE, dump=self.path("dump")).replace(
+            "    dump:\n", "    acoustics:\n      physical: {speckle: off, noise: false, texture_nu: 0, "
+            "water_clutter: {density_per_m3: 0}}\n    dump:\n", 1))
+
+    def render(self, out, *more):
+        return render(self.config_without_noise(), "--trajectory", self.random_way(), "--out", out, "--range", "12", "--truth",
+                      "--picture-every", "0", "--compression", "1", *more)
+
+    def test_each_pose_is_a_frame_at_rest(self):
+        out = self.path("out")
+        done = self.render(out, "--still")
+        self.assertEqual(done.stdout, f"{out}: {self.POSES} frames\n")
+        self.assertNotIn("no vehicle", done.stderr)
+        self.expect_sphere_where_it_is(out)
+        sidecar = self.sidecar(out, "ping_000003")
+        self.assertEqual(sidecar["T_world_sonar_at_end"], sidecar["T_world_sonar"])
+        self.assertEqual(sidecar["stamp_s"], 3.0)
+
+    def test_poses_that_no_vehicle_follows_are_taken_for_stills(self):
+        out = self.path("out")
+        done = self.render(out, "--rate", "1")
+        self.assertEqual(done.stdout, f"{out}: {self.POSES} frames\n")
+        self.assertRegex(done.stderr, r"random.csv: no vehicle moves like this \(from t=[0-9] to t=[0-9]: [0-9.]+ m/s, [0-9.]+ deg/s\)"
+                                      r".*--still.*--no-still")
+        self.expect_sphere_where_it_is(out)
+
+    def test_the_mask_follows_the_motion_where_there_is_some(self):
+        """At 150 degrees per second the sonar turns by 1.2 degrees until the near side of the sphere, at 6.0 m, answers."""
+        rate = math.radians(150)
+        way = self.write("turn.csv", CSV_HEADER + "".join(
+            f"{t},-3.4,2,0,0,0,{math.sin(rate * (t - 1) / 2)},{math.cos(rate * (t - 1) / 2)}\n" for t in (0.5, 1.0, 1.5)))
+        middles = {}
+        for name, more in (("moving", []), ("still", ["--still"])):
+            out = self.path(name)
+            done = render(self.config_without_noise(), "--trajectory", way, "--out", out, "--range", "12", "--truth",
+                          "--picture-every", "0", "--compression", "1", "--rate", "2", *more)
+            self.assertNotIn("no vehicle", done.stderr)
+            bearings = numpy.array(self.sidecar(out, "ping_000001")["geometry"]["bearings_rad"])
+            columns = numpy.load(os.path.join(out, "ping_000001_bodies.npy")).any(axis=0).nonzero()[0]
+            image = numpy.load(os.path.join(out, "ping_000001.npy")).astype(float).sum(axis=0)
+            middles[name] = (math.degrees(bearings[columns[0]] + bearings[columns[-1]]) / 2,
+                             math.degrees(bearings[image.argmax()]))
+        turned = 150 * 2 * 5.9 / 1500
+        self.assertAlmostEqual(middles["still"][0], 0, delta=0.3)
+        self.assertAlmostEqual(middles["moving"][0], -turned, delta=0.4)
+        self.assertAlmostEqual(middles["moving"][1], -turned, delta=0.9)
+
+    def test_a_jump_in_a_way_is_at_rest_and_the_rest_moves(self):
+        way = self.write("jump.csv", CSV_HEADER + "".join(
+            f"{t},{x},0,0,0,0,0,1\n" for t, x in [(k, 0.1 * k) for k in range(8)] + [(8, 900.0)]))
+        out = self.path("out")
+        done = render(self.config(), "--trajectory", way, "--out", out, "--range", "6", "--rate", "1", "--compression", "4",
+                      "--picture-every", "0")
+        self.assertRegex(done.stderr, r"jump.csv: 1 of 8 steps are jumps that no vehicle makes \(from t=7 to t=8: 899 m/s, 0 deg/s\)")
+        for k, rests in ((6, False), (7, True)):
+            sidecar = self.sidecar(out, f"ping_{k:06}")
+            self.assertEqual(sidecar["T_world_sonar_at_end"] == sidecar["T_world_sonar"], rests, k)
+        moving = self.path("moving")
+        render(self.config(), "--trajectory", way, "--out", moving, "--range", "6", "--rate", "1", "--compression", "4",
+               "--picture-every", "0", "--no-still")
+        self.assertGreater(self.sidecar(moving, "ping_000007")["T_world_sonar_at_end"]["position_m"][0], 1.0)
 
 
 class Bytes(Case):
@@ -347,6 +552,26 @@ class Bytes(Case):
         self.assertEqual(self.sidecar(self.path("2"), "ping_000000")["seed"], 2)
         refused = render(*arguments, "--out", self.path("2"), "--seed", "3", check=False)
         self.assertEqual(refused.returncode, 5, "the folder is another run's: " + refused.stderr)
+
+    def test_elements_have_a_seed_of_their_own(self):
+        """Without noise an image follows from the array: as equal as the seeds of the elements."""
+        quiet = self.write("quiet.yaml", CONFIG.format(world=SPHERE, dump=self.path("dump")).replace(
+            "    dump:\n", "    acoustics:\n      element_amplitude_sd: 0.3\n      physical: {speckle: off, noise: false, "
+            "texture_nu: 0, water_clutter: {density_per_m3: 0}}\n    dump:\n", 1))
+        def one(config, name, *seeds):
+            render(config, "--trajectory", self.way(0.02), "--rate", "1", "--bits", "16", "--compression", "4", "--picture-every",
+                   "0", "--range", "6", "--out", self.path(name), *seeds)
+            return numpy.load(self.path(name, "ping_000000.npy"))
+        first = one(quiet, "a", "--seed", "1", "--element-seed", "9")
+        numpy.testing.assert_array_equal(one(quiet, "b", "--seed", "2", "--element-seed", "9"), first)
+        self.assertTrue((one(quiet, "c", "--seed", "1", "--element-seed", "8") != first).any())
+        self.assertTrue((one(quiet, "d", "--seed", "1") != first).any())
+        self.assertEqual(self.sidecar(self.path("b"), "ping_000000")["element_seed"], 9)
+        with open(quiet) as file:
+            by_key = self.write("by_key.yaml", file.read().replace("acoustics:\n", "acoustics:\n      element_seed: 9\n", 1))
+        numpy.testing.assert_array_equal(one(by_key, "e", "--seed", "3"), first)
+        noisy = one(self.config(), "f", "--seed", "1", "--element-seed", "9")
+        self.assertTrue((one(self.config(), "g", "--seed", "2", "--element-seed", "9") != noisy).any())
 
     def test_a_body_moves_along_a_file(self):
         """The sphere 5 m to port goes away: it is in the first ping, and in none when it is 1 km off."""

@@ -69,6 +69,34 @@ INSTANTIATE_TEST_SUITE_P(Cells, BrightCell,
                                          std::pair{300, 127}, std::pair{300, 128}, std::pair{480, 191},
                                          std::pair{250, 100}, std::pair{450, 254}, std::pair{450, 255}));
 
+// Labels are not mixed, and lie where the samples do, also where lines are finer than pixels.
+TEST(FanImage, LabelsAreTakenFromTheNearestSample) {
+  for (const int pixels : {radius_px, lines / 5}) {
+    const FanImage image(shape(), {.radius_px = pixels, .grid = false});
+    cv::Mat labels = cv::Mat::zeros(lines, beams, CV_8UC1);
+    labels(cv::Rect(180, 200, 20, 100)).setTo(3);
+    labels(cv::Rect(200, 200, 20, 100)).setTo(7);
+    const cv::Mat fan = image.project(labels, Resampling::nearest);
+    EXPECT_EQ(std::set<uchar>(fan.begin<uchar>(), fan.end<uchar>()), (std::set<uchar>{0, 3, 7}));
+    // Beams 180 to 199, lines 200 to 299 are an even sector of 8 to 12 m.
+    double bearing_rad = 0, range_m = 0;
+    int count = 0;
+    for (int y = 0; y < fan.rows; ++y) {
+      for (int x = 0; x < fan.cols; ++x) {
+        if (fan.at<uchar>(y, x) == 3) {
+          bearing_rad += image.geometry().bearing_at({static_cast<double>(x), static_cast<double>(y)});
+          range_m += image.geometry().range_at({static_cast<double>(x), static_cast<double>(y)});
+          ++count;
+        }
+      }
+    }
+    const double middle_rad = (std::asin(sine_of_beam(180)) + std::asin(sine_of_beam(199))) / 2;
+    EXPECT_NEAR(bearing_rad / count, middle_rad, 0.01) << pixels;
+    EXPECT_NEAR(range_m / count, 2.0 / 3 * (12.0 * 12 * 12 - 8 * 8 * 8) / (12.0 * 12 - 8 * 8), 0.1)
+        << "of an annulus";
+  }
+}
+
 TEST(FanImage, PortIsOnTheLeft) {
   const FanImage fan(shape(), {.radius_px = 400, .grid = false});
   const cv::Mat image = fan.project(one_cell(400, 20));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -44,6 +45,21 @@ SweepLine one_bin(int bearing, int bin) {
 cv::Point2d centre_of_mass(const cv::Mat& image) {
   const cv::Moments moments = cv::moments(image);
   return {moments.m10 / moments.m00, moments.m01 / moments.m00};
+}
+
+TEST(SweepImage, LabelsAreTakenFromTheNearestBin) {
+  for (const int pixels : {disc_px, bins / 4}) {
+    const SweepImage image(all_round(), {.radius_px = pixels, .grid = false});
+    SweepLine line = even_line(3200, 0);
+    std::fill(line.samples.begin() + 100, line.samples.begin() + 140, std::uint8_t{9});
+    const cv::Mat labels = image.project({line}, Resampling::nearest).samples;
+    // Straight ahead of the apex from 100 to 140 of 200 bins.
+    for (const int bin : {90, 105, 120, 135, 150}) {
+      const int value = labels.at<uchar>(pixels - bin * pixels / bins, pixels);
+      EXPECT_EQ(value, bin >= 100 && bin < 140 ? 9 : 0) << bin;
+    }
+    EXPECT_EQ(cv::countNonZero(labels), cv::countNonZero(labels == 9));
+  }
 }
 
 class BrightBin : public testing::TestWithParam<int> {};

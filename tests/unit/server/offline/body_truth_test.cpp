@@ -75,6 +75,29 @@ TEST_F(BodyTruthTest, FollowsABodyThatMovesAndLeavesOutOneWithoutParts) {
   EXPECT_EQ(at(ids, 8.0 / std::cos(moved_rad) + 0.01, -moved_rad), 1) << "nothing is before the wall there";
 }
 
+// The sonar turns to port by 0.3 rad in the time of 10 m, so by a share of that until an echo of 4 m is back:
+// the block appears that much further to starboard, as in the image.
+TEST_F(BodyTruthTest, FollowsTheMotionOfTheSonarWithinThePing) {
+  const auto mean_azimuth_rad = [&](const std::vector<std::uint16_t>& ids) {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t bin = 0; bin < ids.size(); ++bin) {
+      if (ids[bin] == 2) {
+        sum += 0.5 - (static_cast<double>(bin % 64) + 0.5) / 64;
+        ++count;
+      }
+    }
+    return sum / count;
+  };
+  BodyTruth truth(world, {});
+  const double at_rest_rad = mean_azimuth_rad(truth.bodies_in(request));
+  const double turn_rad = 0.3;
+  request.T_world_sonar_at_end = {{0, 0, 0}, {std::cos(turn_rad / 2), 0, 0, std::sin(turn_rad / 2)}};
+  const double block_m = 4.0 / std::cos(std::atan2(1.0, 4.0));
+  EXPECT_NEAR(mean_azimuth_rad(truth.bodies_in(request)),
+              at_rest_rad - turn_rad * block_m / (range_lines * step_m), 0.012);
+}
+
 TEST_F(BodyTruthTest, CompressedLinesBelongToWhatLiesInThem) {
   request.settings.range.compression_log2 = 2;
   BodyTruth truth(world, {});

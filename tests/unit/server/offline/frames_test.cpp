@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "protocol/npy/npy_file.hpp"
@@ -117,6 +118,62 @@ TEST(FanFrames, RecordsAreThoseOfTheLog) {
   EXPECT_EQ(record->gain_percent, 30);
   EXPECT_GT(record->bearings_rad.front(), 1.0);  // beam 0, to port, is positive in a log
   EXPECT_FALSE(frames.record(1, npy::encode({lines, 255, std::vector<std::uint8_t>(lines * 255U), {}})));
+}
+
+TEST(FanFrames, StillsAreOneForEachPoseUnlessARateIsGiven) {
+  const HeadConfig head = gemini_kind().make_default();
+  VehicleTrajectory trajectory = ahead(2);
+  trajectory.rest_in_all_pings();
+  OfflineOptions options;
+  options.still = true;
+  const FanFrames frames = fans_of(head, {}, trajectory, options);
+  EXPECT_EQ(frames.count(), 2);
+  EXPECT_DOUBLE_EQ(frames.request(1).T_world_sonar.position_m.x, 2.0);
+  EXPECT_EQ(frames.request(1).T_world_sonar_at_end, frames.request(1).T_world_sonar);
+  EXPECT_EQ(frames.settings_json()["still"], true);
+  EXPECT_TRUE(frames.settings_json()["period_s"].is_null());
+  options.rate_hz = 2.0;
+  EXPECT_EQ(fans_of(head, {}, trajectory, options).count(), 5);
+}
+
+// 200 lines of 1.8 degrees from each of the two poses.
+TEST(SweepFrames, StillsAreAWholeTurnFromEachPose) {
+  const HeadConfig head = micron_kind().make_default();
+  VehicleTrajectory trajectory = ahead(2);
+  trajectory.rest_in_all_pings();
+  OfflineOptions options;
+  options.still = true;
+  const SweepFrames frames = sweeps_of(head, trajectory, options);
+  EXPECT_EQ(frames.count(), 2);
+  EXPECT_EQ(frames.first_line(1), 200);
+  EXPECT_EQ(frames.first_line(2), 400);
+  for (const int line : {0, 1, 199}) {
+    EXPECT_EQ(frames.request(line).T_world_sonar.position_m, glm::dvec3(0.0)) << line;
+    EXPECT_EQ(frames.request(200 + line).T_world_sonar.position_m, glm::dvec3(2, 0, 0)) << line;
+  }
+  EXPECT_EQ(frames.unix_ns(1) - frames.unix_ns(0), 2 * ns_per_s);
+}
+
+TEST(SweepFrames, LinesOfALogHaveTheirBearingsTimesAndPoses) {
+  const HeadConfig head = micron_kind().make_default();
+  const VehicleTrajectory trajectory = ahead(10);
+  OfflineOptions options;
+  options.rate_hz = 50.0;
+  const SweepFrames frames = sweeps_of(head, trajectory, options);
+  const int bins = frames.settings_json()["bins"];
+  npy::Table samples{bins, 200, std::vector<std::uint8_t>(static_cast<std::size_t>(bins) * 200U), {}};
+  samples.u8[7 * 200 + 50] = 99;
+  const std::vector<PingSent> pings = frames.pings(1, npy::encode(samples));
+  ASSERT_EQ(pings.size(), 200U);
+  const PingSent& line = pings[50];  // 250 of all
+  EXPECT_EQ(line.ping.number, 250U);
+  EXPECT_EQ(line.ping.samples[7], 99);
+  EXPECT_NEAR(line.ping.bearings_rad.front(), std::numbers::pi / 2, 1e-12);
+  EXPECT_EQ(line.ping.transmit_time.count(), frames.unix_ns(0) + 5 * ns_per_s);
+  EXPECT_DOUBLE_EQ(line.poses->T_world_vehicle.position_m.x, 5.0);
+  EXPECT_TRUE(
+      frames.pings(1, npy::encode({bins, 1, std::vector<std::uint8_t>(static_cast<std::size_t>(bins)), {}}))
+          .empty());
 }
 
 TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {

@@ -38,6 +38,35 @@ TEST(VehicleTrajectory, GoesStraightFromPointToPointAndRestsBeyond) {
   EXPECT_EQ(trajectory.T_world_vehicle(9 * second_ns).position_m, glm::dvec3(4, 0, -2));
 }
 
+TEST(PingTimes, MayBeGiven) {
+  const PingTimes times{5, 1e9, {5, 5, 9}};
+  EXPECT_EQ(times.count_until(second_ns), 3);
+  EXPECT_EQ(times.at(1), 5);
+  EXPECT_EQ(times.at(2), 9);
+}
+
+// Points at 0, 1, 2 and 3 s, and a ping that listens for a tenth of a second.
+TEST(VehicleTrajectory, RestsInPingsThatFallIntoAGivenStep) {
+  std::vector<pose::TrajectoryPoint> points;
+  for (int k = 0; k < 4; ++k) {
+    points.push_back({k * second_ns, {{10.0 * k, 0, 0}, {1, 0, 0, 0}}});
+  }
+  VehicleTrajectory trajectory{pose::Trajectory(points)};
+  const auto moved_m = [&](double sent_s) {
+    const auto sent_ns = static_cast<std::int64_t>(1e9 * sent_s);
+    return trajectory.T_world_vehicle_at_end(sent_ns, sent_ns + second_ns / 10).position_m.x - 10.0 * sent_s;
+  };
+  EXPECT_NEAR(moved_m(1.5), 1.0, 1e-9);
+  trajectory.rest_in({false, true, false});
+  EXPECT_NEAR(moved_m(0.5), 1.0, 1e-9);
+  EXPECT_NEAR(moved_m(0.95), 0.0, 1e-9) << "it ends in the step";
+  EXPECT_NEAR(moved_m(1.0), 0.0, 1e-9);
+  EXPECT_NEAR(moved_m(1.95), 0.0, 1e-9) << "it begins in the step";
+  EXPECT_NEAR(moved_m(2.0), 1.0, 1e-9);
+  trajectory.rest_in_all_pings();
+  EXPECT_NEAR(moved_m(0.5), 0.0, 1e-9);
+}
+
 // 1980-01-01 00:00:00 UTC is 3652 days after 1970-01-01.
 TEST(VehicleTrajectory, StampsCountFrom1980UnlessTheyAreUnixTimes) {
   constexpr std::int64_t of_1980 = 3652LL * 86'400 * second_ns;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/offline/jumps.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "renderer/pose.hpp"
+#include "server/pose/to_render.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr double independent_share = 0.25;
+
+/// The even motion from one point to the next, in the axes of the world.
+struct Step {
+  double seconds = 0.0;
+  glm::dvec3 velocity_mps{0.0};
+  glm::dvec3 turn_radps{0.0};
+
+  bool jump() const {
+    return glm::length(velocity_mps) > fastest_vehicle_mps || glm::length(turn_radps) > fastest_turn_radps;
+  }
+};
+
+Step step_between(const pose::TrajectoryPoint& from, const pose::TrajectoryPoint& to) {
+  const render::Pose a = to_render(from.T_world_vehicle);
+  const render::Pose b = to_render(to.T_world_vehicle);
+  const double seconds = 1e-9 * static_cast<double>(to.time_ns - from.time_ns);
+  glm::dquat turn = b.orientation * glm::conjugate(a.orientation);
+  if (turn.w < 0) {
+    turn = -turn;  // the shorter way
+  }
+  const glm::dvec3 axis(turn.x, turn.y, turn.z);
+  const double sine = glm::length(axis);
+  const glm::dvec3 turned_rad = sine > 0 ? axis / sine * (2.0 * std::atan2(sine, turn.w)) : glm::dvec3(0.0);
+  return {seconds, (b.position_m - a.position_m) / seconds, turned_rad / seconds};
+}
+
+/// Whether a vehicle that made one step can go on with the next.
+bool continues(const Step& before, const Step& step) {
+  if (before.seconds < shortest_compared_step_s || step.seconds < shortest_compared_step_s) {
+    return true;
+  }
+  const double between_s = (before.seconds + step.seconds) / 2.0;
+  return glm::length(step.velocity_mps - before.velocity_mps) <= most_acceleration_mps2 * between_s &&
+         glm::length(step.turn_radps - before.turn_radps) <= most_turn_acceleration_radps2 * between_s;
+}
+
+}  // namespace
+
+Jumps find_jumps(const std::vector<pose::TrajectoryPoint>& points) {
+  constexpr double degrees = 57.29577951308232;
+  Jumps jumps;
+  std::size_t broken = 0;
+  Step before;
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const Step step = step_between(points[k], points[k + 1]);
+    const bool jump = step.jump();
+    const bool breaks = jump || (k > 0 && !continues(before, step));
+    jumps.steps.push_back(jump);
+    jumps.count += jump ? 1 : 0;
+    broken += breaks ? 1 : 0;
+    if (breaks && jumps.first.empty()) {
+      jumps.first = fmt::format("from t={:g} to t={:g}: {:.3g} m/s, {:.3g} deg/s",
+                                1e-9 * static_cast<double>(points[k].time_ns),
+                                1e-9 * static_cast<double>(points[k + 1].time_ns),
+                                glm::length(step.velocity_mps), glm::length(step.turn_radps) * degrees);
+    }
+    before = step;
+  }
+  jumps.independent = broken > 0 && static_cast<double>(broken) >=
+                                        independent_share * static_cast<double>(jumps.steps.size());
+  return jumps;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/offline/mcap_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include "server/devices/device_kind.hpp"
+
+namespace sonard::server {
+namespace {
+
+constexpr const char* part_name = ".part-mcap";  // OutputFolder::remove_parts() removes it
+
+RecordingConfig foxglove_alone() {
+  RecordingConfig config;
+  config.mcap_wire_bytes = false;
+  config.mcap_foxglove = true;
+  return config;
+}
+
+}  // namespace
+
+McapFile::McapFile(const OutputFolder& folder, const std::vector<HeadConfig>& heads)
+    : folder_(folder),
+      config_(foxglove_alone()),
+      heads_(recorded_heads(heads)),
+      setting_{config_, heads_, {}, 0, ""},
+      log_(setting_) {
+  folder_.remove(part_name);  // of a run that was interrupted
+  log_.file().begin(folder_.path() / part_name);
+  check();
+}
+
+void McapFile::add(int head, const PingSent& ping) {
+  const TimePoint time = ping.ping.transmit_time;
+  log_.write({head, time, PingPosed{ping.poses}});
+  log_.write({head, time, ping});
+  log_.flush(time);
+  check();
+}
+
+void McapFile::publish(const std::string& name) {
+  log_.close();
+  check();
+  if (std::rename((folder_.path() / part_name).c_str(), (folder_.path() / name).c_str()) != 0) {
+    throw OutputError(folder_.path() / name, "cannot make it: " + std::generic_category().message(errno));
+  }
+}
+
+void McapFile::check() const {
+  if (log_.file().failed()) {
+    throw OutputError(folder_.path() / part_name, "cannot be written");
+  }
+}
+
+}  // namespace sonard::server
