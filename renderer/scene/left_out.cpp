@@ -20,7 +20,7 @@ struct ElementKind {
 };
 
 // Elements of the SDF specification. What stands inside one of these is not looked at.
-constexpr std::array<ElementKind, 19> element_kinds{{
+constexpr std::array<ElementKind, 18> element_kinds{{
     {"actor", "actors", true},
     {"road", "roads", true},
     {"population", "populations", true},
@@ -39,7 +39,6 @@ constexpr std::array<ElementKind, 19> element_kinds{{
     {"wind", "wind"},
     {"atmosphere", "atmosphere"},
     {"magnetic_field", "magnetic field"},
-    {"state", "state"},
 }};
 
 std::string described(const SdfElement& element, const std::string& path) {
@@ -59,7 +58,7 @@ void LeftOut::add_geometry(const std::string& kind, const std::string& path) {
 
 void LeftOut::add_children_of(const SdfElement& element, const std::string& path) {
   for (const auto& child : element.children) {
-    if (sonar_type(*child)) {
+    if (sonar_type(*child) || child->name == "state") {
       continue;
     }
     const auto kind = std::ranges::find(element_kinds, child->name, &ElementKind::element);

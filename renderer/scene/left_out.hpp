@@ -17,6 +17,8 @@ class LeftOut {
   void add_elements_of(const SdfElement& root);
   /// A shape of a kind that is not drawn, "polyline".
   void add_geometry(const std::string& kind, const std::string& path);
+  /// Something that no element of those above is, in the form of silent(): "models without shapes", "marks".
+  void add_silent(std::string_view what, std::string name) { add(what, false, std::move(name)); }
 
   /// "lights (2): sun, lamp": nothing that echoes.
   std::vector<std::string> silent() const { return lines(false); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/sdf_document.hpp"
 
+#include <strings.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -36,22 +38,51 @@ std::pair<int, int> version_of(std::string_view text) {
   return version;
 }
 
-/// A new child that stands where `from` does.
-SdfElement& add_child(SdfElement& parent, std::string name, const SdfElement& from) {
-  parent.children.push_back(std::make_unique<SdfElement>());
-  SdfElement& child = *parent.children.back();
-  child.name = std::move(name);
-  child.file = from.file;
-  child.line = from.line;
-  child.parent = &parent;
-  return child;
+/// A name of the file with the prefix "sonard:" if the file binds its prefix to our namespace, as XML allows.
+/// @param default_namespace whether `name` is an element's, to which xmlns="..." applies
+std::string with_own_prefix(const char* name, const tinyxml2::XMLElement& element, bool default_namespace) {
+  const std::string_view given = name;
+  const std::size_t colon = given.find(':');
+  if (colon == std::string_view::npos) {
+    return default_namespace && element.Attribute("xmlns", own_namespace) != nullptr
+               ? fmt::format("sonard:{}", given)
+               : std::string(given);
+  }
+  const std::string declaration = fmt::format("xmlns:{}", given.substr(0, colon));
+  for (const tinyxml2::XMLNode* node = &element; node != nullptr; node = node->Parent()) {
+    const auto* const around = node->ToElement();
+    const char* const bound = around == nullptr ? nullptr : around->Attribute(declaration.c_str());
+    if (bound != nullptr) {
+      return std::string_view(bound) == own_namespace ? fmt::format("sonard:{}", given.substr(colon + 1))
+                                                      : std::string(given);
+    }
+  }
+  return std::string(given);
 }
 
-/// The same with what `from` says, without its children.
-void add_copy(SdfElement& parent, const SdfElement& from) {
-  SdfElement& child = add_child(parent, from.name, from);
-  child.text = from.text;
-  child.attributes = from.attributes;
+/// The last part of a URI that names a model: "post" of "model://post/model.sdf".
+std::string model_name_in(std::string_view uri) {
+  if (const auto fuel = parse_fuel_uri(uri)) {
+    return fuel->name;
+  }
+  if (uri.ends_with(".sdf")) {
+    uri = uri.substr(0, uri.find_last_of('/'));
+  }
+  while (uri.ends_with('/')) {
+    uri.remove_suffix(1);
+  }
+  return std::string(uri.substr(uri.find_last_of('/') + 1));
+}
+
+/// Whether a model, by its name, holds nothing but a light or a sky.
+bool is_light(std::string_view model_name) {
+  constexpr std::array<std::string_view, 12> lights{
+      "sun", "sunlight", "sun_light",         "moon",        "light",      "lights",
+      "sky", "skybox",   "directional_light", "point_light", "spot_light", "ambient_light"};
+  std::string name = lower_case(model_name);
+  std::ranges::replace_if(
+      name, [](char c) { return c == ' ' || c == '-'; }, '_');
+  return std::ranges::find(lights, name) != lights.end();
 }
 
 /// Reads each file once, and copies it as often as it is included.
@@ -80,8 +111,9 @@ class SdfReader {
                                    const std::shared_ptr<const fs::path>& file, const SdfElement* parent);
   void include(const SdfElement& include, SdfElement& into);
   fs::path included_file(const SdfElement& include);
+  void do_without(const SdfElement& include, SdfElement& into, const std::string& why);
   static void override_with(const SdfElement& include, SdfElement& model);
-  static void merge(SdfElement& model, SdfElement& into);
+  static void merge(SdfElement& model, SdfElement& into, const SdfElement& include);
 
   UriResolver& resolver_;
   const MissingFiles missing_;
@@ -146,12 +178,12 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
                                  around_.front().string(), most_elements));
   }
   auto element = std::make_unique<SdfElement>();
-  element->name = from.Name();
+  element->name = with_own_prefix(from.Name(), from, parent != nullptr);
   element->parent = parent;
   element->file = file;
   element->line = from.GetLineNum();
   for (const auto* given = from.FirstAttribute(); given != nullptr; given = given->Next()) {
-    element->attributes.emplace_back(given->Name(), given->Value());
+    element->attributes.emplace_back(with_own_prefix(given->Name(), from, false), given->Value());
   }
   const bool may_include = element->name == "world" || element->name == "model" || element->name == "sdf";
   for (const auto* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
@@ -243,25 +275,59 @@ void SdfReader::include(const SdfElement& include, SdfElement& into) {
     around_.push_back(file);
     auto included = copy(*from, document.file, &into);
     around_.pop_back();
+    const bool renamed = include.child("name") != nullptr;
+    included->inclusion = std::make_shared<const Inclusion>(
+        Inclusion{include.place(), renamed ? "give it another <name>" : "give it a <name>"});
+    if (SdfElement* const pose = included->child("pose")) {
+      pose->inclusion = included->inclusion;
+    }
     override_with(include, *included);
-    const std::string* const merges = include.attribute("merge");
-    if (included->name == "world" || (merges != nullptr && (*merges == "true" || *merges == "1"))) {
-      merge(*included, into);
+    if (included->name == "world" || is_true(include.attribute("merge"))) {
+      merge(*included, into, include);
     } else {
       into.children.push_back(std::move(included));
     }
   } catch (const MissingFile& error) {
-    std::string line = fmt::format("{}: include {}", include.place(), error.what());
-    if (missing_ == MissingFiles::skip) {
-      warnings_.push_back(std::move(line));
-    } else {
-      problems_.add(std::move(line));
-    }
+    do_without(include, into, error.what());
   } catch (const WorldError& error) {
     if (elements_ > most_elements) {
       throw;
     }
     problems_.add(fmt::format("{}: include {}", include.place(), error.what()));
+  }
+}
+
+/// Leaves a light or a frame in the place of a model that is not there.
+void SdfReader::do_without(const SdfElement& include, SdfElement& into, const std::string& why) {
+  const SdfElement* const uri = include.child("uri");
+  const SdfElement* const name = include.child("name");
+  const std::string file_name = uri == nullptr ? "" : model_name_in(uri->text);
+  const std::string given_name = name == nullptr ? file_name : name->text;
+  const bool in_model = into.name == "model";
+  if (is_light(file_name)) {
+    if (!in_model) {
+      into.add_child("light", include).set_attribute("name", given_name);
+    }
+    return;
+  }
+  std::string line = fmt::format("{}: include {}", include.place(), why);
+  if (missing_ == MissingFiles::skip) {
+    warnings_.push_back(std::move(line));
+  } else {
+    problems_.add(std::move(line));
+  }
+  if (!in_model && into.name != "world") {
+    return;
+  }
+  SdfElement& stands_for_it = into.add_child("frame", include);
+  stands_for_it.is_missing = true;
+  if (!is_true(include.attribute("merge"))) {
+    stands_for_it.set_attribute("name", given_name);
+  }
+  for (const auto& child : include.children) {
+    if (child->name == "pose" || child->name == "placement_frame") {
+      stands_for_it.add_copy(*child);
+    }
   }
 }
 
@@ -275,20 +341,21 @@ void SdfReader::override_with(const SdfElement& include, SdfElement& model) {
   }
   for (const auto& child : include.children) {
     const bool replaces = child->name == "pose";
-    if (!replaces && child->name != "plugin" && !child->name.starts_with("sonard:")) {
+    const bool has_prefix = child->name.find(':') != std::string::npos;
+    if (!replaces && child->name != "plugin" && !has_prefix) {
       continue;
     }
-    if (replaces) {
-      std::erase_if(model.children, [](const auto& known) { return known->name == "pose"; });
+    if (replaces || child->name.starts_with("sonard:")) {
+      std::erase_if(model.children, [&](const auto& known) { return known->name == child->name; });
     }
-    add_copy(model, *child);
+    model.add_copy(*child);
   }
 }
 
 /// What had its place by its model's frame has it by another.
 void place_by(const std::string& frame, SdfElement& part) {
   if (part.child("pose") == nullptr) {
-    add_child(part, "pose", part);
+    part.add_child("pose", part);
   }
   SdfElement& pose = *part.child("pose");
   const std::string* const relative = pose.attribute("relative_to");
@@ -305,7 +372,9 @@ void place_by(const std::string& frame, SdfElement& part) {
 
 /// The parts of a model become parts of the one around it, and keep their places by a frame that stands for
 /// it (SDF 1.9, <include merge="true">). Parts of a world become parts of the world around it.
-void SdfReader::merge(SdfElement& model, SdfElement& into) {
+void SdfReader::merge(SdfElement& model, SdfElement& into, const SdfElement& include) {
+  const auto inclusion = std::make_shared<const Inclusion>(
+      Inclusion{include.place(), fmt::format("rename it at {}, or include without merge", model.place())});
   const std::string frame = "_merged__" + model.given_name() + "__model__";
   const SdfElement* const material = model.child("sonard:material");
   if (model.attribute("placement_frame") != nullptr) {
@@ -313,10 +382,10 @@ void SdfReader::merge(SdfElement& model, SdfElement& into) {
                                  model.given_name()));
   }
   if (model.name == "model") {
-    SdfElement& stands_for_it = add_child(into, "frame", model);
+    SdfElement& stands_for_it = into.add_child("frame", model);
     stands_for_it.set_attribute("name", frame);
     if (const SdfElement* const pose = model.child("pose")) {
-      add_copy(stands_for_it, *pose);
+      stands_for_it.add_copy(*pose).inclusion = pose->inclusion;
     }
   }
   for (auto& part : model.children) {
@@ -324,9 +393,10 @@ void SdfReader::merge(SdfElement& model, SdfElement& into) {
       continue;
     }
     if (material != nullptr && part->name == "link" && part->child(material->name) == nullptr) {
-      add_copy(*part, *material);
+      part->add_copy(*material);
     }
     part->parent = &into;
+    part->inclusion = inclusion;
     const bool has_place =
         part->name == "link" || part->name == "frame" || part->name == "model" || part->name == "joint";
     if (model.name == "model" && has_place) {
@@ -358,6 +428,23 @@ SdfElement* SdfElement::child(std::string_view child_name) {
   return const_cast<SdfElement*>(std::as_const(*this).child(child_name));
 }
 
+SdfElement& SdfElement::add_child(std::string child_name, const SdfElement& from) {
+  children.push_back(std::make_unique<SdfElement>());
+  SdfElement& added = *children.back();
+  added.name = std::move(child_name);
+  added.file = from.file;
+  added.line = from.line;
+  added.parent = this;
+  return added;
+}
+
+SdfElement& SdfElement::add_copy(const SdfElement& from) {
+  SdfElement& added = add_child(from.name, from);
+  added.text = from.text;
+  added.attributes = from.attributes;
+  return added;
+}
+
 std::string SdfElement::given_name() const {
   const std::string* const given = attribute("name");
   return given == nullptr ? std::string() : *given;
@@ -365,6 +452,10 @@ std::string SdfElement::given_name() const {
 
 std::string SdfElement::place() const {
   return fmt::format("{}:{}", file->string(), line);
+}
+
+bool is_true(const std::string* attribute) {
+  return attribute != nullptr && (strcasecmp(attribute->c_str(), "true") == 0 || *attribute == "1");
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -18,6 +18,12 @@
 
 namespace sonard::render {
 
+/// The include that put a model, or a part of one, where it stands.
+struct Inclusion {
+  std::string place;      ///< "file:line" of the <include>
+  std::string to_rename;  ///< what to do if the name is taken: "give it a <name>"
+};
+
 struct SdfElement {
   std::string name;
   std::string text;  ///< without the blanks around it
@@ -26,6 +32,10 @@ struct SdfElement {
   const SdfElement* parent = nullptr;                 ///< null: the root
   std::shared_ptr<const std::filesystem::path> file;  ///< that it stands in
   int line = 0;
+  /// Of the root of an included file, its <pose>, and what a merge brought; null: of all others.
+  std::shared_ptr<const Inclusion> inclusion;
+  /// A frame that stands for an include whose file is not there. Without a name, it stands for a merged one.
+  bool is_missing = false;
 
   /// Null where it is not given.
   const std::string* attribute(std::string_view key) const;
@@ -33,12 +43,25 @@ struct SdfElement {
   /// The first of this name; null where there is none.
   const SdfElement* child(std::string_view child_name) const;
   SdfElement* child(std::string_view child_name);
+  /// A new last child that has the place of `from`.
+  SdfElement& add_child(std::string child_name, const SdfElement& from);
+  /// A new last child with the text and the attributes of `from`, without its children.
+  SdfElement& add_copy(const SdfElement& from);
   /// Attribute "name", "" where it has none.
   std::string given_name() const;
   std::filesystem::path folder() const { return file->parent_path(); }
   /// "file:line".
   std::string place() const;
+  /// "file:line" for complaints that depend on what stands around the element: of the include that brought
+  /// it.
+  std::string place_in_scope() const { return inclusion ? inclusion->place : place(); }
 };
+
+/// The XML namespace of our own elements, whose prefix is "sonard:" in the tree, whatever it is in the file.
+inline constexpr const char* own_namespace = "https://sonard.dev/sdf";
+
+/// Whether an attribute is "true", in any case, or "1", as libsdformat has it. Null is false.
+bool is_true(const std::string* attribute);
 
 /// Text of an element without the blanks around it.
 std::string_view trimmed(std::string_view text);
@@ -66,7 +89,7 @@ class WorldProblems {
 
 /// Reads `world_file` (absolute) and all it includes. Folders of included models are added to `resolver`. An
 /// include that cannot be read, or that leads back to a file around it, is left out and goes to `problems`;
-/// one whose file is not there to `warnings`, if it may be.
+/// one whose file is not there to `warnings`, if it may be. A light that is not there is no problem.
 /// @return the element <sdf>
 /// @throws WorldError where nothing can be read: no XML, no <sdf>, more than a million elements
 std::unique_ptr<SdfElement> read_sdf(const std::filesystem::path& world_file, UriResolver& resolver,

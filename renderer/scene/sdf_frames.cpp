@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/sdf_frames.hpp"
 
-#include <strings.h>
-
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,10 +16,10 @@
 namespace sonard::render {
 namespace {
 
-/// As libsdformat has it, whatever the case.
-bool is_true(const std::string* attribute) {
-  return attribute != nullptr && (strcasecmp(attribute->c_str(), "true") == 0 || *attribute == "1");
-}
+/// Thrown by SdfFrames::find() with the name of the model.
+struct MissingModel : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// `relative_to`, which was `frame` up to SDF 1.6; "" where it is left to the rules.
 std::string_view relative_to(const SdfElement* pose) {
@@ -30,8 +31,8 @@ std::string_view relative_to(const SdfElement* pose) {
   return {};
 }
 
-/// x, y, z and roll, pitch, yaw about fixed axes, or a quaternion x, y, z, w.
-/// @throws WorldError
+}  // namespace
+
 Pose read_pose(const SdfElement* pose) {
   if (pose == nullptr || pose->text.empty()) {
     return {};
@@ -58,22 +59,29 @@ Pose read_pose(const SdfElement* pose) {
   }
 }
 
-}  // namespace
-
 const Pose& SdfFrames::T_scope(const SdfElement& element) {
   if (const auto known = known_.find(&element); known != known_.end()) {
     return known->second;
   }
   if (!open_.insert(&element).second) {
     throw WorldError(fmt::format("{}: the pose of {} '{}' is relative to itself, by way of others",
-                                 element.place(), element.name, element.given_name()));
+                                 element.place_in_scope(), element.name, element.given_name()));
   }
-  const Pose T_scope_element = worked_out(element);
-  open_.erase(&element);
-  return known_.emplace(&element, T_scope_element).first->second;
+  try {
+    const Pose T_scope_element = worked_out(element);
+    open_.erase(&element);
+    return known_.emplace(&element, T_scope_element).first->second;
+  } catch (const WorldError&) {
+    open_.erase(&element);
+    throw;
+  }
 }
 
 Pose SdfFrames::worked_out(const SdfElement& element) {
+  if (element.is_missing && element.child("placement_frame") != nullptr) {
+    throw MissingFile(fmt::format("{}: the model '{}' is not there, so its placement_frame is unknown",
+                                  element.place(), element.given_name()));
+  }
   const SdfElement& scope = *element.parent;
   const SdfElement* const pose = element.child("pose");
   std::string_view base = relative_to(pose);
@@ -104,20 +112,48 @@ Pose SdfFrames::T_model(const SdfElement& in_link) {
 }
 
 Pose SdfFrames::of_frame(const SdfElement& scope, std::string_view name, const SdfElement& named_by) {
+  try {
+    if (const auto T_scope_found = find(scope, name)) {
+      return *T_scope_found;
+    }
+  } catch (const MissingModel& missing) {
+    throw MissingFile(fmt::format("{}: frame '{}' is in {}, which is not there", named_by.place_in_scope(),
+                                  name, missing.what()));
+  }
+  throw WorldError(fmt::format("{}: there is no frame '{}' in {} '{}'", named_by.place_in_scope(), name,
+                               scope.name, scope.given_name()));
+}
+
+/// A name may hold "::" itself, so that of all its beginnings the longest comes first.
+std::optional<Pose> SdfFrames::find(const SdfElement& scope, std::string_view name) {
   if (name == "__model__" || (name == "world" && scope.name == "world")) {
-    return {};
+    return Pose{};
   }
-  const std::size_t end = name.find("::");
   const auto& names = names_in(scope);
-  const auto found = names.find(name.substr(0, end));
-  if (found == names.end() || (end != std::string_view::npos && found->second->name != "model")) {
-    throw WorldError(fmt::format("{}: there is no frame '{}' in {} '{}'", named_by.place(), name, scope.name,
-                                 scope.given_name()));
+  for (std::size_t end = name.size(); end != std::string_view::npos;
+       end = end == 0 ? std::string_view::npos : name.rfind("::", end - 1)) {
+    const auto found = names.find(name.substr(0, end));
+    if (found == names.end()) {
+      continue;
+    }
+    const SdfElement& element = *found->second;
+    if (end == name.size()) {
+      return T_scope(element);
+    }
+    if (element.is_missing) {
+      throw MissingModel(fmt::format("the model '{}'", element.given_name()));
+    }
+    if (element.name == "model") {
+      if (const auto T_model_found = find(element, name.substr(end + 2))) {
+        return T_scope(element) * *T_model_found;
+      }
+    }
   }
-  const Pose& T_scope_found = T_scope(*found->second);
-  return end == std::string_view::npos
-             ? T_scope_found
-             : T_scope_found * of_frame(*found->second, name.substr(end + 2), named_by);
+  const auto is_merged = [](const auto& child) { return child->is_missing && child->given_name().empty(); };
+  if (std::ranges::any_of(scope.children, is_merged)) {
+    throw MissingModel("a model to be merged");
+  }
+  return std::nullopt;
 }
 
 const SdfFrames::Names& SdfFrames::names_in(const SdfElement& scope) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,14 +15,19 @@
 
 namespace sonard::render {
 
+/// What a <pose> says: x, y, z and roll, pitch, yaw about fixed axes, or a quaternion x, y, z, w; at rest in
+/// the origin if `pose` is null or empty.
+/// @throws WorldError "file:line: ..."
+Pose read_pose(const SdfElement* pose);
+
 /// The scope of a name is the model or world around the element that uses it. Names are those of links,
-/// frames, joints and models there; "arm::wrist" is in the model "arm". Keeps what it has worked out: the
-/// tree must not change meanwhile.
+/// frames, joints and models there; "arm::wrist" is what has this name, as in flattened models, else "wrist"
+/// in the model "arm". Keeps what it has worked out: the tree must not change meanwhile.
 class SdfFrames {
  public:
   /// Pose of a link, frame, joint or model in its scope.
   /// @throws WorldError "file:line: ..." for a frame that is not there, poses that are relative to each
-  /// other, and numbers that are none
+  /// other, and numbers that are none; MissingFile for a frame of a model whose file is not there
   const Pose& T_scope(const SdfElement& element);
   /// Pose of a visual, collision or sensor in the model around its link. @throws WorldError likewise
   Pose T_model(const SdfElement& in_link);
@@ -30,6 +36,7 @@ class SdfFrames {
   using Names = std::map<std::string_view, const SdfElement*>;
 
   Pose of_frame(const SdfElement& scope, std::string_view name, const SdfElement& named_by);
+  std::optional<Pose> find(const SdfElement& scope, std::string_view name);
   Pose worked_out(const SdfElement& element);
   const Names& names_in(const SdfElement& scope);
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -76,7 +78,63 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
   }
 }
 
+/// Whether "sonar:material" may be meant as ours.
+bool looks_like_ours(std::string_view prefix, std::string_view name, std::string_view element) {
+  constexpr std::array<std::string_view, 2> own_names{"material", "water_surface_z"};
+  return prefix.starts_with("sonar") || prefix.starts_with("Sonar") ||
+         std::ranges::find(own_names, name) != own_names.end() || (element == "sensor" && name == "type");
+}
+
+struct LookAlike {
+  std::string line;  ///< of the first
+  std::size_t count = 0;
+};
+
+/// @param element that `name` is, or has as an attribute
+void note_look_alike(std::string_view name, const SdfElement& element, bool is_attribute,
+                     std::map<std::string, LookAlike>& found) {
+  const std::size_t colon = name.find(':');
+  if (colon == std::string_view::npos) {
+    return;
+  }
+  const std::string_view prefix = name.substr(0, colon);
+  const std::string_view local = name.substr(colon + 1);
+  if (prefix == "sonard" || prefix == "xml" || prefix == "xmlns" ||
+      !looks_like_ours(prefix, local, is_attribute ? element.name : "")) {
+    return;
+  }
+  LookAlike& kind = found[fmt::format("{} {}", is_attribute, name)];
+  if (kind.count++ == 0) {
+    kind.line = fmt::format(
+        "{}: {} is left out: its prefix is not sonard's; write {}, or declare xmlns:{}=\"{}\" in <sdf>",
+        element.place(),
+        is_attribute ? fmt::format("attribute {} of <{}>", name, element.name) : fmt::format("<{}>", name),
+        is_attribute ? fmt::format("sonard:{}", local) : fmt::format("<sonard:{}>", local), prefix,
+        own_namespace);
+  }
+}
+
+void find_look_alikes(const SdfElement& element, std::map<std::string, LookAlike>& found) {
+  note_look_alike(element.name, element, false, found);
+  for (const auto& [key, value] : element.attributes) {
+    note_look_alike(key, element, true, found);
+  }
+  for (const auto& child : element.children) {
+    find_look_alikes(*child, found);
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> look_alikes(const SdfElement& root) {
+  std::map<std::string, LookAlike> found;
+  find_look_alikes(root, found);
+  std::vector<std::string> lines;
+  for (const auto& [name, kind] : found) {
+    lines.push_back(kind.line + (kind.count > 1 ? fmt::format(" ({} times in all)", kind.count) : ""));
+  }
+  return lines;
+}
 
 void check_own_elements(const SdfElement& root, WorldProblems& problems) {
   check_own_attributes(root, problems);

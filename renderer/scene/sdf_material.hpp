@@ -16,6 +16,10 @@ namespace sonard::render {
 /// that a typing error does not become a default. Each goes to `problems`, with its place.
 void check_own_elements(const SdfElement& root, WorldProblems& problems);
 
+/// "file:line: <sonar:material> is left out: ..." for each kind of element or attribute that looks like ours
+/// and has a prefix that is not bound to our namespace, at its first place, with how often it comes.
+std::vector<std::string> look_alikes(const SdfElement& root);
+
 /// <sonard:material> directly inside `element`.
 /// @throws WorldError without a place: the caller knows what the element is called
 std::optional<AcousticMaterial> own_material(const SdfElement& element, std::vector<std::string>& warnings);

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/grouped_warnings.hpp"
 #include "renderer/scene/image_file.hpp"
 #include "renderer/scene/left_out.hpp"
 #include "renderer/scene/map_placement.hpp"
@@ -25,6 +26,7 @@
 #include "renderer/scene/sdf_elements.hpp"
 #include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/sdf_material.hpp"
+#include "renderer/scene/sdf_state.hpp"
 #include "renderer/scene/terrain.hpp"
 #include "renderer/scene/uri_resolver.hpp"
 #include "renderer/scene/world.hpp"
@@ -42,10 +44,11 @@ struct Shape {
   Pose T_body_shape;
 };
 
-bool has_visual(const SdfElement& model) {
-  return std::ranges::any_of(model.children, [](const auto& child) {
-    return (child->name == "link" && child->child("visual") != nullptr) ||
-           (child->name == "model" && has_visual(*child));
+/// @param kind "visual" or "collision"
+bool has_shape(const SdfElement& model, std::string_view kind) {
+  return std::ranges::any_of(model.children, [&](const auto& child) {
+    return (child->name == "link" && child->child(kind) != nullptr) ||
+           (child->name == "model" && has_shape(*child, kind));
   });
 }
 
@@ -124,14 +127,14 @@ class WorldBuilder {
 
   World build() {
     const std::unique_ptr<SdfElement> sdf = read_sdf(file_, resolver_, missing_, world_.warnings, problems_);
+    if (SdfElement* const world = sdf->child("world")) {
+      attempt([&] { state_.apply(*world, world_.warnings); });
+    }
     check_own_elements(*sdf, problems_);
-    for (std::string& line : unknown_elements(*sdf)) {
-      world_.warnings.push_back(std::move(line));
-    }
+    add_warnings(unknown_elements(*sdf));
+    add_warnings(look_alikes(*sdf));
     add_bodies(world_or_model(*sdf));
-    if (problems_.empty() && world_.triangle_count() == 0) {
-      problems_.add(fmt::format("{}: the world has no triangles: nothing would echo", file_.string()));
-    }
+    add_warnings(grouped_.lines());
     tell_what_may_lie();
     drop_repeated_warnings();
     if (!problems_.empty()) {
@@ -142,6 +145,10 @@ class WorldBuilder {
   }
 
  private:
+  void add_warnings(const std::vector<std::string>& lines) {
+    world_.warnings.insert(world_.warnings.end(), lines.begin(), lines.end());
+  }
+
   /// @throws WorldError
   const SdfElement& world_or_model(const SdfElement& sdf) const {
     const auto worlds =
@@ -200,13 +207,20 @@ class WorldBuilder {
   }
 
   /// What `work` throws is told of with the rest; it leaves out only itself.
+  /// @return false if it hangs on a model that is not there
   template <class Work>
-  void attempt(const Work& work) {
+  bool attempt(const Work& work) {
     try {
       work();
+    } catch (const MissingFile& error) {
+      if (missing_ == MissingFiles::skip) {
+        world_.warnings.emplace_back(error.what());
+      }
+      return false;  // the include is a problem already, if it must be there
     } catch (const WorldError& error) {
       problems_.add(error.what());
     }
+    return true;
   }
 
   /// The same, with place and path before what has none.
@@ -233,44 +247,68 @@ class WorldBuilder {
       problems_.add(fmt::format("{}: {}a {} without a name", element.place(), path.empty() ? "" : path + ": ",
                                 element.name));
     } else if (!taken.insert(name).second) {
-      problems_.add(fmt::format("{}: another {} is called '{}'", element.place(),
-                                path.empty() ? "model" : "part of " + path, name));
+      problems_.add(fmt::format("{}: another {} is called '{}': {}", element.place_in_scope(),
+                                path.empty() ? "model" : "part of " + path, name,
+                                element.inclusion ? element.inclusion->to_rename : "rename one of them"));
     }
     return name;
   }
 
   void add_body(const SdfElement& model) {
     Body body{name_of(model, "", body_names_), {}, {}};
-    attempt([&] { body.T_world_body = frames_.T_scope(model); });
-    const bool visible = has_visual(model);
-    if (!visible) {
+    if (!attempt([&] { body.T_world_body = T_world_of(model, body.name); })) {
+      return;
+    }
+    const bool visible = has_shape(model, "visual");
+    if (!visible && has_shape(model, "collision")) {
       world_.warnings.push_back(fmt::format("{}: {}: the model has no visual: its collision shapes are used",
                                             model.place(), body.name));
+    } else if (!visible) {
+      left_out_.add_silent("models without shapes", body.name);
     }
     add_model(body, model, Pose{}, body.name, visible);
     world_.bodies.push_back(std::move(body));
   }
 
+  /// Where <state> has it, else where its own <pose> does.
+  Pose T_world_of(const SdfElement& model, const std::string& name) {
+    const Pose& T_world_model = frames_.T_scope(model);
+    const Pose* const saved = state_.T_world(model);
+    if (saved == nullptr) {
+      return T_world_model;
+    }
+    constexpr double same = 1e-6;  // metres, and half of radians
+    if (glm::distance(saved->position_m, T_world_model.position_m) > same ||
+        std::abs(glm::dot(saved->orientation, T_world_model.orientation)) < 1.0 - same * same) {
+      left_out_.add_silent("poses of models for which <state> has others", name);
+    }
+    return *saved;
+  }
+
   void add_model(Body& body, const SdfElement& model, const Pose& T_body_model, const std::string& path,
                  bool visible) {
     std::set<std::string> names;
-    bool has_part = false;
     for (const auto& child : model.children) {
       if (child->name != "link" && child->name != "model") {
         continue;
       }
-      has_part = true;
       const std::string child_path = path + "::" + name_of(*child, path, names);
-      if (child->name == "model") {
-        attempt(
-            [&] { add_model(body, *child, T_body_model * frames_.T_scope(*child), child_path, visible); });
-        continue;
-      }
-      add_shapes(body, *child, visible ? "visual" : "collision", T_body_model, child_path);
-      add_sonars(body, *child, T_body_model, child_path);
-    }
-    if (!has_part) {
-      problems_.add(fmt::format("{}: {}: the model has no link", model.place(), path));
+      const Pose* const T_world_child = state_.T_world(*child);
+      attempt([&] {
+        if (child->name == "model") {
+          const Pose T_body_child = T_world_child == nullptr ? T_body_model * frames_.T_scope(*child)
+                                                             : inverse(body.T_world_body) * *T_world_child;
+          add_model(body, *child, T_body_child, child_path, visible);
+          return;
+        }
+        // The model frame as the link has it: what is in a link keeps its place there if <state> has moved
+        // it.
+        const Pose T_body_frame = T_world_child == nullptr ? T_body_model
+                                                           : inverse(body.T_world_body) * *T_world_child *
+                                                                 inverse(frames_.T_scope(*child));
+        add_shapes(body, *child, visible ? "visual" : "collision", T_body_frame, child_path);
+        add_sonars(body, *child, T_body_frame, child_path);
+      });
     }
   }
 
@@ -322,7 +360,7 @@ class WorldBuilder {
     }
     for (const MeshFilePart& part : *parts) {
       body.parts.push_back({part.mesh, shape.T_body_shape, material_of(shape, part.material_name),
-                            part.mesh->tangents.empty() ? nullptr : normal_map, part.scale});
+                            part.mesh->tangents.empty() ? nullptr : normal_map, part.scale, kind == "mesh"});
     }
   }
 
@@ -435,15 +473,19 @@ class WorldBuilder {
       std::vector<std::string> remarks;
       AcousticMaterial material =
           material_of_laser_retro(number_of(shape.element, "laser_retro", 0), remarks);
-      for (const std::string& remark : remarks) {
-        world_.warnings.push_back(fmt::format("{}: {}: {}", shape.element.place(), shape.path, remark));
+      if (!remarks.empty()) {
+        grouped_.add(
+            "laser_retro is far above the usual 0 to 2.5, so these surfaces scatter all energy; write "
+            "<sonard:material> instead",
+            shape.element.place(), fmt::format("{} ({})", text_of(shape.element, "laser_retro"), shape.path));
       }
       return material;
     }
     if (!mesh_material.empty()) {
-      world_.warnings.push_back(
-          fmt::format("{}: {}: mesh material '{}' is no acoustic material: 'default' is used",
-                      shape.element.place(), shape.path, mesh_material));
+      grouped_.add(
+          "mesh materials are no acoustic materials, so 'default' is used; write <sonard:material> into "
+          "their visuals or models",
+          shape.element.place(), fmt::format("'{}' ({})", mesh_material, shape.path));
     }
     return {};
   }
@@ -504,7 +546,9 @@ class WorldBuilder {
   const MissingFiles missing_;
   World world_;
   LeftOut left_out_;
+  GroupedWarnings grouped_;
   SdfFrames frames_;
+  SavedState state_;
   WorldProblems problems_;
   std::set<std::string> body_names_;
   std::map<std::string, std::vector<MeshFilePart>> primitives_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <sstream>
 #include <system_error>
@@ -41,6 +42,13 @@ bool lies_below(const fs::path& path, const fs::path& folder) {
   return !folder.empty() && differs == folder.end();
 }
 
+/// Not by a link that leads out of `folder`: an archive may hold some.
+std::optional<fs::path> existing_below(const fs::path& path, const fs::path& folder) {
+  const auto found = existing(path);
+  const auto around = existing(folder);
+  return found && around && lies_below(*found, *around) ? found : std::nullopt;
+}
+
 bool lies_below_any(const fs::path& path, const std::vector<fs::path>& folders) {
   return std::ranges::any_of(folders, [&](const fs::path& folder) { return lies_below(path, folder); });
 }
@@ -49,14 +57,28 @@ bool lies_below_any(const fs::path& path, const std::vector<fs::path>& folders) 
 
 std::vector<fs::path> model_folders_from_environment() {
   std::vector<fs::path> folders;
-  for (const char* variable :
-       {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
-    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): at start-up, nothing sets it
+  for (const std::string_view variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH",
+                                          "GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH", "SDF_PATH"}) {
+    const char* value = std::getenv(variable.data());  // NOLINT(concurrency-mt-unsafe): at start-up
     std::istringstream entries(value == nullptr ? "" : value);
     for (std::string entry; std::getline(entries, entry, ':');) {
-      if (!entry.empty()) {
-        folders.emplace_back(entry);
+      if (entry.empty()) {
+        continue;
       }
+      folders.emplace_back(entry);
+      if (variable == "GAZEBO_RESOURCE_PATH") {
+        for (const char* media : {"media", "Media"}) {
+          if (existing_below(fs::path(entry) / media, entry)) {
+            folders.push_back(fs::path(entry) / media);
+          }
+        }
+      }
+    }
+  }
+  // Gazebo Classic keeps the models that it downloads here.
+  if (const char* home = std::getenv("HOME")) {  // NOLINT(concurrency-mt-unsafe): at start-up
+    if (const fs::path models = fs::path(home) / ".gazebo/models"; existing(models)) {
+      folders.push_back(models);
     }
   }
   return folders;
@@ -64,15 +86,22 @@ std::vector<fs::path> model_folders_from_environment() {
 
 UriResolver::UriResolver(const fs::path& world_file, const std::vector<fs::path>& model_folders) {
   const fs::path folder = fs::absolute(world_file).parent_path();
-  std::vector<fs::path> candidates{folder, folder / "models", folder.parent_path() / "models"};
-  candidates.insert(candidates.end(), model_folders.begin(), model_folders.end());
-  for (const fs::path& candidate : candidates) {
-    if (const auto found = existing(candidate)) {
+  const auto add = [&](const std::optional<fs::path>& found) {
+    if (found) {
       roots_.push_back(*found);
       add_model_folder(*found);
     }
+  };
+  add(existing(folder));
+  add(existing_below(folder / "models", folder));
+  add(existing_below(folder.parent_path() / "models", folder.parent_path()));
+  for (const fs::path& named : model_folders) {
+    add(existing(named));
+    if (!existing(named)) {
+      absent_.push_back(named);
+    }
   }
-  if (const auto meshes = existing(folder.parent_path() / "meshes")) {
+  if (const auto meshes = existing_below(folder.parent_path() / "meshes", folder.parent_path())) {
     roots_.push_back(*meshes);
   }
 }
@@ -80,8 +109,8 @@ UriResolver::UriResolver(const fs::path& world_file, const std::vector<fs::path>
 void UriResolver::add_model_folder(const fs::path& folder) {
   const auto found = existing(folder);
   if (found && lies_below_any(*found, roots_) &&
-      std::find(model_folders_.begin(), model_folders_.end(), *found) == model_folders_.end()) {
-    model_folders_.push_back(*found);
+      std::find(search_list_.begin(), search_list_.end(), *found) == search_list_.end()) {
+    search_list_.push_back(*found);
   }
 }
 
@@ -94,20 +123,40 @@ fs::path UriResolver::resolve_model(const std::string& uri, std::string_view res
   // A model may name its neighbours: "model://NAME/../OTHER/mesh.stl".
   if (const auto named = named_.find(lower_case(rest.substr(0, end))); named != named_.end()) {
     const fs::path path = named->second / rest.substr(std::min(end + 1, rest.size()));
-    if (const auto found = existing(path)) {
-      check_place(uri, path, named->second);
-      check_place(uri, *found, named->second);
-      return *found;
+    if (existing(path)) {
+      return allowed(uri, path, named->second);
     }
   }
-  for (const fs::path& folder : model_folders_) {
-    if (const auto found = existing(folder / rest)) {
+  return search(uri, rest, search_list_);
+}
+
+fs::path UriResolver::search(const std::string& uri, std::string_view rest,
+                             const std::vector<fs::path>& folders) const {
+  std::optional<WorldError> leads_out;
+  for (const fs::path& folder : folders) {
+    try {
       check_place(uri, folder / rest, folder);
-      check_place(uri, *found, folder);
-      return *found;
+      if (existing(folder / rest)) {
+        return allowed(uri, folder / rest, folder);
+      }
+    } catch (const WorldError& error) {
+      leads_out = leads_out ? leads_out : error;
     }
   }
-  throw MissingFile(fmt::format("'{}' not found; looked in {}", uri, list(model_folders_)));
+  if (leads_out) {
+    throw WorldError(*leads_out);
+  }
+  throw MissingFile(fmt::format("'{}' not found; looked in {}{}", uri, list(folders),
+                                absent_.empty() ? "" : "; these folders do not exist: " + list(absent_)));
+}
+
+/// An existing path, canonical, if neither its name nor its links lead out of the folders.
+fs::path UriResolver::allowed(const std::string& uri, const fs::path& path,
+                              const fs::path& naming_folder) const {
+  check_place(uri, path, naming_folder);
+  const fs::path canonical = fs::canonical(path);
+  check_place(uri, canonical, naming_folder);
+  return canonical;
 }
 
 void UriResolver::check_place(const std::string& uri, const fs::path& path,
@@ -123,7 +172,7 @@ void UriResolver::check_place(const std::string& uri, const fs::path& path,
 
 fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_folder) const {
   if (uri.empty() || uri == "__default__") {
-    throw WorldError("the URI is missing");
+    throw MissingFile("the URI is missing");
   }
   const std::size_t colon = uri.find("://");
   const std::string scheme = colon == std::string::npos ? "" : uri.substr(0, colon);
@@ -141,13 +190,17 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
                     "folders of models)",
                     uri));
   }
-  const fs::path path = naming_folder / rest;  // an absolute `rest` wins
-  check_place(uri, path, naming_folder);
-  if (const auto found = existing(path)) {
-    check_place(uri, *found, naming_folder);  // where links lead
-    return *found;
+  if (fs::path(rest).is_absolute()) {
+    check_place(uri, rest, naming_folder);
+    if (!existing(rest)) {
+      throw MissingFile(fmt::format("'{}' not found", uri));
+    }
+    return allowed(uri, rest, naming_folder);
   }
-  throw MissingFile(fmt::format("'{}' not found; looked for {}", uri, path.lexically_normal().string()));
+  std::vector<fs::path> folders{naming_folder};
+  std::ranges::copy_if(search_list_, std::back_inserter(folders),
+                       [&](const fs::path& folder) { return folder != naming_folder; });
+  return search(uri, rest, folders);
 }
 
 }  // namespace sonard::render

@@ -21,22 +21,22 @@ struct MissingFile : WorldError {
 /// outside of the folders it was given: a world may come from anywhere.
 class UriResolver {
  public:
-  /// Looks for `model://NAME/...` in the folder of `world_file`, in `models/` there, beside it (`../models`),
-  /// and then in `model_folders`. Files may lie below these, and in `meshes/` beside the world's folder.
+  /// The search list is the folder of `world_file`, `models/` in it, `models/` beside it, then
+  /// `model_folders`. Files may lie below these, and in `meshes/` beside the world's folder.
   UriResolver(const std::filesystem::path& world_file,
               const std::vector<std::filesystem::path>& model_folders);
 
-  /// A folder that holds models, found while loading: `model://` is looked for there too, if it lies below
-  /// the folders that were given.
+  /// Appends a folder that holds models, found while loading, to the search list, if it lies below the
+  /// folders that were given.
   void add_model_folder(const std::filesystem::path& folder);
 
   /// `model://NAME/...` is looked for in this folder of a model, before all others.
   void name_model(const std::string& name, const std::filesystem::path& folder);
 
-  /// @param uri `model://NAME/REST`, `package://NAME/REST`, `file://PATH`, an absolute path, a path relative
-  /// to `naming_folder`, the folder of the file that names it, or a model of Fuel
-  /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), which is looked for in Gazebo's local
-  /// cache.
+  /// @param uri `model://NAME/REST` or `package://NAME/REST`, which are sought in the search list; a bare
+  /// name, a relative path or `file://` with one, which are sought in `naming_folder` (the folder of the file
+  /// that names it) and then in the search list; an absolute path; or a model of Fuel
+  /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), which is sought in Gazebo's local cache.
   /// @return an existing file or folder, canonical.
   /// @throws MissingFile saying where it was looked for; WorldError for a URI that is none, or that leads out
   /// of `naming_folder` and all folders of models. Links are followed, and where they lead counts.
@@ -49,9 +49,14 @@ class UriResolver {
 
  private:
   std::filesystem::path resolve_model(const std::string& uri, std::string_view rest) const;
+  std::filesystem::path search(const std::string& uri, std::string_view rest,
+                               const std::vector<std::filesystem::path>& folders) const;
+  std::filesystem::path allowed(const std::string& uri, const std::filesystem::path& path,
+                                const std::filesystem::path& naming_folder) const;
 
   std::vector<std::filesystem::path> roots_;  ///< files may lie below these
-  std::vector<std::filesystem::path> model_folders_;
+  std::vector<std::filesystem::path> search_list_;
+  std::vector<std::filesystem::path> absent_;  ///< folders that the caller named and that do not exist
   std::map<std::string, std::filesystem::path, std::less<>> named_;  ///< in lower case
 };
 

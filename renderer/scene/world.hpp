@@ -72,6 +72,7 @@ struct BodyPart {
   AcousticMaterial material;
   std::shared_ptr<const NormalMap> normal_map;  ///< null when the surface is smooth
   glm::dvec3 scale{1.0};                        ///< by which the mesh of a file was multiplied, for people
+  bool is_mesh_file = false;                    ///< whether it comes from a <mesh>, whose unit may be wrong
 };
 
 /// The new mesh of a part. Parts are counted through all bodies in the order of the world.
@@ -159,18 +160,19 @@ enum class MissingFiles {
   skip  ///< the world is loaded without it, and World::warnings names it
 };
 
-/// Folders of the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and
-/// SDF_PATH (colon separated), in this order.
+/// Folders of the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH,
+/// GAZEBO_RESOURCE_PATH (with `media` and `Media` in each, if they exist) and SDF_PATH (colon separated), in
+/// this order, then ~/.gazebo/models if it exists.
 std::vector<std::filesystem::path> model_folders_from_environment();
 
 /// Loads an SDF 1.x world file (or a file with a single model) and all it includes; see docs/worlds.md.
-/// Relative URIs are resolved against the folder of the file that names them; `model://NAME` is looked for in
-/// the folder of the world, in `models` there and beside it, then in `model_folders`; a model of Fuel is
-/// looked for in Gazebo's local cache. Nothing is fetched from a network. Mesh files are read in forked child
-/// processes: call this before other threads are started. `origin` takes the place of the file's
+/// Bare names and relative URIs are sought in the folder of the file that names them; these and
+/// `model://NAME` in the folder of the world, in `models` there and beside it, then in `model_folders`; a
+/// model of Fuel in Gazebo's local cache. Nothing is fetched from a network. Mesh files are read in forked
+/// child processes: call this before other threads are started. `origin` takes the place of the file's
 /// <spherical_coordinates>.
-/// @throws WorldError naming file, line and element for each missing mesh, unknown material, ...; of no
-/// triangles
+/// A world may be without triangles.
+/// @throws WorldError naming file, line and element for each missing mesh, unknown material, ...
 World load_world(const std::filesystem::path& sdf_file,
                  const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment(),
                  MissingFiles missing = MissingFiles::error,

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Worlds as the public has them (tests/data/public_worlds) load, and their bodies are where the numbers in
 // their files put them. Boxes were worked out by hand from sizes and poses there and in make_meshes.py.
+#include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -142,6 +144,91 @@ TEST_F(PublicWorlds, LraUvWithADeepTileThatIsNotThere) {
   EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("Portuguese Ledge Tile 2_3' is not in the local cache")));
   EXPECT_EQ(world.bodies.size(), 3U);
   expect_box(world, "mooring", {8.75, -2.25, -30}, {9.25, -1.75, -24});
+}
+
+/// Worlds whose models are found by what the environment names, as their readme files ask for.
+class FoundByTheEnvironment : public PublicWorlds {
+ protected:
+  FoundByTheEnvironment() {
+    setenv("GZ_SIM_RESOURCE_PATH", (folder / "shelf").c_str(), 1);
+    setenv("GAZEBO_RESOURCE_PATH", (folder / "resources").c_str(), 1);
+  }
+  ~FoundByTheEnvironment() override {
+    unsetenv("GZ_SIM_RESOURCE_PATH");
+    unsetenv("GAZEBO_RESOURCE_PATH");
+  }
+
+  static World load(const char* name, MissingFiles missing = MissingFiles::error) {
+    return load_world(folder / name, model_folders_from_environment(), missing);
+  }
+};
+
+// The bed is 4 m high from -10, in a model at -1. The hull is 0.6 m along the vehicle's x, which is the
+// world's y.
+TEST_F(FoundByTheEnvironment, BlueRov2OverABedWithANormalMap) {
+  const World world = load("bluerov2_lake.world");
+  EXPECT_THAT(world.warnings, IsEmpty());
+  const Body* const bed = world.find_body("sand_bed");
+  ASSERT_NE(bed, nullptr);
+  EXPECT_LT(glm::length(box_of(*bed).high - glm::dvec3(40, 40, -7)), 1e-6);
+  EXPECT_NEAR(box_of(*bed).low.z, -11.0, 0.05);
+  EXPECT_NE(bed->parts.at(0).normal_map, nullptr);
+  expect_box(world, "bluerov2", {4.8, -3.3, -4.1}, {5.2, -2.7, -3.8});
+}
+
+// The course is turned by 90 degrees about (20, 10): (x, y) in it is (20 - y, 10 + x) in the world. Decks are
+// 2 x 4 m; platform_b is 2 m beyond the edge of platform_a, which is 2 m from its middle; the merged one is
+// at (-6, 0).
+TEST_F(FoundByTheEnvironment, VrxCourseOfPlatformsInAModel) {
+  EXPECT_THROW(load("sydney_regatta_course.sdf"), WorldError);
+  const World world = load("sydney_regatta_course.sdf", MissingFiles::skip);
+  EXPECT_THAT(world.warnings,
+              ElementsAre(HasSubstr("mb_marker_buoy_white' is not in the local cache of Fuel")));
+  EXPECT_EQ(world.bodies.size(), 2U);
+  ASSERT_NE(world.find_body("Coast Waves"), nullptr);
+  EXPECT_TRUE(world.find_body("Coast Waves")->parts.empty());
+  EXPECT_EQ(world.find_body("course")->parts.size(), 3U);
+  expect_box(world, "course", {14, 3, 0}, {22, 15, 0.5});
+}
+
+// In the glider: the hull is 2 m long and 0.2 m thick, the fin 0.1 to 0.5 m above its end, a box 0.5 m ahead
+// of the middle, and a lamp 0.2 m to port of that. It heads west.
+TEST_F(FoundByTheEnvironment, DaveGliderOfFlattenedNames) {
+  const World world = load("dave_glider.world");
+  EXPECT_THAT(world.warnings, IsEmpty());
+  EXPECT_EQ(world.bodies.size(), 1U);
+  expect_box(world, "glider", {9, -0.25, -20.1}, {11.1, 0.1, -19.5});
+  const Body& glider = *world.find_body("glider");
+  std::vector<glm::dvec3> places;
+  for (const BodyPart& part : glider.parts) {
+    places.push_back(part.T_body_part.position_m);
+  }
+  for (const glm::dvec3& expected :
+       {glm::dvec3(0, 0, 0), glm::dvec3(-1, 0, 0.3), glm::dvec3(0.5, 0, 0.2), glm::dvec3(0.5, 0.2, 0.2)}) {
+    EXPECT_TRUE(std::any_of(places.begin(), places.end(),
+                            [&](const glm::dvec3& place) { return glm::length(place - expected) < 1e-9; }))
+        << expected.x << " " << expected.y << " " << expected.z;
+  }
+}
+
+// The quay is 20 m along y and twice 5 m high. The state has moved the anchor, turned it by 90 degrees, and
+// made it 2 m long and half a metre wide.
+TEST_F(FoundByTheEnvironment, UuvLakeThatGazeboSaved) {
+  const World world = load("uuv_lake.world");
+  EXPECT_THAT(world.warnings, IsEmpty());
+  EXPECT_LT(glm::length(box_of(*world.find_body("lake_bed")).high - glm::dvec3(30, 30, 0)), 1e-6);
+  expect_box(world, "quay", {25, -10, -5}, {25, 10, 5});
+  expect_box(world, "anchor", {11.75, -5, -8}, {12.25, -3, -7});
+}
+
+TEST_F(FoundByTheEnvironment, Orca4OverSandWithANormalMap) {
+  const World world = load("orca4_sand.sdf");
+  EXPECT_THAT(world.warnings, IsEmpty());
+  expect_box(world, "sand", {-200, -200, -9.5}, {200, 200, -9});
+  for (const BodyPart& part : world.find_body("sand")->parts) {
+    EXPECT_NE(part.normal_map, nullptr);
+  }
+  expect_box(world, "rov", {-3.3, -0.2, -0.3}, {-2.7, 0.2, 0});
 }
 
 TEST_F(PublicWorlds, WreckAsGlb) {

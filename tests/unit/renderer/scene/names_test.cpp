@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names that hold "::", places that complaints name, prefixes of XML, and warnings that come once for each
+// kind.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/scene/world.hpp"
+#include "tests/unit/renderer/scene/scene_files.hpp"
+
+namespace sonard::render {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string small_box =
+    "<visual name=\"v\"><geometry><box><size>1 1 1</size></box></geometry></visual>";
+
+std::string in_a_world(const std::string& content) {
+  return "<sdf version=\"1.9\" xmlns:sonard=\"https://sonard.dev/sdf\">\n<world name=\"w\">\n" + content +
+         "\n</world></sdf>";
+}
+
+World load_text(const std::string& content) {
+  const test::TempFolder folder;
+  return load_world(folder.write("w.sdf", in_a_world(content)), {});
+}
+
+std::vector<std::string> complaints(const std::filesystem::path& file) {
+  try {
+    load_world(file, {});
+  } catch (const WorldError& error) {
+    std::vector<std::string> lines{error.what()};
+    lines.insert(lines.end(), error.more.begin(), error.more.end());
+    return lines;
+  }
+  return {};
+}
+
+glm::dvec3 part_place(const World& world, std::size_t part) {
+  const Body& body = world.bodies.at(0);
+  return body.T_world_body * body.parts.at(part).T_body_part.position_m;
+}
+
+// A flattened model: "arm::tip" is one name. 6 + 1 m ahead of the rig, the ball 1 m to port of that.
+TEST(FlattenedNames, AreOneName) {
+  const World world = load_text(
+      "<model name=\"rig\"><link name=\"arm::tip\"><pose>6 0 0 0 0 0</pose></link><frame name=\"arm::f\" "
+      "attached_to=\"arm::tip\"><pose>1 0 0 0 0 0</pose></frame><link name=\"ball\"><pose "
+      "relative_to=\"arm::f\">0 1 0 0 0 0"
+      "</pose>" +
+      small_box + "</link></model>");
+  EXPECT_EQ(part_place(world, 0), glm::dvec3(7, 1, 0));
+}
+
+// The model "a::b" holds "c", and "a" holds "b::d" and "x::y", which is nested in a name of its own.
+TEST(FlattenedNames, MayHoldModels) {
+  const World world = load_text(
+      "<model name=\"rig\"><model name=\"a::b\"><pose>10 0 0 0 0 0</pose><link name=\"c\"><pose>1 0 0 0 0 "
+      "0</pose></link>"
+      "</model><model name=\"a\"><pose>20 0 0 0 0 0</pose><link name=\"b::d\"><pose>2 0 0 0 0 0</pose></link>"
+      "<model name=\"x::y\"><pose>0 0 3 0 0 0</pose><link name=\"l\"/></model></model>"
+      "<link name=\"p\"><pose relative_to=\"a::b::c\"/>" +
+      small_box + "</link><link name=\"q\"><pose relative_to=\"a::b::d\"/>" + small_box +
+      "</link><link name=\"r\"><pose relative_to=\"a::x::y::l\"/>" + small_box + "</link></model>");
+  EXPECT_EQ(part_place(world, 0), glm::dvec3(11, 0, 0));
+  EXPECT_EQ(part_place(world, 1), glm::dvec3(22, 0, 0)) << "not in a::b, the longest, but in a";
+  EXPECT_EQ(part_place(world, 2), glm::dvec3(20, 0, 3));
+}
+
+// The whole name comes before its parts. gz sdf -p writes "arm::__model__" for the frame of a model that it
+// flattens.
+TEST(FlattenedNames, ComeBeforeNestedOnes) {
+  const World world = load_text(
+      "<model name=\"rig\"><frame name=\"arm::__model__\"><pose>4 0 0 0 0 0</pose></frame><link "
+      "name=\"a\"><pose "
+      "relative_to=\"arm::__model__\">0 0 1 0 0 0</pose>" +
+      small_box +
+      "</link><link name=\"n::l\"><pose>5 0 0 0 0 0</pose></link><model name=\"n\"><link "
+      "name=\"l\"/></model><link name=\"b\">"
+      "<pose relative_to=\"n::l\"/>" +
+      small_box + "</link></model>");
+  EXPECT_EQ(part_place(world, 0), glm::dvec3(4, 0, 1));
+  EXPECT_EQ(part_place(world, 1), glm::dvec3(5, 0, 0));
+}
+
+TEST(FlattenedNames, AreNamedWholeIfTheyAreNotThere) {
+  const test::TempFolder folder;
+  EXPECT_THAT(
+      complaints(folder.write(
+          "w.sdf",
+          in_a_world("<model name=\"rig\"><model name=\"a::b\"><link name=\"c\"/></model>\n<link name=\"p\">"
+                     "<pose relative_to=\"a::b::e\"/>" +
+                     small_box + "</link></model>"))),
+      ElementsAre(HasSubstr("w.sdf:4: there is no frame 'a::b::e' in model 'rig'")))
+      << "and no complaint that follows from it";
+}
+
+class PlaceOfAnInclude : public testing::Test {
+ protected:
+  PlaceOfAnInclude() {
+    folder_.write("models/post/model.sdf", "<sdf version=\"1.9\"><model name=\"post\">\n<link name=\"l\">" +
+                                               small_box + "</link></model></sdf>");
+    folder_.write(
+        "models/quay_post/model.sdf",
+        "<sdf version=\"1.9\"><model name=\"quay_post\">\n<pose relative_to=\"quay\">0 0 0 0 0 0</pose>"
+        "<link name=\"l\">" +
+            small_box + "</link></model></sdf>");
+  }
+  std::vector<std::string> complaints_of(const std::string& content) const {
+    return complaints(folder_.write("w.sdf", in_a_world(content)));
+  }
+  const test::TempFolder folder_;
+};
+
+TEST_F(PlaceOfAnInclude, IsNamedForANameThatIsTaken) {
+  EXPECT_THAT(
+      complaints_of("<include><uri>model://post</uri></include>\n<include><uri>model://post</uri></include>"),
+      ElementsAre(EndsWith("w.sdf:4: another model is called 'post': give it a <name>")));
+  EXPECT_THAT(
+      complaints_of(
+          "<model name=\"a\"><link name=\"l\"/></model>\n<include><uri>post</uri><name>a</name></include>"),
+      ElementsAre(EndsWith("w.sdf:4: another model is called 'a': give it another <name>")));
+  EXPECT_THAT(complaints_of(
+                  "<model name=\"m\">\n<include><uri>post</uri></include>\n<include><uri>post</uri></include>"
+                  "</model>"),
+              ElementsAre(EndsWith("w.sdf:5: another part of m is called 'post': give it a <name>")));
+  EXPECT_THAT(
+      complaints_of(
+          "<model name=\"m\"><link name=\"l\"/>\n<include merge=\"true\"><uri>post</uri></include></model>"),
+      ElementsAre(testing::AllOf(HasSubstr("w.sdf:4: another part of m is called 'l': rename it at "),
+                                 HasSubstr("models/post/model.sdf:1, or include without merge"))));
+  EXPECT_THAT(
+      complaints_of(
+          "<model name=\"a\"><link name=\"l\"/></model>\n<model name=\"a\"><link name=\"l\"/></model>"),
+      ElementsAre(EndsWith("w.sdf:4: another model is called 'a': rename one of them")));
+}
+
+TEST_F(PlaceOfAnInclude, IsNamedForFramesAroundIt) {
+  EXPECT_THAT(complaints_of("\n<include><uri>model://quay_post</uri></include>"),
+              ElementsAre(HasSubstr("/w.sdf:4: there is no frame 'quay' in world 'w'")));
+  EXPECT_THAT(complaints_of("\n<include><uri>model://post</uri><pose relative_to=\"pier\"/></include>"),
+              ElementsAre(HasSubstr("/w.sdf:4: there is no frame 'pier' in world 'w'")));
+  EXPECT_THAT(
+      complaints_of("\n<include><uri>model://post</uri><placement_frame>top</placement_frame></include>"),
+      ElementsAre(HasSubstr("/w.sdf:4: there is no frame 'top' in model 'post'")));
+  EXPECT_THAT(
+      complaints_of(
+          "<frame name=\"quay\" attached_to=\"quay_post\"/>\n<include><uri>quay_post</uri></include>"),
+      Contains(HasSubstr("/w.sdf:4: the pose of model 'quay_post' is relative to itself")));
+}
+
+TEST_F(PlaceOfAnInclude, IsNotNamedForWhatTheModelAloneHasWrong) {
+  folder_.write("models/bad/model.sdf",
+                "<sdf version=\"1.9\"><model name=\"bad\">\n<link name=\"l\"><pose relative_to=\"nobody\"/>" +
+                    small_box + "</link></model></sdf>");
+  EXPECT_THAT(complaints_of("\n<include><uri>model://bad</uri></include>"),
+              ElementsAre(HasSubstr("models/bad/model.sdf:2: there is no frame 'nobody' in model 'bad'")));
+}
+
+std::string own(const std::string& declarations, const std::string& prefix) {
+  return "<sdf version=\"1.9\" " + declarations + "><world name=\"w\"><" + prefix + "water_surface_z>1.5</" +
+         prefix + "water_surface_z><model name=\"m\">\n<link name=\"l\">" +
+         "<visual name=\"v\"><geometry><box><size>1 1 1</size></box></geometry><" + prefix +
+         "material>mud</" + prefix + "material></visual><sensor name=\"s\" type=\"custom\" " + prefix +
+         "type=\"micron\"/></link></model></world></sdf>";
+}
+
+TEST(Prefix, IsFreeIfItIsBoundToOurNamespace) {
+  for (const auto& [declarations, prefix] :
+       {std::pair("xmlns:sonard=\"https://sonard.dev/sdf\"", "sonard:"),
+        std::pair("xmlns:sonar=\"https://sonard.dev/sdf\"", "sonar:"),
+        std::pair("xmlns:x='https://sonard.dev/sdf' xmlns:gz='http://gazebosim.org/schema'", "x:")}) {
+    const test::TempFolder folder;
+    const World world = load_world(folder.write("w.sdf", own(declarations, prefix)), {});
+    EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "mud") << prefix;
+    EXPECT_EQ(world.water_surface_z_m, 1.5) << prefix;
+    ASSERT_EQ(world.sonars.size(), 1U) << prefix;
+    EXPECT_EQ(world.sonars[0].type, "micron");
+    EXPECT_THAT(world.warnings, IsEmpty()) << prefix;
+  }
+}
+
+TEST(Prefix, MayBeBoundWhereItIsUsed) {
+  const World world = load_text(
+      "<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><box/></geometry><s:material "
+      "xmlns:s=\"https://sonard.dev/sdf\">mud</s:material></visual><visual name=\"w\"><geometry>"
+      "<box/></geometry><material xmlns=\"https://sonard.dev/sdf\">rock</material></visual></link>"
+      "</model>");
+  EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "mud");
+  EXPECT_EQ(world.bodies.at(0).parts.at(1).material.name, "rock");
+}
+
+TEST(Prefix, IsNamedIfItLooksLikeOurs) {
+  for (const auto& [declarations, prefix] :
+       {std::pair("", "sonar"), std::pair("xmlns:sonar=\"https://example.org\"", "sonar"),
+        std::pair("", "gz")}) {
+    const test::TempFolder folder;
+    const World world = load_world(folder.write("w.sdf", own(declarations, std::string(prefix) + ":")), {});
+    EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "default");
+    EXPECT_THAT(world.warnings, testing::UnorderedElementsAre(
+                                    HasSubstr("w.sdf:1: <" + std::string(prefix) +
+                                              ":water_surface_z> is left out: its prefix is not sonard's; "
+                                              "write <sonard:water_surface_z>, or declare xmlns:" +
+                                              prefix + "=\"https://sonard.dev/sdf\""),
+                                    HasSubstr("w.sdf:2: <" + std::string(prefix) + ":material> is left out"),
+                                    HasSubstr("w.sdf:2: attribute " + std::string(prefix) +
+                                              ":type of <sensor> is left out")));
+  }
+}
+
+TEST(Prefix, OfAnotherProgramIsItsOwnBusiness) {
+  const World world = load_text("<model name=\"m\"><link name=\"l\">" + small_box +
+                                "<gz:system_priority>5</gz:system_priority><drake:joint/></link></model>");
+  EXPECT_THAT(world.warnings, IsEmpty());
+}
+
+TEST(Prefix, IsSeenInAnInclude) {
+  const test::TempFolder folder;
+  folder.write(
+      "models/post/model.sdf",
+      "<sdf version=\"1.9\" xmlns:sonard=\"x\"><model name=\"post\"><sonard:material>rock</sonard:material>"
+      "<link name=\"l\">" +
+          small_box + "</link></model></sdf>");
+  const World world = load_world(
+      folder.write(
+          "w.sdf",
+          in_a_world("<include><uri>post</uri><sonard:material>mud</sonard:material></include>"
+                     "<include><uri>post</uri><name>q</name><sonar:material>mud</sonar:material></include>")),
+      {});
+  EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "mud") << "in the place of the model's own";
+  EXPECT_EQ(world.bodies.at(1).parts.at(0).material.name, "rock");
+  EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("w.sdf:3: <sonar:material> is left out")));
+}
+
+TEST(GroupedWarnings, AreOneLineForEachKind) {
+  const test::TempFolder folder;
+  folder.write("paint.mtl", "newmtl RedPaint\nKd 1 0 0\nnewmtl Blue\nKd 0 0 1\n");
+  folder.write("hull.obj",
+               "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl RedPaint\nf 1 2 3\nusemtl "
+               "Blue\nf 1 2 4\n");
+  std::string models;
+  for (int i = 0; i < 10; ++i) {
+    models +=
+        "<model name=\"m" + std::to_string(i) +
+        "\"><link name=\"l\">\n<visual name=\"v\"><geometry><mesh><uri>hull.obj"
+        "</uri></mesh></geometry></visual><visual name=\"r\"><geometry><box/></geometry><laser_retro>4000"
+        "</laser_retro></visual></link></model>";
+  }
+  const World world = load_world(folder.write("w.sdf", in_a_world(models)), {});
+  EXPECT_THAT(
+      world.warnings,
+      testing::UnorderedElementsAre(
+          testing::AllOf(HasSubstr("w.sdf:4: mesh materials are no acoustic materials, so 'default' is used"),
+                         HasSubstr("(20): "), HasSubstr("'RedPaint' (m0::l::v)"),
+                         HasSubstr("'Blue' (m0::l::v)"), EndsWith(", ...")),
+          testing::AllOf(HasSubstr("w.sdf:4: laser_retro is far above the usual 0 to 2.5"),
+                         HasSubstr("(10): "), HasSubstr("4000 (m0::l::r), 4000 (m1::l::r), "),
+                         EndsWith(", ..."))));
+}
+
+}  // namespace
+}  // namespace sonard::render
