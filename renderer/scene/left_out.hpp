@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/scene/sdf_document.hpp"
+#include "renderer/scene/sdf_tree.hpp"
 
 namespace sonard::render {
 

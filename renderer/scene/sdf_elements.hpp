@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/scene/sdf_document.hpp"
+#include "renderer/scene/sdf_tree.hpp"
 
 namespace sonard::render {
 

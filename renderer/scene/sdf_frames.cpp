@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
+#include "renderer/scene/uri_resolver.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {

@@ -11,7 +11,7 @@
 #include <unordered_set>
 
 #include "renderer/pose.hpp"
-#include "renderer/scene/sdf_document.hpp"
+#include "renderer/scene/sdf_tree.hpp"
 
 namespace sonard::render {
 

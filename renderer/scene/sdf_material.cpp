@@ -120,7 +120,9 @@ void find_look_alikes(const SdfElement& element, std::map<std::string, LookAlike
     note_look_alike(key, element, true, found);
   }
   for (const auto& child : element.children) {
-    find_look_alikes(*child, found);
+    if (element.name != "plugin") {
+      find_look_alikes(*child, found);
+    }
   }
 }
 

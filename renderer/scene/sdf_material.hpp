@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/scene/sdf_document.hpp"
+#include "renderer/scene/sdf_tree.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {

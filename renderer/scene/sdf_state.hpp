@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/pose.hpp"
-#include "renderer/scene/sdf_document.hpp"
+#include "renderer/scene/sdf_tree.hpp"
 
 namespace sonard::render {
 

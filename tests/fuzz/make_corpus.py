@@ -471,6 +471,8 @@ def sdf_worlds():
     for path in ("system/two_walls", "system/sphere_to_port", "worlds/harbour/quay/quay", "configs/broken/assets/malformed",
                  "public_worlds/nested_includes"):
         yield path.rsplit("/", 1)[1], (EXAMPLES / f"{path}.sdf").read_bytes()
+    for name in ("uuv_lake", "dave_glider"):  # a saved state, flattened names
+        yield name, (EXAMPLES / "public_worlds" / f"{name}.world").read_bytes()
 
 
 def web_connections():

@@ -126,6 +126,17 @@ TEST_F(WithoutModels, WhatStandsByAPartOfASkippedIncludeIsSkipped) {
   }
 }
 
+/// As a submodule of git that was not fetched leaves it.
+TEST_F(WithoutModels, AFolderWithoutAModelIsNotThere) {
+  folder_.write("models/buoy/README", "");
+  const World world =
+      load(post + "<include><uri>model://buoy</uri></include><include><uri>models/buoy</uri></include>");
+  EXPECT_THAT(
+      world.warnings,
+      ElementsAre(testing::ContainsRegex("include 'model://buoy': there is no file .*models/buoy/model.sdf"),
+                  HasSubstr("include 'models/buoy': there is no file ")));
+}
+
 TEST_F(WithoutModels, AMissingHeightmapTakesItsShapeAlong) {
   const World world = load(
       "<model name=\"bed\"><link name=\"l\">" + a_box +
