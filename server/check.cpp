@@ -18,6 +18,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/udp.hpp>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
@@ -118,12 +121,37 @@ std::string scale_text(const render::Body& body) {
   return "";
 }
 
-/// What the extent of a mesh says of its unit; "" where nothing is odd. A metre is the unit of SDF.
-std::string unit_hint(double longest_m) {
-  if (longest_m > 2000.0) {
-    return "is its mesh in millimetres? <scale>0.001 0.001 0.001</scale> makes metres of them";
+/// The box around the mesh files of a body, in its frame; nullopt if it has none. Those that are scaled have
+/// a unit.
+std::optional<BodyBox> mesh_box(const render::Body& body, bool unscaled) {
+  render::World alone;
+  alone.bodies.push_back({body.name, {}, {}});
+  for (const render::BodyPart& part : body.parts) {
+    if (part.is_mesh_file && (!unscaled || part.scale == glm::dvec3(1.0))) {
+      alone.bodies[0].parts.push_back(part);
+    }
   }
-  return longest_m < 0.005 ? "is its mesh scaled twice?" : "";
+  return alone.bodies[0].parts.empty() ? std::nullopt : std::optional(boxes_of(alone).front());
+}
+
+/// What the extent of mesh files says of their unit; "" if nothing is odd. A metre is the unit of SDF. A
+/// seabed of kilometres is usual, but it is flat: its height is far less than its width.
+std::string unit_hint(const render::Body& body) {
+  constexpr double large_m = 2000.0;
+  constexpr double small_m = 0.005;
+  constexpr double flat = 0.2;
+  if (const auto box = mesh_box(body, true)) {
+    const glm::dvec3 size = box->max_m - box->min_m;
+    const bool has_scaled_sibling = std::ranges::any_of(body.parts, [](const render::BodyPart& part) {
+      return glm::all(glm::lessThan(glm::abs(part.scale), glm::dvec3(0.1)));
+    });
+    if (std::max({size.x, size.y, size.z}) > large_m &&
+        (size.z > flat * std::min(size.x, size.y) || has_scaled_sibling)) {
+      return "is its mesh in millimetres? <scale>0.001 0.001 0.001</scale> makes metres of them";
+    }
+  }
+  const auto box = mesh_box(body, false);
+  return box && glm::distance(box->min_m, box->max_m) < small_m ? "is its mesh scaled twice?" : "";
 }
 
 /// "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete", of the first bodies.
@@ -143,10 +171,7 @@ void Check::list_bodies(const render::World& world) {
         fmt::format("body     {}: {:.4g} x {:.4g} x {:.4g} m at ({:.4g}, {:.4g}, {:.4g}), {}{}", body.name,
                     size.x, size.y, size.z, middle.x, middle.y, middle.z,
                     fmt::join(material_names(body), ", "), scale_text(body)));
-    const bool is_terrain = std::ranges::any_of(
-        world.terrains, [&](const render::TerrainParts& terrain) { return terrain.body == i; });
-    if (const std::string hint = unit_hint(std::max({size.x, size.y, size.z}));
-        !hint.empty() && !is_terrain) {
+    if (const std::string hint = unit_hint(body); !hint.empty()) {
       warning("world.file", fmt::format("body '{}' is {:.4g} x {:.4g} x {:.4g} m: {}", body.name, size.x,
                                         size.y, size.z, hint));
     }
@@ -231,13 +256,11 @@ void Check::check_world() {
     for (const std::string& line : world.warnings) {
       warning("world.file", line);
     }
-    if (world.triangle_count() == 0) {
-      problem("world.file", fmt::format("{}: the world has no triangles (expected a surface that echoes)",
-                                        config_.world_file.string()));
-    }
-    report_.summary.push_back(fmt::format("world    {}: {} {}, {} triangles, materials: {}", world.name,
-                                          world.bodies.size(), world.bodies.size() == 1 ? "body" : "bodies",
-                                          world.triangle_count(), material_names(world)));
+    report_.summary.push_back(
+        fmt::format("world    {}: {} {}, {} triangles, {}", world.name, world.bodies.size(),
+                    world.bodies.size() == 1 ? "body" : "bodies", world.triangle_count(),
+                    world.triangle_count() > 0 ? "materials: " + material_names(world)
+                                               : "images hold noise and water clutter alone"));
     if (world.origin) {
       report_.summary.push_back(fmt::format("origin   latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",
                                             world.origin->latitude_deg, world.origin->longitude_deg,
