@@ -195,7 +195,8 @@ struct DaemonConfig {
   std::filesystem::path file;  ///< the configuration file itself
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::text;
-  std::filesystem::path world_file;  ///< SDF
+  std::filesystem::path world_file;  ///< SDF; empty: open water, see `open_water`
+  bool open_water = false;           ///< whether the world may be without a surface
   bool skips_missing_files = false;  ///< of the world
   /// Where the world is on Earth, in the place of what its file says.
   std::optional<render::GeographicOrigin> origin;

@@ -107,8 +107,16 @@ void read_log(YamlSection& section, LogLevel& level, LogFormat& format) {
 }
 
 void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
-  section.require("file", "an SDF world");
   section.path("file", config.world_file, folder, "SDF world ([worlds.md](worlds.md))");
+  section.default_is("file", "**required**, unless `empty` is true");
+  section.boolean(
+      "empty", config.open_water,
+      "whether the world may be without a surface, as open water is: images then hold noise and water "
+      "clutter alone. Without `file` there is nothing but water. `world: empty` is short for "
+      "`world: {empty: true}`");
+  if (!config.open_water && !section.describing()) {
+    section.require("file", "an SDF world; for open water, empty: true");
+  }
   section.choice(
       "missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
       "what becomes of an include, or a mesh, whose file is not there: the daemon does not start, or it does "
@@ -445,9 +453,15 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   context.folder = config.file.parent_path();
   root.section("log", "the log",
                [&](YamlSection& section) { read_log(section, config.log_level, config.log_format); });
-  root.require("world", "a mapping with the world's file");
-  root.section("world", "what the sonars see",
-               [&](YamlSection& section) { read_world(section, context.folder, config); });
+  root.require("world", "a mapping with the world's file, or `empty` for open water");
+  const bool is_open_water = root.is_word("world", "empty");
+  if (is_open_water || root.describing()) {
+    root.choice("world", config.open_water, {{"empty", true}}, "what the sonars see; `empty` is open water");
+  }
+  if (!is_open_water) {
+    root.section("world", "what the sonars see; `empty` is open water",
+                 [&](YamlSection& section) { read_world(section, context.folder, config); });
+  }
   root.choice(
       "engine", config.engine,
       {{"auto", render::EngineKind::automatic},

@@ -237,6 +237,11 @@ bool YamlSection::is_list(std::string_view key) const {
   return entry != nullptr && entry->value.IsSequence();
 }
 
+bool YamlSection::is_word(std::string_view key, std::string_view word) const {
+  const Entry* entry = peek(key);
+  return entry != nullptr && entry->value.IsScalar() && entry->value.Scalar() == word;
+}
+
 void YamlSection::require(std::string_view key, std::string_view expected) {
   known_key(key).required = true;
   if (find(key) == nullptr && is_map_) {
@@ -458,7 +463,9 @@ void YamlSection::document(std::string_view key, std::string_view type, std::str
   KeyReference& known = known_key(key);
   if (!known.schema.empty()) {
     known.type += fmt::format(", or {}", type);
-    known.schema = fmt::format(R"("anyOf": [{{{}}}, {{{}}}])", known.schema, schema);
+    if (!schema.empty()) {  // a mapping has none: its keys say more
+      known.schema = fmt::format(R"("anyOf": [{{{}}}, {{{}}}])", known.schema, schema);
+    }
     return;
   }
   known.type = type;

@@ -463,9 +463,23 @@ void Daemon::end(int exit_code) {
 }  // namespace
 
 render::World read_world(const DaemonConfig& config) {
-  return render::load_world(
+  if (config.world_file.empty()) {
+    render::World open_water;
+    open_water.name = "open_water";
+    open_water.origin = config.origin;
+    return open_water;
+  }
+  render::World world = render::load_world(
       config.world_file, render::model_folders_from_environment(),
       config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error, config.origin);
+  if (world.triangle_count() == 0 && !config.open_water) {
+    throw render::WorldError(
+        {fmt::format("{}: the world has no triangles (expected a surface that echoes; for open "
+                     "water write `world: empty`, or add `empty: true` beside `file`)",
+                     config.world_file.string())},
+        world.warnings);
+  }
+  return world;
 }
 
 render::World load_world_of(DaemonConfig& config) {
@@ -475,9 +489,7 @@ render::World load_world_of(DaemonConfig& config) {
       spdlog::warn("{}", warning);
     }
     if (world.triangle_count() == 0) {
-      throw StartError(
-          "world.file", exit_config,
-          config.world_file.string() + ": the world has no triangles (expected a surface that echoes)");
+      spdlog::info("world {}: no surface echoes; images hold noise and water clutter alone", world.name);
     }
     if (world.origin) {
       spdlog::info("world {}: (0, 0, 0) is at latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",

@@ -29,7 +29,8 @@ struct StartError : std::runtime_error {
   std::vector<std::string> more;  ///< what else is wrong with the same key
 };
 
-/// The world of a configuration. @throws render::WorldError
+/// The world of a configuration.
+/// @throws render::WorldError, also of a world without triangles that is not said to be open water
 render::World read_world(const DaemonConfig& config);
 
 /// The same for a configuration which takes from it what it leaves to its world (resolve_mounts()). Logs

@@ -231,7 +231,9 @@ class LookAround {
       });
     }
     if (nearest == nullptr) {
-      add("empty_world", "The world has no body that could send an echo.");
+      if (world_.triangle_count() > 0) {  // else it is open water on purpose
+        add("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden.");
+      }
     } else if (least_m > sight_.range_m) {
       note_far(*nearest, least_m);
     } else if (sight_.sees_surface) {

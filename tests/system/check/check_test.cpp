@@ -238,19 +238,32 @@ class CheckedWorld : public testing::Test {
   ~CheckedWorld() override { std::filesystem::remove_all(folder_); }
 
   std::string write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories(folder_);
+    std::filesystem::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name) << text;
     return (folder_ / name).string();
   }
   /// @param models of the world
-  ProcessResult check(const std::string& models, const std::string& more = "") const {
+  /// @param environment "NAME=VALUE"
+  ProcessResult check(const std::string& models, const std::string& more = "",
+                      const std::vector<std::string>& environment = {}) const {
     write("world.sdf",
           "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\">\n" + models + "</world></sdf>");
-    return run_process(
-        {"prlimit", "--as=" SONARD_ADDRESS_SPACE, SONARD_PROGRAM, "check", "--no-network",
-         write("sonard.yaml", "world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\n" + more +
-                                  "heads:\n  - name: bow\n    type: gemini_720i\n    sonar_id: 513\n"
-                                  "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n")});
+    return check_with("{file: world.sdf}", more, environment);
+  }
+  /// @param world as the configuration has it
+  ProcessResult check_with(const std::string& world, const std::string& more = "",
+                           const std::vector<std::string>& environment = {}) const {
+    std::vector<std::string> command{"env"};
+    command.insert(command.end(), environment.begin(), environment.end());
+    for (const std::string& word :
+         {std::string("prlimit"), std::string("--as=" SONARD_ADDRESS_SPACE), std::string(SONARD_PROGRAM),
+          std::string("check"), std::string("--no-network"),
+          write("sonard.yaml", "world: " + world + "\nposes: {initial: {position_m: [0, 0, 0]}}\n" + more +
+                                   "heads:\n  - name: bow\n    type: gemini_720i\n    sonar_id: 513\n"
+                                   "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n")}) {
+      command.push_back(word);
+    }
+    return run_process(command);
   }
   static std::string model(const std::string& name, const std::string& geometry) {
     return "<model name=\"" + name +
@@ -265,13 +278,75 @@ class CheckedWorld : public testing::Test {
 TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
   write("roof.obj", "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n");
   const ProcessResult result =
-      check(model("roof", "<mesh><uri>roof.obj</uri><scale>0.001 0.001 0.001</scale></mesh>") +
-            model("hall", "<mesh><uri>roof.obj</uri><scale>3 3 3</scale></mesh>"));
+      check(model("roof", "<mesh><uri>roof.obj</uri><scale>0.001 0.001 0.001</scale></mesh>"));
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("body     roof: 1 x 1 x 0 m at (5.5, 0.5, 0), default, scale 0.001\n"));
   EXPECT_THAT(result.out,
               testing::ContainsRegex("cost     bow: a ping to [0-9]+ m takes about [0-9.e+]+ ms"));
-  EXPECT_THAT(result.err, HasSubstr("body 'hall' is 3000 x 3000 x 0 m: is its mesh in millimetres?"));
+}
+
+/// The hull of a vehicle and a pipe in millimetres, and a flat plate beside a mesh that has a scale.
+TEST_F(CheckedWorld, whose_meshes_are_in_millimetres_says_so) {
+  write("hull.obj", "v 0 0 0\nv 2500 0 0\nv 0 600 0\nv 0 0 500\nf 1 2 3\nf 1 2 4\nf 2 3 4\n");
+  write("pipe.obj", "v 0 0 0\nv 6000 200 0\nv 0 0 200\nf 1 2 3\n");
+  write("plate.obj", "v 0 0 0\nv 3000 0 0\nv 0 3000 20\nf 1 2 3\n");
+  const std::string plate_beside_a_bolt =
+      "<model name=\"plate\"><link name=\"l\"><visual "
+      "name=\"a\"><geometry><mesh><uri>plate.obj</uri></mesh></geometry>"
+      "</visual><visual name=\"b\"><geometry><mesh><uri>hull.obj</uri><scale>0.001 0.001 "
+      "0.001</scale></mesh></geometry>"
+      "</visual></link></model>";
+  const ProcessResult result = check(model("hull", "<mesh><uri>hull.obj</uri></mesh>") +
+                                     model("pipe", "<mesh><uri>pipe.obj</uri></mesh>") + plate_beside_a_bolt);
+  for (const char* text : {"body 'hull' is 2500 x 600 x 500 m: is its mesh in millimetres?",
+                           "body 'pipe' is 6000 x 200 x 200 m: is its mesh in millimetres?",
+                           "body 'plate' is 3000 x 3000 x 20 m: is its mesh in millimetres?"}) {
+    EXPECT_THAT(result.err, HasSubstr(text));
+  }
+}
+
+/// A seabed of kilometres is usual, and shapes without a file have metres.
+TEST_F(CheckedWorld, that_is_large_is_not_taken_for_millimetres) {
+  write("bed.obj", "v 0 0 0\nv 7000 0 80\nv 0 9000 0\nf 1 2 3\n");
+  const ProcessResult result = check(
+      model("sea", "<plane><size>3000 3000</size></plane>") +
+          model("bed", "<box><size>2500 2500 0.1</size></box>") +
+          model("berg", "<box><size>2500 2500 2500</size></box>") +
+          model("chart", "<heightmap><uri>" + source_folder +
+                             "/tests/data/worlds/grey16.png</uri><size>7000 9000 3000</size></heightmap>") +
+          model("survey", "<mesh><uri>bed.obj</uri></mesh>"),
+      "", {"GZ_SIM_RESOURCE_PATH=" + source_folder + "/tests/data/worlds"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, testing::Not(HasSubstr("millimetres"))) << result.err;
+}
+
+TEST_F(CheckedWorld, without_a_surface_is_open_water_only_if_told_so) {
+  const std::string marks = "<model name=\"marks\"><frame name=\"f\"/></model>\n";
+  const ProcessResult refused = check(marks);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(
+      refused.err,
+      HasSubstr("world.sdf: the world has no triangles (expected a surface that echoes; for open water "
+                "write `world: empty`, or add `empty: true` beside `file`)"));
+  for (const char* world : {"empty", "{empty: true}", "{empty: true, file: world.sdf}"}) {
+    const ProcessResult allowed = check_with(world);
+    EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
+    EXPECT_EQ(allowed.err, "") << world;
+    EXPECT_THAT(allowed.out, HasSubstr("0 triangles, images hold noise and water clutter alone\n")) << world;
+    EXPECT_THAT(allowed.out, HasSubstr("cost     bow: a ping to ")) << world;
+  }
+}
+
+TEST_F(CheckedWorld, finds_models_by_the_environment) {
+  write("lib/post/model.sdf", "<sdf version=\"1.6\">" + model("post", "<box/>") + "</sdf>");
+  const ProcessResult result = check(
+      "<include><uri>post</uri></include><include><uri>file://post</uri><name>p2</name>"
+      "</include><include><uri>model://sun</uri></include>\n",
+      "", {"GAZEBO_RESOURCE_PATH=" + (folder_ / "lib").string()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("w: 2 bodies, 24 triangles"), HasSubstr("left out: lights (1): sun")));
 }
 
 TEST_F(CheckedWorld, is_told_of_as_json) {

@@ -190,6 +190,23 @@ class Diagnosis(OwnMachine):
             file.write("    hides_vehicle: true\n")
         self.assertNotIn("inside of", self.check(file.name))
 
+    def test_open_water_is_no_fault(self):
+        """Noise comes at each ping, nothing is found to be wrong, and the log says once that there is no surface."""
+        path = self.config("initial: {position_m: [0, 0, -5]}")
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(re.sub("^world: .*$", "world: empty", text, flags=re.MULTILINE))
+        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", PATIENCE_S)
+        client = subprocess.run([os.path.join(PROGRAMS, "sonarview"), "--pings", "5", "--range", "20",
+                                 "--surface-address", "127.0.0.1"], capture_output=True, text=True, timeout=PATIENCE_S)
+        self.assertEqual(client.returncode, 0, client.stderr)
+        self.assertEqual(self.status()["heads"][0]["findings"], [])
+        self.assertEqual([line for line in daemon.lines if "warning" in line], [])
+        self.assertEqual(len([line for line in daemon.lines if "no surface echoes" in line]), 1)
+
     def test_no_pose_is_said(self):
         daemon = self.start()
         daemon.wait_for_line("head=bow No pose of the vehicle has come", PATIENCE_S)

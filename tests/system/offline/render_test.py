@@ -160,6 +160,29 @@ class Files(Case):
         self.assertEqual(said[2].stdout, "(1,) (1, 3)\n")
         self.assertEqual(said[3].stdout, "(3, 256)\n")
 
+    def test_open_water_is_noise_alone(self):
+        """For negatives of data sets: noise on both engines, with a mask that has no body."""
+        config = self.config()
+        with open(config) as file:
+            text = re.sub("^world:\n  file: .*$", "world: empty", file.read(), flags=re.MULTILINE)
+        arguments = ["--trajectory", self.way(1.0), "--rate", "4", "--range", "10", "--picture-every", "0"]
+        for engine in ("cpu", "gpu"):
+            with self.subTest(engine):
+                out = self.path(engine)
+                path = self.write(engine + ".yaml", text + f"engine: {engine}\n")
+                done = render(path, *arguments, "--head", "bow", "--truth", "--out", out, check=engine == "cpu")
+                if done.returncode != 0 and "OpenGL" in done.stderr:
+                    self.skipTest(done.stderr)
+                self.assertEqual(done.stdout, f"{out}: 5 frames\n", done.stderr)
+                self.assertNotIn("warning", done.stderr)
+                frames = [numpy.load(os.path.join(out, f"ping_{k:06}.npy")) for k in range(5)]
+                for frame in frames:
+                    self.assertGreater(numpy.count_nonzero(frame), frame.size // 100)
+                    self.assertGreater(frame.std(), 0)
+                self.assertTrue(any((frames[0] != frame).any() for frame in frames[1:]), "noise is new in each ping")
+                self.assertFalse(numpy.load(os.path.join(out, "ping_000000_bodies.npy")).any())
+                self.assertEqual(self.sidecar(out, "ping_000000")["truth"]["bodies"], [])
+
     def test_log_holds_the_arrays(self):
         """Unix times in the trajectory: those of the log."""
         start = 1_700_000_000.25

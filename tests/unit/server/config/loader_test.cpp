@@ -435,6 +435,28 @@ TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
               ElementsAre(HasSubstr("poses.clock: no source of poses has a clock")));
 }
 
+TEST_F(Loader, takes_open_water_for_a_world) {
+  const std::string rest = minimal_config.substr(minimal_config.find("poses:"));
+  for (const char* world : {"world: empty\n", "world: {empty: true}\n"}) {
+    const LoadedConfig loaded = load(world + rest);
+    EXPECT_TRUE(loaded.config.open_water) << world;
+    EXPECT_EQ(loaded.config.world_file, "") << world;
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+  }
+  const DaemonConfig both =
+      load("world: {file: world.sdf, empty: true, origin: {latitude_deg: 1, longitude_deg: 2}}\n" + rest)
+          .config;
+  EXPECT_TRUE(both.open_water);
+  EXPECT_EQ(both.world_file, folder_ / "world.sdf");
+  EXPECT_FALSE(load(minimal_config).config.open_water);
+  EXPECT_THAT(
+      complaints("world: {empty: false}\n" + rest),
+      ElementsAre(HasSubstr("world.file: missing (expected an SDF world; for open water, empty: true)")));
+  EXPECT_THAT(
+      complaints("world: sea.sdf\n" + rest),
+      ElementsAre(StartsWith("config.yaml:1:8: world: is 'sea.sdf' (expected a mapping, key: value)")));
+}
+
 TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
   const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
   const auto with = [&](const std::string& ignition) {

@@ -59,7 +59,8 @@ std::string mapping_schema(const Keys& keys, const std::string& description, con
 
 std::string value_schema(const KeyReference& key, const std::string& margin) {
   if (!key.keys.empty() && !key.is_list) {
-    return mapping_schema(key.keys, description_of(key), margin);
+    const std::string mapping = mapping_schema(key.keys, description_of(key), margin);
+    return key.schema.empty() ? mapping : fmt::format(R"({{"anyOf": [{{{}}}, {}]}})", key.schema, mapping);
   }
   const bool has_default = !key.required && !key.default_json.empty();
   const std::string rest = (has_default ? R"(, "default": )" + key.default_json : "") + description_of(key);

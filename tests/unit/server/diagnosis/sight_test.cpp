@@ -128,9 +128,17 @@ TEST(LookAround, SaysThatTheSonarIsInsideOfABody) {
   EXPECT_TRUE(look(pier(), {}, sight).empty());
 }
 
-TEST(LookAround, SaysThatAWorldIsEmpty) {
-  EXPECT_EQ(look({}, {}, at({0, 0, 0})),
-            only("empty_world", "The world has no body that could send an echo."));
+TEST(LookAround, FindsNothingWrongWithOpenWater) {
+  EXPECT_TRUE(look({}, {}, at({0, 0, 0})).empty());
+}
+
+TEST(LookAround, SaysThatTheOnlyBodyIsHidden) {
+  Sight sight = at({2, 0, -20});
+  sight.vehicle_model = "pier";
+  sight.hides_vehicle = true;
+  EXPECT_EQ(
+      look(pier(), {}, sight),
+      only("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden."));
 }
 
 }  // namespace
