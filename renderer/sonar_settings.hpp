@@ -130,8 +130,20 @@ struct RingDown {
   /// TVG; -infinity: nothing.
   double vehicle_level_db = -std::numeric_limits<double>::infinity();
   double vehicle_fall_db_per_m = 14.0;  ///< how fast that dies off; > 0
+  /// True: the pulse overdrives the receiver, whose output from the first sample on is that of the peak. The
+  /// ring-down then has no rise.
+  bool from_start = false;
 
   bool operator==(const RingDown&) const = default;
+};
+
+/// The pulse and the lines for which levels are stated. A tone of another length brings more or less energy
+/// (docs/physics.md 2.6).
+struct UsualPulse {
+  double cell_m = 0.0;  ///< its PhysicalModel::range_cell_m; 0: levels do not depend on the length of a pulse
+  double step_m = 0.0;  ///< RangeLines::step_m of the lines; > 0 where cell_m is
+
+  bool operator==(const UsualPulse&) const = default;
 };
 
 /// Another sonar, or the vehicle: a burst of noise in a ping (docs/physics.md 2.16).
@@ -186,13 +198,16 @@ struct PhysicalModel {
   double range_cell_m = 0.0;
   /// c / 2B of the band B that the transducer has there and back, which rounds the ends of a tone; 0: sharp.
   double tone_rounding_m = 0.0;
+  UsualPulse usual_pulse;
+  /// What the band of the transducer leaves of this pulse's echoes, there and back; <= 0.
+  double band_loss_db = 0.0;
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
   double noise_level_db = -138.2;  ///< render::noise_level_db() makes it of a sonar equation
   /// Noise that enters behind TVG and gain, re full scale as gain_db; -infinity: none.
   double output_noise_db = -std::numeric_limits<double>::infinity();
   /// c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse, as behind a
-  /// matched filter.
+  /// matched filter, and the longer a tone, the less of it (docs/physics.md 2.9).
   double noise_cell_m = 0.0;
   /// Effective number of scatterers in a cell at `texture_range_m`, nu of the K distribution, in proportion
   /// to the range (docs/physics.md 2.8); 0: of no number that shows.

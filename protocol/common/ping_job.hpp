@@ -54,6 +54,7 @@ struct PingJob {
   /// The speed that the head is set to and forms its beams by; 0: it forms none.
   double assumed_sound_speed_mps = 0.0;
   double pulse_s = 0.0;        ///< duration of a tone; 0: the pulse is none, or the kind of device knows
+  double frequency_hz = 0.0;   ///< of a tone whose frequency a client chooses; 0: the kind of device knows
   bool transmit = true;        ///< false: the head only listens, there are no echoes but there is noise
   double gain_db = 0.0;        ///< by the scale of the device
   double gain_percent = 50.0;  ///< what the client set: for logs

@@ -18,6 +18,7 @@ PingJob job_of(const PingForm& form, const DeviceConfig& config, int samples, do
   job.listening_time = listening_time(samples, settings.sample_period);
   job.sound_speed_mps = sound_speed_mps;
   job.pulse_s = settings.transmit_duration_us * 1e-6;
+  job.frequency_hz = settings.transmit_frequency_khz * 1e3;
   job.gain_db = config.gain_db[gain];
   job.gain_percent = 50.0 * static_cast<double>(gain);
   return job;

@@ -2,6 +2,7 @@
 #include "renderer/acoustics/point_spread.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "renderer/acoustics/decibels.hpp"
 #include "renderer/acoustics/steady_echo.hpp"
@@ -12,9 +13,11 @@ void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int
                           const SkipSwitches& skip, SkipCounts& skipped) {
   uses_pattern_ = false;
   uses_pulse_ = false;
+  energy_ = 1;
   if (settings.model == Model::paper) {
     return;
   }
+  energy_ = pulse_energy(settings.physical, settings.range.step_m);
   if (has_array_beams(settings)) {
     prepare_pattern(settings, seed, stream, skip, skipped);
   }
@@ -49,11 +52,15 @@ void PointSpread::prepare_pulse(const SonarSettings& settings, const SkipSwitche
   const double step_m = settings.range.step_m;
   if (pulse_ && pulse_->pulse == model.pulse && pulse_->cell_m == model.range_cell_m &&
       pulse_->tone_rounding_m == model.tone_rounding_m && pulse_->step_m == step_m &&
-      skip.on(SkipRule::unchanged_settings)) {
+      pulse_->energy == energy_ && skip.on(SkipRule::unchanged_settings)) {
     skipped.add(SkipRule::unchanged_settings);
   } else {
-    pulse_ = {model.pulse, model.range_cell_m, model.tone_rounding_m, step_m,
-              PulseResponse(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m)};
+    pulse_ = {model.pulse,
+              model.range_cell_m,
+              model.tone_rounding_m,
+              step_m,
+              energy_,
+              PulseResponse(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m, energy_)};
   }
   uses_pulse_ = true;
   // A bin loses that share at most, and gets it of the bins around it.
@@ -75,7 +82,7 @@ void PointSpread::form_beams(const EchoImage& fine, const SonarSettings& setting
   // What comes to less than the noise is not looked at. Before the pattern: the beams, which are wanted next,
   // stay in the caches.
   const PhysicalModel& model = settings.physical;
-  const double faintest = model.noise ? decibels_to_power(model.noise_level_db) : 0.0;
+  const double faintest = model.noise ? decibels_to_power(model.noise_level_db) / energy_ : 0.0;
   const std::vector<PointEcho> points =
       find_points(fine, mixing_reach(settings), static_cast<float>(faintest), workers);
   pattern_->apply(fine, beams, workers, skip, skipped);
@@ -87,6 +94,13 @@ void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {
   if (uses_pulse_) {
     pulse_->response.apply(echo, memory_, workers);
     std::swap(echo.intensity, memory_.intensity);
+  } else if (energy_ != 1) {
+    const auto energy = static_cast<float>(energy_);
+    for (std::vector<float>* intensity : {&echo.intensity, &echo.steady.intensity}) {
+      for (float& value : *intensity) {
+        value *= energy;
+      }
+    }
   }
 }
 

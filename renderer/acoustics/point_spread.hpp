@@ -31,7 +31,7 @@ class PointSpread {
   void form_beams(const EchoImage& fine, const SonarSettings& settings, EchoImage& beams, WorkerPool& workers,
                   const SkipSwitches& skip, SkipCounts& skipped) const;
 
-  /// Spreads the echo in range by the length of the pulse.
+  /// Spreads the echo in range by the length of the pulse, and gives it the energy of the pulse.
   void spread(EchoImage& echo, WorkerPool& workers);
 
  private:
@@ -40,6 +40,7 @@ class PointSpread {
     double cell_m;
     double tone_rounding_m;
     double step_m;
+    double energy;
     PulseResponse response;
   };
 
@@ -53,6 +54,7 @@ class PointSpread {
   bool uses_pattern_ = false;
   std::optional<PulseTable> pulse_;
   bool uses_pulse_ = false;
+  double energy_ = 1;  ///< pulse_energy()
   EchoImage memory_;
 };
 

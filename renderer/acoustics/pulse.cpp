@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "renderer/acoustics/decibels.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -35,11 +36,11 @@ double rounded_tone(double at, double rounding) {
   return sum;
 }
 
-/// Intensity `cells` away from the echo, of any scale.
+/// Intensity `cells` away from the echo, re its peak. @param rounding > 0 of a tone
 double response(Pulse pulse, double cells, double rounding) {
   switch (pulse) {
     case Pulse::tone:
-      return std::pow(rounded_tone(cells, rounding), 2);
+      return std::pow(rounded_tone(cells, rounding) / rounded_tone(0, rounding), 2);
     case Pulse::windowed_chirp: {
       // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
       const double amplitude = sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
@@ -85,24 +86,57 @@ void add_scaled(const float* __restrict in, float share, std::size_t count, floa
 
 }  // namespace
 
-PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
+namespace {
+
+/// mean_response() in an echo's own line and in all lines to one side of it that it reaches.
+std::vector<double> mean_responses(Pulse pulse, double line_cells, double rounding) {
+  const double reach = pulse == Pulse::tone ? 0.5 + rounding : reach_cells;
+  const int farthest = static_cast<int>(std::ceil(reach / line_cells));
+  std::vector<double> responses;
+  for (int lines = 0; lines <= farthest; ++lines) {
+    responses.push_back(pulse == Pulse::tone && rounding == 0
+                            ? mean_tone(lines, line_cells)
+                            : mean_response(pulse, lines, line_cells, rounding));
+  }
+  return responses;
+}
+
+/// Sum over both sides.
+double total_of(const std::vector<double>& responses) {
+  double total = 0;
+  for (std::size_t lines = 0; lines < responses.size(); ++lines) {
+    total += lines == 0 ? responses[lines] : 2 * responses[lines];
+  }
+  return total;
+}
+
+}  // namespace
+
+double energy_length_m(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
+  return step_m * total_of(mean_responses(pulse, step_m / cell_m, tone_rounding_m / cell_m));
+}
+
+double pulse_energy(const PhysicalModel& model, double step_m) {
+  const double band = decibels_to_power(model.band_loss_db);
+  const UsualPulse& usual = model.usual_pulse;
+  if (model.pulse != Pulse::tone || !(model.range_cell_m > 0) || !(usual.cell_m > 0)) {
+    return band;
+  }
+  const auto length_in_lines = [&](double cell_m, double line_m) {
+    return energy_length_m(model.pulse, cell_m, line_m, model.tone_rounding_m) / line_m;
+  };
+  return band * length_in_lines(model.range_cell_m, step_m) / length_in_lines(usual.cell_m, usual.step_m);
+}
+
+PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m, double energy)
+    : energy_(energy) {
   if (pulse == Pulse::point || !(cell_m > 0)) {
     return;
   }
-  const double line_cells = step_m / cell_m;
-  const double rounding = tone_rounding_m / cell_m;
-  const double reach = pulse == Pulse::tone ? 0.5 + rounding : reach_cells;
-  const int farthest = static_cast<int>(std::ceil(reach / line_cells));
-  std::vector<double> shares;
-  double total = 0;
-  for (int lines = 0; lines <= farthest; ++lines) {
-    shares.push_back(pulse == Pulse::tone && rounding == 0
-                         ? mean_tone(lines, line_cells)
-                         : mean_response(pulse, lines, line_cells, rounding));
-    total += lines == 0 ? shares.back() : 2 * shares.back();
-  }
-  for (const double share : shares) {
-    share_.push_back(static_cast<float>(share / total));
+  const std::vector<double> responses = mean_responses(pulse, step_m / cell_m, tone_rounding_m / cell_m);
+  const double total = total_of(responses);
+  for (const double response : responses) {
+    share_.push_back(static_cast<float>(response / total * energy));
   }
 }
 

@@ -12,9 +12,19 @@
 
 namespace sonard::render {
 
+/// Length over which a pulse spreads energy, in metres: the integral over its intensity, whose peak is 1. c
+/// tau / 2 of a tone with sharp ends. @param cell_m PhysicalModel::range_cell_m, > 0. @param step_m > 0: of
+/// the lines over which it is averaged, to which it is the same up to the error of the integration
+double energy_length_m(PhysicalModel::Pulse pulse, double cell_m, double step_m, double tone_rounding_m);
+
+/// Energy that a pulse brings, re the usual pulse: of a tone per line, behind the band of the transducer. 1:
+/// the pulse has no length, or none for which levels are stated.
+/// @param step_m RangeLines::step_m
+double pulse_energy(const PhysicalModel& model, double step_m);
+
 /// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
 /// over the line, and over that in which it is received (docs/physics.md 2.6). Chirps are followed out to 16
-/// cells to either side; of an echo nothing is lost.
+/// cells to either side; all shares of an echo add up to the energy.
 class PulseResponse {
  public:
   using Pulse = PhysicalModel::Pulse;
@@ -23,21 +33,23 @@ class PulseResponse {
   PulseResponse() = default;
   /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
   /// @param tone_rounding_m PhysicalModel::tone_rounding_m
-  PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0);
+  /// @param energy what all shares add up to, pulse_energy()
+  PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0, double energy = 1);
 
   /// Shares of an echo in its own line and the lines to one side of it; 0: nothing is spread.
   int taps() const { return static_cast<int>(share_.size()); }
   /// Share of an echo that is received `lines` away from it.
   double share(int lines) const { return static_cast<double>(share_[static_cast<std::size_t>(lines)]); }
 
-  /// Share of an echo that is received outside of its line.
-  double share_outside() const { return share_.empty() ? 0.0 : 1 - share(0); }
+  /// Share of the energy that is received outside of the line of an echo.
+  double share_outside() const { return share_.empty() ? 0.0 : 1 - share(0) / energy_; }
 
   /// What would be received beyond the ends of the image is left out. What `out` holds is used as memory.
   void apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const;
 
  private:
   std::vector<float> share_;
+  double energy_ = 1;
 };
 
 /// Lines shorter than the pulse hold echoes of the same scatterers, and noise behind the same matched filter:

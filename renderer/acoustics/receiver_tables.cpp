@@ -37,14 +37,27 @@ PulseCorrelation noise_correlation_of(const PhysicalModel& model, double step_m)
           matched ? model.range_cell_m : model.noise_cell_m, step_m};
 }
 
+/// Noise before the gain, re that beside the usual pulse: a filter that is matched to a tone lets through
+/// less of it, the longer the tone.
+double matched_noise(const PhysicalModel& model, double step_m) {
+  const UsualPulse& usual = model.usual_pulse;
+  if (model.pulse != PhysicalModel::Pulse::tone || model.noise_cell_m > 0 || !(model.range_cell_m > 0) ||
+      !(usual.cell_m > 0)) {
+    return 1;
+  }
+  return energy_length_m(model.pulse, usual.cell_m, usual.step_m, model.tone_rounding_m) /
+         energy_length_m(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m);
+}
+
 /// @param gain per range bin, amplitude
-std::vector<float> noise_amplitudes(const PhysicalModel& model, const std::vector<float>& gain) {
+std::vector<float> noise_amplitudes(const PhysicalModel& model, double step_m,
+                                    const std::vector<float>& gain) {
   std::vector<float> amplitudes(gain.size(), 0.0F);
+  const double before_gain = decibels_to_power(model.noise_level_db) * matched_noise(model, step_m);
   const double behind_gain = decibels_to_power(model.output_noise_db);
   for (std::size_t k = 0; model.noise && k < gain.size(); ++k) {
     const double power = static_cast<double>(gain[k]) * static_cast<double>(gain[k]);
-    amplitudes[k] =
-        static_cast<float>(std::sqrt(decibels_to_power(model.noise_level_db) + behind_gain / power));
+    amplitudes[k] = static_cast<float>(std::sqrt(before_gain + behind_gain / power));
   }
   return amplitudes;
 }
@@ -64,10 +77,10 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       noise_correlation(noise_correlation_of(model, range.step_m / cells)),
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)),
-      ring_down(ring_down_amplitudes(model.ring_down, range)),
+      ring_down(ring_down_amplitudes(model, range)),
       ring_down_lines(render::ring_down_lines(model.ring_down, range)),
       vehicle(vehicle_reverberation(model.ring_down, range)) {
-  noise = noise_amplitudes(model, gain);
+  noise = noise_amplitudes(model, range.step_m, gain);
   const float codes = codes_per_amplitude(settings);
   for (float& g : gain) {
     g *= codes;

@@ -7,27 +7,34 @@
 #include <numbers>
 
 #include "renderer/acoustics/decibels.hpp"
+#include "renderer/acoustics/tvg.hpp"
 
 namespace sonard::render {
 
 namespace {
 constexpr double fall_db = 80.0;  // from the peak to the end
+
+/// Amplitude re the peak, nearer than that.
+double before_peak(const PhysicalModel& model, double range_m) {
+  const double peak_m = model.ring_down.peak_m;
+  if (model.ring_down.from_start) {
+    return std::sqrt(decibels_to_power(tvg_db(model, peak_m) - tvg_db(model, range_m)));
+  }
+  const double rise = std::max(0.0, 2 * range_m / peak_m - 1);
+  return 0.5 * (1 - std::cos(std::numbers::pi * rise));
 }
 
-std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLines& range) {
+}  // namespace
+
+std::vector<float> ring_down_amplitudes(const PhysicalModel& model, const RangeLines& range) {
+  const RingDown& ring_down = model.ring_down;
   std::vector<float> amplitudes(static_cast<std::size_t>(range.count), 0.0F);
   const double peak = std::sqrt(decibels_to_power(ring_down.level_db));
-  const double begin_m = ring_down.peak_m / 2;
   for (std::size_t k = 0; ring_down.on && k < amplitudes.size(); ++k) {
     const double range_m = (static_cast<double>(k) + 0.5) * range.step_m;
-    if (range_m <= begin_m) {
-      continue;
-    }
     const double past = (range_m - ring_down.peak_m) / (ring_down.end_m - ring_down.peak_m);
-    const double rise = (range_m - begin_m) / (ring_down.peak_m - begin_m);
-    const double shape = past > 0 ? std::sqrt(decibels_to_power(-fall_db * past))
-                                  : 0.5 * (1 - std::cos(std::numbers::pi * rise));
-    amplitudes[k] = static_cast<float>(peak * shape);
+    amplitudes[k] = static_cast<float>(
+        peak * (past > 0 ? std::sqrt(decibels_to_power(-fall_db * past)) : before_peak(model, range_m)));
   }
   return amplitudes;
 }

@@ -10,8 +10,9 @@
 namespace sonard::render {
 
 /// Amplitude of the ring-down per range bin, before TVG: from nothing at half of the peak's range up to the
-/// peak as a half cosine, and from there by 80 dB down to the end, straight in dB and so on beyond.
-std::vector<float> ring_down_amplitudes(const RingDown& ring_down, const RangeLines& range);
+/// peak as a half cosine, or, RingDown::from_start, even behind the TVG up to the peak; and from there by 80
+/// dB down to the end, straight in dB and so on beyond.
+std::vector<float> ring_down_amplitudes(const PhysicalModel& model, const RangeLines& range);
 
 /// Mean intensity per range bin, before TVG, of what the vehicle sends back behind the ring-down.
 std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeLines& range);

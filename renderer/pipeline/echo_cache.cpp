@@ -24,6 +24,10 @@ PhysicalModel echo_part(const PhysicalModel& model) {
   part.multipath = model.multipath;
   part.pulse = model.pulse;
   part.range_cell_m = model.range_cell_m;
+  part.tone_rounding_m = model.tone_rounding_m;
+  part.usual_pulse = model.usual_pulse;
+  part.band_loss_db = model.band_loss_db;
+  part.water_clutter = model.water_clutter;
   part.volume_scattering_db = model.volume_scattering_db;
   return part;
 }

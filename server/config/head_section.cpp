@@ -36,12 +36,16 @@ double read_noise_budget(YamlSection& section, double carrier_hz) {
 
 void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
   section.introduce(
-      "It rises from nothing at half of `peak_m`, and falls from the peak to `end_m` by 80 dB.");
+      "It rises from nothing at half of `peak_m`, or is as loud from the first sample on, and falls from the "
+      "peak to `end_m` by 80 dB.");
   section.boolean("on", ring_down.on, "whether the transducer rings after its pulse");
   section.number("level_db", ring_down.level_db, level_db,
                  "intensity of the peak re the source intensity at 1 m, before TVG");
   section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0), "range of the peak");
   section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0), "where it is over; beyond `peak_m`");
+  section.boolean("from_start", ring_down.from_start,
+                  "the pulse overdrives the receiver: all samples up to `peak_m` are as bright as the peak; "
+                  "false: the ring-down rises from half of `peak_m`");
   section.number("sd_db", ring_down.sd_db, Range::from(0.0, 20.0),
                  "standard deviation of its level from ping to ping");
   section.number_or_word(
@@ -140,10 +144,12 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                          "noise that enters behind TVG and gain, re full scale: what is seen in near water");
   section.number(
       "noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
-      "c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse");
+      "c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse, and the "
+      "longer a tone, the lower is the noise");
   section.number(
       "tone_rounding_m", model.tone_rounding_m, Range::from(0.0, 10.0),
-      "c / 2B of the transducer's band B, there and back, which rounds the ends of a tone; 0: sharp");
+      "c / 2B of the transducer's band B, there and back, which rounds the ends of a tone and keeps its "
+      "level; 0: sharp");
   section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
                  "scatterers in a cell at `texture_range_m`, growing with the range: sand 5 to 20, gravel "
                  "and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");

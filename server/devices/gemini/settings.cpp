@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "protocol/gemini/bearings.hpp"
+#include "protocol/gemini/messages.hpp"
 
 namespace sonard::server {
 namespace {
 
 // No beam is steered further than this: c / c_d up to 1.15 is followed, more is not found in water.
 constexpr double widest_sin = 0.9962;  // of 85 degrees
+
+// Levels were set with what clients ask for at 20 m (docs/protocols/gemini.md 5).
+constexpr double usual_pulse_s = 11 / gemini::carrier_hz;
 
 // Device bearings are positive to starboard, azimuths of the renderer to port.
 // `steering`: the ratio c / c_d of the true sound speed to that which delays are computed with. A beam meant
@@ -43,6 +47,7 @@ render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig
   settings.sixteen_bit = job.sixteen_bit;
   settings.transmit = job.transmit;
   settings.physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
+  settings.physical.usual_pulse = {job.sound_speed_mps * usual_pulse_s / 2.0, job.native_bin_m};
   settings.physical.gain_db += job.gain_db;
   return settings;
 }

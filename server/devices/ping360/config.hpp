@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "protocol/ping360/device_config.hpp"
+#include "renderer/acoustics/transducer.hpp"
+#include "renderer/acoustics/water.hpp"
 #include "server/config/config.hpp"
 #include "server/net/serial_port.hpp"
 #include "server/net/udp_transport.hpp"
@@ -16,6 +18,9 @@ namespace sonard::server {
 
 /// To which clients send that have found the head (docs/protocols/ping360.md 4.1).
 inline constexpr std::uint16_t ping360_data_port = 12345;
+
+/// What a head transmits at boot (docs/protocols/ping360.md 2.3), and levels are stated for.
+inline constexpr double ping360_carrier_hz = 740'000.0;
 
 /// The socket at which clients find the head (docs/protocols/ping360.md 5).
 struct DiscoveryConfig {
@@ -33,6 +38,10 @@ struct Ping360Config final : DeviceSettings {
   /// Behind them, as one channel more; without tcp, udp and pty: there is none.
   SerialLinkConfig serial;
   std::optional<DiscoveryConfig> discovery;
+  /// A client chooses the frequency. The maker calls 650 to 850 kHz usable (docs/protocols/ping360.md 9).
+  render::TransducerBand transducer_band{650e3, 850e3};
+  /// Whose absorption follows the frequency; nullopt: the configuration states the absorption.
+  std::optional<render::Water> water = render::Water{};
 };
 
 /// Of a head of this type.

@@ -132,7 +132,8 @@ const DeviceKind& ping360_kind() {
 
 // A beam of 2 by 25 degrees, as the maker's data sheet has it. The law of the samples is not published: half
 // decibels, as of the other scanning head, at levels that put a wall 5 m away into the upper half of the
-// scale. Nearer than 0.75 m the transducer rings (docs/protocols/ping360.md 2.3).
+// scale. Nearer than 0.75 m the transducer rings, and pictures of owners are bright from the first sample on
+// (docs/protocols/ping360.md 2.3).
 render::SonarSettings ping360_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
   render::SonarSettings acoustics;
@@ -146,9 +147,10 @@ render::SonarSettings ping360_acoustics() {
   acoustics.physical.gain_db = -9.0;
   acoustics.physical.tvg_max_db = 75.0;
   acoustics.physical.noise_level_db = -141.0;
-  acoustics.physical.near_field_blank_m = 0.1;
+  acoustics.physical.near_field_blank_m = 0.0;
   acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.end_m = 0.75;
+  acoustics.physical.ring_down.from_start = true;
   acoustics.physical.broadside_stripe_db = 0.0;
   return acoustics;
 }

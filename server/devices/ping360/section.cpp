@@ -12,7 +12,6 @@
 namespace sonard::server {
 namespace {
 
-constexpr double carrier_hz = 740'000.0;  // what a head has at boot (docs/protocols/ping360.md 2.3)
 constexpr double minute_ms = 60'000.0;
 constexpr TextForm discovery_form{"an address and port such as 0.0.0.0:30303", endpoint_form.type,
                                   endpoint_form.schema};
@@ -119,12 +118,30 @@ void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
                    "silence after a reset to the bootloader");
 }
 
+void read_transducer_band(YamlSection& section, render::TransducerBand& band) {
+  section.introduce(
+      "The transducer as one resonance. The maker publishes what is usable, 650 to 850 kHz; that one way "
+      "loses "
+      "3 dB at these ends is inferred.");
+  section.number("low_khz", band.low_hz, Range::from(0.0, 10'000.0),
+                 "lower end of the band: here the transducer loses 3 dB each way; 0 with `high_khz` 0: every "
+                 "frequency passes",
+                 1e-3);
+  section.number("high_khz", band.high_hz, Range::from(0.0, 10'000.0), "upper end of the band", 1e-3);
+  const bool none = band.low_hz == 0.0 && band.high_hz == 0.0;
+  if (!none && !(band.low_hz > 0.0 && band.high_hz > band.low_hz)) {
+    section.report("high_khz", "is not above low_khz (expected 0 < low_khz < high_khz, or both 0)");
+  }
+}
+
 void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Config& config) {
-  read_acoustics(section, carrier_hz, head);
+  read_acoustics(section, ping360_carrier_hz, head);
   read_single_beam(section, head.acoustics.aperture);
   using Pulse = render::PhysicalModel::Pulse;
   section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
                  "response in range: as long as the client's pulse, or without length");
+  section.section("transducer_band", "which of the frequencies that a client asks for come through",
+                  [&](YamlSection& inner) { read_transducer_band(inner, config.transducer_band); });
   using Scale = render::OutputScale;
   section.choice("output_scale", head.acoustics.output_scale,
                  {{"half_decibels", Scale::half_decibels}, {"linear", Scale::linear}},
@@ -143,7 +160,11 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
       "turns "
       "about the z axis of its mount and looks along x at the angle `device.bearing_offset`.");
   Ping360Config config;
-  apply_water(section, context, carrier_hz, head);
+  apply_water(section, context, ping360_carrier_hz, head);
+  config.water = context.absorption_db_per_m < 0.0
+                     ? std::optional(render::Water{context.water.temperature_c, context.water.salinity_ppt,
+                                                   context.water.depth_m, context.water.ph})
+                     : std::nullopt;
   config.device.waits_for_permission = context.pings_by_source;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;

@@ -3,17 +3,52 @@
 
 #include <algorithm>
 
+#include "protocol/ping360/units.hpp"
+#include "renderer/acoustics/transducer.hpp"
+#include "renderer/acoustics/water.hpp"
+
 namespace sonard::server {
+namespace {
+
+// Levels were set with what clients ask for at 10 m (docs/protocols/ping360.md 2.3).
+constexpr double usual_pulse_s = 53e-6;
+constexpr int usual_sample_period = 444;
+
+/// What the water does to sound of another frequency. Whatever the head makes of its water at its usual
+/// frequency, it makes of it at this one.
+void follow_frequency(double frequency_hz, const Ping360Config& config, render::PhysicalModel& physical) {
+  physical.multipath.wavelength_m *= ping360_carrier_hz / frequency_hz;
+  if (config.water) {
+    const double change_db_per_m =
+        render::francois_garrison_absorption_db_per_m(frequency_hz, *config.water) -
+        render::francois_garrison_absorption_db_per_m(ping360_carrier_hz, *config.water);
+    physical.absorption_db_per_m += change_db_per_m;
+    physical.tvg_absorption_db_per_m = std::max(0.0, physical.tvg_absorption_db_per_m + change_db_per_m);
+  }
+}
+
+}  // namespace
 
 render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfig& head) {
+  const Ping360Config& config = ping360_config(head);
   render::SonarSettings settings = head.acoustics;
   settings.range = {.count = std::max(1, job.native_bins),
                     .step_m = job.native_bins > 0 ? job.native_bin_m : 0.01,
                     .compression_log2 = 0,
                     .compression_peak = false};
   settings.transmit = job.transmit;
-  settings.physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
-  settings.physical.gain_db += job.gain_db;
+  render::PhysicalModel& physical = settings.physical;
+  physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
+  physical.usual_pulse = {job.sound_speed_mps * usual_pulse_s / 2.0,
+                          job.sound_speed_mps * ping360::sample_time_s(usual_sample_period) / 2.0};
+  // The transducer cannot listen before its tone is over, and rings from then on.
+  const double longer_m = std::max(0.0, physical.range_cell_m - physical.usual_pulse.cell_m);
+  physical.ring_down.peak_m += longer_m;
+  physical.ring_down.end_m += longer_m;
+  const double frequency_hz = job.frequency_hz > 0 ? job.frequency_hz : ping360_carrier_hz;
+  physical.band_loss_db = render::band_loss_db(config.transducer_band, frequency_hz, job.pulse_s);
+  follow_frequency(frequency_hz, config, physical);
+  physical.gain_db += job.gain_db;
   return settings;
 }
 

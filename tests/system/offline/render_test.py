@@ -479,6 +479,40 @@ class Stills(Case):
         self.assertGreater(self.sidecar(moving, "ping_000007")["T_world_sonar_at_end"]["position_m"][0], 1.0)
 
 
+POST = """<?xml version="1.0"?>
+<sdf version="1.9" xmlns:sonard="https://sonard.dev/sdf"><world name="w"><model name="post"><pose>8 0 0 0 0 0</pose>
+<static>true</static><link name="l"><visual name="v"><geometry><box><size>0.1 0.1 1</size></box></geometry>
+<sonard:material>rock</sonard:material></visual></link></model></world></sdf>
+"""
+POST_CONFIG = """
+world: {file: post.sdf}
+engine: cpu
+sampling: {preset: fast}
+heads:
+  - name: g
+    type: gemini_720i
+    sonar_id: 513
+    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0, status: [127.0.0.1]}
+    acoustics: {fine_beams: 1, physical: {speckle: off, noise: false, texture_nu: 0, water_clutter: {density_per_m3: 0}}}
+poses: {initial: {position_m: [0, 0, 0]}}
+"""
+
+
+class Levels(Case):
+    def test_a_post_is_as_bright_under_a_longer_tone(self):
+        """Clients ask for 4 cycles at 10 m, 25 at 40, 89 at 80 and 128 at 120 (docs/protocols/gemini.md 5): the same
+        post, within half a decibel of amplitude."""
+        self.write("post.sdf", POST)
+        config = self.write("config.yaml", POST_CONFIG)
+        greatest = []
+        for range_m in (10, 40, 80, 120):
+            out = self.path(f"out{range_m}")
+            render(config, "--trajectory", self.way(0.01), "--out", out, "--rate", "1", "--range", str(range_m), "--gain", "20")
+            greatest.append(int(numpy.load(os.path.join(out, "ping_000000.npy")).max()))
+        self.assertTrue(100 < min(greatest) and max(greatest) < 255, greatest)
+        self.assertLess(20 * math.log10(max(greatest) / min(greatest)), 0.5, greatest)
+
+
 class Bytes(Case):
     def one_run(self, out, way, *arguments):
         return render(self.config(), "--trajectory", way, "--out", out, "--rate", "10", "--compression", "3", "--truth",

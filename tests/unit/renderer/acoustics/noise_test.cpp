@@ -86,9 +86,11 @@ TEST(Noise, InterferenceRaisesNoiseWithinItsBurst) {
 }
 
 TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
-  const RingDown ring_down{true, -6, 0.3, 0.9};
+  PhysicalModel model;
+  model.ring_down = {true, -6, 0.3, 0.9};
+  const RingDown& ring_down = model.ring_down;
   const RangeLines range{2000, 0.001, 0, false};
-  const std::vector<float> amplitude = ring_down_amplitudes(ring_down, range);
+  const std::vector<float> amplitude = ring_down_amplitudes(model, range);
   const auto level_db = [&](double range_m) {
     return 20 * std::log10(static_cast<double>(amplitude[static_cast<std::size_t>(range_m / 0.001)]));
   };
@@ -101,6 +103,25 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
   EXPECT_EQ(ring_down_lines({}, range), 0);
 }
 
+// The pulse overdrives the receiver: what is sent is even from the first line up to the peak, whatever the
+// TVG.
+TEST(RingDown, IsEvenFromTheFirstLineWhereThePulseOverdrivesTheReceiver) {
+  PhysicalModel model;
+  model.ring_down = {.on = true, .level_db = -6, .peak_m = 0.3, .end_m = 0.9, .from_start = true};
+  model.tvg_log_coefficient = 30;
+  model.tvg_absorption_db_per_m = 0.2;
+  const std::vector<float> amplitude = ring_down_amplitudes(model, {2000, 0.001, 0, false});
+  const auto output_db = [&](std::size_t line) {
+    const double range_m = (static_cast<double>(line) + 0.5) * 0.001;
+    return 20 * std::log10(static_cast<double>(amplitude[line])) + 30 * std::log10(range_m) + 0.4 * range_m;
+  };
+  for (const std::size_t line : {0, 1, 10, 144, 299}) {
+    EXPECT_NEAR(output_db(line), -6 + 30 * std::log10(0.3) + 0.4 * 0.3, 0.01) << line;
+  }
+  EXPECT_NEAR(20 * std::log10(static_cast<double>(amplitude[600])), -46, 0.1);
+  EXPECT_NEAR(20 * std::log10(static_cast<double>(amplitude[900])), -86, 0.1);
+}
+
 // Without echo and noise it is all there is; with noise it is the steady part of it.
 TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
   WorkerPool workers;
@@ -109,7 +130,7 @@ TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
   request.settings.physical.gain_db = -6;
   const PingSamples samples = Receiver().receive(even_echo(request, 0), request, 0, workers);
   const std::vector<float> amplitude =
-      ring_down_amplitudes(request.settings.physical.ring_down, request.settings.range);
+      ring_down_amplitudes(request.settings.physical, request.settings.range);
   for (int line = 0; line < 90; ++line) {
     const auto at = static_cast<std::size_t>(line);
     EXPECT_NEAR(samples.u16[at * 256 + 77], 65535 * static_cast<double>(amplitude[at]) * std::pow(10, -0.3),

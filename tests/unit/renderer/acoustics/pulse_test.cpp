@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/acoustics/transducer.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
@@ -115,6 +116,123 @@ TEST(PulseResponse, ToldWhatIsHeardOutsideOfTheLine) {
   EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.02).share_outside(), 0.125, 1e-6);
   EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.5).share_outside(), 0.005, 1e-6);
   EXPECT_NEAR(PulseResponse(Pulse::chirp, 0.01, 0.02).share_outside(), 1 - integral(2 * pulse_m, 0), 0.01);
+}
+
+/// A tone of this length, where levels are stated for one of 20 mm in lines of 5 mm.
+PhysicalModel tone_of(double cell_m, double rounding_m = 0) {
+  PhysicalModel model;
+  model.pulse = Pulse::tone;
+  model.range_cell_m = cell_m;
+  model.tone_rounding_m = rounding_m;
+  model.usual_pulse = {0.02, 0.005};
+  return model;
+}
+
+PulseResponse response_of(const PhysicalModel& model, double step_m) {
+  return {model.pulse, model.range_cell_m, step_m, model.tone_rounding_m, pulse_energy(model, step_m)};
+}
+
+/// What an even echo becomes.
+double bed(const PulseResponse& response) {
+  double sum = response.share(0);
+  for (int lines = 1; lines < response.taps(); ++lines) {
+    sum += 2 * response.share(lines);
+  }
+  return sum;
+}
+
+// The source level is fixed: 4 lines of 5 mm lie in the usual tone, so a point that its lines resolve has a
+// quarter of its echo, and an even echo as many times a quarter as there are lines in the tone.
+TEST(PulseEnergy, ALongerToneLeavesAPointAndRaisesABed) {
+  for (const double cell_m : {0.005, 0.02, 0.1, 0.75}) {
+    const PhysicalModel model = tone_of(cell_m);
+    EXPECT_NEAR(bed(response_of(model, 0.005)), cell_m / 0.02, 1e-4 * cell_m / 0.02) << cell_m;
+    EXPECT_NEAR(response_of(model, 0.0002).share(0), 0.25, 0.25 * 0.02) << cell_m;
+  }
+  EXPECT_NEAR(bed(response_of(tone_of(0.02), 0.005)), 1, 1e-6);
+}
+
+// An even echo has its energy per line, so lines twice as long hold twice as much and show the same. A tone
+// shorter than its line shows what the mean over the line leaves of it.
+TEST(PulseEnergy, LevelsDoNotDependOnTheLengthOfLines) {
+  for (const double step_m : {0.001, 0.005, 0.01, 0.04}) {
+    EXPECT_NEAR(bed(response_of(tone_of(0.1), step_m)) * step_m / 0.005, 0.1 / 0.02, 1e-3) << step_m;
+  }
+  const PulseResponse response = response_of(tone_of(0.005), 0.5);
+  EXPECT_NEAR(bed(response), 0.25 * 0.005 / 0.5, 1e-6);
+}
+
+// Rounded ends make a short tone longer, not weaker: its length is that of the band. The convolution of a box
+// with the main lobe of a sinc, written down once more.
+TEST(PulseEnergy, ARoundedToneKeepsItsPeak) {
+  constexpr double rounding_m = 0.022;
+  constexpr double dx = 1e-4;
+  const auto amplitude = [](double x, double cell_m) {
+    double sum = 0;
+    for (double at = -rounding_m + dx / 2; at < rounding_m; at += dx) {
+      const double y = std::numbers::pi * at / rounding_m;
+      sum += std::abs(x - at) <= cell_m / 2 ? std::sin(y) / y : 0.0;
+    }
+    return sum;
+  };
+  const auto energy_m = [&](double cell_m) {
+    double sum = 0;
+    for (double x = -0.2 + dx / 2; x < 0.2; x += 10 * dx) {
+      sum += std::pow(amplitude(x, cell_m) / amplitude(0, cell_m), 2) * 10 * dx;
+    }
+    return sum;
+  };
+  const double usual_m = energy_m(0.02);
+  constexpr double tolerance = 0.06;  // 64 steps over the band are off by 0.2 dB
+  for (const double cell_m : {0.004, 0.02, 0.033, 0.13}) {
+    const PhysicalModel model = tone_of(cell_m, rounding_m);
+    const double energy = energy_m(cell_m) / usual_m;
+    EXPECT_NEAR(bed(response_of(model, 0.005)), energy, tolerance * energy) << cell_m;
+    EXPECT_NEAR(response_of(model, 0.0005).share(0), 0.005 / usual_m, tolerance * 0.005 / usual_m) << cell_m;
+  }
+}
+
+TEST(PulseEnergy, IsOneWhereLevelsDoNotFollowTheLength) {
+  PhysicalModel model = tone_of(0.1);
+  model.usual_pulse = {};
+  EXPECT_EQ(pulse_energy(model, 0.01), 1);
+  model = tone_of(0.1);
+  model.pulse = Pulse::windowed_chirp;
+  EXPECT_EQ(pulse_energy(model, 0.01), 1);
+  model.band_loss_db = -20;
+  EXPECT_NEAR(pulse_energy(model, 0.01), 0.01, 1e-12);
+  model = tone_of(0.02);
+  EXPECT_EQ(pulse_energy(model, 0.005), 1);  // exactly: pictures of the usual pulse are those of before
+}
+
+// Worked out by hand: of a band of 200 kHz around 743.3 kHz the quality is 3.717; 500 kHz are detuned by
+// 3.717 (500 / 743.3 - 743.3 / 500) = -3.026, which leaves 1 / 10.16 of the power each way.
+TEST(TransducerBand, LosesWhatAResonanceDoesTwice) {
+  const TransducerBand band{650e3, 850e3};
+  EXPECT_NEAR(band_loss_db(band, 650e3, 0), -6.02, 0.01);
+  EXPECT_NEAR(band_loss_db(band, 850e3, 0), -6.02, 0.01);
+  EXPECT_NEAR(band_loss_db(band, std::sqrt(650e3 * 850e3), 0), 0, 1e-9);
+  EXPECT_NEAR(band_loss_db(band, 740e3, 53e-6), 0, 0.01);
+  EXPECT_NEAR(band_loss_db(band, 500e3, 0), -20 * std::log10(10.16), 0.05);
+  EXPECT_NEAR(band_loss_db(band, 1000e3, 0), -15.5, 0.1);
+  EXPECT_EQ(band_loss_db({}, 500e3, 1e-6), 0);
+}
+
+// Two resonators in a row, each y' = (x - y) / t with t = 1 / (pi * 200 kHz), step by step.
+TEST(TransducerBand, AShortToneEndsBeforeTheTransducerHasBuiltUp) {
+  constexpr double dt = 1e-10;
+  for (const double duration_s : {0.5e-6, 1e-6, 2e-6, 5e-6, 20e-6}) {
+    double first = 0, second = 0, most = 0;
+    for (double time_s = 0; time_s < duration_s + 10e-6; time_s += dt) {
+      const double tone = time_s < duration_s ? 1 : 0;
+      second += dt * std::numbers::pi * 200e3 * (first - second);
+      first += dt * std::numbers::pi * 200e3 * (tone - first);
+      most = std::max(most, second);
+    }
+    EXPECT_NEAR(band_loss_db({650e3, 850e3}, std::sqrt(650e3 * 850e3), duration_s), 20 * std::log10(most),
+                0.02)
+        << duration_s;
+  }
 }
 
 TEST(PulseResponse, APulseWithoutLengthSpreadsNothing) {

@@ -80,6 +80,20 @@ TEST_F(Ping360Section, a_beamwidth_is_that_of_the_one_beam) {
   EXPECT_NEAR(aperture.beam_edges_rad[1], -half_rad, 1e-12);
 }
 
+TEST_F(Ping360Section, a_transducer_band_has_two_ends_or_none) {
+  const std::string head = "name: m, udp: [{bind: 127.0.0.1:1}], acoustics: {transducer_band: ";
+  EXPECT_EQ(read(head + "{low_khz: 700, high_khz: 780}}").transducer_band,
+            (render::TransducerBand{700e3, 780e3}));
+  EXPECT_EQ(read(head + "{low_khz: 0, high_khz: 0}}").transducer_band, render::TransducerBand{});
+  EXPECT_EQ(read("name: m, udp: [{bind: 127.0.0.1:1}]").transducer_band,
+            (render::TransducerBand{650e3, 850e3}));
+  for (const std::string band : {"{low_khz: 900}}", "{low_khz: 0}}", "{high_khz: 650}}"}) {
+    EXPECT_THAT(complaints(document(head + band)),
+                ElementsAre(HasSubstr("transducer_band.high_khz: is not above low_khz")))
+        << band;
+  }
+}
+
 TEST_F(Ping360Section, says_what_is_wrong) {
   EXPECT_THAT(complaints(document("name: m")), ElementsAre(HasSubstr("no client could reach the head")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}, {bind: 127.0.0.1:1}]")),
