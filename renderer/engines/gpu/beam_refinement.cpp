@@ -76,18 +76,21 @@ std::unique_ptr<BeamRefinement::Ping> BeamRefinement::begin(GpuBinner& binner, c
   } else {
     even = &make_even_grids(binner, wanted);
   }
-  auto ping = std::make_unique<Ping>(sampler_, binner, request, surface, statistics);
+  auto ping = std::make_unique<Ping>(sampler_, thin_things_, binner, request, surface, statistics);
   ping->sample_evenly(*even);
   return ping;
 }
 
-BeamRefinement::Ping::Ping(RasterSampler& sampler, GpuBinner& binner, const EchoRequest& request,
-                           const SurfaceModel& surface, PingStatistics& statistics)
+BeamRefinement::Ping::Ping(RasterSampler& sampler, const ThinThings& thin_things, GpuBinner& binner,
+                           const EchoRequest& request, const SurfaceModel& surface,
+                           PingStatistics& statistics)
     : sampler_(sampler),
       binner_(binner),
       request_(request),
       surface_(surface),
       statistics_(statistics),
+      least_columns_(thin_things.least_columns(request.T_world_sonar, request.settings.aperture,
+                                               request.settings.range.sampled_range_m())),
       beams_(static_cast<std::size_t>(request.settings.aperture.beam_count())),
       choices_(beams_.size()) {}
 
@@ -151,7 +154,8 @@ void BeamRefinement::Ping::learn() {
           share,
           end - first,
           samples.port_rad(part(estimate.zone_begin)),
-          samples.starboard_rad(part(estimate.zone_end - 1))};
+          samples.starboard_rad(part(estimate.zone_end - 1)),
+          least_columns_[static_cast<std::size_t>(choices_[i].beam)]};
     }
   }
 }

@@ -10,6 +10,7 @@
 #include "renderer/engines/gpu/gpu_binner.hpp"
 #include "renderer/engines/gpu/grid_choice.hpp"
 #include "renderer/engines/gpu/raster_sampler.hpp"
+#include "renderer/engines/gpu/thin_things.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "renderer/surface/surface_model.hpp"
@@ -26,7 +27,9 @@ class BeamRefinement {
   static constexpr std::size_t most_pings = 8;
 
   /// @param sampler outlives this object; its context is current when this ends.
-  explicit BeamRefinement(RasterSampler& sampler) : sampler_(sampler) {}
+  /// @param thin_things outlive this object.
+  BeamRefinement(RasterSampler& sampler, const ThinThings& thin_things)
+      : sampler_(sampler), thin_things_(thin_things) {}
 
   /// Gives the first pass of a request to the GPU.
   /// @param binner has begun the image; it, the request and the statistics outlive the result.
@@ -57,14 +60,15 @@ class BeamRefinement {
   const EvenGrids& make_even_grids(GpuBinner& binner, EvenGrids wanted);
 
   RasterSampler& sampler_;
+  const ThinThings& thin_things_;
   std::list<EvenGrids> even_;  ///< the last used first: heads that share a renderer come in turn
 };
 
 /// One in the making: its image is asked for when advance() says that it is done.
 class BeamRefinement::Ping {
  public:
-  Ping(RasterSampler& sampler, GpuBinner& binner, const EchoRequest& request, const SurfaceModel& surface,
-       PingStatistics& statistics);
+  Ping(RasterSampler& sampler, const ThinThings& thin_things, GpuBinner& binner, const EchoRequest& request,
+       const SurfaceModel& surface, PingStatistics& statistics);
 
   /// Waits for the estimates of the last pass, and gives the next one to the GPU.
   /// @return whether estimates are still to come.
@@ -86,6 +90,7 @@ class BeamRefinement::Ping {
   const SurfaceModel surface_;
   PingStatistics& statistics_;
   int pass_ = 0;
+  std::vector<int> least_columns_;  ///< of each beam, for the thin things in it
   std::vector<BeamState> beams_;
   // Of the last pass: which beams were sampled, in what grids.
   std::vector<BeamChoice> choices_;

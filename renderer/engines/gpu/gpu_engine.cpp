@@ -54,8 +54,9 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       largest_response_(largest_response(world)),
       workers_(workers),
       images_until_lost_(options.gpu.lose_context_at_image),
+      thin_things_(world),
       sampler_(drawn_world(world, options, merged_facets_), options.gpu),
-      refinement_(sampler_) {
+      refinement_(sampler_, thin_things_) {
   binner(0);  // so that an OpenGL that cannot build its shaders is found out here
 }
 
@@ -65,6 +66,7 @@ GpuEngine::~GpuEngine() {
 
 void GpuEngine::set_body_pose(std::size_t body, const Pose& T_world_body) {
   sampler_.set_body_pose(body, T_world_body);
+  thin_things_.set_body_pose(body, T_world_body);
 }
 
 void GpuEngine::set_part_meshes(std::span<const PartMesh> changes) {

@@ -13,6 +13,7 @@
 #include "renderer/engines/gpu/beam_refinement.hpp"
 #include "renderer/engines/gpu/gpu_binner.hpp"
 #include "renderer/engines/gpu/raster_sampler.hpp"
+#include "renderer/engines/gpu/thin_things.hpp"
 #include "renderer/renderer_options.hpp"
 #include "renderer/sample_grid/grid_cache.hpp"
 #include "renderer/scene/world.hpp"
@@ -52,6 +53,7 @@ class GpuEngine final : public EchoEngine {
   WorkerPool& workers_;
   std::uint64_t images_until_lost_;  ///< GpuOptions::lose_context_at_image
   std::uint64_t merged_facets_ = 0;  ///< SkipRule::coplanar_facets
+  ThinThings thin_things_;
   RasterSampler sampler_;
   std::vector<std::unique_ptr<GpuBinner>> binners_;  ///< one for each image in the making
   GridCache grid_, cone_grid_;

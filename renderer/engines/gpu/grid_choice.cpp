@@ -204,7 +204,8 @@ class NextPass {
     const int rows =
         std::min(round_up_to_even(now.rows * round_up(std::max(finer_factor(by_rows, is_last_), both))),
                  finest_rows(aperture_));
-    if (by_columns > 1 && by_rows <= 1 && bins <= 1) {
+    const bool misses_thin_things = !now.has_zone() && state.least_columns > now.columns;
+    if (by_columns > 1 && by_rows <= 1 && bins <= 1 && !misses_thin_things) {
       const BeamDensity zone = with_zone(aperture_, beam, state);
       if (zone.has_zone() && zone.samples() <= most) {
         return zone;
@@ -216,7 +217,7 @@ class NextPass {
     BeamDensity wanted = now;
     wanted.columns =
         std::max(round_up_to_even(now.columns * round_up(std::max(finer_factor(by_columns, is_last_), both))),
-                 least_columns_);
+                 std::max(least_columns_, state.least_columns));
     wanted.columns = std::max(now.columns, std::min(wanted.columns, most_columns));
     wanted.rows = std::max(now.rows, rows);
     return capped(wanted, now, most);

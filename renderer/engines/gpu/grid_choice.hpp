@@ -82,6 +82,7 @@ struct BeamState {
   int columns = 0;                 ///< of all of the beam, as the estimate counts them
   /// The sides of the zone of the estimate.
   double zone_port_rad = 0.0, zone_starboard_rad = 0.0;
+  int least_columns = 0;  ///< for the thin things in it (ThinThings), whatever is estimated
 };
 
 /// The beams that may miss the targets and can be sampled more finely, with how they are to be. Together they
