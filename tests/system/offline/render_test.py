@@ -481,7 +481,7 @@ class Stills(Case):
 
 POST = """<?xml version="1.0"?>
 <sdf version="1.9" xmlns:sonard="https://sonard.dev/sdf"><world name="w"><model name="post"><pose>8 0 0 0 0 0</pose>
-<static>true</static><link name="l"><visual name="v"><geometry><box><size>0.1 0.1 1</size></box></geometry>
+<static>true</static><link name="l"><visual name="v"><geometry><box><size>0.1 0.1 {height_m}</size></box></geometry>
 <sonard:material>rock</sonard:material></visual></link></model></world></sdf>
 """
 POST_CONFIG = """
@@ -499,18 +499,29 @@ poses: {initial: {position_m: [0, 0, 0]}}
 
 
 class Levels(Case):
-    def test_a_post_is_as_bright_under_a_longer_tone(self):
-        """Clients ask for 4 cycles at 10 m, 25 at 40, 89 at 80 and 128 at 120 (docs/protocols/gemini.md 5): the same
-        post, within half a decibel of amplitude."""
-        self.write("post.sdf", POST)
+    def greatest(self, height_m):
+        """Of the post, whose front is 7.95 m ahead. Clients ask for 4 cycles at 10 m, 25 at 40, 89 at 80 and 128 at 120
+        (docs/protocols/gemini.md 5)."""
+        self.write("post.sdf", POST.format(height_m=height_m))
         config = self.write("config.yaml", POST_CONFIG)
         greatest = []
         for range_m in (10, 40, 80, 120):
-            out = self.path(f"out{range_m}")
-            render(config, "--trajectory", self.way(0.01), "--out", out, "--rate", "1", "--range", str(range_m), "--gain", "20")
+            out = self.path(f"out{height_m}-{range_m}")
+            render(config, "--trajectory", self.way(0.01), "--out", out, "--rate", "1", "--range", str(range_m), "--gain", "40",
+                   "--bits", "16")
             greatest.append(int(numpy.load(os.path.join(out, "ping_000000.npy")).max()))
-        self.assertTrue(100 < min(greatest) and max(greatest) < 255, greatest)
+        self.assertTrue(0 < min(greatest) and max(greatest) < 65535, greatest)
+        return greatest
+
+    def test_a_point_is_as_bright_under_a_longer_tone(self):
+        greatest = self.greatest(0.1)
         self.assertLess(20 * math.log10(max(greatest) / min(greatest)), 0.5, greatest)
+
+    def test_a_post_does_not_fade_under_a_longer_tone(self):
+        """Its ends are 16 mm farther away than its middle. A tone that holds all of that brightens it, by less than 2 dB."""
+        greatest = self.greatest(1)
+        self.assertEqual(greatest, sorted(greatest))
+        self.assertLess(20 * math.log10(greatest[-1] / greatest[0]), 2, greatest)
 
 
 class Bytes(Case):
