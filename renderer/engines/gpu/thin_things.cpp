@@ -19,44 +19,44 @@ namespace {
 
 constexpr double widest_m = 0.5;  // 120 m away a column of the coarsest grid is 0.2 m wide
 constexpr std::size_t most_triangles = 200'000;
-constexpr double columns_across = 4.0;
+constexpr double columns_across = 8.0;  // of a square bar 5.6: its echo is within 1 dB
 
 /// Sets of corners, each of which knows one of its own.
-class Pieces {
+class Islands {
  public:
-  explicit Pieces(std::size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  explicit Islands(std::size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), 0U); }
 
-  std::uint32_t piece_of(std::uint32_t corner) {
+  std::uint32_t island_of(std::uint32_t corner) {
     while (parent_[corner] != corner) {
       corner = parent_[corner] = parent_[parent_[corner]];
     }
     return corner;
   }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[piece_of(a)] = piece_of(b); }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[island_of(a)] = island_of(b); }
 
  private:
   std::vector<std::uint32_t> parent_;
 };
 
-/// The corners of each piece of a mesh. Corners at the same place are one.
-std::vector<std::vector<glm::dvec3>> pieces_of(const TriangleMesh& mesh) {
-  Pieces pieces(mesh.positions.size());
+/// The corners of each island of connected triangles in a mesh. Corners at the same place are one.
+std::vector<std::vector<glm::dvec3>> islands_of(const TriangleMesh& mesh) {
+  Islands islands(mesh.positions.size());
   std::map<std::tuple<float, float, float>, std::uint32_t> first_at;
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::vec3& p = mesh.positions[i];
-    pieces.join(i, first_at.try_emplace({p.x, p.y, p.z}, i).first->second);
+    islands.join(i, first_at.try_emplace({p.x, p.y, p.z}, i).first->second);
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    pieces.join(mesh.indices[i], mesh.indices[i + 1]);
-    pieces.join(mesh.indices[i], mesh.indices[i + 2]);
+    islands.join(mesh.indices[i], mesh.indices[i + 1]);
+    islands.join(mesh.indices[i], mesh.indices[i + 2]);
   }
   std::map<std::uint32_t, std::vector<glm::dvec3>> corners;
   for (const std::uint32_t corner : mesh.indices) {
-    corners[pieces.piece_of(corner)].emplace_back(mesh.positions[corner]);
+    corners[islands.island_of(corner)].emplace_back(mesh.positions[corner]);
   }
   std::vector<std::vector<glm::dvec3>> all;
-  for (auto& [piece, of_piece] : corners) {
-    all.push_back(std::move(of_piece));
+  for (auto& [island, of_island] : corners) {
+    all.push_back(std::move(of_island));
   }
   return all;
 }
@@ -99,7 +99,7 @@ ThinThings::ThinThings(const World& world) {
       }
       const auto [found, is_new] = of_mesh.try_emplace(part.mesh.get());
       for (const std::vector<glm::dvec3>& corners :
-           is_new ? pieces_of(*part.mesh) : std::vector<std::vector<glm::dvec3>>{}) {
+           is_new ? islands_of(*part.mesh) : std::vector<std::vector<glm::dvec3>>{}) {
         if (const std::optional<ThinThing> thing = thin_thing(0, corners)) {
           found->second.push_back(*thing);
         }

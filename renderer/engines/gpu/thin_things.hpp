@@ -13,7 +13,7 @@
 
 namespace sonard::render {
 
-/// A piece of a mesh whose triangles share corners: the two of its corners that are far apart, and how far
+/// An island of a mesh, whose triangles share corners: the two of its corners that are far apart, and how far
 /// the others lie from the straight line between them.
 struct ThinThing {
   std::size_t body = 0;
@@ -24,14 +24,14 @@ struct ThinThing {
 /// The thin things of a world: found by their triangles when the world is loaded, and placed for each ping.
 class ThinThings {
  public:
-  /// Looks at each piece of each mesh that is at most half a metre wide. Left out are terrains, and meshes of
-  /// more than 200,000 triangles.
+  /// Looks at each island of each mesh that is at most half a metre wide. Left out are terrains, and meshes
+  /// of more than 200,000 triangles.
   explicit ThinThings(const World& world);
 
   void set_body_pose(std::size_t body, const Pose& T_world_body);
 
-  /// Columns that each beam needs, so that four of them lie across each thin thing in it; 0: no thin thing is
-  /// in the beam.
+  /// Columns that each beam needs, so that eight of them lie across each thin thing in it; 0: no thin thing
+  /// is in the beam.
   /// @param range_m how far the sonar looks
   std::vector<int> least_columns(const Pose& T_world_sonar, const Aperture& aperture, double range_m) const;
 
