@@ -507,7 +507,7 @@ class Levels(Case):
         greatest = []
         for range_m in (10, 40, 80, 120):
             out = self.path(f"out{height_m}-{range_m}")
-            render(config, "--trajectory", self.way(0.01), "--out", out, "--rate", "1", "--range", str(range_m), "--gain", "40",
+            render(config, "--trajectory", self.way(0.01), "--out", out, "--rate", "1", "--range", str(range_m), "--gain", "20",
                    "--bits", "16")
             greatest.append(int(numpy.load(os.path.join(out, "ping_000000.npy")).max()))
         self.assertTrue(0 < min(greatest) and max(greatest) < 65535, greatest)
