@@ -75,7 +75,7 @@ class Pipeline:
             mesh.beam(top, add(top, (0.0, 0.0, 0.22)), 0.16, 0.04)
         return mesh
 
-    def mattress_mesh(self, x, seed, along=13, across=9, pitch_m=0.46, block_m=0.40, thickness_m=0.18):
+    def mattress_mesh(self, x, seed, along=13, across=9, pitch_m=0.46, block_m=0.40, thickness_m=0.12):
         """Concrete blocks on ropes, hanging over the pipe and lying on the bed at both sides."""
         mesh = Mesh()
         axis = self.direction(x)

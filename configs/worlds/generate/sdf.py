@@ -17,7 +17,7 @@ class World:
     def model(self, name, visuals, pose="0 0 0 0 0 0", static=True, scale=None, comment=None):
         """One body: `visuals` are (name, mesh file, acoustic material) and, where there is one, a normal map file.
 
-        A material is a name, or (name, mu in dB) where its diffuse backscatter is another."""
+        A material is a name, or (name, {attribute: value}) if some of its numbers differ from the table (docs/worlds.md)."""
         out = self._lines.append
         if comment:
             out(f"    <!-- {comment} -->")
@@ -29,8 +29,9 @@ class World:
             out(f'        <visual name="{visual}">')
             size = f"<scale>{scale}</scale>" if scale else ""
             out(f"          <geometry><mesh><uri>{mesh}</uri>{size}</mesh></geometry>")
-            name, mu = (material, "") if isinstance(material, str) else (material[0], f' lambert_mu_db="{material[1]}"')
-            out(f"          <sonard:material{mu}>{name}</sonard:material>")
+            name, numbers = (material, {}) if isinstance(material, str) else material
+            attributes = "".join(f' {key}="{value}"' for key, value in numbers.items())
+            out(f"          <sonard:material{attributes}>{name}</sonard:material>")
             for file in normal_map:
                 out(f"          <material><pbr><metal><normal_map>{file}</normal_map></metal></pbr></material>")
             out("        </visual>")

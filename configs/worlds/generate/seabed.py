@@ -21,9 +21,12 @@ class Seabed:
         self._changes = []  # functions (x, y, height) -> height, in the order they were made
 
     def natural(self, x, y):
-        """The bed without ripples and before anything was put on it."""
+        """The bed without ripples and before anything was put on it: long, low swells.
+
+        Shorter ones would shade and brighten patches of a few metres, which recorded beds hardly show.
+        """
         slope = 0.012 * x - 0.008 * y
-        return -self.depth_m + slope + self.undulation_m * layered_noise(self.seed, x / 13.0, y / 13.0, 4)
+        return -self.depth_m + slope + self.undulation_m * layered_noise(self.seed, x / 13.0, y / 13.0, 2)
 
     def ripples(self, x, y):
         """Sharp crests, flat troughs, wandering direction, and patches where they fade out."""

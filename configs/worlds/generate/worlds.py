@@ -23,6 +23,13 @@ from tank import DEPTH, TARGET_HEIGHT, tank_meshes
 # Boulder shapes, reused at several places and scales.
 BOULDER_SIZES = {"a": (1.9, 1.5, 1.2), "b": (1.2, 1.1, 0.9), "c": (0.9, 0.7, 0.6), "d": (2.6, 1.7, 1.3)}
 
+# Coarse sand with shells. A sonar sees a shadow only on a bed that is this much brighter than fine sand.
+SHELLY_SAND = ("sand", {"lambert_mu_db": -12})
+# Structures and stones that have stood on the bed for years. Soft growth absorbs: they glint less than bare ones.
+GROWN_STEEL = ("steel_fouled", {"pressure_reflection": 0.4, "lambert_mu_db": -18})
+GROWN_CONCRETE = ("concrete", {"pressure_reflection": 0.3})
+GROWN_ROCK = ("rock", {"pressure_reflection": 0.5})
+
 # Where the structures of oil_and_gas stand.
 MANIFOLD_AT, TREE_AT, JACKET_AT = (0.0, 4.0), (7.5, -2.4), (0.0, -13.5)
 
@@ -44,12 +51,12 @@ def _scour_boulders(seabed, boulders):
 def _add_boulders(world, seabed, boulders):
     for name, shape, x, y, scale, yaw in boulders:
         z = seabed.height(x, y) + 0.22 * BOULDER_SIZES[shape][2] * scale
-        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", "rock")], _pose(x, y, z, yaw), True,
+        world.model(name, [("stone", f"meshes/boulders/boulder_{shape}.ply", GROWN_ROCK)], _pose(x, y, z, yaw), True,
                     None if scale == 1.0 else f"{scale} {scale} {scale}")
 
 
 def _cobbles(seabed, seed, count, keep_out):
-    """Stones of 10 to 40 cm, scattered in clusters and half sunk; one mesh."""
+    """Stones of 10 to 25 cm, scattered in clusters and half sunk; one mesh."""
     stones = [boulder(70 + k, (1.0, 0.85, 0.7), levels=1) for k in range(3)]
     field = Mesh()
     placed_count, attempt = 0, 0
@@ -62,7 +69,7 @@ def _cobbles(seabed, seed, count, keep_out):
         y = uniform(-15.0, 15.0, seed, cluster, 4) + reach * math.sin(angle)
         if keep_out(x, y):
             continue
-        size = 0.10 + 0.30 * uniform(0.0, 1.0, seed, attempt, 5) ** 2
+        size = 0.10 + 0.15 * uniform(0.0, 1.0, seed, attempt, 5) ** 2
         yaw = uniform(0.0, 2.0 * math.pi, seed, attempt, 6)
         turn = yawed(yaw)
         move = placed((x, y, seabed.height(x, y) + 0.10 * size), yaw)
@@ -73,14 +80,14 @@ def _cobbles(seabed, seed, count, keep_out):
 
 def docking_station():
     folder = "meshes/docking_station"
-    seabed = Seabed(seed=3, depth_m=30.0, undulation_m=0.38, ripple_height_m=0.12, ripple_length_m=1.35,
+    seabed = Seabed(seed=3, depth_m=30.0, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.35,
                     ripple_heading_rad=math.radians(68.0))
 
     def sway(x):
         return -3.7 + 0.7 * math.sin((x + 3.0) / 15.0) ** 2 - 0.30 * math.sin(x / 6.5)
 
     def burial(x):
-        return 0.20 + 0.14 * math.sin(x / 4.3 + 0.8)
+        return 0.42 + 0.14 * math.sin(x / 4.3 + 0.8)
 
     pipe = Pipeline(seabed, sway, -29.0, 29.0, diameter_m=0.60, burial=burial)
     level = round(seabed.natural(0.0, 0.6), 3)
@@ -90,10 +97,8 @@ def docking_station():
         for sy in (-1, 1):
             seabed.scour((sx * 2.25, 0.6 + sy * 1.75), 0.60, 0.07)
     boulders = [  # name, shape, x, y, scale, yaw
-        ("boulder_1", "d", 8.6, -0.6, 0.8, 0.4), ("boulder_2", "b", 7.2, 0.9, 1.0, 2.0), ("boulder_3", "a", -9.5, 2.4, 0.8, 1.1),
-        ("boulder_4", "c", -8.2, 0.5, 1.0, 0.2), ("boulder_5", "b", -8.8, -7.6, 1.1, 3.0), ("boulder_6", "c", 5.2, -7.4, 1.0, 0.9),
-        ("boulder_7", "a", 10.8, -2.2, 0.9, 5.1), ("boulder_8", "c", 1.6, 8.1, 1.2, 4.0), ("boulder_9", "d", -13.5, 2.1, 0.8, 2.5),
-        ("boulder_10", "b", 12.9, 9.4, 1.3, 0.7)]
+        ("boulder_1", "d", 8.6, -0.6, 0.6, 0.4), ("boulder_2", "a", -9.5, 2.4, 0.6, 1.1), ("boulder_3", "b", -8.8, -7.6, 0.9, 3.0),
+        ("boulder_4", "c", 1.6, 8.1, 1.0, 4.0), ("boulder_5", "b", 12.9, 9.4, 1.0, 0.7)]
     _scour_boulders(seabed, boulders)
 
     def keep_out(x, y):
@@ -103,7 +108,7 @@ def docking_station():
     parts = station_meshes()
     files |= {
         f"{folder}/seabed.ply": seabed.mesh(30.0, 13.5, 0.25, 1.09).ply(),
-        f"{folder}/cobbles.ply": _cobbles(seabed, 5, 110, keep_out).ply(),
+        f"{folder}/cobbles.ply": _cobbles(seabed, 5, 40, keep_out).ply(),
         f"{folder}/pipe.ply": pipe.pipe_mesh().ply(),
         f"{folder}/anodes.ply": pipe.anode_mesh((-21.0, -8.9, 3.4, 15.6)).ply(),
         f"{folder}/clamps.ply": pipe.clamp_mesh((-4.0, 8.6)).ply(),
@@ -115,14 +120,13 @@ def docking_station():
         f"{folder}/rov.ply": rov_mesh().ply(),
     }
     world = World("docking_station", "A docking station beside a pipeline on a rippled seabed.")
-    # Coarse sand with shells: far brighter than fine sand, so that what casts a shadow is seen by it.
-    world.model("seabed", [("sand", f"{folder}/seabed.ply", ("sand", -13)), ("cobbles", f"{folder}/cobbles.ply", "rock")])
-    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled"),
-                             ("clamps", f"{folder}/clamps.ply", "steel_fouled")])
-    world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])
-    world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", "concrete")])
-    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", "steel_fouled"),
-                                    ("equipment", f"{folder}/station_equipment.ply", "steel_fouled")],
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", SHELLY_SAND), ("cobbles", f"{folder}/cobbles.ply", GROWN_ROCK)])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", GROWN_STEEL),
+                             ("clamps", f"{folder}/clamps.ply", GROWN_STEEL)])
+    world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", GROWN_CONCRETE)])
+    world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", GROWN_CONCRETE)])
+    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", GROWN_STEEL),
+                                    ("equipment", f"{folder}/station_equipment.ply", GROWN_STEEL)],
                 pose=_pose(0.0, 0.6, level, 0.0), comment="4 x 3 x 2.5 m, entered from the west")
     world.model("umbilical", [("cable", f"{folder}/umbilical.ply", "rubber")])
     _add_boulders(world, seabed, boulders)
@@ -134,7 +138,7 @@ def docking_station():
 
 def ssiv():
     folder = "meshes/ssiv"
-    seabed = Seabed(seed=29, depth_m=42.0, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.6,
+    seabed = Seabed(seed=29, depth_m=42.0, undulation_m=0.30, ripple_height_m=0.04, ripple_length_m=1.6,
                     ripple_heading_rad=math.radians(20.0))
 
     def sway(x):
@@ -145,7 +149,7 @@ def ssiv():
         # Negative: the pipe is carried above the bed from the frame to its touch-down point.
         at_frame = 0.5 * (1.0 - TIE_IN / PIPE_RADIUS)
         t = smoothstep(BASE[0] + 0.3, 10.0, abs(x))
-        return at_frame * (1.0 - t) + (0.22 + 0.10 * math.sin(x / 5.0)) * t
+        return at_frame * (1.0 - t) + (0.42 + 0.10 * math.sin(x / 5.0)) * t
 
     level = round(seabed.natural(0.0, 0.0), 3)
     seabed.flatten((0.0, 0.0), (4.2, 3.2), level, 3.0)
@@ -180,19 +184,19 @@ def ssiv():
     files |= {
         "textures/sand_normal.png": sand_normal_map(3),
         f"{folder}/seabed.ply": seabed.mesh(30.0, 13.0, 0.28, 1.1).ply(SAND_TILE_M),
-        f"{folder}/cobbles.ply": _cobbles(seabed, 9, 70, keep_out).ply(),
+        f"{folder}/cobbles.ply": _cobbles(seabed, 9, 30, keep_out).ply(),
         f"{folder}/pipe.ply": pipes.ply(),
         f"{folder}/anodes.ply": anodes.ply(),
         f"{folder}/mattress_west.ply": west.mattress_mesh(-12.5, 17, along=11, across=7).ply(),
         f"{folder}/mattress_east.ply": east.mattress_mesh(12.5, 18, along=11, across=7).ply(),
     }
     world = World("ssiv", "A subsea isolation valve in its protective frame, tied in to a pipeline.")
-    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand", "textures/sand_normal.png"), ("cobbles", f"{folder}/cobbles.ply", "rock")])
-    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled")])
-    world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", "concrete")])
-    world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", "concrete")])
-    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", "steel_fouled"), ("piping", f"{folder}/ssiv_piping.ply", "steel_fouled"),
-                         ("equipment", f"{folder}/ssiv_equipment.ply", "steel_fouled"), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", SHELLY_SAND, "textures/sand_normal.png"), ("cobbles", f"{folder}/cobbles.ply", GROWN_ROCK)])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", GROWN_STEEL)])
+    world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", GROWN_CONCRETE)])
+    world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", GROWN_CONCRETE)])
+    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", GROWN_STEEL), ("piping", f"{folder}/ssiv_piping.ply", GROWN_STEEL),
+                         ("equipment", f"{folder}/ssiv_equipment.ply", GROWN_STEEL), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
                 pose=_pose(0.0, 0.0, level, 0.0), comment="7.2 x 5 m at the base, 3.2 m high; covers are glass-fibre plastic")
     _add_boulders(world, seabed, boulders)
     files["ssiv.sdf"] = world.text().encode("ascii")
@@ -201,7 +205,7 @@ def ssiv():
 
 def manifold():
     folder = "meshes/manifold"
-    seabed = Seabed(seed=61, depth_m=25.0, undulation_m=0.55, ripple_height_m=0.13, ripple_length_m=2.1,
+    seabed = Seabed(seed=61, depth_m=25.0, undulation_m=0.35, ripple_height_m=0.06, ripple_length_m=2.1,
                     ripple_heading_rad=math.radians(115.0))
 
     def sway(x):
@@ -211,7 +215,7 @@ def manifold():
         # Negative: the flowlines come down from the ends of the cover.
         at_end = 0.5 * (1.0 - FLOWLINE_TIE_IN / FLOWLINE_RADIUS)
         t = smoothstep(COVER_HALF[0] + 0.5, 8.5, abs(x))
-        return at_end * (1.0 - t) + (0.20 + 0.06 * math.sin(x / 4.0)) * t
+        return at_end * (1.0 - t) + (0.45 + 0.06 * math.sin(x / 4.0)) * t
 
     level = round(seabed.natural(0.0, 0.0), 3)
     natural = seabed.natural
@@ -228,8 +232,7 @@ def manifold():
     seabed.flatten((0.0, 3.9), (3.6, 6.9), level, 3.0)
     for sx in (-1, 1):
         seabed.scour((sx * 3.4, -1.8), 0.7, 0.08)
-    boulders = [("boulder_1", "d", -8.6, 4.4, 1.0, 0.6), ("boulder_2", "a", 8.3, 5.6, 1.0, 2.2), ("boulder_3", "b", 7.3, -3.6, 1.0, 4.0),
-                ("boulder_4", "c", -6.4, -2.9, 1.1, 1.2), ("boulder_5", "b", -11.5, 8.2, 1.2, 5.0), ("boulder_6", "c", 11.2, 2.3, 1.0, 3.1)]
+    boulders = [("boulder_1", "d", -11.5, 8.2, 0.6, 0.6), ("boulder_2", "a", 10.5, 9.0, 0.6, 2.2), ("boulder_3", "b", 7.3, -3.6, 0.8, 4.0)]
     _scour_boulders(seabed, boulders)
     pipes, anodes = Mesh(), Mesh()
     for line, places in ((west, (-16.0, -8.2)), (east, (9.3, 17.0))):
@@ -245,9 +248,9 @@ def manifold():
         f"{folder}/equipment.ply": equipment_mesh().ply(),
     }
     world = World("manifold", "A manifold under its cover, with a flowline at each end, on an uneven seabed.")
-    world.model("seabed", [("sand", f"{folder}/seabed.ply", "sand", "textures/sand_normal.png")])
-    world.model("flowlines", [("pipes", f"{folder}/flowlines.ply", "concrete"), ("anodes", f"{folder}/anodes.ply", "steel_fouled")])
-    world.model("manifold", [("cover", f"{folder}/cover.ply", "steel_fouled"), ("equipment", f"{folder}/equipment.ply", "steel_fouled")],
+    world.model("seabed", [("sand", f"{folder}/seabed.ply", SHELLY_SAND, "textures/sand_normal.png")])
+    world.model("flowlines", [("pipes", f"{folder}/flowlines.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", GROWN_STEEL)])
+    world.model("manifold", [("cover", f"{folder}/cover.ply", GROWN_STEEL), ("equipment", f"{folder}/equipment.ply", GROWN_STEEL)],
                 pose=_pose(0.0, 0.0, level, 0.0), comment="6 x 2.8 m, 1.8 m high, open towards the south")
     _add_boulders(world, seabed, boulders)
     files["manifold.sdf"] = world.text().encode("ascii")
@@ -321,7 +324,7 @@ def _risers_and_jumper(level):
 
 def oil_and_gas():
     folder = "meshes/oil_and_gas"
-    seabed = Seabed(seed=53, depth_m=30.0, undulation_m=0.30, ripple_height_m=0.09, ripple_length_m=1.7,
+    seabed = Seabed(seed=53, depth_m=30.0, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.7,
                     ripple_heading_rad=math.radians(35.0))
     level = round(seabed.natural(*MANIFOLD_AT), 3)
     for place, half_size in ((MANIFOLD_AT, (2.6, 1.9)), (TREE_AT, (1.3, 1.3)), (JACKET_AT, (7.0, 7.0))):
