@@ -24,9 +24,9 @@ from tank import DEPTH, TARGET_HEIGHT, tank_meshes
 BOULDER_SIZES = {"a": (1.9, 1.5, 1.2), "b": (1.2, 1.1, 0.9), "c": (0.9, 0.7, 0.6), "d": (2.6, 1.7, 1.3)}
 
 # Coarse sand with shells. A sonar sees a shadow only on a bed that is this much brighter than fine sand.
-SHELLY_SAND = ("sand", {"lambert_mu_db": -12})
+SHELLY_SAND = ("sand", {"lambert_mu_db": -13})
 # Structures and stones that have stood on the bed for years. Soft growth absorbs: they glint less than bare ones.
-GROWN_STEEL = ("steel_fouled", {"pressure_reflection": 0.4, "lambert_mu_db": -18})
+GROWN_STEEL = ("steel_fouled", {"pressure_reflection": 0.4, "lambert_mu_db": -17})
 GROWN_CONCRETE = ("concrete", {"pressure_reflection": 0.3})
 GROWN_ROCK = ("rock", {"pressure_reflection": 0.5})
 
@@ -80,7 +80,7 @@ def _cobbles(seabed, seed, count, keep_out):
 
 def docking_station():
     folder = "meshes/docking_station"
-    seabed = Seabed(seed=3, depth_m=30.0, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.35,
+    seabed = Seabed(seed=3, depth_m=29.979, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.35,
                     ripple_heading_rad=math.radians(68.0))
 
     def sway(x):
@@ -138,7 +138,7 @@ def docking_station():
 
 def ssiv():
     folder = "meshes/ssiv"
-    seabed = Seabed(seed=29, depth_m=42.0, undulation_m=0.30, ripple_height_m=0.04, ripple_length_m=1.6,
+    seabed = Seabed(seed=29, depth_m=41.998, undulation_m=0.30, ripple_height_m=0.04, ripple_length_m=1.6,
                     ripple_heading_rad=math.radians(20.0))
 
     def sway(x):
@@ -205,7 +205,7 @@ def ssiv():
 
 def manifold():
     folder = "meshes/manifold"
-    seabed = Seabed(seed=61, depth_m=25.0, undulation_m=0.35, ripple_height_m=0.06, ripple_length_m=2.1,
+    seabed = Seabed(seed=61, depth_m=25.137, undulation_m=0.35, ripple_height_m=0.06, ripple_length_m=2.1,
                     ripple_heading_rad=math.radians(115.0))
 
     def sway(x):
@@ -215,7 +215,7 @@ def manifold():
         # Negative: the flowlines come down from the ends of the cover.
         at_end = 0.5 * (1.0 - FLOWLINE_TIE_IN / FLOWLINE_RADIUS)
         t = smoothstep(COVER_HALF[0] + 0.5, 8.5, abs(x))
-        return at_end * (1.0 - t) + (0.45 + 0.06 * math.sin(x / 4.0)) * t
+        return at_end * (1.0 - t) + (0.55 + 0.06 * math.sin(x / 4.0)) * t
 
     level = round(seabed.natural(0.0, 0.0), 3)
     natural = seabed.natural
@@ -232,7 +232,7 @@ def manifold():
     seabed.flatten((0.0, 3.9), (3.6, 6.9), level, 3.0)
     for sx in (-1, 1):
         seabed.scour((sx * 3.4, -1.8), 0.7, 0.08)
-    boulders = [("boulder_1", "d", -11.5, 8.2, 0.6, 0.6), ("boulder_2", "a", 10.5, 9.0, 0.6, 2.2), ("boulder_3", "b", 7.3, -3.6, 0.8, 4.0)]
+    boulders = [("boulder_1", "d", -11.5, 8.2, 0.6, 0.6), ("boulder_2", "a", 10.5, 9.0, 0.6, 2.2), ("boulder_3", "b", 13.0, 4.5, 0.8, 4.0)]
     _scour_boulders(seabed, boulders)
     pipes, anodes = Mesh(), Mesh()
     for line, places in ((west, (-16.0, -8.2)), (east, (9.3, 17.0))):
@@ -324,7 +324,7 @@ def _risers_and_jumper(level):
 
 def oil_and_gas():
     folder = "meshes/oil_and_gas"
-    seabed = Seabed(seed=53, depth_m=30.0, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.7,
+    seabed = Seabed(seed=53, depth_m=29.994, undulation_m=0.30, ripple_height_m=0.05, ripple_length_m=1.7,
                     ripple_heading_rad=math.radians(35.0))
     level = round(seabed.natural(*MANIFOLD_AT), 3)
     for place, half_size in ((MANIFOLD_AT, (2.6, 1.9)), (TREE_AT, (1.3, 1.3)), (JACKET_AT, (7.0, 7.0))):
