@@ -213,6 +213,9 @@ struct PhysicalModel {
   /// to the range (docs/physics.md 2.8); 0: of no number that shows.
   double texture_nu = 0.0;
   double texture_range_m = 10.0;  ///< > 0
+  /// With OutputScale::half_decibels and one beam: weight with which the two halves of the neighbouring bins
+  /// next to a bin count in its mean of decibels, [0, 1]; 0: a bin is the mean of its own cells.
+  double bin_overlap = 0.0;
   /// Scattering strength of the water's volume, dB/m^3 (docs/physics.md 2.10); -infinity: none.
   double volume_scattering_db = -std::numeric_limits<double>::infinity();
   WaterClutter water_clutter;

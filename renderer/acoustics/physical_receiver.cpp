@@ -78,16 +78,25 @@ class PhysicalBins {
     if (const float* steady = block_.steady(bin); steady != nullptr) {
       take_apart(block_.line(bin), steady);
     }
-    for (int cell = bin * tables.cells; cell < (bin + 1) * tables.cells; ++cell) {
-      add_cell(bin, cell, output);
+    const int begin = bin * tables.cells, end = begin + tables.cells;
+    const int cells = tables.range.count * tables.cells;
+    if (tables.overlap > 0) {
+      add_cell(bin, std::max(begin - 1, 0), tables.overlap, output);
+    }
+    for (int cell = begin; cell < end; ++cell) {
+      add_cell(bin, cell, 1.0F, output);
+    }
+    if (tables.overlap > 0) {
+      add_cell(bin, std::min(end, cells - 1), tables.overlap, output);
     }
   }
 
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
-  /// @param cell of the fields; a line of several beams is one
-  void add_cell(int bin, int cell, Quantizer& output) {
+  /// @param cell of the fields; a line of several beams is one. A cell beside the line has its own speckle
+  /// and noise, but the mean echo of the line: what the overlap spreads of that is less than a line.
+  void add_cell(int bin, int cell, float weight, Quantizer& output) {
     const bool silent = noise_level_ == 0 && skips(SkipRule::no_noise);
     const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(cell);
     // No echo in any beam: speckle would multiply 0. Later images get other random
@@ -102,7 +111,7 @@ class PhysicalBins {
       noise_envelope_row(noise_level_, ping_.tables.profile.data(), noise.real, noise.imaginary, gain_,
                          beams_, codes_.data());
     }
-    output.add(codes_.data());
+    output.add(codes_.data(), weight);
   }
 
   /// Counts too: to be asked only where the criterion of the rule is met.

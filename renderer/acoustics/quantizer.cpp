@@ -47,9 +47,9 @@ void quantise_power(const float* codes, float exponent, float full, int count, C
   }
 }
 
-void add_decibels(const float* amplitude, int count, float* sum) {
+void add_decibels(const float* amplitude, float weight, int count, float* sum) {
   for (int b = 0; b < count; ++b) {
-    sum[b] += 20 * std::log10(std::max(amplitude[b], 1e-6F));
+    sum[b] += weight * (20 * std::log10(std::max(amplitude[b], 1e-6F)));
   }
 }
 
@@ -93,13 +93,14 @@ void Quantizer::begin() {
   terms_ = 0;
 }
 
-void Quantizer::add(const float* codes) {
-  const bool first = terms_++ == 0;
+void Quantizer::add(const float* codes, float weight) {
+  const bool first = terms_ == 0;
+  terms_ += weight;
   if (scale_ == OutputScale::half_decibels) {
     if (first) {
       std::fill_n(sum_.data(), samples_.beams, 0.0F);
     }
-    add_decibels(codes, samples_.beams, sum_.data());
+    add_decibels(codes, weight, samples_.beams, sum_.data());
   } else if (first) {
     std::copy_n(codes, samples_.beams, sum_.data());
   } else if (peak_) {
@@ -116,7 +117,7 @@ void Quantizer::end(int output_line) {
   const auto beams = static_cast<std::size_t>(samples_.beams);
   const std::size_t at = static_cast<std::size_t>(output_line) * beams;
   if (scale_ == OutputScale::half_decibels) {
-    quantise_decibels(sum_.data(), static_cast<float>(terms_), samples_.beams, &samples_.u8[at]);
+    quantise_decibels(sum_.data(), terms_, samples_.beams, &samples_.u8[at]);
   } else if (scale_ == OutputScale::power && samples_.u16.empty()) {
     quantise_power(sum_.data(), exponent_, 255.0F, samples_.beams, &samples_.u8[at]);
   } else if (scale_ == OutputScale::power) {

@@ -23,7 +23,8 @@ class Quantizer {
   void begin();
   /// @param codes amplitude of one range bin in each beam, times codes_per_amplitude(). A line that is 0
   /// throughout may be left out.
-  void add(const float* codes);
+  /// @param weight in the mean of decibels, > 0; amplitudes all weigh the same
+  void add(const float* codes, float weight = 1.0F);
   /// Quantises last, rounding as the scale says, and clamping: nothing wraps.
   void end(int output_line);
 
@@ -32,7 +33,7 @@ class Quantizer {
   OutputScale scale_;
   float exponent_;
   bool peak_;
-  int terms_ = 0;  ///< range bins, or cells, that were added
+  float terms_ = 0;  ///< sum of the weights that were added
   AlignedVector<float> sum_;
 };
 

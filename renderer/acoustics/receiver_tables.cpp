@@ -17,14 +17,19 @@ namespace {
 
 constexpr int most_cells = 16;
 
+bool joins_decibels(const SonarSettings& settings) {
+  return settings.aperture.beam_count() == 1 && settings.output_scale == OutputScale::half_decibels;
+}
+
 /// A receiver of decibels joins what a single beam has received in a line.
 int cells_per_line(const SonarSettings& settings) {
+  if (joins_decibels(settings) && settings.physical.bin_overlap > 0) {
+    return 2;  // the receiver's band follows the bins, so that half of one is a cell
+  }
   // Under a Hann window its main lobe is twice as wide.
   const bool windowed = settings.physical.pulse == PhysicalModel::Pulse::windowed_chirp;
   const double cell_m = settings.physical.range_cell_m * (windowed ? 2.0 : 1.0);
-  const bool joins =
-      settings.aperture.beam_count() == 1 && settings.output_scale == OutputScale::half_decibels;
-  if (!joins || !(cell_m > 0)) {
+  if (!joins_decibels(settings) || !(cell_m > 0)) {
     return 1;
   }
   return std::clamp(static_cast<int>(settings.range.step_m / cell_m), 1, most_cells);
@@ -72,6 +77,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       output_scale(settings.output_scale),
       rings(settings.transmit && model.ring_down.on),
       cells(cells_per_line(settings)),
+      overlap(joins_decibels(settings) ? static_cast<float>(model.bin_overlap) : 0.0F),
       filter(receive_kernel(aperture), aperture.beam_count()),
       pulse_correlation(model.pulse, model.range_cell_m, range.step_m / cells, model.tone_rounding_m),
       noise_correlation(noise_correlation_of(model, range.step_m / cells)),

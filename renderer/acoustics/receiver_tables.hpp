@@ -21,6 +21,7 @@ struct ReceiverTables {
 
   /// Range cells in a line of a single beam, each with speckle and noise of its own; 1 for several beams.
   int cells = 1;
+  float overlap = 0;  ///< weight of the cell before the line and of the one behind it
   BeamFilter filter;
   PulseCorrelation pulse_correlation;  ///< of speckle and texture, from cell to cell
   PulseCorrelation noise_correlation;

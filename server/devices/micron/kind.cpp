@@ -156,6 +156,7 @@ render::SonarSettings micron_acoustics() {
   acoustics.physical.tvg_max_db = 59.0;
   acoustics.physical.noise_level_db = -110.0;
   acoustics.physical.output_noise_db = -77.8;
+  acoustics.physical.bin_overlap = 0.55;
   acoustics.physical.noise_by_bearing_db = 7.0;
   acoustics.physical.bearing_jitter_rad = 0.15 * degree;
   acoustics.physical.near_field_blank_m = 0.1;

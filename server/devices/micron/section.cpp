@@ -89,6 +89,11 @@ void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig&
       "response in range: side lobes of -13 dB, of -31 dB and 1.6 times as wide, or no length");
   section.number("chirp_bandwidth_khz", config.chirp_bandwidth_hz, Range::from(0.0, 10'000.0),
                  "sets the range cell, 7.5 mm at 1500 m/s; 0 is a pulse without length", 1e-3);
+  section.number(
+      "bin_overlap", head.acoustics.physical.bin_overlap, Range::from(0.0, 1.0),
+      "weight of the adjoining halves of the neighbouring bins in the level of a bin, whose own two "
+      "halves weigh 1. 0.55 gives neighbours a correlation of 0.42, as recordings show; 0: a bin is "
+      "the mean of its own range cells");
 }
 
 }  // namespace
