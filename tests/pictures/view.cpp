@@ -12,6 +12,7 @@
 #include "protocol/micron/units.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "server/config/loader.hpp"
+#include "server/devices/device_kind.hpp"
 #include "server/devices/gemini/kind.hpp"
 #include "server/devices/kinds/kinds.hpp"
 #include "server/devices/micron/config.hpp"
@@ -63,6 +64,15 @@ void aim_gemini(View& view, const server::HeadConfig& head, const Vehicle& vehic
   view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
 }
 
+/// Any other multibeam head, as it usually pings.
+void aim_fan(View& view, const server::HeadConfig& head, const Vehicle& vehicle, double range_m,
+             double time_s) {
+  PingJob job = server::kind_of(head).usual_job(head);
+  job.native_bins = static_cast<int>(range_m / job.native_bin_m);
+  view.settings = server::kind_of(head).sonar_settings(job, head);
+  view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
+}
+
 void aim_micron(View& view, const server::HeadConfig& head, const Vehicle& vehicle, double range_m,
                 double sound_speed_mps, double time_s, double line_s) {
   PingJob job;
@@ -93,8 +103,10 @@ View configured_view(const std::string& config, double range_m, double time_s, d
     aim_gemini(view, head, vehicle, range_m, sound_speed_mps, time_s);
   } else if (head.kind == &server::micron_kind()) {
     aim_micron(view, head, vehicle, range_m, sound_speed_mps, time_s, line_s);
+  } else if (!server::kind_of(head).scanning()) {
+    aim_fan(view, head, vehicle, range_m, time_s);
   } else {
-    throw std::invalid_argument(config + ": its first head is neither a Gemini nor a Micron");
+    throw std::invalid_argument(config + ": of scanning heads only a Micron has a view");
   }
   return view;
 }

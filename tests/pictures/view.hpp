@@ -31,8 +31,9 @@ struct View {
 
 /// The first head of a configuration in configs/, as it pings at that range from where its vehicle is
 /// `time_s` after the start (from the initial pose, or along the trajectory). A Gemini compresses two native
-/// lines to one; a Micron makes one full turn in steps of 1.8 degrees with 500 bins, `line_s` after each
-/// other. Reads meshes in child processes: call it before there are threads.
+/// lines to one, an Oculus pings as it usually does, and a Micron makes one full turn in steps of 1.8 degrees
+/// with 500 bins, `line_s` after each other. Reads meshes in child processes: call it before there are
+/// threads.
 /// @throws what loading a configuration, a world or a trajectory throws
 View configured_view(const std::string& config, double range_m, double time_s = 0.0, double line_s = 0.05);
 

@@ -25,13 +25,16 @@ bool print(const sonard::realism::Row& row) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Measures images as a client has them, and compares with what recordings show.", "realism"};
+  std::string only;
+  app.add_option("--only", only, "Measure only the rows whose text contains this");
   CLI11_PARSE(app, argc, argv);
   std::cout << "| head | what | recorded | ours | tolerance | within |\n|---|---|---|---|---|---|\n";
   int out = 0;
   for (const auto& rows : {sonard::realism::gemini_noise_rows(), sonard::realism::gemini_scene_rows(),
-                           sonard::realism::micron_rows()}) {
+                           sonard::realism::patch_rows(), sonard::realism::micron_rows()}) {
     for (const sonard::realism::Row& row : rows) {
-      out += print(row) ? 0 : 1;
+      const bool wanted = only.empty() || row.what.find(only) != std::string::npos;
+      out += !wanted || print(row) ? 0 : 1;
     }
   }
   return out;

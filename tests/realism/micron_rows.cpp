@@ -64,6 +64,23 @@ double noise_sd() {
   return quantile_of(of_lines, 0.5);
 }
 
+/// From bin to bin, of noise under the ceiling of the TVG or of an even echo 25 dB over it.
+/// @param noise whether the client listens only
+double bins_shared(bool noise) {
+  server::HeadConfig head = server::micron_kind().make_default();
+  head.acoustics.physical.interference.probability = 0;
+  head.acoustics.physical.noise_by_bearing_db = 0;
+  MicronClient client{head, bin_m, bins};
+  client.gain_db = 0.8 * 45;
+  const double from_m = noise ? 38 : 8, to_m = noise ? 49 : 12;
+  std::vector<double> here, next;
+  for (const std::vector<double>& line : turn(client, noise ? 0 : 1e-7F, from_m, to_m)) {
+    here.insert(here.end(), line.begin(), line.end() - 1);
+    next.insert(next.end(), line.begin() + 1, line.end());
+  }
+  return test::correlation(here, next);
+}
+
 double zeros() {
   MicronClient client = client_at(28);
   const std::vector<double> levels = joined(turn(client, 0, 1.2, 49.9));
@@ -138,6 +155,10 @@ double lines_hit() {
 std::vector<Row> micron_rows() {
   return {
       {"Micron", "noise in bins of 64 mm: standard deviation", "2.5 to 3.2", 2.5, 3.2, "dB", noise_sd},
+      {"Micron", "noise: correlation with the next bin", "0.38 to 0.49", 0.38, 0.49, "",
+       [] { return bins_shared(true); }},
+      {"Micron", "echo: correlation with the next bin", "0.38 to 0.49", 0.38, 0.49, "",
+       [] { return bins_shared(false); }},
       {"Micron", "empty water to 50 m, gain 28 %: share of zeros", "0.29", 0.21, 0.37, "", zeros},
       {"Micron", "the same: mean level beyond 34 m", "4 to 6, flat", 4, 6, "dB",
        [] {

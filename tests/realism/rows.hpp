@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace sonard::realism {
 /// head.
 struct Row {
   std::string_view head;
-  std::string_view what;
+  std::string what;
   std::string_view recorded;  ///< as the recordings have it
   double least, most;         ///< tolerance of ours
   std::string_view unit;
@@ -22,5 +23,7 @@ struct Row {
 std::vector<Row> gemini_noise_rows();
 std::vector<Row> gemini_scene_rows();
 std::vector<Row> micron_rows();
+/// Homogeneous patches of the shipped worlds, seen from where their configurations begin.
+std::vector<Row> patch_rows();
 
 }  // namespace sonard::realism

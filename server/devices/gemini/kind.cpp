@@ -231,7 +231,7 @@ render::SonarSettings gemini_acoustics() {
   acoustics.physical.gain_db = 31.0;
   acoustics.physical.noise_level_db = -132.5;
   acoustics.physical.output_noise_db = -46.0;
-  acoustics.physical.texture_nu = 3.0;
+  acoustics.physical.texture_nu = 15.0;
   acoustics.physical.water_clutter.density_per_m3 = 0.1;
   // Whether transmitter and receiver share their height is not published: the pattern is taken once
   // (docs/physics.md 2.5).

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// How spiky the beds of the shipped worlds are, by the estimator that recordings were measured with.
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+#include "tests/pictures/view.hpp"
+#include "tests/realism/patches.hpp"
+#include "tests/realism/rows.hpp"
+
+namespace sonard::realism {
+namespace {
+
+/// 8-bit samples as amplitudes: what the scale of the output did is undone.
+AmplitudeImage amplitudes_of(const render::PingSamples& samples, const render::SonarSettings& settings) {
+  AmplitudeImage image{samples.lines, samples.beams, 255, {}};
+  const bool power = settings.output_scale == render::OutputScale::power;
+  const auto amplitude_of = [&](double code) {
+    return power ? 255 * std::pow(code / 255, 1 / settings.output_exponent) : code;
+  };
+  image.full_scale = amplitude_of(power ? 254 : 255);  // of a power scale the highest code is not met
+  for (const std::uint8_t code : samples.u8) {
+    image.amplitude.push_back(amplitude_of(code));
+  }
+  return image;
+}
+
+/// Of three draws of speckle and elements.
+std::vector<Patch> patches_of(const std::string& config, double range_m) {
+  const pictures::View view = pictures::configured_view(config, range_m);
+  std::vector<Patch> patches;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    render::SonarRenderer renderer(view.world, {render::EngineKind::cpu, 0});
+    render::PingRequest request;
+    request.T_world_sonar = view.T_world_sonar;
+    request.settings = view.settings;
+    request.seed = seed;
+    for (const Patch& patch :
+         homogeneous_patches(amplitudes_of(renderer.render_ping(request), view.settings))) {
+      patches.push_back(patch);
+    }
+  }
+  std::ranges::sort(patches, {}, &Patch::mean);
+  return patches;
+}
+
+double measure(const std::string& config, double range_m, Third third, double Patch::*of) {
+  static std::map<std::pair<std::string, double>, std::vector<Patch>> seen;
+  const auto [found, is_new] = seen.try_emplace({config, range_m});
+  if (is_new) {
+    found->second = patches_of(config, range_m);
+  }
+  return median_of(found->second, third).*of;
+}
+
+}  // namespace
+
+std::vector<Row> patch_rows() {
+  std::vector<Row> rows;
+  for (const auto& [head, config] :
+       {std::pair{"Gemini", "demo.yaml"}, std::pair{"Gemini", "ssiv.yaml"},
+        std::pair{"Gemini", "manifold.yaml"}, std::pair{"Gemini", "two-vehicles-b.yaml"},
+        std::pair{"Oculus", "demo-oculus.yaml"}}) {
+    for (const double range_m : {20.0, 30.0}) {
+      for (const auto& [name, third] :
+           {std::pair{"middle", Third::middle}, std::pair{"bright", Third::bright}}) {
+        const auto row = [&](const char* what, const char* recorded, double least, double most,
+                             double Patch::*of) {
+          rows.push_back({head,
+                          fmt::format("patches of {} to {:.0f} m, {} third: {}", config, range_m, name, what),
+                          recorded, least, most, "",
+                          [=, config = std::string(config)] { return measure(config, range_m, third, of); }});
+        };
+        row("coefficient of variation", "0.35 to 0.58", 0.40, 0.60, &Patch::variation);
+        row("variance of intensity over squared mean", "1.0 to 2.1", 1.0, 2.3, &Patch::index);
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace sonard::realism
