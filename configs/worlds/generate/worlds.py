@@ -25,8 +25,7 @@ BOULDER_SIZES = {"a": (1.9, 1.5, 1.2), "b": (1.2, 1.1, 0.9), "c": (0.9, 0.7, 0.6
 
 # Coarse sand with shells. A sonar sees a shadow only on a bed that is this much brighter than fine sand.
 SHELLY_SAND = ("sand", {"lambert_mu_db": -13})
-# Structures and stones that have stood on the bed for years. Soft growth absorbs: they glint less than bare ones.
-GROWN_STEEL = ("steel_fouled", {"pressure_reflection": 0.4, "lambert_mu_db": -17})
+# Concrete and stones that have lain on the bed for years. Soft growth absorbs: they glint less than bare ones.
 GROWN_CONCRETE = ("concrete", {"pressure_reflection": 0.3})
 GROWN_ROCK = ("rock", {"pressure_reflection": 0.5})
 
@@ -121,12 +120,12 @@ def docking_station():
     }
     world = World("docking_station", "A docking station beside a pipeline on a rippled seabed.")
     world.model("seabed", [("sand", f"{folder}/seabed.ply", SHELLY_SAND), ("cobbles", f"{folder}/cobbles.ply", GROWN_ROCK)])
-    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", GROWN_STEEL),
-                             ("clamps", f"{folder}/clamps.ply", GROWN_STEEL)])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", "steel_fouled"),
+                             ("clamps", f"{folder}/clamps.ply", "steel_fouled")])
     world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", GROWN_CONCRETE)])
     world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", GROWN_CONCRETE)])
-    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", GROWN_STEEL),
-                                    ("equipment", f"{folder}/station_equipment.ply", GROWN_STEEL)],
+    world.model("docking_station", [("structure", f"{folder}/station_structure.ply", "steel_fouled"),
+                                    ("equipment", f"{folder}/station_equipment.ply", "steel_fouled")],
                 pose=_pose(0.0, 0.6, level, 0.0), comment="4 x 3 x 2.5 m, entered from the west")
     world.model("umbilical", [("cable", f"{folder}/umbilical.ply", "rubber")])
     _add_boulders(world, seabed, boulders)
@@ -166,8 +165,8 @@ def ssiv():
     for sx in (-1, 1):
         for sy in (-1, 1):
             seabed.scour((sx * 3.9, sy * 3.1), 0.7, 0.07)
-    boulders = [("boulder_1", "b", -8.5, 5.2, 1.0, 0.3), ("boulder_2", "a", 9.5, 6.5, 0.9, 1.9), ("boulder_3", "c", 6.0, -6.2, 1.0, 4.4),
-                ("boulder_4", "c", -6.6, -7.1, 1.2, 2.7), ("boulder_5", "d", 2.5, 10.5, 0.8, 0.8)]
+    boulders = [("boulder_1", "b", -8.5, 5.2, 1.0, 0.3), ("boulder_2", "a", 9.5, 9.5, 0.9, 1.9), ("boulder_3", "c", 6.0, -6.2, 0.8, 4.4),
+                ("boulder_4", "c", -6.6, -7.1, 0.8, 2.7), ("boulder_5", "d", 2.5, 10.5, 0.8, 0.8)]
     _scour_boulders(seabed, boulders)
 
     def keep_out(x, y):
@@ -192,11 +191,11 @@ def ssiv():
     }
     world = World("ssiv", "A subsea isolation valve in its protective frame, tied in to a pipeline.")
     world.model("seabed", [("sand", f"{folder}/seabed.ply", SHELLY_SAND, "textures/sand_normal.png"), ("cobbles", f"{folder}/cobbles.ply", GROWN_ROCK)])
-    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", GROWN_STEEL)])
+    world.model("pipeline", [("pipe", f"{folder}/pipe.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", "steel_fouled")])
     world.model("mattress_west", [("blocks", f"{folder}/mattress_west.ply", GROWN_CONCRETE)])
     world.model("mattress_east", [("blocks", f"{folder}/mattress_east.ply", GROWN_CONCRETE)])
-    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", GROWN_STEEL), ("piping", f"{folder}/ssiv_piping.ply", GROWN_STEEL),
-                         ("equipment", f"{folder}/ssiv_equipment.ply", GROWN_STEEL), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
+    world.model("ssiv", [("structure", f"{folder}/ssiv_structure.ply", "steel_fouled"), ("piping", f"{folder}/ssiv_piping.ply", "steel_fouled"),
+                         ("equipment", f"{folder}/ssiv_equipment.ply", "steel_fouled"), ("covers", f"{folder}/ssiv_covers.ply", "pvc")],
                 pose=_pose(0.0, 0.0, level, 0.0), comment="7.2 x 5 m at the base, 3.2 m high; covers are glass-fibre plastic")
     _add_boulders(world, seabed, boulders)
     files["ssiv.sdf"] = world.text().encode("ascii")
@@ -249,8 +248,8 @@ def manifold():
     }
     world = World("manifold", "A manifold under its cover, with a flowline at each end, on an uneven seabed.")
     world.model("seabed", [("sand", f"{folder}/seabed.ply", SHELLY_SAND, "textures/sand_normal.png")])
-    world.model("flowlines", [("pipes", f"{folder}/flowlines.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", GROWN_STEEL)])
-    world.model("manifold", [("cover", f"{folder}/cover.ply", GROWN_STEEL), ("equipment", f"{folder}/equipment.ply", GROWN_STEEL)],
+    world.model("flowlines", [("pipes", f"{folder}/flowlines.ply", GROWN_CONCRETE), ("anodes", f"{folder}/anodes.ply", "steel_fouled")])
+    world.model("manifold", [("cover", f"{folder}/cover.ply", "steel_fouled"), ("equipment", f"{folder}/equipment.ply", "steel_fouled")],
                 pose=_pose(0.0, 0.0, level, 0.0), comment="6 x 2.8 m, 1.8 m high, open towards the south")
     _add_boulders(world, seabed, boulders)
     files["manifold.sdf"] = world.text().encode("ascii")

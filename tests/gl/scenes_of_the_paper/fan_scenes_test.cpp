@@ -121,8 +121,8 @@ TEST(FanScenesOnRay, DockingStationIsBrighterThanTheBedAndCastsAShadow) {
     const double heading = std::atan2(-0.85 + 11.913, x + 2.136);
     const int beam = scene.beam_at(heading - 80 * degree);
     const double face_m = std::sqrt(std::pow(-0.85 + 11.913, 2) + std::pow(x + 2.136, 2) + std::pow(4.12, 2));
-    // Upright steel, mu -17 dB, over sand, -13 dB, at a grazing angle of sine 4.4 / 9.2: 2.4 dB, 1.7 times.
-    EXPECT_GT(scene.strongest(beam, face_m - 0.15, face_m + 0.25), 1.7 * scene.median(beam, 8.8, 9.6)) << x;
+    // Upright steel, mu -15 dB, over sand, -13 dB, at a grazing angle of sine 4.4 / 9.2: 4.4 dB, 2.8 times.
+    EXPECT_GT(scene.strongest(beam, face_m - 0.15, face_m + 0.25), 2.8 * scene.median(beam, 8.8, 9.6)) << x;
     // Behind roof, tunnel and equipment at least half of the bed is in shadow; beside it hardly any.
     const double behind = scene.energy(beam, 16.5, 19.5);
     const double beside = scene.energy(scene.beam_at(-22 * degree), 16.5, 19.5);
@@ -131,10 +131,10 @@ TEST(FanScenesOnRay, DockingStationIsBrighterThanTheBedAndCastsAShadow) {
 }
 
 // The SSIV: from 13.5 (cos -70, sin -70) and z = -37.7, heading 110 degrees. Its bed is at -42.249; the long
-// member of its base ring, radius 0.17, runs along y = -2.5 at 0.22 above the bed. The first line of 8.3 mm
-// of a tube, mu -17 dB, has 2 a / R * mu cos^2(off) * 0.31 of the energy; one of the bed, -13 dB, mu
-// sin(gamma) tan(gamma) / R * 8.3 mm. 15 to 32 degrees off its normal a beam of 0.4 degrees spreads the tube
-// over 3 to 7 lines, which leaves it 9 to 3 times as strong as the bed.
+// member of its base ring, radius a = 0.17, runs along y = -2.5 at 0.22 above the bed. The first line of
+// 8.3 mm of a tube of mu -15 dB has 2 a / R * mu cos^2(off) * 0.31 of the energy, a line of the bed of -13 dB
+// mu sin(gamma) tan(gamma) / R * 8.3 mm. 15 to 32 degrees off its normal a beam of 0.4 degrees spreads the
+// tube over 3 to 7 lines, which leaves it 14 to 4.6 times as strong as the bed.
 TEST(FanScenesOnRay, FrontalFaceOfTheValve) {
   const SceneEcho scene("ssiv", on_cpu);
   const double sonar_x = 13.5 * std::cos(-70 * degree);
@@ -146,7 +146,7 @@ TEST(FanScenesOnRay, FrontalFaceOfTheValve) {
     const double along = (-2.5 - sonar_y) / std::sin(heading);
     const double face_m = std::hypot(along, below) - 0.17;
     const double bed = scene.median(beam, face_m - 1.5, face_m - 0.5);
-    EXPECT_NEAR(scene.first_range_m(beam, face_m - 0.4, 2 * bed), face_m, 0.08) << x;
+    EXPECT_NEAR(scene.first_range_m(beam, face_m - 0.4, 3 * bed), face_m, 0.08) << x;
   }
 }
 
