@@ -200,8 +200,10 @@ void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
        {"odometry", MavlinkMessages::odometry},
        {"local_position", MavlinkMessages::local_position},
        {"global_position", MavlinkMessages::global_position}},
-      "ODOMETRY, or LOCAL_POSITION_NED with the attitude of its time; `auto`: the first where it comes. "
-      "GLOBAL_POSITION_INT with the attitude is for worlds with an `origin`");
+      "ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with the attitude of its time. `auto` takes "
+      "the "
+      "first of these that comes; GLOBAL_POSITION_INT needs a world with an `origin`, or is at latitude 0, "
+      "longitude 0 and then gives the depth alone");
   section.section("origin", "where the vehicle's own origin is in the world", [&](YamlSection& inner) {
     read_pose(inner, mavlink.T_world_local,
               "what the vehicle calls (0, 0, 0), in the world (x east, y north, z up), metres",

@@ -2,6 +2,8 @@
 #include "server/diagnosis/pose_stream.hpp"
 
 #include <array>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -19,6 +21,33 @@ struct Unit {
 };
 constexpr std::array units{Unit{"microseconds", 1e-3}, Unit{"milliseconds", 1e-6}, Unit{"seconds", 1e-9}};
 
+/// Of stamps that do not go on with the poses.
+std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::string& name, PingClock clock) {
+  switch (stamps.looks()) {
+    case StampWatch::Looks::good:
+      break;
+    case StampWatch::Looks::stand_still:
+      return Finding{"stamps_stand_still",
+                     fmt::format("The stamps stand still while the vehicle moves: is {0} left out? Send the "
+                                 "time of each pose as {0}.",
+                                 name)};
+    case StampWatch::Looks::in_steps:
+      return Finding{"stamps_in_steps",
+                     fmt::format("The stamps stand still for {:.2g} s at a time while the vehicle moves: is "
+                                 "{} in whole seconds? Send the time of each pose, with its fraction.",
+                                 1e-9 * static_cast<double>(stamps.last_step().count()), name)};
+    case StampWatch::Looks::never_moved:
+      if (clock != PingClock::wall) {
+        return Finding{"stamps_never_moved",
+                       fmt::format("The stamps have not moved since the first pose, so no ping is made "
+                                   "(poses.clock): is the simulation paused, or {} left out?",
+                                   name)};
+      }
+      break;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now) {
@@ -34,6 +63,13 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
          fmt::format("The publisher's clock runs backwards: it went back {} time{}. A simulation was "
                      "started anew, or stamps are not those of one clock.",
                      summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s")});
+  }
+  if (auto found = look_at_stamps(inputs.statistics(index).stamps(), inputs.source(index).stamp_name(),
+                                  inputs.ping_clock())) {
+    findings.push_back(std::move(*found));
+  }
+  if (std::string doubt = inputs.source(index).doubt(); !doubt.empty()) {
+    findings.push_back({"doubtful_pose", std::move(doubt)});
   }
   if (summary.poses >= enough_poses && summary.time_rate) {
     for (const Unit& unit : units) {

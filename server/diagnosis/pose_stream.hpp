@@ -10,7 +10,8 @@
 
 namespace sonard::server {
 
-/// Stamps of another unit, a clock that was set back, several publishers at once. Belongs to the I/O thread.
+/// Stamps of another unit or without meaning, a clock that was set back, several publishers at once. Belongs
+/// to the I/O thread.
 /// @param index of the input
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now);
 

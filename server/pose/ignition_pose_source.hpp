@@ -22,6 +22,7 @@ class IgnitionPoseSource final : public PoseSource {
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
   std::vector<std::string> entities() const override;
+  std::string stamp_name() const override { return "header.stamp"; }
   std::string silence_hint() const override;
 
   static constexpr int max_waiting = 16;

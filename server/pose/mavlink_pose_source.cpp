@@ -44,7 +44,7 @@ std::uint64_t& counter_of(const mavlink::Message& message, Received& received) {
 std::string_view expected_of(MavlinkMessages messages) {
   switch (messages) {
     case MavlinkMessages::automatic:
-      return "ODOMETRY, or LOCAL_POSITION_NED and an attitude";
+      return "ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT and an attitude";
     case MavlinkMessages::odometry:
       return "ODOMETRY";
     case MavlinkMessages::local_position:
@@ -69,6 +69,8 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   /// True when the frame is of the vehicle that is listened to.
   bool is_ours(const mavlink::Frame& frame);
   void tell_what_is_missing(TimePoint arrival);
+  /// Why GLOBAL_POSITION_INT, where it arrives, is no pose; empty: it does not, or nothing is known.
+  std::string what_is_missing() const;
   void tell_of_broken_frames(std::uint64_t before);
 
   MavlinkPoseInput input;
@@ -142,17 +144,47 @@ bool MavlinkPoseSource::Impl::is_ours(const mavlink::Frame& frame) {
   return true;
 }
 
+std::string MavlinkPoseSource::Impl::what_is_missing() const {
+  if (received.global_position == 0) {
+    return "";
+  }
+  if (poses.counters().without_place > 0) {
+    return "GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle does not know where it is; "
+           "poses.mavlink.messages: auto takes its depth alone";
+  }
+  if (received.attitude == 0) {
+    return "GLOBAL_POSITION_INT arrives, and no attitude: ask the vehicle for ATTITUDE";
+  }
+  switch (input.messages) {
+    case MavlinkMessages::automatic:
+      return input.world_origin
+                 ? ""
+                 : "GLOBAL_POSITION_INT arrives, for which the place of the world on Earth has to be "
+                   "known (world.origin)";
+    case MavlinkMessages::odometry:
+    case MavlinkMessages::local_position:
+      return "GLOBAL_POSITION_INT arrives, which poses.mavlink.messages leaves out: auto and global_position "
+             "take "
+             "it";
+    case MavlinkMessages::global_position:
+      break;
+  }
+  return "";
+}
+
 void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
   first_received = first_received.value_or(arrival);
   if (missing_said || counters.samples > 0 || arrival - *first_received < patience) {
     return;
   }
   missing_said = true;
+  const std::string lacks = what_is_missing();
   spdlog::warn(
       "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, GLOBAL_POSITION_INT {}, "
-      "ATTITUDE or ATTITUDE_QUATERNION {}, others {} (expected {}, by poses.mavlink.messages)",
+      "ATTITUDE or ATTITUDE_QUATERNION {}, others {} (expected {}, by poses.mavlink.messages){}{}",
       listener.description(), input.system_id, patience.count(), received.odometry, received.local_position,
-      received.global_position, received.attitude, received.other, expected_of(input.messages));
+      received.global_position, received.attitude, received.other, expected_of(input.messages),
+      lacks.empty() ? "" : ": ", lacks);
 }
 
 void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
@@ -214,8 +246,20 @@ std::string MavlinkPoseSource::received() const {
                           : std::string();
 }
 
+std::string MavlinkPoseSource::doubt() const {
+  return impl_->poses.knows_depth_alone() ? "The vehicle knows its depth, and not where it is "
+                                            "(GLOBAL_POSITION_INT is at latitude 0, longitude "
+                                            "0): it stays at poses.mavlink.origin. Set its origin in the "
+                                            "ground station, or send poses that "
+                                            "have a position."
+                                          : "";
+}
+
 std::string MavlinkPoseSource::silence_hint() const {
   const Received& received = impl_->received;
+  if (const std::string lacks = impl_->what_is_missing(); !lacks.empty()) {
+    return lacks;
+  }
   if (received.odometry + received.local_position + received.global_position + received.attitude +
           received.other >
       0) {

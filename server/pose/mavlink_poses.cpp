@@ -18,6 +18,8 @@ using mavlink::MavFrame;
 
 /// More than two seconds of the fastest stream; a position waits for one attitude only.
 constexpr std::size_t most_headings = 256;
+/// A world this near to latitude 0, longitude 0 may have its vehicle there.
+constexpr double near_deg = 0.1;
 
 pose::Quat about_x(double angle_rad) {
   return {std::cos(angle_rad / 2), std::sin(angle_rad / 2), 0.0, 0.0};
@@ -55,9 +57,14 @@ std::int64_t boot_ns(std::uint32_t time_boot_ms) {
 }  // namespace
 
 MavlinkPoses::MavlinkPoses(const MavlinkPoseInput& input)
-    : wanted_(input.messages), T_world_local_(to_pose(input.T_world_local)) {
+    : wanted_(input.messages),
+      T_world_local_(to_pose(input.T_world_local)),
+      world_is_there_(input.world_origin && std::abs(input.world_origin->latitude_deg) < near_deg &&
+                      std::abs(input.world_origin->longitude_deg) < near_deg) {
   if (wanted_ == MavlinkMessages::global_position) {
     earth_.emplace(input.world_origin.value());
+  } else if (wanted_ == MavlinkMessages::automatic && input.world_origin) {
+    earth_.emplace(*input.world_origin);
   }
 }
 
@@ -124,6 +131,8 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::LocalP
     ++counters_.not_wanted;
     return std::nullopt;
   }
+  last_local_ = arrival;
+  depth_alone_ = false;
   return add(Place{boot_ns(position.time_boot_ms), T_world_local_, vec3(position.x, position.y, position.z),
                    vec3(position.vx, position.vy, position.vz)},
              arrival);
@@ -131,10 +140,29 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::LocalP
 
 std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::GlobalPositionInt& position,
                                                            TimePoint arrival) {
+  if (!global_position_is_wanted(arrival)) {
+    ++counters_.not_wanted;
+    return std::nullopt;
+  }
+  const bool no_place = position.lat == 0 && position.lon == 0 && !world_is_there_;
+  if (no_place && wanted_ == MavlinkMessages::automatic) {
+    depth_alone_ = true;
+    return add(Place{boot_ns(position.time_boot_ms),
+                     T_world_local_,
+                     {0, 0, -1e-3 * position.alt},
+                     {0, 0, 0.01 * position.vz}},
+               arrival);
+  }
+  if (no_place) {
+    complain(++counters_.without_place,
+             "GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle does not know where it is");
+    return std::nullopt;
+  }
   if (!earth_) {
     ++counters_.not_wanted;
     return std::nullopt;
   }
+  depth_alone_ = false;
   const double latitude_deg = 1e-7 * position.lat, longitude_deg = 1e-7 * position.lon;
   if (std::abs(latitude_deg) > 90.0 || std::abs(longitude_deg) > 180.0) {
     ++counters_.bad_value;
@@ -213,7 +241,7 @@ std::optional<MavlinkPoses::Heading> MavlinkPoses::nearest(std::int64_t time_ns)
 }
 
 bool MavlinkPoses::attitude_is_wanted(TimePoint arrival) const {
-  return earth_ || local_position_is_wanted(arrival);
+  return wanted_ == MavlinkMessages::global_position || local_position_is_wanted(arrival);
 }
 
 bool MavlinkPoses::local_position_is_wanted(TimePoint arrival) const {
@@ -226,12 +254,21 @@ bool MavlinkPoses::local_position_is_wanted(TimePoint arrival) const {
     case MavlinkMessages::automatic:
       break;
   }
-  return !last_odometry_ || arrival - *last_odometry_ > odometry_precedence;
+  return !last_odometry_ || arrival - *last_odometry_ > precedence;
+}
+
+// The first one that comes may be followed by something better.
+bool MavlinkPoses::global_position_is_wanted(TimePoint arrival) {
+  if (wanted_ != MavlinkMessages::automatic) {
+    return wanted_ == MavlinkMessages::global_position;
+  }
+  last_local_ = last_local_.value_or(arrival);
+  return arrival - *last_local_ > precedence;
 }
 
 std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odometry& odometry,
                                                            TimePoint arrival) {
-  if (wanted_ == MavlinkMessages::local_position || earth_) {
+  if (wanted_ == MavlinkMessages::local_position || wanted_ == MavlinkMessages::global_position) {
     ++counters_.not_wanted;
     return std::nullopt;
   }
@@ -261,7 +298,8 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odomet
   std::optional<pose::PoseSample> known =
       sample(time_ns + odometry_clock_.offset_ns.value(), T_world_local_, T_local_frd, twist_of(odometry));
   if (known) {
-    last_odometry_ = arrival;
+    last_odometry_ = last_local_ = arrival;
+    depth_alone_ = false;
     headings_.clear();
     waiting_.reset();
   }

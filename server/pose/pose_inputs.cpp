@@ -19,7 +19,7 @@ constexpr std::size_t most_publishers = 8;  // that are told apart
 
 PoseInputs::PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock,
                        PoseSink sink, PoseHold hold, std::chrono::milliseconds report_period)
-    : clock_(clock), report_period_(report_period), report_timer_(io) {
+    : clock_(clock), ping_clock_(config.clock), report_period_(report_period), report_timer_(io) {
   const auto measured_sink = [&] {
     PoseStatistics& statistics =
         *statistics_.emplace_back(std::make_unique<PoseStatistics>(config.extrapolation_limit));

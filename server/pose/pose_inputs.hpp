@@ -32,6 +32,8 @@ class PoseInputs {
 
   std::size_t size() const { return sources_.size(); }
   const PoseSource& source(std::size_t index) const { return *sources_[index]; }
+  /// PoseConfig::clock
+  PingClock ping_clock() const { return ping_clock_; }
   const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
   /// Who has sent poses by an input within the last two seconds, without those that another has come after;
   /// empty where publishers are not told apart.
@@ -49,6 +51,7 @@ class PoseInputs {
   void report();
 
   const Clock& clock_;
+  PingClock ping_clock_;
   std::chrono::milliseconds report_period_;
   std::vector<std::unique_ptr<PoseStatistics>> statistics_;  // by source
   std::vector<std::unique_ptr<PoseSource>> sources_;

@@ -40,6 +40,7 @@ void PoseStatistics::observe(const pose::PoseSample& sample, TimePoint arrival) 
       observe_step(*period, sample, arrival);
     }
   }
+  stamps_.observe(sample, arrival);
   newest_ = sample;
   newest_arrival_ = arrival;
 }

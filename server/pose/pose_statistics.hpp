@@ -9,6 +9,7 @@
 
 #include "protocol/pose/pose_codec.hpp"
 #include "server/clock/clock.hpp"
+#include "server/pose/stamp_watch.hpp"
 
 namespace sonard::server {
 
@@ -46,6 +47,7 @@ class PoseStatistics {
 
   /// The last pose; nullopt: none has come.
   const std::optional<pose::PoseSample>& newest() const { return newest_; }
+  const StampWatch& stamps() const { return stamps_; }
 
  private:
   struct Period {
@@ -67,6 +69,7 @@ class PoseStatistics {
   std::optional<pose::PoseSample> newest_;
   TimePoint newest_arrival_{};
   Period recent_, all_;
+  StampWatch stamps_;
 };
 
 /// "poses=500 rate_hz=50.0 time_rate=1.00 age_ms=12 longest_gap_ms=34 gaps=0 jumps=0 clock_restarts=0"; what

@@ -246,7 +246,7 @@ TEST_F(MavlinkPosesTest, OdometryGoesBeforeThePairWhileItComes) {
   take(LocalPositionNed{1000, 2, 0, 0});
   EXPECT_EQ(samples.size(), 1U);
   EXPECT_EQ(poses.counters().not_wanted, 2U);
-  now += MavlinkPoses::odometry_precedence;
+  now += MavlinkPoses::precedence;
   take(Attitude{3000, 0, 0, 0});
   take(LocalPositionNed{3000, 2, 0, 0});
   ASSERT_EQ(samples.size(), 2U);
@@ -310,6 +310,60 @@ TEST_F(MavlinkPosesTest, AGlobalPositionIsMetresEastAndNorthOfTheOriginOfTheWorl
   // Heads east, at 1 m/s to the north and 0.5 m/s down: to port, and down.
   EXPECT_NEAR(range_ahead_m(samples[0], east, 0), 1e-3 * per_degree.x, 1e-2);
   EXPECT_THAT(samples[0].twist->linear_mps, IsVec3(Vec3{0, 1, -0.5}, 1e-6));
+}
+
+// ArduSub without GPS: latitude and longitude stay 0, and the altitude is that of the depth sensor.
+TEST_F(MavlinkPosesTest, ADepthAloneIsAPoseAtTheOriginWhereNothingBetterComes) {
+  MavlinkPoseInput input;
+  input.T_world_local = {{5, 6, -1}, {1, 0, 0, 0}};
+  use(input);
+  for (int i = 0; i < 21; ++i) {
+    take(Attitude{static_cast<std::uint32_t>(10 + i), 0, 0, quarter});
+    take(GlobalPositionInt{static_cast<std::uint32_t>(10 + i), 0, 0, -12500, 0, 0, 30});
+    now += milliseconds{100};
+  }
+  ASSERT_FALSE(samples.empty());
+  EXPECT_LT(samples.size(), 3U) << "LOCAL_POSITION_NED has two seconds to come";
+  EXPECT_TRUE(poses.knows_depth_alone());
+  EXPECT_THAT(samples[0].T_world_vehicle.position_m, IsVec3(Vec3{5, 6, -13.5}, 1e-9));
+  EXPECT_THAT(samples[0].twist->linear_mps, IsVec3(Vec3{0, 0, -0.3}, 1e-6));
+  take(LocalPositionNed{40, 1, 2, 3});
+  take(Attitude{41});
+  EXPECT_FALSE(poses.knows_depth_alone());
+  EXPECT_THAT(samples.back().T_world_vehicle.position_m, IsVec3(Vec3{7, 7, -4}, 1e-9));
+  const auto not_wanted = poses.counters().not_wanted;
+  take(GlobalPositionInt{42, 0, 0, -12500});
+  EXPECT_EQ(poses.counters().not_wanted, not_wanted + 1) << "the local position goes before it";
+}
+
+TEST_F(MavlinkPosesTest, AutoTakesGlobalPositionsWhereTheWorldHasAPlaceAndNothingBetterComes) {
+  MavlinkPoseInput input;
+  input.world_origin = {45.0, 10.0, 100.0};
+  use(input);
+  take(GlobalPositionInt{10, 450010000, 100000000, 95000});
+  now += seconds{3};
+  take(Attitude{3010});
+  take(GlobalPositionInt{3010, 450010000, 100000000, 95000});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_FALSE(poses.knows_depth_alone());
+  EXPECT_NEAR(samples[0].T_world_vehicle.position_m.y, 1e-3 * metres_per_degree(45.0).y, 5e-3);
+  EXPECT_NEAR(samples[0].T_world_vehicle.position_m.z, -5.0, 5e-3);
+}
+
+TEST_F(MavlinkPosesTest, WhoAsksForGlobalPositionsGetsNoneOfAVehicleThatDoesNotKnowItsPlace) {
+  MavlinkPoseInput input;
+  input.messages = MavlinkMessages::global_position;
+  input.world_origin = {45.0, 10.0, 0.0};
+  use(input);
+  take(Attitude{10});
+  take(GlobalPositionInt{10, 0, 0, -5000});
+  EXPECT_EQ(samples.size(), 0U);
+  EXPECT_EQ(poses.counters().without_place, 1U);
+  input.world_origin = {0.0, 0.0, 0.0};  // a simulator's own
+  use(input);
+  take(Attitude{10});
+  take(GlobalPositionInt{10, 0, 0, -5000});
+  EXPECT_EQ(samples.size(), 1U);
 }
 
 TEST_F(MavlinkPosesTest, OnlyTheKindOfPositionThatIsAskedForCounts) {
