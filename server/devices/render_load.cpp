@@ -52,7 +52,7 @@ std::string advice_for(const render::SonarSettings& configured) {
   }
   if (configured.model == render::Model::physical &&
       configured.physical.multipath.level != render::MultipathSettings::Level::off) {
-    advice += "acoustics.multipath: off, ";
+    advice += "acoustics.physical.multipath.level: off, ";
   }
   return advice + "or a GPU";
 }

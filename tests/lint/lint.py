@@ -14,6 +14,7 @@ import commits
 import configurations
 import includes
 import links
+import message_keys
 import spdx
 import tools
 import words
@@ -36,6 +37,7 @@ def make_checks(tree, base):
         "shell": lambda: tools.shell_complaints(tree),
         "spelling": lambda: tools.spelling_complaints(tree, str(HERE / "codespell_ignore.txt")),
         "configurations": lambda: configurations.configuration_complaints(tree),
+        "keys": lambda: message_keys.key_complaints(tree),
         "cycles": lambda: includes.cycle_complaints(includes.arrows(tree)),
         "libraries": lambda: includes.library_complaints(tree),
         "layers": lambda: includes.layer_complaints(tree),

@@ -14,6 +14,7 @@ import commits  # noqa: E402
 import configurations  # noqa: E402
 import includes  # noqa: E402
 import links  # noqa: E402
+import message_keys  # noqa: E402
 import spdx  # noqa: E402
 import tools  # noqa: E402
 import words  # noqa: E402
@@ -218,6 +219,38 @@ class Configurations(LintTest):
     def test_unknown_keys_and_values_are_found_with_their_place(self):
         self.assertIn("configs/a.yaml: $.gpu", self.complaints("gpu: true\n")[0])
         self.assertIn("gqu", self.complaints("gqu: on\n")[0])
+
+
+class MessageKeys(LintTest):
+    HEAD = ('{"properties": {"hides_vehicle": {"type": "boolean"}, "acoustics": {"properties": {"multipath": {"properties": '
+            '{"level": {"enum": ["full", "off"]}}}}}}}')
+    SCHEMA = ('{"properties": {"gpu": {"properties": {"device": {"type": "string"}, "retry_s": {"type": "number"}}}, '
+              '"heads": {"items": {"oneOf": [' + HEAD + ']}}}}')
+
+    def complaints(self, source):
+        return list(message_keys.key_complaints(
+            self.write({"server/a.cpp": source, message_keys.SCHEMA: self.SCHEMA})))
+
+    def test_keys_that_are_accepted_pass(self):
+        for message in ("try acoustics.multipath.level: off, or a GPU", "heads[{}].acoustics.multipath.level", "multipath.level",
+                        "gpu.device: the number of a device", "gpu.retry_s: 2.5", "hides_vehicle: true leaves it out"):
+            self.assertEqual(self.complaints(f'say("{message}");'), [], message)
+
+    def test_an_unknown_key_is_named_with_its_file(self):
+        for message, key in (("try acoustics.multipaths.level: off", "acoustics.multipaths.level"),
+                             ("heads[0].multipath.level", "heads.multipath.level"), ("gpus.device", "gpus.device"),
+                             ("gpu.devices", "gpu.devices"), ("(acoustics.level)", "acoustics.level")):
+            self.assertEqual(self.complaints(f'say("{message}");'),
+                             [f"server/a.cpp: a message names the key '{key}', which no configuration has"])
+
+    def test_a_value_that_the_key_does_not_take_is_named(self):
+        for message in ("acoustics.multipath: off", "multipath.level: on", "gpu.retry_s: off", "hides_vehicle: yes"):
+            self.assertEqual(self.complaints(f'say("{message}");'),
+                             [f"server/a.cpp: a message names '{message}', which no configuration takes"])
+
+    def test_literals_are_joined_and_other_text_is_left_alone(self):
+        self.assertEqual(len(self.complaints('say("try acoustics."\n      "multipaths: off");')), 1)
+        self.assertEqual(self.complaints('// gpu.devices\n#include "gpu.devices"\nsay("gpu.md, other.words, a.device::b");'), [])
 
 
 class Commits(LintTest):

@@ -62,9 +62,11 @@ TEST(RenderLoad, AdvisesOnlyWhatIsNotSetAlready) {
     RenderLoad load(settings, false);
     return Client(load).ask(std::chrono::seconds(3), milliseconds(40), milliseconds_of).at(0);
   };
-  EXPECT_THAT(advice(), HasSubstr("acoustics.fine_beams: 1, acoustics.multipath: off, or a GPU"));
+  EXPECT_THAT(advice(),
+              HasSubstr("acoustics.fine_beams: 1, acoustics.physical.multipath.level: off, or a GPU"));
   settings.aperture.fine_beams = 1;
-  EXPECT_THAT(advice(), ::testing::EndsWith("more compression), acoustics.multipath: off, or a GPU"));
+  EXPECT_THAT(advice(),
+              ::testing::EndsWith("more compression), acoustics.physical.multipath.level: off, or a GPU"));
   settings.physical.multipath.level = render::MultipathSettings::Level::off;
   EXPECT_THAT(advice(), ::testing::EndsWith("more compression), or a GPU"));
 }
