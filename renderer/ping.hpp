@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,9 @@ struct EchoImage {
   int lines = 0;
   std::vector<float> intensity;  ///< [beam * lines + line]
   SteadyEcho steady{};
+  /// How much of the strongest echo of each line surfaces send back, in [0, 1]; the rest is the water's.
+  /// Empty: all of it.
+  std::vector<float> surface_share{};
 
   float at(int beam, int line) const {
     return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) +
@@ -75,6 +79,9 @@ struct PingStatistics {
   std::uint64_t samples = 0;
   /// False: no surface is in range and fan. What surfaces mirror and water scatters may still be.
   bool sees_surface = true;
+  /// Intensity of the strongest echo of a surface re what hides it in its range bin: the mean noise, or half
+  /// a step of the samples. 0: no echo. Infinite in mode `paper`, which has no noise.
+  double echo_over_floor = std::numeric_limits<double>::infinity();
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
   /// Echoes beyond what the sums of GpuBinner hold, taken as that: 2^14 times unit response or more.
   std::uint64_t saturated_samples = 0;

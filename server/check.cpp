@@ -221,11 +221,16 @@ double least_cost_ms(TrialPings& pings, std::size_t head, render::Pose T_world_v
 /// What the heads would see where the vehicle begins, and what a ping takes here.
 void Check::check_start(const render::World& world) {
   const auto beginning = start();
+  TrialPings pings(config_, world);
+  for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+    report_.summary.push_back(
+        fmt::format("looks    {}: {}", config_.heads[i].name,
+                    pings.view(i, beginning ? std::optional(beginning->second) : std::nullopt)));
+  }
   if (!beginning) {
     return;
   }
   const auto& [key, T_world_vehicle] = *beginning;
-  TrialPings pings(config_, world);
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
     for (const Finding& finding : pings.ping(i, T_world_vehicle)) {
       warning(key, fmt::format("head '{}': {}", config_.heads[i].name, finding.text));

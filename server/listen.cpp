@@ -85,6 +85,8 @@ void print_places(const DaemonConfig& config, const render::World& world, const 
   }
   TrialPings pings(config, world);
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
+    fmt::print("  looks    head '{}': {}\n", config.heads[i].name,
+               pings.view(i, to_render(sample.T_world_vehicle), moved));
     for (const Finding& finding : pings.ping(i, to_render(sample.T_world_vehicle), moved)) {
       fmt::print("  wrong?   head '{}': {}\n", config.heads[i].name, finding.text);
     }

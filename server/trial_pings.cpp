@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
+
+#include <fmt/format.h>
 
 #include "renderer/usable_cores.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/devices/device_kind.hpp"
+#include "server/diagnosis/view.hpp"
 
 namespace sonard::server {
 namespace {
@@ -17,6 +21,8 @@ render::RendererOptions cpu_options(const DaemonConfig& config) {
   options.engine = render::EngineKind::cpu;
   return options;
 }
+
+constexpr int bearings = 12;  // of a head that scans
 
 }  // namespace
 
@@ -32,20 +38,46 @@ std::vector<Finding> TrialPings::ping(std::size_t head, const render::Pose& T_wo
   for (const PosedBody& body : moved) {
     renderer_.set_body_pose(body.name, body.T_world_body);
   }
+  const render::PingRequest ahead = usual_ping(settings, T_world_vehicle);
   const ProcessorTime before = processor_time();
-  renderer_.render_ping(usual_ping(settings, T_world_vehicle), static_cast<int>(head));
+  renderer_.render_ping(ahead, static_cast<int>(head));
   const ProcessorTime after = processor_time();
-  // This thread has a part in all the work; where others were held up it did more, and where it was, they
+  // This thread has a part in all the work. If other threads were held up it did more, and if it was held up, they
   // did.
   const auto share = (after.process - before.process) / render::usable_cores();
   last_ms_ = std::chrono::duration<double, std::milli>(std::max(after.thread - before.thread, share)).count();
+  render::PingStatistics seen = renderer_.last_statistics();
+  for (int i = 1; kind_of(settings).scanning() && i < bearings; ++i) {
+    render::PingRequest turned = ahead;
+    turned.T_world_sonar = T_world_transducer(ahead.T_world_sonar, 2.0 * std::numbers::pi * i / bearings);
+    renderer_.render_ping(turned, static_cast<int>(head));
+    const render::PingStatistics& there = renderer_.last_statistics();
+    seen.sees_surface = seen.sees_surface || there.sees_surface;
+    seen.echo_over_floor = std::max(seen.echo_over_floor, there.echo_over_floor);
+  }
   return look_around(world_, boxes_, moved,
                      {.T_world_vehicle = T_world_vehicle,
                       .T_world_sonar = T_world_vehicle * settings.T_vehicle_sonar,
                       .range_m = usual_settings(settings).range.sampled_range_m(),
-                      .sees_surface = renderer_.last_statistics().sees_surface,
+                      .sees_surface = seen.sees_surface,
+                      .echo_over_floor = seen.echo_over_floor,
                       .vehicle_model = config_.vehicle_model,
                       .hides_vehicle = settings.hides_vehicle});
+}
+
+std::string TrialPings::view(std::size_t head, const std::optional<render::Pose>& T_world_vehicle,
+                             const std::vector<PosedBody>& moved) const {
+  const HeadConfig& settings = config_.heads[head];
+  const std::string looks = fmt::format("{}{}", kind_of(settings).scanning() ? "turns, and ahead is " : "",
+                                        looks_text(settings.T_vehicle_sonar));
+  if (!T_world_vehicle) {
+    return looks;
+  }
+  const render::SonarSettings usual = usual_settings(settings);
+  return fmt::format("{}; {}", looks,
+                     bed_text(view_of_bed(world_, moved, config_.vehicle_model,
+                                          *T_world_vehicle * settings.T_vehicle_sonar, usual),
+                              usual.range.max_range_m()));
 }
 
 }  // namespace sonard::server

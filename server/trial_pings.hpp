@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "renderer/pipeline/sonar_renderer.hpp"
@@ -20,12 +22,19 @@ class TrialPings {
   /// @param config with its mounts resolved (resolve_mounts()); outlives this object, as does the world
   TrialPings(const DaemonConfig& config, const render::World& world);
 
-  /// Renders one ping of a head. The first of a head also builds what the next ones use.
+  /// Renders one ping of a head; of one that scans one ahead, and one every 30 degrees. The first of a head
+  /// also builds what the next ones use.
   /// @param moved bodies that are not where the world has them; the vehicle's own model moves by itself
   /// @return what looks wrong there; empty: nothing does
   /// @throws render::RequestError when the sampling cannot be had
   std::vector<Finding> ping(std::size_t head, const render::Pose& T_world_vehicle,
                             std::vector<PosedBody> moved = {});
+
+  /// Where the head looks, and what it would see of the bed: "forward and 20 degrees down; the bed below
+  /// ('seabed') is seen from 6.1 to 40 m". Renders nothing.
+  /// @param T_world_vehicle nullopt: not known, and nothing is said of the bed
+  std::string view(std::size_t head, const std::optional<render::Pose>& T_world_vehicle,
+                   const std::vector<PosedBody>& moved = {}) const;
 
   /// What the newest ping would take with the machine to itself, in milliseconds: from processor time, as
   /// time by the clock grows with what else runs.

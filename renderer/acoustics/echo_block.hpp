@@ -26,6 +26,10 @@ class EchoBlock {
   const float* steady(int bin) const { return echo_.steady.line(bin, echo_.beams); }
   /// The strongest beam of the line; 0: there is no echo in any.
   float strongest(int bin) const;
+  /// EchoImage::surface_share
+  float surface_share(int bin) const {
+    return echo_.surface_share.empty() ? 1.0F : echo_.surface_share[static_cast<std::size_t>(bin)];
+  }
 
  private:
   const EchoImage& echo_;

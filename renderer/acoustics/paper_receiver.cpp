@@ -74,7 +74,8 @@ class PaperBins {
 
 PingSamples receive_paper(const EchoImage& echo, const PaperPing& ping, const SonarSettings& settings,
                           WorkerPool& workers, SkipCounts& skipped) {
-  return receive_bins<PaperBins>(echo, ping, settings, workers, skipped);
+  return receive_bins<PaperBins>(echo, ping, settings, workers,
+                                 [&](const PaperBins& bins) { skipped += bins.skipped(); });
 }
 
 }  // namespace sonard::render

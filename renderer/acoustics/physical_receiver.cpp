@@ -73,8 +73,10 @@ class PhysicalBins {
       steady_is_ = ring_down;
     }
     noise_level_ = noise_level_at(bin);
-    has_echo_ = block_.strongest(bin) > 0 || ring_down != 0 || has_reverberation(bin) ||
-                !skips(SkipRule::lines_without_echo);
+    const float strongest = block_.strongest(bin);
+    note_echo(bin, strongest);
+    has_echo_ =
+        strongest > 0 || ring_down != 0 || has_reverberation(bin) || !skips(SkipRule::lines_without_echo);
     if (const float* steady = block_.steady(bin); steady != nullptr) {
       take_apart(block_.line(bin), steady);
     }
@@ -92,8 +94,22 @@ class PhysicalBins {
   }
 
   const SkipCounts& skipped() const { return skipped_; }
+  /// PingStatistics::echo_over_floor, of the bins that were added.
+  double echo_over_floor() const { return echo_over_floor_; }
 
  private:
+  void note_echo(int bin, float strongest) {
+    if (!(strongest > 0) || !(gain_ > 0)) {
+      return;
+    }
+    // Amplitude that becomes the lowest code above 0.
+    const bool decibels = ping_.tables.output_scale == OutputScale::half_decibels;
+    const double least = (decibels ? 1e-4 : 0.5) / static_cast<double>(gain_);
+    const auto noise = static_cast<double>(noise_level_);
+    const double surface = static_cast<double>(strongest) * static_cast<double>(block_.surface_share(bin));
+    echo_over_floor_ = std::max(echo_over_floor_, surface / (noise * noise + least * least));
+  }
+
   /// @param cell of the fields; a line of several beams is one. A cell beside the line has its own speckle
   /// and noise, but the mean echo of the line: what the overlap spreads of that is less than a line.
   void add_cell(int bin, int cell, float weight, Quantizer& output) {
@@ -195,6 +211,7 @@ class PhysicalBins {
   float gain_ = 0, noise_level_ = 0;
   bool has_echo_ = false;
   SkipCounts skipped_;
+  double echo_over_floor_ = 0.0;
   FieldReader speckle_, texture_, noise_;
   ComplexRow silence_;  ///< noise of amplitude 0: 0 throughout
   ComplexRow still_;    ///< speckle that is off: a constant phasor
@@ -236,9 +253,13 @@ void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& sk
 }
 
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
-                             WorkerPool& workers, SkipCounts& skipped) {
+                             WorkerPool& workers, SkipCounts& skipped, double& echo_over_floor) {
   evolve_fields(ping, workers, skipped);
-  return receive_bins<PhysicalBins>(echo, ping, settings, workers, skipped);
+  echo_over_floor = 0.0;
+  return receive_bins<PhysicalBins>(echo, ping, settings, workers, [&](const PhysicalBins& bins) {
+    skipped += bins.skipped();
+    echo_over_floor = std::max(echo_over_floor, bins.echo_over_floor());
+  });
 }
 
 }  // namespace sonard::render

@@ -27,7 +27,8 @@ struct PhysicalPing {
 void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped);
 
 /// @param echo mean echo, as the array receives it. @param skipped what was left out is added to it.
+/// @param echo_over_floor PingStatistics::echo_over_floor
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
-                             WorkerPool& workers, SkipCounts& skipped);
+                             WorkerPool& workers, SkipCounts& skipped, double& echo_over_floor);
 
 }  // namespace sonard::render

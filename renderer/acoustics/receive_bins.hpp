@@ -9,22 +9,22 @@
 #include "renderer/acoustics/echo_block.hpp"
 #include "renderer/acoustics/quantizer.hpp"
 #include "renderer/ping.hpp"
-#include "renderer/skip_ledger.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
 /// Shares blocks of lines among the threads. `Lines` is made once per thread, for its buffers, and takes
 /// range bins one by one.
-template <class Lines, class Ping>
+/// @param done called with the `Lines` of each thread at its end, by one thread at a time
+template <class Lines, class Ping, class Done>
 PingSamples receive_bins(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
-                         WorkerPool& workers, SkipCounts& skipped) {
+                         WorkerPool& workers, const Done& done) {
   PingSamples samples = make_samples(settings);
   const int looks_log2 = settings.range.compression_log2;
   const int lines_per_block = EchoBlock::most_lines >> looks_log2;
   const int blocks = (samples.lines + lines_per_block - 1) / lines_per_block;
   std::atomic<int> next{0};
-  std::mutex counting;
+  std::mutex ending;
   workers.run(std::min(blocks, static_cast<int>(workers.size())), [&](int) {
     EchoBlock block(echo);
     Lines lines(ping, block);
@@ -41,8 +41,8 @@ PingSamples receive_bins(const EchoImage& echo, const Ping& ping, const SonarSet
         output.end(line);
       }
     }
-    const std::lock_guard lock(counting);
-    skipped += lines.skipped();
+    const std::lock_guard lock(ending);
+    done(lines);
   });
   return samples;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/acoustics/receiver.hpp"
 
+#include <limits>
+
 #include "renderer/acoustics/paper_receiver.hpp"
 #include "renderer/acoustics/physical_receiver.hpp"
 #include "renderer/acoustics/quantizer.hpp"
@@ -64,6 +66,7 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
                               WorkerPool& workers) {
   const SonarSettings& settings = request.settings;
   skipped_ = {};
+  echo_over_floor_ = std::numeric_limits<double>::infinity();
   const auto key = [&](RandomField field) {
     return make_random_key(request.seed, stream, field, request.ping_number);
   };
@@ -83,7 +86,7 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
       draw_ring_down(settings.physical.ring_down, key(RandomField::ring_down)),
       noise_factor_of(request, stream),
       skip_};
-  return receive_physical(echo, ping, settings, workers, skipped_);
+  return receive_physical(echo, ping, settings, workers, skipped_, echo_over_floor_);
 }
 
 bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers) {

@@ -31,6 +31,8 @@ class Receiver {
 
   /// What the last receive() left out.
   const SkipCounts& skipped() const { return skipped_; }
+  /// PingStatistics::echo_over_floor of the last receive().
+  double echo_over_floor() const { return echo_over_floor_; }
 
  private:
   struct Stream {
@@ -48,6 +50,7 @@ class Receiver {
 
   SkipSwitches skip_;
   SkipCounts skipped_;
+  double echo_over_floor_ = 0.0;
   std::map<int, Stream> streams_;
 };
 

@@ -162,6 +162,7 @@ struct SonarRenderer::Impl {
     image.beams = settings.aperture.beam_count();
     image.lines = settings.range.count;
     image.steady = {};
+    image.surface_share.clear();
     if (!settings.transmit) {
       image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines),
                              0.0F);
@@ -173,6 +174,7 @@ struct SonarRenderer::Impl {
       sample_echo(PointSpread::sampled(settings), settings_and_seed.seed, stream, motion, fine_echo);
       Stopwatch watch;
       point_spread.form_beams(fine_echo, settings, image, workers, skip, statistics.skipped);
+      image.surface_share = fine_echo.surface_share;
       statistics.azimuth_pattern_s = watch.lap();
     } else {
       sample_echo(settings, settings_and_seed.seed, stream, motion, image);
@@ -217,11 +219,36 @@ struct SonarRenderer::Impl {
     multipath.add_to(image.intensity, settings, motion.T_world_sonar, statistics.skipped);
     statistics.multipath_s = watch.lap();
     if (settings.model == Model::physical) {
+      const bool water_echoes =
+          settings.physical.water_clutter.density_per_m3 > 0 || has_volume_reverberation(settings);
+      image.surface_share = water_echoes ? strongest_of_lines(image) : std::vector<float>{};
       add_water_clutter(settings, motion.T_world_sonar, seed, image);
       add_volume_reverberation(echo.open_sr, settings, image);
+      if (water_echoes) {
+        divide(image.surface_share, strongest_of_lines(image));
+      }
       apply_loss(request.line_weight, image);
     }
     statistics.binning_s += watch.lap();
+  }
+
+  static std::vector<float> strongest_of_lines(const EchoImage& image) {
+    const auto lines = static_cast<std::size_t>(image.lines);
+    std::vector<float> strongest(lines, 0.0F);
+    for (std::size_t beam = 0; beam < static_cast<std::size_t>(image.beams); ++beam) {
+      const float* echo = &image.intensity[beam * lines];
+      for (std::size_t line = 0; line < lines; ++line) {
+        strongest[line] = std::max(strongest[line], echo[line]);
+      }
+    }
+    return strongest;
+  }
+
+  /// The part of a whole in each place; 0 where there is nothing.
+  static void divide(std::vector<float>& part, const std::vector<float>& whole) {
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      part[i] = whole[i] > 0 ? part[i] / whole[i] : 0.0F;
+    }
   }
 
   /// SkipRule::terrain_detail. Motion within a ping changes no detail, but it reaches further.
@@ -402,6 +429,7 @@ PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
   PingSamples samples = impl_->receiver.receive(echo, request, stream, impl_->workers);
   impl_->statistics.receiver_s = watch.lap();
   impl_->statistics.skipped += impl_->receiver.skipped();
+  impl_->statistics.echo_over_floor = impl_->receiver.echo_over_floor();
   return samples;
 }
 

@@ -2,6 +2,7 @@
 #include "server/config/head_section.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -229,6 +230,29 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
   section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0), "the least that it is");
 }
 
+/// Whether three angles are likely to be radians that stand for degrees: none is beyond a turn, and one is a
+/// multiple of 15 degrees, or of 10, to three digits, and no round number.
+bool look_like_radians(const glm::dvec3& angles) {
+  constexpr double pi = std::numbers::pi;
+  const auto near_multiple = [](double angle, double of, double tolerance) {
+    const double multiple = std::round(angle / of);
+    return multiple >= 1.0 && std::abs(angle - multiple * of) < tolerance * angle;
+  };
+  bool any = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double angle = std::abs(angles[axis]);
+    if (angle > 2.001 * pi) {
+      return false;
+    }
+    const bool round = std::abs(2.0 * angle - std::round(2.0 * angle)) < 1e-9;
+    any = any || (!round && (near_multiple(angle, pi / 12, 0.003) || near_multiple(angle, pi / 18, 0.0015)));
+  }
+  return any;
+}
+
+/// A vehicle is shorter.
+constexpr double longest_arm_m = 10.0;
+
 void read_mount(YamlSection& section, HeadConfig& head) {
   section.introduce("T_vehicle_sonar, the pose of the sonar on the vehicle.");
   read_pose(section, head.T_vehicle_sonar,
@@ -238,6 +262,13 @@ void read_mount(YamlSection& section, HeadConfig& head) {
                "instead of the other two: the sonar of the world ([worlds.md](worlds.md#sonars)) that says "
                "both, `bow`, or as much of `rov::sonar_link::bow` as tells it from others. It has to "
                "be of this head's type");
+  if (const double arm_m = glm::length(head.T_vehicle_sonar.position_m); arm_m > longest_arm_m) {
+    section.warn(
+        "position_m",
+        fmt::format("puts the sonar {:.4g} m from the origin of the vehicle (is it in centimetres or "
+                    "millimetres? It is read as metres)",
+                    arm_m));
+  }
   for (const char* key : {"position_m", "rpy_deg"}) {
     if (section.has("from_world") && section.has(key)) {
       section.report(key, "the world says where the head sits (expected this or from_world)");
@@ -350,16 +381,43 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
                   [&](YamlSection& inner) { read_paper_model(inner, settings.paper); });
 }
 
+namespace {
+
+/// Which of the formula's bounds are left (in_absorption_range()), in words; empty: none.
+std::string outside_of_absorption_range(double carrier_hz, const render::Water& water) {
+  std::vector<std::string> outside;
+  // Each bound by itself, with the other values where the formula holds.
+  constexpr double usual_hz = 100'000.0;
+  const auto holds = [](double hz, double temperature_c, double salinity_ppt) {
+    return render::in_absorption_range(hz, {temperature_c, salinity_ppt, 10.0, 8.0});
+  };
+  constexpr render::Water usual;
+  if (!holds(carrier_hz, usual.temperature_c, usual.salinity_ppt)) {
+    outside.push_back(fmt::format("{:.4g} kHz is not within 0.2 to 1000 kHz", 1e-3 * carrier_hz));
+  }
+  if (!holds(usual_hz, water.temperature_c, usual.salinity_ppt)) {
+    outside.push_back(fmt::format("{:.4g} degrees are not within -2 to 30 degrees", water.temperature_c));
+  }
+  if (!holds(usual_hz, usual.temperature_c, water.salinity_ppt)) {
+    outside.push_back(fmt::format("{:.4g} ppt are not within 30 to 35 ppt", water.salinity_ppt));
+  }
+  return fmt::format("{}", fmt::join(outside, ", "));
+}
+
+}  // namespace
+
 void apply_water(YamlSection& section, const HeadContext& context, double carrier_hz, HeadConfig& head) {
   const WaterConfig& w = context.water;
   const render::Water water{w.temperature_c, w.salinity_ppt, w.depth_m, w.ph};
   double absorption = context.absorption_db_per_m;
   if (absorption < 0.0) {
     absorption = render::francois_garrison_absorption_db_per_m(carrier_hz, water);
-    if (!render::in_absorption_range(carrier_hz, water)) {
+    if (const std::string outside = outside_of_absorption_range(carrier_hz, water); !outside.empty()) {
       section.warn_of("water",
-                      "the absorption is computed outside of what its formula was made for, -2 to 30 degrees "
-                      "and 30 to 35 ppt: it may be off by more than 10 % (absorption_db_per_km sets it)");
+                      fmt::format("the absorption is computed outside of what its formula was made for: "
+                                  "{}. It may be off by more than 10 % (water.absorption_db_per_km sets "
+                                  "it)",
+                                  outside));
     }
   }
   head.acoustics.physical.absorption_db_per_m = absorption;
@@ -374,6 +432,13 @@ void read_pose(YamlSection& section, render::Pose& pose, std::string_view positi
   section.vector3("position_m", pose.position_m, Range::from(-far_m, far_m), position_meaning);
   glm::dvec3 rpy_deg{0.0};
   section.vector3("rpy_deg", rpy_deg, Range::from(-360.0, 360.0), rpy_meaning);
+  if (look_like_radians(rpy_deg)) {
+    section.warn("rpy_deg",
+                 fmt::format("{:.4g}, {:.4g}, {:.4g} look like radians (they are read as degrees; {:.4g}, "
+                             "{:.4g}, {:.4g} degrees are the same turn)",
+                             rpy_deg.x, rpy_deg.y, rpy_deg.z, glm::degrees(rpy_deg.x),
+                             glm::degrees(rpy_deg.y), glm::degrees(rpy_deg.z)));
+  }
   const glm::dvec3 rpy = rpy_deg * (std::numbers::pi / 180.0);
   pose.orientation =
       glm::normalize(glm::angleAxis(rpy.z, glm::dvec3(0, 0, 1)) * glm::angleAxis(rpy.y, glm::dvec3(0, 1, 0)) *

@@ -355,7 +355,7 @@ void Head::Impl::note_water(TimePoint now) {
     }
     here.T_world_mount = T_world_mount;
     const TimePoint present = services.poses.present(now);
-    diagnosis.look(now, present, here, rendering.bodies_at(present), false);
+    diagnosis.look(now, present, here, rendering.bodies_at(present), false, 0.0);
     step(now, WaterChanged{out});
   }
 }
@@ -437,7 +437,8 @@ bool Head::Impl::render(const PingJob& job) {
         }
         if (self->rendering.take(result)) {
           self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
-                               self->rendering.bodies_at(pose_time), result.statistics.sees_surface);
+                               self->rendering.bodies_at(pose_time), result.statistics.sees_surface,
+                               result.statistics.echo_over_floor);
           self->happen(
               PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16), sensed}});
         } else {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -16,14 +18,41 @@ namespace {
 // All boxes of a world are looked at, and where nothing is seen also triangles.
 constexpr std::chrono::seconds while_seeing{5};
 constexpr std::chrono::seconds while_blind{1};
+constexpr std::chrono::seconds longest_turn{60};  // of a head that scans
+constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 
 }  // namespace
 
+bool LastTurn::note(TimePoint now, double bearing_rad, bool seen) {
+  const double turned_rad = std::abs(std::remainder(bearing_rad - bearing_rad_, full_turn_rad));
+  bearing_rad_ = bearing_rad;
+  if (seen) {
+    ever_ = true;
+    lost_.reset();
+    turned_rad_ = 0.0;
+    return true;
+  }
+  if (!lost_) {
+    lost_ = now;
+  }
+  turned_rad_ += turned_rad;
+  return ever_ && turned_rad_ < full_turn_rad && now - *lost_ < longest_turn;
+}
+
 void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
-                         const std::vector<PosedBody>& bodies, bool sees_surface) {
+                         const std::vector<PosedBody>& bodies, bool sees_surface, double echo_over_floor) {
   const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
-  const bool as_before = std::exchange(sees_surface_, sees_surface) == sees_surface;
-  const auto period = sees_surface ? while_seeing : while_blind;
+  // Twice as much is wanted of an echo to stand out again: while a vehicle moves, one at the limit would make
+  // a line of the log each time that it passes it.
+  const double least = stands_out_.value_or(true) ? least_visible_echo : 2.0 * least_visible_echo;
+  bool stands_out = echo_over_floor >= least;
+  if (kind_of(config_).scanning()) {
+    sees_surface = surface_seen_.note(now, ping.bearing_rad, sees_surface);
+    stands_out = echo_seen_.note(now, ping.bearing_rad, stands_out);
+  }
+  const bool saw_as_much = std::exchange(sees_surface_, sees_surface) == sees_surface;
+  const bool as_before = std::exchange(stands_out_, stands_out) == stands_out && saw_as_much;
+  const auto period = sees_surface && stands_out ? while_seeing : while_blind;
   if (services_.world == nullptr || !vehicle || !ping.T_world_mount ||
       (as_before && now - looked_at_ < period)) {
     return;
@@ -37,12 +66,15 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
                      .T_world_sonar = T_world_transducer(*ping.T_world_mount, ping.bearing_rad),
                      .range_m = ping.range_m,
                      .sees_surface = sees_surface,
+                     .echo_over_floor = stands_out ? std::max(echo_over_floor, least_visible_echo)
+                                                   : std::min(echo_over_floor, 0.99 * least_visible_echo),
                      .vehicle_model = services_.vehicle_model,
                      .hides_vehicle = config_.hides_vehicle}));
 }
 
 void HeadDiagnosis::no_pose() {
   sees_surface_.reset();
+  stands_out_.reset();
   found({{"no_pose", "No pose of the vehicle has come, or only a stale one: no ping is made."}});
 }
 

@@ -15,6 +15,23 @@
 
 namespace sonard::server {
 
+/// What a head that scans has seen within a turn. One that saw nothing in the direction of its newest ping is
+/// not blind.
+class LastTurn {
+ public:
+  /// @param ever whether it counts as seen before the first ping
+  explicit LastTurn(bool ever) : ever_(ever) {}
+  /// @param seen by the newest ping
+  /// @return whether it was seen then, or within the last turn or minute before
+  bool note(TimePoint now, double bearing_rad, bool seen);
+
+ private:
+  std::optional<TimePoint> lost_;  ///< nullopt: seen by the newest ping
+  bool ever_;
+  double turned_rad_ = 0.0;  ///< since
+  double bearing_rad_ = 0.0;
+};
+
 /// Belongs to the I/O thread, as its head does.
 class HeadDiagnosis {
  public:
@@ -26,8 +43,9 @@ class HeadDiagnosis {
   /// @param time of its pose, as PoseHistory takes it
   /// @param bodies that are not where the world has them
   /// @param sees_surface PingStatistics::sees_surface
+  /// @param echo_over_floor PingStatistics::echo_over_floor
   void look(TimePoint now, TimePoint time, const NewestPing& ping, const std::vector<PosedBody>& bodies,
-            bool sees_surface);
+            bool sees_surface, double echo_over_floor);
   /// A ping was not made, as no pose is known.
   void no_pose();
 
@@ -40,8 +58,10 @@ class HeadDiagnosis {
   HeadServices services_;
   std::vector<Finding> findings_;
   std::vector<BodyBox> boxes_;  ///< of the world, once they were wanted
-  std::optional<bool> sees_surface_;
+  std::optional<bool> sees_surface_, stands_out_;
   TimePoint looked_at_{};
+  LastTurn surface_seen_{false};
+  LastTurn echo_seen_{true};
 };
 
 }  // namespace sonard::server

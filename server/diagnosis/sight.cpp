@@ -6,11 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+
+#include "server/diagnosis/triangles.hpp"
 
 namespace sonard::server {
 namespace {
@@ -25,19 +28,6 @@ bool contains(const BodyBox& box, const glm::dvec3& p, double margin_m = 0.0) {
 
 double distance_m(const BodyBox& box, const glm::dvec3& p) {
   return glm::length(p - glm::clamp(p, box.min_m, box.max_m));
-}
-
-/// Calls `take` with the corners of each triangle of a body, in the body's frame.
-template <class Take>
-void each_triangle(const render::Body& body, Take take) {
-  for (const render::BodyPart& part : body.parts) {
-    const render::TriangleMesh& mesh = *part.mesh;
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      take(std::array<glm::dvec3, 3>{part.T_body_part * glm::dvec3(mesh.positions[mesh.indices[i]]),
-                                     part.T_body_part * glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
-                                     part.T_body_part * glm::dvec3(mesh.positions[mesh.indices[i + 2]])});
-    }
-  }
 }
 
 BodyBox box_of(const render::Body& body) {
@@ -83,34 +73,85 @@ glm::dvec3 nearest_on_triangle(const glm::dvec3& p, const std::array<glm::dvec3,
   return nearest;
 }
 
-/// Whether a ray meets a triangle (Moeller and Trumbore 1997).
-bool meets(const glm::dvec3& from, const glm::dvec3& direction, const std::array<glm::dvec3, 3>& t) {
+/// What a ray meets of a body.
+struct Crossings {
+  int count = 0;
+  double nearest = std::numeric_limits<double>::infinity();  ///< in lengths of the direction
+  bool from_behind = false;                                  ///< the nearest triangle shows its back
+};
+
+/// Moeller and Trumbore 1997.
+void cross(const glm::dvec3& from, const glm::dvec3& direction, const std::array<glm::dvec3, 3>& t,
+           Crossings& crossings) {
   const glm::dvec3 a = t[1] - t[0];
   const glm::dvec3 b = t[2] - t[0];
   const glm::dvec3 p = glm::cross(direction, b);
   const double determinant = glm::dot(a, p);
   if (determinant == 0.0) {
-    return false;
+    return;
   }
   const glm::dvec3 s = from - t[0];
   const double u = glm::dot(s, p) / determinant;
   const glm::dvec3 q = glm::cross(s, a);
   const double v = glm::dot(direction, q) / determinant;
-  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(b, q) / determinant > 0;
+  const double distance = glm::dot(b, q) / determinant;
+  if (u < 0 || v < 0 || u + v > 1 || distance <= 0) {
+    return;
+  }
+  ++crossings.count;
+  if (distance < crossings.nearest) {
+    crossings.nearest = distance;
+    crossings.from_behind = determinant < 0;
+  }
 }
 
+Crossings crossings_of(const render::Body& body, const glm::dvec3& from, const glm::dvec3& direction) {
+  Crossings crossings;
+  each_triangle(
+      body, [&](const std::array<glm::dvec3, 3>& triangle) { cross(from, direction, triangle, crossings); });
+  return crossings;
+}
+
+enum class Within { outside, solid, hollow };
+
 /// Inside a closed mesh rays leave through an odd number of triangles. Three odd directions, so that an open
-/// mesh, as a bed or a tank without a lid, is not taken for a closed one.
-bool is_inside(const render::Body& body, const glm::dvec3& p_body) {
-  const std::array<glm::dvec3, 3> directions{
-      glm::dvec3(0.137, 0.071, 0.988), glm::dvec3(-0.113, 0.989, 0.093), glm::dvec3(0.991, -0.127, -0.043)};
-  std::array<int, 3> crossings{};
-  each_triangle(body, [&](const std::array<glm::dvec3, 3>& triangle) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      crossings[i] += meets(p_body, directions[i], triangle) ? 1 : 0;
+/// mesh, as a bed or a tank without a lid, is not taken for a closed one. A room shows the faces of its
+/// triangles to who is in it, a solid thing their backs.
+Within where_in(const render::Body& body, const glm::dvec3& p_body) {
+  int backs = 0;
+  for (const glm::dvec3& direction : {glm::dvec3(0.137, 0.071, 0.988), glm::dvec3(-0.113, 0.989, 0.093),
+                                      glm::dvec3(0.991, -0.127, -0.043)}) {
+    const Crossings crossings = crossings_of(body, p_body, direction);
+    if (crossings.count % 2 == 0) {
+      return Within::outside;
     }
-  });
-  return std::ranges::all_of(crossings, [](int count) { return count % 2 == 1; });
+    backs += crossings.from_behind ? 1 : 0;
+  }
+  return backs >= 2 ? Within::solid : Within::hollow;
+}
+
+/// Whether a ray meets a box.
+bool meets(const BodyBox& box, const glm::dvec3& from, const glm::dvec3& direction) {
+  double enters = 0.0;
+  double leaves = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double to_min = box.min_m[axis] - from[axis];
+    const double to_max = box.max_m[axis] - from[axis];
+    if (direction[axis] == 0.0) {
+      leaves = to_min <= 0 && to_max >= 0 ? leaves : -1.0;
+      continue;
+    }
+    enters = std::max(enters, std::min(to_min / direction[axis], to_max / direction[axis]));
+    leaves = std::min(leaves, std::max(to_min / direction[axis], to_max / direction[axis]));
+  }
+  return enters <= leaves;
+}
+
+/// Easting and northing of UTM, in either order: 100 to 900 km, and more than 1000 km.
+bool looks_like_utm(const glm::dvec3& p) {
+  const double less = std::min(p.x, p.y);
+  const double more = std::max(p.x, p.y);
+  return less > 1e5 && less < 9e5 && more > 1e6 && more < 1e7 && std::abs(p.z) < 1.2e4;
 }
 
 /// A body where it is now, seen from the sonar.
@@ -119,6 +160,7 @@ struct Neighbour {
   render::Pose T_world_body;
   BodyBox box;              ///< in its own frame
   glm::dvec3 sonar_m{0.0};  ///< likewise
+  bool is_terrain = false;
 };
 
 class LookAround {
@@ -138,6 +180,8 @@ class LookAround {
         }
       }
       neighbour.sonar_m = render::inverse(neighbour.T_world_body) * sight.T_world_sonar.position_m;
+      neighbour.is_terrain = std::ranges::any_of(
+          world.terrains, [i](const render::TerrainParts& terrain) { return terrain.body == i; });
       neighbours_.push_back(neighbour);
     }
   }
@@ -146,8 +190,10 @@ class LookAround {
     note_surface();
     note_upside_down();
     note_inside();
-    if (findings_.empty() && !sight_.sees_surface.value_or(false)) {
-      note_nothing_near();
+    note_under_ground();
+    const bool sees_surface = sight_.sees_surface.value_or(false);
+    if (findings_.empty() && (!sees_surface || sight_.echo_over_floor < least_visible_echo)) {
+      note_what_is_near(sees_surface);
     }
     return std::move(findings_);
   }
@@ -189,19 +235,23 @@ class LookAround {
     if (up_of(q) < 0.7 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.98) {
       add("quaternion_w_first",
           "The vehicle lies on its side or upside down (is its quaternion sent with w first? Read so, it is "
-          "level; messages carry x, y, z, w).");
+          "level; in a message the parts of an orientation have names, in a trajectory file w comes last).");
     }
   }
 
   void note_inside() {
     for (const Neighbour& neighbour : neighbours_) {
+      if (!contains(neighbour.box, neighbour.sonar_m)) {
+        continue;
+      }
       const render::Body& body = *neighbour.body;
-      const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
+      const Within within = where_in(body, neighbour.sonar_m);
       const bool is_vehicle = body.name == sight_.vehicle_model;
+      const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
       // One may be inside of a tank or a harbour, and see it.
-      const bool holds_a_sonar = sight_.sees_surface.value_or(true) && !is_vehicle && glm::length(size) > 5.0;
-      if (!holds_a_sonar && contains(neighbour.box, neighbour.sonar_m) &&
-          is_inside(body, neighbour.sonar_m)) {
+      const bool holds_a_sonar = within == Within::hollow && sight_.sees_surface.value_or(true) &&
+                                 !is_vehicle && glm::length(size) > 5.0;
+      if (within != Within::outside && !holds_a_sonar) {
         add(is_vehicle ? "inside_vehicle" : "inside_body",
             fmt::format("The sonar is inside of the body '{}'{}.", body.name,
                         is_vehicle ? ", its own vehicle (hides_vehicle: true leaves it out)" : ""));
@@ -209,7 +259,49 @@ class LookAround {
     }
   }
 
-  void note_nothing_near() {
+  Crossings straight(const Neighbour& neighbour, double up) const {
+    const glm::dvec3 direction = glm::inverse(neighbour.T_world_body.orientation) * glm::dvec3(0.0, 0.0, up);
+    return meets(neighbour.box, neighbour.sonar_m, direction)
+               ? crossings_of(*neighbour.body, neighbour.sonar_m, direction)
+               : Crossings{};
+  }
+
+  /// Whether it may be a bed: a sheet or a slab of more than ten metres both ways.
+  static bool may_be_ground(const Neighbour& neighbour) {
+    const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
+    std::array<double, 3> sides{size.x, size.y, size.z};
+    std::ranges::sort(sides);
+    return neighbour.is_terrain || (sides[1] > 10.0 && sides[0] < 0.5 * sides[1]);
+  }
+
+  /// Below the lowest thing there is, where that is wide. Who sees it may be below ice or a ship, but not if
+  /// it turns its back.
+  void note_under_ground() {
+    const Neighbour* ground = nullptr;
+    Crossings overhead;
+    for (const Neighbour& neighbour : neighbours_) {
+      if (!may_be_ground(neighbour) || neighbour.body->name == sight_.vehicle_model) {
+        continue;
+      }
+      const Crossings up = straight(neighbour, 1.0);
+      if (up.nearest < overhead.nearest) {
+        ground = &neighbour;
+        overhead = up;
+      }
+    }
+    const bool turns_its_back = overhead.from_behind || (ground != nullptr && ground->is_terrain);
+    if (ground == nullptr || !findings_.empty() || (sight_.sees_surface.value_or(true) && !turns_its_back) ||
+        std::ranges::any_of(neighbours_,
+                            [&](const Neighbour& other) { return straight(other, -1.0).count > 0; })) {
+      return;
+    }
+    add("under_ground",
+        fmt::format("The sonar is {:.4g} m below the body '{}', and nothing is below it: is it under the bed "
+                    "(is z of the pose right)?",
+                    overhead.nearest, ground->body->name));
+  }
+
+  void note_what_is_near(bool sees_surface) {
     const Neighbour* nearest = nullptr;
     glm::dvec3 point_world{0.0};
     double least_m = std::numeric_limits<double>::infinity();
@@ -234,10 +326,17 @@ class LookAround {
       if (world_.triangle_count() > 0) {  // else it is open water on purpose
         add("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden.");
       }
-    } else if (least_m > sight_.range_m) {
+    } else if (!sees_surface && least_m > sight_.range_m) {
       note_far(*nearest, least_m);
+    } else if (sees_surface) {
+      const double below_db = -10.0 * std::log10(std::max(sight_.echo_over_floor, 1e-10));
+      add("too_faint",
+          fmt::format(
+              "No echo stands out: the strongest one is {:.0f} dB{} below the noise and the least step "
+              "of the samples. {} Turn the sonar towards it, or come nearer.",
+              below_db, below_db < 100.0 ? "" : " or more", where_is("The", *nearest, least_m, point_world)));
     } else if (sight_.sees_surface) {
-      note_beside(*nearest, least_m, point_world);
+      add("nothing_in_fan", "Nothing is in the fan; " + where_is("the", *nearest, least_m, point_world));
     }
   }
 
@@ -246,7 +345,14 @@ class LookAround {
     const std::string text =
         fmt::format("Nothing is within {:.4g} m; the nearest body, '{}', is {:.4g} m away", sight_.range_m,
                     nearest.body->name, away_m);
-    if (is_a_thousand_times_off()) {
+    const glm::dvec3 there = nearest.T_world_body * (0.5 * (nearest.box.min_m + nearest.box.max_m));
+    if (looks_like_utm(p) != looks_like_utm(there)) {
+      add("utm",
+          fmt::format("{}. {} looks like UTM (easting, northing) and the {} not: subtract the place of the "
+                      "world's origin from the poses, or give both in the same coordinates.",
+                      text, looks_like_utm(p) ? "The position" : "The world",
+                      looks_like_utm(p) ? "world does" : "position does"));
+    } else if (is_a_thousand_times_off()) {
       add("millimetres", text +
                              ". A thousandth of the position would be in the world: positions look like "
                              "millimetres.");
@@ -257,17 +363,17 @@ class LookAround {
     }
   }
 
-  void note_beside(const Neighbour& nearest, double away_m, const glm::dvec3& point_world) {
+  std::string where_is(std::string_view article, const Neighbour& nearest, double away_m,
+                       const glm::dvec3& point_world) const {
     const glm::dvec3 p = render::inverse(sight_.T_world_sonar) * point_world;
     const double bearing_rad = std::atan2(-p.y, p.x);  // to starboard
     const double elevation_rad = std::atan2(p.z, std::hypot(p.x, p.y));
-    add("nothing_in_fan",
-        fmt::format(
-            "Nothing is in the fan; the nearest body, '{}', is {:.4g} m away, {:.0f} degrees to {} and "
-            "{:.0f} degrees {} the axis of the sonar.",
-            nearest.body->name, away_m, std::abs(bearing_rad) / degree,
-            bearing_rad < 0 ? "port" : "starboard", std::abs(elevation_rad) / degree,
-            elevation_rad < 0 ? "below" : "above"));
+    return fmt::format(
+        "{} nearest body, '{}', is {:.4g} m away, {:.0f} degrees to {} and {:.0f} degrees {} the axis of the "
+        "sonar.",
+        article, nearest.body->name, away_m, std::abs(bearing_rad) / degree,
+        bearing_rad < 0 ? "port" : "starboard", std::abs(elevation_rad) / degree,
+        elevation_rad < 0 ? "below" : "above");
   }
 
   const render::World& world_;

@@ -44,7 +44,7 @@ heads:
     type: gemini_720i
     sonar_id: 513
     network: {{alternate_address: 127.0.0.2, netmask: 255.0.0.0, status: [127.0.0.1]}}
-"""
+{head}"""
 
 
 def wrong_poses():
@@ -53,11 +53,15 @@ def wrong_poses():
 
 
 class Publisher:
-    """Sends the same pose twenty times a second; stamps are those of a clock of its own."""
+    """Sends a pose twenty times a second, which goes on at a speed; stamps are those of a clock of its own, or what `stamp`
+    makes of the seconds since it began."""
 
-    def __init__(self, pose, ticks_per_s=1e9):
+    def __init__(self, pose, ticks_per_s=1e9, speed_mps=0.0, stamp=None):
         self.pose = pose
         self.ticks_per_s = ticks_per_s
+        self.speed_mps = speed_mps
+        self.stamp = stamp
+        self._begin = time.monotonic()
         self.back_s = 0.0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.connect(POSES)
@@ -68,9 +72,12 @@ class Publisher:
 
     def _run(self):
         while not self._end.wait(0.05):
-            update = POSE_PB2.PoseUpdate(time_ns=round((time.monotonic() - self.back_s) * self.ticks_per_s))
+            since_s = time.monotonic() - self._begin
+            own_ns = round((time.monotonic() - self.back_s) * self.ticks_per_s)
+            update = POSE_PB2.PoseUpdate(time_ns=own_ns if self.stamp is None else self.stamp(since_s))
             at, turn = update.vehicle.position_m, update.vehicle.orientation
             at.x, at.y, at.z = self.pose["position_m"]
+            at.y += self.speed_mps * since_s
             turn.x, turn.y, turn.z, turn.w = self.pose.get("orientation_xyzw", [0, 0, 0, 1])
             with contextlib.suppress(ConnectionRefusedError):  # nobody listens yet
                 self._socket.send(update.SerializeToString())
@@ -82,16 +89,16 @@ class Publisher:
 
 
 class Diagnosis(OwnMachine):
-    def config(self, poses="udp: {bind: 127.0.0.1:14600}", vehicle=""):
+    def config(self, poses="udp: {bind: 127.0.0.1:14600}", vehicle="", world="pier_and_hull.sdf", head=""):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=os.path.join(DATA, "pier_and_hull.sdf"), poses=poses, vehicle=vehicle,
-                                     page=PAGE))
+            file.write(CONFIG.format(world=os.path.join(DATA, world), poses=poses, vehicle=vehicle,
+                                     page=PAGE, head=head))
         return path
 
-    def start(self):
+    def start(self, **config):
         """A daemon whose client asks for pings to 20 m."""
-        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", self.config()], "sonard")
+        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", self.config(**config)], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", PATIENCE_S)
         client = Program([os.path.join(PROGRAMS, "sonarview"), "--continuous", "100", "--range", "20", "--ping-wait", "0",
@@ -236,6 +243,79 @@ class Diagnosis(OwnMachine):
                 self.wait_for_finding(self.inputs_findings, says)
                 daemon.kill()
                 publisher.close()
+
+    STANDING = {  # what is made of the seconds since the first pose
+        "left out": (lambda since_s: 0, "The stamps stand still while the vehicle moves: is time_ns left out\\?"),
+        "all alike": (lambda since_s: 1732800000123456789, "The stamps stand still while the vehicle moves"),
+        "whole seconds": (lambda since_s: int(1732800000 + since_s) * 10**9,
+                          "The stamps stand still for (1|0\\.9\\d?) s at a time while the vehicle moves: is time_ns in whole"),
+    }
+
+    def test_stamps_that_stand_still_are_named(self):
+        for name, (stamp, says) in self.STANDING.items():
+            with self.subTest(name):
+                publisher = self.publish(GOOD, speed_mps=0.5, stamp=stamp)
+                self.assertRegex(self.check("--listen", "5", self.config()), "wrong\\?   " + says)
+                for clock in ("wall", "source"):
+                    daemon = self.start(poses=f"udp: {{bind: 127.0.0.1:14600}}, clock: {clock}")
+                    daemon.wait_for_line("warning pose stream udp .*" + says, PATIENCE_S)
+                    self.wait_for_finding(self.inputs_findings, says)
+                    daemon.kill()
+                publisher.close()
+
+    def test_a_paused_simulation_is_not_taken_for_stamps_that_are_left_out(self):
+        publisher = self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: round(since_s * 1e9))
+        check = Program([os.path.join(PROGRAMS, "sonard"), "check", "--no-network", "--listen", "5",
+                         self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: source")], "check")
+        self.addCleanup(check.kill)
+        check.wait_for_line("listening for", PATIENCE_S)
+        time.sleep(1)
+        publisher.speed_mps, publisher.stamp = 0.0, lambda since_s: 10**10
+        self.assertEqual(check.wait(PATIENCE_S), 0, check.tail())
+        self.assertNotRegex(check.output(), "stamps")
+
+    def test_stamps_that_never_moved_are_named_where_pings_wait_for_them(self):
+        self.publish(GOOD, stamp=lambda since_s: 0)
+        self.assertNotRegex(self.check("--listen", "3", self.config()), "stamps")
+        says = "The stamps have not moved since the first pose, so no ping is made \\(poses.clock\\)"
+        source = self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: source")
+        self.assertRegex(self.check("--listen", "3", source), "wrong\\?   " + says)
+
+    BLACK = {  # start pose in bed_and_wall.sdf, acoustics of the head, what is said
+        "under the bed": ("[30, 0, -24]", "", "The sonar is 4 m below the body 'bed', and nothing is below it"),
+        "inside of a wall": ("[0, 40, -15]", "", "The sonar is inside of the body 'wall'"),
+        "turned away": ("[30, 0, -17], rpy_deg: [0, -60, 0]", "",
+                        "Nothing is in the fan; the nearest body, 'bed', is 3 m away, .* and 30 degrees below the axis"),
+        "below the noise": ("[30, 0, -17]", "{physical: {noise_level_db: -50}}",
+                            "No echo stands out: the strongest one is \\d+ dB below the noise .* The nearest body, 'bed', is 3 m"),
+        "below the least step": ("[30, 0, -17]", "{physical: {noise: false, gain_db: -90}}",
+                                 "No echo stands out: the strongest one is \\d+ dB below"),
+    }
+
+    def test_each_black_picture_has_its_reason(self):
+        for name, (pose, acoustics, says) in self.BLACK.items():
+            with self.subTest(name):
+                config = {"poses": f"initial: {{position_m: {pose}}}", "world": "bed_and_wall.sdf",
+                          "head": f"    acoustics: {acoustics}\n" if acoustics else ""}
+                self.assertRegex(self.check(self.config(**config)), "warning: .*poses.initial: head 'bow': " + says)
+                daemon = self.start(**config)
+                daemon.wait_for_line("warning head=bow " + says, PATIENCE_S)
+                self.wait_for_finding(lambda status: status["heads"][0]["findings"], says)
+                daemon.kill()
+
+    def test_a_good_start_says_what_is_seen_of_the_bed(self):
+        """5 m above it, 30 degrees down, a beam of 20 degrees: 5 / sin 40 = 7.78 m to 5 / sin 20 = 14.6 m."""
+        printed = self.check(self.config(poses="initial: {position_m: [30, 0, -15]}", world="bed_and_wall.sdf",
+                                         head="    mount: {rpy_deg: [0, 30, 0]}\n"))
+        self.assertIn("looks    bow: forward and 30 degrees down; the bed below ('bed') is seen from 7.78 to 14.6 m\n", printed)
+        self.assertNotIn("warning", printed)
+
+    def test_a_mount_in_radians_is_named_and_shows_where_it_looks(self):
+        printed = self.check(self.config(poses="initial: {position_m: [30, 0, -15]}", world="bed_and_wall.sdf",
+                                         head="    mount: {rpy_deg: [0, 1.57, 0], position_m: [150, 0, -30]}\n"))
+        self.assertIn("heads[0].mount.rpy_deg: 0, 1.57, 0 look like radians", printed)
+        self.assertIn("heads[0].mount.position_m: puts the sonar 153 m from the origin of the vehicle", printed)
+        self.assertIn("looks    bow: forward and 2 degrees down;", printed)
 
     def test_a_clock_that_runs_backwards_is_named(self):
         daemon = self.start()

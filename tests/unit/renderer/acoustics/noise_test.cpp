@@ -62,6 +62,31 @@ TEST(Noise, InterferenceIsDrawnEvenlyBySeed) {
   EXPECT_NEAR(longer / hit, 0.92 * (0.1 + 0.9 / 2), 4 * 0.5 / std::sqrt(hit) + 0.005);
 }
 
+// The strongest echo re what hides it: the noise of its bin, -40 dB, and half a step of 16 bits.
+TEST(Noise, TellsHowFarTheStrongestEchoStandsOutOfIt) {
+  WorkerPool workers;
+  const auto over_floor = [&](const PingRequest& request, const EchoImage& echo) {
+    Receiver receiver;
+    receiver.receive(echo, request, 0, workers);
+    return receiver.echo_over_floor();
+  };
+  PingRequest request = bare_request(100);
+  const double half_a_step = std::pow(0.5 / 65535, 2);
+  EXPECT_NEAR(over_floor(request, even_echo(request, 1e-6)), 1e-6 / half_a_step, 1e-3 * 1e-6 / half_a_step);
+  EXPECT_EQ(over_floor(request, even_echo(request, 0)), 0.0);
+  request.settings.physical.noise = true;
+  request.settings.physical.noise_level_db = -40;
+  EXPECT_NEAR(over_floor(request, even_echo(request, 1e-6)), 1e-6 / (1e-4 + half_a_step), 1e-6);
+  EchoImage one_bin = even_echo(request, 1e-6);
+  one_bin.intensity[37 * 100 + 52] = 1e-3F;
+  EXPECT_NEAR(over_floor(request, one_bin), 10.0, 1e-3);
+  one_bin.surface_share.assign(100, 1.0F);
+  one_bin.surface_share[52] = 0.002F;  // a fish
+  EXPECT_NEAR(over_floor(request, one_bin), 0.02, 1e-4);
+  request.settings.model = Model::paper;
+  EXPECT_EQ(over_floor(request, even_echo(request, 0.1)), std::numeric_limits<double>::infinity());
+}
+
 // A ping that is hit: noise rises by the drawn factor from the drawn line to the drawn end, in all beams.
 TEST(Noise, InterferenceRaisesNoiseWithinItsBurst) {
   WorkerPool workers;

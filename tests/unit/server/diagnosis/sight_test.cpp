@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -139,6 +140,119 @@ TEST(LookAround, SaysThatTheOnlyBodyIsHidden) {
   EXPECT_EQ(
       look(pier(), {}, sight),
       only("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden."));
+}
+
+/// A box of these edges whose middle is at the origin, its faces outwards or inwards.
+std::shared_ptr<const render::TriangleMesh> box(const glm::vec3& size, bool inwards = false) {
+  auto mesh = std::make_shared<render::TriangleMesh>(*cube());
+  for (glm::vec3& position : mesh->positions) {
+    position *= 0.5F * size;
+  }
+  for (std::size_t i = 0; inwards && i < mesh->indices.size(); i += 3) {
+    std::swap(mesh->indices[i], mesh->indices[i + 1]);
+  }
+  return mesh;
+}
+
+render::World one(const std::string& name, std::shared_ptr<const render::TriangleMesh> mesh) {
+  render::World world;
+  world.bodies = {{name, {{0, 0, -20}, {1, 0, 0, 0}}, {{std::move(mesh), {}, {}, nullptr}}}};
+  return world;
+}
+
+Sight seeing(const glm::dvec3& position_m) {
+  Sight sight = at(position_m);
+  sight.sees_surface = true;
+  return sight;
+}
+
+TEST(LookAround, ASolidWallIsNamedHoweverLargeItIs) {
+  for (const glm::vec3& size : {glm::vec3(6, 40, 40), glm::vec3(30, 1, 8), glm::vec3(200, 200, 30)}) {
+    EXPECT_EQ(look(one("wall", box(size)), {}, seeing({0.1, 0.2, -20.3})),
+              only("inside_body", "The sonar is inside of the body 'wall'."));
+  }
+}
+
+TEST(LookAround, ATankWhoseFacesLookInwardsIsNot) {
+  const render::World tank = one("tank", box({10, 10, 6}, /*inwards=*/true));
+  EXPECT_TRUE(look(tank, {}, seeing({0.1, 0.2, -20.3})).empty());
+  EXPECT_EQ(look(tank, {}, at({0.1, 0.2, -20.3}))[0].code, "inside_body") << "where nothing is seen of it";
+}
+
+/// A sheet of 100 m that looks up.
+std::shared_ptr<const render::TriangleMesh> sheet() {
+  auto mesh = std::make_shared<render::TriangleMesh>();
+  mesh->positions = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
+  mesh->indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+TEST(LookAround, SaysThatTheSonarIsUnderTheBed) {
+  const auto expected =
+      only("under_ground",
+           "The sonar is 3.5 m below the body 'bed', and nothing is below it: is it under the "
+           "bed (is z of the pose right)?");
+  EXPECT_EQ(look(one("bed", sheet()), {}, at({7, 3, -23.5})), expected);
+  EXPECT_EQ(look(one("bed", sheet()), {}, seeing({7, 3, -23.5})), expected) << "it sees the back of it";
+  // A slab of 1 m, whose lower side is at z = -20.5.
+  EXPECT_EQ(look(one("bed", box({100, 100, 1})), {}, at({7, 3, -24})), expected);
+}
+
+TEST(LookAround, BelowAShipOrIceOrABridgeAllIsWell) {
+  EXPECT_TRUE(look(one("ice", box({100, 100, 1})), {}, seeing({7, 3, -24})).empty())
+      << "it sees the underside";
+  render::World bridge = one("bridge", sheet());
+  bridge.bodies.push_back({"bed", {{0, 0, -30}, {1, 0, 0, 0}}, {{sheet(), {}, {}, nullptr}}});
+  EXPECT_TRUE(look(bridge, {}, seeing({7, 3, -25})).empty());
+  EXPECT_NE(look(bridge, {}, at({7, 3, -25}))[0].code, "under_ground");
+  EXPECT_TRUE(look(one("bed", sheet()), {}, seeing({7, 3, -15})).empty()) << "above it";
+}
+
+TEST(LookAround, SaysThatNoEchoStandsOut) {
+  // 3 m above the bed, and the sonar looks up by 30 degrees; an echo of a hundredth of the noise.
+  const double quarter = std::numbers::pi / 12;
+  Sight sight = at({0, 0, -17}, {std::cos(quarter), 0, -std::sin(quarter), 0});
+  sight.sees_surface = true;
+  sight.echo_over_floor = 0.01;
+  const auto found = look(one("bed", sheet()), {}, sight);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "too_faint");
+  for (const char* part :
+       {"No echo stands out: the strongest one is 20 dB below the noise and the least step of the "
+        "samples. The nearest body, 'bed', is 3 m away, 180 degrees to ",
+        " and 60 degrees below the axis of the sonar. Turn the sonar towards it, or come nearer."}) {
+    EXPECT_NE(found[0].text.find(part), std::string::npos) << found[0].text;
+  }
+  sight.echo_over_floor = 0.5;
+  EXPECT_TRUE(look(one("bed", sheet()), {}, sight).empty());
+}
+
+TEST(LookAround, SuspectsUtmCoordinatesInALocalWorld) {
+  // Trondheim, zone 32: 569 km east, 7034 km north.
+  for (const glm::dvec3& p : {glm::dvec3(569000, 7034000, -20), glm::dvec3(7034000, 569000, -20)}) {
+    const auto found = look(one("bed", sheet()), {}, at(p));
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].code, "utm");
+    EXPECT_NE(found[0].text.find("The position looks like UTM (easting, northing) and the world does not"),
+              std::string::npos)
+        << found[0].text;
+  }
+}
+
+TEST(LookAround, SuspectsALocalPoseInAWorldOfUtmCoordinates) {
+  render::World world = one("bed", sheet());
+  world.bodies[0].T_world_body.position_m = {569000, 7034000, -20};
+  const auto found = look(world, {}, at({7, 3, -15}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NE(found[0].text.find("The world looks like UTM (easting, northing) and the position does not"),
+            std::string::npos)
+      << found[0].text;
+  EXPECT_EQ(look(world, {}, at({569300, 7034000, -15}))[0].code, "nothing_near") << "both are";
+}
+
+TEST(LookAround, SaysThatAWorldIsEmpty) {
+  EXPECT_EQ(look({}, {}, at({0, 0, 0})),
+            only("empty_world", "The world has no body that could send an echo."));
 }
 
 }  // namespace
