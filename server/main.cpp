@@ -48,7 +48,7 @@ constexpr const char* exit_code_help =
     "Exit codes:\n"
     "  0   success: ended by SIGINT, SIGTERM or the end of the recording, or no problem found\n"
     "  2   configuration, world, trajectory or log cannot be used, or check --listen received no pose\n"
-    "  3   an address or port cannot be used\n"
+    "  3   an address or port cannot be used, or an interface has no address (yet)\n"
     "  4   the engine is not available or failed its self-test, or the renderer failed while serving\n"
     "  5   a file or folder to write to cannot be used\n"
     "  64  wrong command line\n"
@@ -223,7 +223,7 @@ int guarded(const Command& command) {
     for (const std::string& line : error.lines()) {
       print_error(line);
     }
-    return exit_config;
+    return error.only_of_network() ? exit_network : exit_config;
   } catch (const pose::TrajectoryError& error) {
     print_error(error.what());
     return exit_config;

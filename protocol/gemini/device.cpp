@@ -140,6 +140,11 @@ class Device::Impl {
   const DeviceCounters& counters() const { return counters_; }
   Ipv4 topside() const { return topside_; }
   DeviceAddresses addresses() const { return addresses_; }
+  void move_to(Ipv4 alternate, Ipv4 netmask) {
+    addresses_.alternate = alternate;
+    addresses_.netmask = netmask;
+    write_block(AddressBlock{alternate, netmask}, address_bank);
+  }
 
  private:
   /// Everything that arrives while the head reboots falls on deaf ears.
@@ -524,6 +529,9 @@ Ipv4 Device::topside() const {
 }
 DeviceAddresses Device::addresses() const {
   return impl_->addresses();
+}
+void Device::move_to(Ipv4 alternate, Ipv4 netmask) {
+  impl_->move_to(alternate, netmask);
 }
 std::uint64_t Device::clock_us(TimePoint now) const {
   return impl_->clock_us(now);

@@ -43,6 +43,9 @@ class Device final : public sonard::Device {
   /// What the head answers on. Changes when a reboot applies an address that a client has programmed
   /// (3.7, 3.9); the server then moves its sockets while the head is still silent.
   DeviceAddresses addresses() const;
+  /// The machine that serves the head has another address: status packets report it from now on, and a reboot
+  /// keeps it, as if it had been programmed.
+  void move_to(Ipv4 alternate, Ipv4 netmask);
   /// Microseconds of the head's clock at `now`; 0 while it reboots.
   std::uint64_t clock_us(TimePoint now) const;
 

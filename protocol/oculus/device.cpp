@@ -44,7 +44,9 @@ class Device::Impl {
         identity_{config.id, config.plan.model.part_number},
         boot_time_(boot_time),
         next_status_(boot_time),
-        user_config_{octets(config.address), octets(config.netmask), 0} {}
+        address_(octets(config.address)),
+        netmask_(octets(config.netmask)),
+        user_config_{address_, netmask_, 0} {}
 
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& received);
@@ -60,6 +62,7 @@ class Device::Impl {
 
   void advance(TimePoint now);
   Actions actions();
+  void move_to(Ipv4 address, Ipv4 netmask);
   PingProgress progress() const { return {sent_, sent_ + failed_ + cancelled_count_, sent_}; }
   std::vector<Counter> counts() const;
 
@@ -97,6 +100,7 @@ class Device::Impl {
   TimePoint next_status_;
   TimePoint next_dummy_{};
   TimePoint next_ping_{};
+  std::array<std::uint8_t, 4> address_, netmask_;  ///< at which it is reached
   UserConfig user_config_;
   std::optional<double> depth_m_;  ///< for the status; nullopt: not known
 
@@ -188,6 +192,17 @@ void Device::Impl::handle(TimePoint, const UserConfig& config) {
     user_config_ = config;  // remembered only: this machine's network is left as it is
   }
   send(encode(user_config_, identity_));
+}
+
+// What a client has programmed is remembered, as it was never used.
+void Device::Impl::move_to(Ipv4 address, Ipv4 netmask) {
+  const bool programmed = user_config_.address != address_;
+  address_ = octets(address);
+  netmask_ = octets(netmask);
+  if (!programmed) {
+    user_config_.address = address_;
+    user_config_.netmask = netmask_;
+  }
 }
 
 // ---- Pings
@@ -310,8 +325,8 @@ void Device::Impl::send_status(TimePoint now) {
   status.device_id = config_.id;
   status.part_number = identity_.part_number;
   status.firmware = {0x01030007, 0x0134B35D, 0x01030007, 0x0134B35D, 0x00020001, 0x0134B35D};
-  status.address = octets(config_.address);
-  status.netmask = octets(config_.netmask);
+  status.address = address_;
+  status.netmask = netmask_;
   status.client = octets(client_ ? client_->remote.address : 0);
   status.mac = config_.mac;
   status.temperatures_c.fill(config_.plan.temperature_c);

@@ -27,6 +27,9 @@ class Device final : public sonard::Device {
   PingProgress progress() const override;
   std::vector<Counter> counts() const override;
 
+  /// The machine that serves the head has another address: status datagrams report it from now on.
+  void move_to(Ipv4 address, Ipv4 netmask);
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

@@ -43,7 +43,8 @@ std::string problem_text(const std::filesystem::path& file, const ConfigProblem&
 
 ConfigError::ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems)
     : std::runtime_error(problem_text(file, in_file_order(problems).front())),
-      problems_(in_file_order(std::move(problems))) {
+      problems_(in_file_order(std::move(problems))),
+      only_of_network_(std::ranges::all_of(problems_, &ConfigProblem::of_network)) {
   for (const ConfigProblem& problem : problems_) {
     lines_.push_back(problem_text(file, problem));
   }

@@ -20,8 +20,9 @@ struct SourcePosition {
 
 struct ConfigProblem {
   SourcePosition at;
-  std::string key;      ///< "heads[0].link.to_surface.loss"; empty for what concerns no key
-  std::string message;  ///< "... (expected ...)"
+  std::string key;          ///< "heads[0].link.to_surface.loss"; empty for what concerns no key
+  std::string message;      ///< "... (expected ...)"
+  bool of_network = false;  ///< an interface of this machine lacks what the key wants, and may have it later
 };
 
 /// What is worth saying but no reason to stop.
@@ -50,10 +51,13 @@ class ConfigError : public std::runtime_error {
   const std::vector<std::string>& lines() const { return lines_; }
   /// The same as data.
   const std::vector<ConfigProblem>& problems() const { return problems_; }
+  /// Nothing is wrong with the file itself: when the network is up it can be used.
+  bool only_of_network() const { return only_of_network_; }
 
  private:
   std::vector<ConfigProblem> problems_;
   std::vector<std::string> lines_;
+  bool only_of_network_;
 };
 
 }  // namespace sonard::server

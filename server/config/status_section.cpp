@@ -10,7 +10,24 @@ namespace {
 
 constexpr TextForm addresses_form{address_form.expected, "addresses", address_schema};
 
+void report_trouble(YamlSection& section, std::string_view key, const OwnAddress& own) {
+  if (!own.trouble.empty()) {
+    section.report_network(
+        key, fmt::format("{} (expected an interface with an address, or the address itself)", own.trouble));
+  }
+}
+
 }  // namespace
+
+void read_own_address(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning) {
+  section.parsed(key, own, &parse_own_address, own_address_form, meaning);
+  report_trouble(section, key, own);
+}
+
+void read_own_netmask(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning) {
+  section.parsed(key, own, &parse_own_netmask, netmask_form, meaning);
+  report_trouble(section, key, own);
+}
 
 void check_host_address(YamlSection& section, std::string_view key, Ipv4 address) {
   if (address == 0 || is_multicast(address) || address == 0xFFFFFFFF) {

@@ -8,6 +8,7 @@
 #include "server/config/status_destination.hpp"
 #include "server/config/yaml_section.hpp"
 #include "server/net/addresses.hpp"
+#include "server/net/interfaces.hpp"
 
 namespace sonard::server {
 
@@ -21,6 +22,10 @@ inline constexpr TextForm netmask_form{
 inline constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets",
                                    mac_schema};
 
+/// The key of an address of this machine, or of a mask of its network, by numbers or by the interface: what
+/// stood in `own` is the default.
+void read_own_address(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning);
+void read_own_netmask(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning);
 /// Reports an address that a head cannot own or talk to.
 void check_host_address(YamlSection& section, std::string_view key, Ipv4 address);
 /// The key `netmask` stands beside `address_key`: reports a mask that is none, and an address that is not

@@ -250,8 +250,16 @@ void YamlSection::require(std::string_view key, std::string_view expected) {
 }
 
 void YamlSection::report(std::string_view key, const std::string& message) {
+  problem(place_of(key), path_of(key), message);
+}
+
+void YamlSection::report_network(std::string_view key, const std::string& message) {
+  problem(place_of(key), path_of(key), message, /*of_network=*/true);
+}
+
+SourcePosition YamlSection::place_of(std::string_view key) const {
   const Entry* entry = peek(key);
-  problem(entry != nullptr ? entry->value_at : at_, path_of(key), message);
+  return entry != nullptr ? entry->value_at : at_;
 }
 
 void YamlSection::warn_of(std::string path, std::string message) {
@@ -501,7 +509,7 @@ const YamlSection::Entry* YamlSection::peek(std::string_view key) const {
   return found == entry_of_.end() ? nullptr : &entries_[found->second];
 }
 
-void YamlSection::problem(const SourcePosition& at, std::string path, std::string message) {
+void YamlSection::problem(const SourcePosition& at, std::string path, std::string message, bool of_network) {
   // What follows from a value that was refused is not worth a second line.
   if (!findings_.keys_with_problems.insert(path).second) {
     return;
@@ -510,7 +518,7 @@ void YamlSection::problem(const SourcePosition& at, std::string path, std::strin
     ++findings_.problems_left_out;
     return;
   }
-  findings_.problems.push_back({at, std::move(path), std::move(message)});
+  findings_.problems.push_back({at, std::move(path), std::move(message), of_network});
 }
 
 void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {

@@ -79,6 +79,8 @@ class YamlSection {
   void ignore_rest();
   /// Reports a problem with the value of a key that a reader accepted, or with the key's absence.
   void report(std::string_view key, const std::string& message);
+  /// The same of what this machine's network lacks, and may have later.
+  void report_network(std::string_view key, const std::string& message);
   /// Something about a key that is worth saying but no reason to stop.
   void warn(std::string_view key, std::string message) { warn_of(path_of(key), std::move(message)); }
   /// The same of a key of any other section.
@@ -207,7 +209,9 @@ class YamlSection {
                   const std::function<void(YamlSection&)>& read);
   const Entry* find(std::string_view key);
   const Entry* peek(std::string_view key) const;
-  void problem(const SourcePosition& at, std::string path, std::string message);
+  /// Where the value of a key stands; without one, the section.
+  SourcePosition place_of(std::string_view key) const;
+  void problem(const SourcePosition& at, std::string path, std::string message, bool of_network = false);
   void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);
   void report_unknown(const Entry& entry);
   std::optional<double> number_of(const YAML::Node& node, const SourcePosition& at, const std::string& path,

@@ -24,6 +24,7 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "server/clock/clock.hpp"
+#include "server/config/overlaps.hpp"
 #include "server/daemon/exhaustion.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
@@ -34,10 +35,12 @@
 #include "server/devices/ping_dump.hpp"
 #include "server/devices/playback.hpp"
 #include "server/diagnosis/pose_stream.hpp"
+#include "server/net/interfaces.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/pose/pose_inputs.hpp"
 #include "server/pose/pose_intake.hpp"
+#include "server/program_log/peer_log.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/rendering/engine_choice_file.hpp"
 #include "server/rendering/world_renderer.hpp"
@@ -132,6 +135,7 @@ class Daemon {
   void start_inputs();
   void poses_changed();
   void look_at_streams();
+  void look_at_addresses();
   std::optional<std::chrono::nanoseconds> pose_lead() const;
   void start_page(const DaemonConfig& config, const render::World& world);
   DaemonStatus status() const;
@@ -159,7 +163,10 @@ class Daemon {
   std::unique_ptr<WebServer> page_;                              // null when none is served
   std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
-  asio::steady_timer stream_timer_{io_};
+  asio::steady_timer stream_timer_{io_}, address_timer_{io_};
+  std::vector<PlannedSocket> other_sockets_;  // of poses and page
+  OwnAddresses other_addresses_;              // of these
+  PeerLog address_log_;
   bool io_stopped_ = false;     // of the I/O thread: no timer is set again
   std::set<std::string> told_;  // codes of findings on poses that were logged, by input
   std::filesystem::path recorded_into_;
@@ -199,6 +206,11 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
       throw StartError(head_key(i, kind_of(config.heads[i]).socket_key()), exit_network, error.what());
+    }
+  }
+  for (PlannedSocket& socket : planned_sockets(config)) {
+    if (!socket.key.starts_with("heads[")) {
+      other_sockets_.push_back(std::move(socket));
     }
   }
   start_inputs();
@@ -339,6 +351,34 @@ void Daemon::look_at_streams() {
   });
 }
 
+// Every second: a lease may bring another address, a cable be pulled.
+void Daemon::look_at_addresses() {
+  if (io_stopped_) {
+    return;
+  }
+  const std::vector<InterfaceAddress> now = interface_addresses();
+  for (const std::unique_ptr<Head>& head : heads_) {
+    head->look_at_addresses(now);
+  }
+  std::vector<Ipv4> others;
+  for (const PlannedSocket& socket : other_sockets_) {
+    others.push_back(socket.endpoint.address);
+  }
+  const OwnAddresses::News news = other_addresses_.look(others, now);
+  for (const PlannedSocket& socket : other_sockets_) {
+    if (std::ranges::count(news.gone, socket.endpoint.address) > 0) {
+      address_log_.warn("{}: the address {} is gone from this machine: nobody reaches it until it is back",
+                        socket.key, address_text(socket.endpoint.address));
+    }
+  }
+  address_timer_.expires_after(std::chrono::seconds{1});
+  address_timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      look_at_addresses();
+    }
+  });
+}
+
 std::optional<std::chrono::nanoseconds> Daemon::pose_lead() const {
   std::optional<std::chrono::nanoseconds> most;
   for (const std::unique_ptr<Head>& head : heads_) {
@@ -360,6 +400,7 @@ int Daemon::run() {
     spdlog::info(ready_line_);
     tell_service_manager("READY=1");
     look_at_streams();
+    look_at_addresses();
     end_when_played();
   });
 
@@ -445,6 +486,7 @@ void Daemon::stop_io() {
   io_stopped_ = true;
   playback_timer_.cancel();
   stream_timer_.cancel();
+  address_timer_.cancel();
   inputs_->stop();
   intake_.stop();
   for (const std::unique_ptr<Head>& head : heads_) {

@@ -20,6 +20,7 @@
 #include "server/devices/survey.hpp"
 #include "server/logs/log_summary.hpp"
 #include "server/logs/recording.hpp"
+#include "server/net/interfaces.hpp"
 #include "server/net/transport.hpp"
 #include "server/recording/log.hpp"
 
@@ -46,6 +47,11 @@ class ConnectedDevice {
   virtual void stop() {}
   /// Called after each step, when its messages are sent: changes the transport where the device asks for it.
   virtual void after_step() {}
+
+  /// Called now and then: a head that is named by its interface follows the address of that.
+  virtual void follow_addresses(const std::vector<InterfaceAddress>& /*now*/) {}
+  /// The addresses of this machine at which clients reach it; nullopt: those of HeadKind::sockets().
+  virtual std::optional<std::vector<Ipv4>> own_addresses() const { return std::nullopt; }
 };
 
 class DeviceKind : public HeadKind {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -19,7 +20,9 @@
 #include "server/devices/playback.hpp"
 #include "server/devices/recent_activity.hpp"
 #include "server/net/deadline_timer.hpp"
+#include "server/net/interfaces.hpp"
 #include "server/pose/pose_history.hpp"
+#include "server/program_log/peer_log.hpp"
 #include "server/recording/head_recording.hpp"
 
 namespace sonard::server {
@@ -57,6 +60,8 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   RecentPings recent_pings;
   std::optional<NewestPing> newest;
   HeadDiagnosis diagnosis;
+  OwnAddresses own_addresses;
+  PeerLog address_log;
 
   std::deque<Event> events;  ///< that are not taken yet
   std::optional<TimePoint> wake_at;
@@ -71,6 +76,8 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   TransportEvents transport_events();
   HeadCounts counts() const;
   HeadStatus status() const;
+  void look_at_addresses(const std::vector<InterfaceAddress>& now);
+  std::vector<Finding> findings() const;
 
   void happen(Event event);
   void pump();
@@ -108,6 +115,9 @@ void Head::poses_changed() {
 }
 std::optional<std::chrono::nanoseconds> Head::pose_lead() const {
   return impl_->rendering.pose_lead();
+}
+void Head::look_at_addresses(const std::vector<InterfaceAddress>& now) {
+  impl_->look_at_addresses(now);
 }
 HeadStatus Head::status() const {
   return impl_->status();
@@ -224,7 +234,40 @@ HeadStatus Head::Impl::status() const {
           .spent = rendering.newest_statistics(),
           .latency = recent_pings.latency(),
           .since_last_ping = recent_pings.silence(now),
-          .findings = diagnosis.findings()};
+          .findings = findings()};
+}
+
+std::vector<Finding> Head::Impl::findings() const {
+  std::vector<Finding> all = diagnosis.findings();
+  for (const Ipv4 address : own_addresses.gone()) {
+    all.push_back(
+        {"address_gone", fmt::format("The address {} is gone from this machine: no client reaches the "
+                                     "head there. Is the cable plugged in, and the lease renewed?",
+                                     address_text(address))});
+  }
+  return all;
+}
+
+void Head::Impl::look_at_addresses(const std::vector<InterfaceAddress>& now) {
+  connected->follow_addresses(now);
+  std::vector<Ipv4> own;
+  if (auto moved = connected->own_addresses()) {
+    own = std::move(*moved);
+  } else {
+    for (const PlannedSocket& socket : kind.sockets(config)) {
+      own.push_back(socket.endpoint.address);
+    }
+  }
+  const OwnAddresses::News news = own_addresses.look(own, now);
+  for (const Ipv4 address : news.gone) {
+    address_log.warn(
+        "head={} its address {} is gone from this machine: no client reaches it there until it is "
+        "back (is the cable plugged in, and the lease renewed?)",
+        config.name, address_text(address));
+  }
+  for (const Ipv4 address : news.back) {
+    address_log.info("head={} its address {} is back", config.name, address_text(address));
+  }
 }
 
 // ---- Events

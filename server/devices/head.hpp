@@ -69,6 +69,10 @@ class Head {
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
+  /// Follows the address of its interface, and tells of one that is gone.
+  /// @param now interface_addresses()
+  void look_at_addresses(const std::vector<InterfaceAddress>& now);
+
   HeadStatus status() const;
   ConnectedDevice& connected();
   const RenderCounters& render_counters() const;

@@ -6,8 +6,11 @@
 #include <netinet/in.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "server/net/addresses.hpp"
 
@@ -20,10 +23,59 @@ Ipv4 ipv4_of(const sockaddr* address) {
   return ntohl(ipv4.sin_addr.s_addr);
 }
 
-std::optional<InterfaceAddress> first_of(std::string_view interface) {
+/// Names of all interfaces, with or without an address.
+std::vector<std::string> interface_names() {
+  const std::unique_ptr<struct if_nameindex, decltype(&if_freenameindex)> list(if_nameindex(),
+                                                                               &if_freenameindex);
+  std::vector<std::string> names;
+  for (const struct if_nameindex* item = list.get(); item != nullptr && item->if_index != 0; ++item) {
+    names.emplace_back(item->if_name);
+  }
+  return names;
+}
+
+bool is_up(const std::string& interface) {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) {
+    return true;  // not known
+  }
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
+  for (const ifaddrs* item = list; item != nullptr; item = item->ifa_next) {
+    if (interface == item->ifa_name) {
+      return (item->ifa_flags & IFF_UP) != 0;
+    }
+  }
+  return false;
+}
+
+/// Whether an interface could be called so. Digits and dots alone are an address, if a wrong one.
+bool may_be_a_name(std::string_view text) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; };
+  return text.size() < IFNAMSIZ && std::ranges::all_of(text, fits) &&
+         std::ranges::any_of(text, [](unsigned char c) { return std::isalpha(c) != 0; });
+}
+
+std::optional<OwnAddress> address_of_interface(std::string_view text) {
+  if (!may_be_a_name(text)) {
+    return std::nullopt;
+  }
   const std::vector<InterfaceAddress> entries = interface_addresses();
-  const auto found = std::ranges::find(entries, interface, &InterfaceAddress::interface);
-  return found == entries.end() ? std::nullopt : std::optional(*found);
+  const auto found = std::ranges::find(entries, text, &InterfaceAddress::interface);
+  OwnAddress own{.interface = std::string(text)};
+  if (found != entries.end()) {
+    own.address = found->address;
+    own.netmask = found->netmask;
+    return own;
+  }
+  const std::vector<std::string> names = interface_names();
+  if (std::ranges::count(names, text) == 0) {
+    own.trouble =
+        fmt::format("there is no interface '{}' (yet); this machine has {}", text, fmt::join(names, ", "));
+  } else {
+    own.trouble =
+        fmt::format("{} has no IPv4 address (yet){}", text, is_up(own.interface) ? "" : ": it is down");
+  }
+  return own;
 }
 
 }  // namespace
@@ -61,16 +113,49 @@ std::optional<InterfaceAddress> owner_of(Ipv4 address, const std::vector<Interfa
   return *found;
 }
 
-std::optional<Ipv4> parse_own_address(std::string_view text) {
+std::optional<OwnAddress> parse_own_address(std::string_view text) {
   const std::optional<Ipv4> address = parse_ipv4(text);
-  const std::optional<InterfaceAddress> entry = first_of(text);
-  return address || !entry ? address : entry->address;
+  return address ? OwnAddress{.address = *address} : address_of_interface(text);
 }
 
-std::optional<Ipv4> parse_own_netmask(std::string_view text) {
+std::optional<OwnAddress> parse_own_netmask(std::string_view text) {
   const std::optional<Ipv4> netmask = parse_ipv4(text);
-  const std::optional<InterfaceAddress> entry = first_of(text);
-  return netmask || !entry ? netmask : entry->netmask;
+  return netmask ? OwnAddress{.netmask = *netmask} : address_of_interface(text);
+}
+
+std::optional<InterfaceAddress> followed(const std::string& interface, Ipv4 address,
+                                         const std::vector<InterfaceAddress>& now) {
+  std::optional<InterfaceAddress> first;
+  for (const InterfaceAddress& entry : now) {
+    if (interface.empty() || entry.interface != interface) {
+      continue;
+    }
+    if (entry.address == address) {
+      return std::nullopt;
+    }
+    first = first.value_or(entry);
+  }
+  return first;
+}
+
+OwnAddresses::News OwnAddresses::look(const std::vector<Ipv4>& own,
+                                      const std::vector<InterfaceAddress>& now) {
+  News news;
+  if (now.empty()) {
+    return news;
+  }
+  std::erase_if(gone_, [&](Ipv4 address) { return std::ranges::count(own, address) == 0; });
+  for (const Ipv4 address : std::set<Ipv4>(own.begin(), own.end())) {
+    if (address != 0 && owner_of(address, now)) {
+      here_.insert(address);
+      if (gone_.erase(address) > 0) {
+        news.back.push_back(address);
+      }
+    } else if (here_.contains(address) && gone_.insert(address).second) {
+      news.gone.push_back(address);
+    }
+  }
+  return news;
 }
 
 }  // namespace sonard::server

@@ -31,7 +31,11 @@ struct TcpTransport::Impl : std::enable_shared_from_this<TcpTransport::Impl> {
   class Session;
 
   Impl(asio::io_context& used_io, const TcpTransportConfig& config)
-      : io(used_io), listener(std::make_shared<TcpListener>(io, "tcp", config.bind, config.allow)) {}
+      : io(used_io),
+        allow(config.allow),
+        listener(std::make_shared<TcpListener>(io, "tcp", config.bind, config.allow)) {}
+
+  void listen();
 
   void admit(tcp::socket socket, const Endpoint& remote);
   void left(const std::shared_ptr<Session>& session);
@@ -39,9 +43,11 @@ struct TcpTransport::Impl : std::enable_shared_from_this<TcpTransport::Impl> {
   void stop();
 
   asio::io_context& io;
+  AllowList allow;
   std::shared_ptr<TcpListener> listener;
   TransportEvents events;
   std::vector<std::shared_ptr<Session>> sessions;
+  bool started = false;
   std::uint64_t connections = 0;
   std::uint64_t bytes_in = 0;
   std::uint64_t bytes_out = 0;
@@ -153,6 +159,14 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
   std::array<std::uint8_t, read_bytes> buffer_{};
 };
 
+void TcpTransport::Impl::listen() {
+  listener->start([weak = weak_from_this()](tcp::socket socket, const Endpoint& remote) {
+    if (const auto self = weak.lock()) {
+      self->admit(std::move(socket), remote);
+    }
+  });
+}
+
 void TcpTransport::Impl::admit(tcp::socket socket, const Endpoint& remote) {
   if (sessions.size() >= most_clients) {
     listener->refuse(remote, "too many clients");
@@ -206,11 +220,22 @@ TcpTransport::~TcpTransport() {
 
 void TcpTransport::start(TransportEvents events) {
   impl_->events = std::move(events);
-  impl_->listener->start([weak = impl_->weak_from_this()](tcp::socket socket, const Endpoint& remote) {
-    if (const auto self = weak.lock()) {
-      self->admit(std::move(socket), remote);
-    }
-  });
+  impl_->started = true;
+  impl_->listen();
+}
+
+void TcpTransport::rebind(const Endpoint& bind) {
+  const auto moved = std::make_shared<TcpListener>(impl_->io, "tcp", bind, impl_->allow);
+  moved->open();
+  std::exchange(impl_->listener, moved)->close();
+  const auto sessions = impl_->sessions;  // each is taken off the list
+  for (const auto& session : sessions) {
+    session->close();
+    impl_->left(session);
+  }
+  if (impl_->started) {
+    impl_->listen();
+  }
 }
 
 void TcpTransport::stop() {

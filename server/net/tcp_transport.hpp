@@ -47,6 +47,8 @@ class TcpTransport final : public Transport {
   std::vector<std::string> descriptions() const override;
   std::vector<Counter> counts() const override;
 
+  /// Moves the listener; clients are disconnected. @throws SocketError, and stays where it is
+  void rebind(const Endpoint& bind);
   Endpoint local_endpoint() const;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "protocol/gemini/device_config.hpp"
 #include "server/config/config.hpp"
@@ -24,6 +25,8 @@ struct GeminiConfig final : DeviceSettings {
   /// Address of the command socket: one of this machine, or 0 for all of them.
   Ipv4 bind_address = 0x7F000002;
   std::uint16_t command_port = 52901;  ///< the head listens here and sends from here
+  /// By whose name the address and the mask are given, and followed; empty: as numbers.
+  std::string interface, netmask_interface;
   StatusDestination status;
   AllowList allow;  ///< clients that are served; status packets are not affected
 

@@ -25,7 +25,8 @@ class ConnectedGemini final : public ConnectedDevice {
         config_(gemini_config(head)),
         device_(config_.device, clock.now()),
         transport_(io, clock, {{config_.bind_address, config_.command_port}, config_.allow, config_.link}),
-        addresses_(device_.addresses()) {
+        addresses_(device_.addresses()),
+        followed_(addresses_.alternate) {
     if (config_.trigger) {
       trigger_ = std::make_unique<UdpEndpoint>(io, *config_.trigger);
     }
@@ -66,6 +67,32 @@ class ConnectedGemini final : public ConnectedDevice {
     announce();
   }
 
+  // Not from an address that a client has programmed.
+  void follow_addresses(const std::vector<InterfaceAddress>& now) override {
+    const auto found = followed(config_.interface, addresses_.alternate, now);
+    if (found && addresses_.alternate == followed_) {
+      log_.info("head={} follows {}: its address is {} now", name_, found->interface,
+                address_text(found->address));
+      followed_ = found->address;
+      device_.move_to(found->address,
+                      config_.netmask_interface.empty() ? addresses_.netmask : found->netmask);
+      after_step();
+    }
+    const Ipv4 bound = transport_.local_endpoint().address;
+    const bool bound_to_it = config_.bind_address == config_.device.alternate_address;
+    if (bound_to_it && bound != addresses_.alternate && owner_of(addresses_.alternate, now)) {
+      move_from(bound);
+    }
+  }
+
+  std::optional<std::vector<Ipv4>> own_addresses() const override {
+    std::vector<Ipv4> own{addresses_.alternate, transport_.local_endpoint().address};
+    if (config_.trigger) {
+      own.push_back(config_.trigger->address);
+    }
+    return own;
+  }
+
  private:
   void move_from(Ipv4 before) {
     try {
@@ -104,7 +131,8 @@ class ConnectedGemini final : public ConnectedDevice {
   UdpTransport transport_;
   std::unique_ptr<UdpEndpoint> trigger_;
   gemini::DeviceAddresses addresses_;
-  PeerLog log_;  // a client may program addresses and reboot as often as it likes
+  Ipv4 followed_;  ///< of the interface
+  PeerLog log_;    // a client may program addresses and reboot as often as it likes
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "protocol/oculus/device_config.hpp"
 #include "server/config/config.hpp"
@@ -28,6 +29,8 @@ struct OculusConfig final : DeviceSettings {
   oculus::DeviceConfig device;
   std::uint16_t tcp_port = 52100;
   std::uint16_t status_port = 52102;  ///< that status packets go to
+  /// By whose name the address and the mask are given, and followed; empty: as numbers.
+  std::string interface, netmask_interface;
   StatusDestination status;
   AllowList allow;                           ///< clients that are served; status packets are not affected
   std::array<OculusModeAcoustics, 2> modes;  ///< low frequency, high frequency

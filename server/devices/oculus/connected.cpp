@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/devices/oculus/connected.hpp"
 
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,47 +13,82 @@
 #include "server/net/several_transports.hpp"
 #include "server/net/tcp_transport.hpp"
 #include "server/net/udp_transport.hpp"
+#include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 namespace {
 
-/// Clients of some drivers connect to where status packets come from: they leave from the address that is
-/// connected to.
-std::unique_ptr<Transport> status_sender(const OculusConfig& config, boost::asio::io_context& io,
-                                         const Clock& clock) {
-  const oculus::DeviceConfig& device = config.device;
-  auto sender = std::make_unique<UdpTransport>(
-      io, clock, UdpTransportConfig{.bind = {device.address, 0}, .allow = {}, .link = {}});
-  std::vector<Endpoint> hosts;
-  for (const Ipv4 host : status_hosts(config.status, device.address, device.netmask)) {
-    hosts.push_back({host, config.status_port});
-  }
-  sender->set_everybody(std::move(hosts), 0);
-  return sender;
-}
-
-std::vector<std::unique_ptr<Transport>> open_transports(const OculusConfig& config,
-                                                        boost::asio::io_context& io, const Clock& clock) {
-  static_assert(oculus::Device::stream_channel == 0 && oculus::Device::status_channel == 1);
-  std::vector<std::unique_ptr<Transport>> transports;
-  transports.push_back(std::make_unique<TcpTransport>(
-      io, TcpTransportConfig{{config.device.address, config.tcp_port}, config.allow}));
-  transports.push_back(status_sender(config, io, clock));
-  return transports;
-}
-
 class ConnectedOculus final : public ConnectedDevice {
  public:
   ConnectedOculus(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
-      : device_(oculus_config(head).device, clock.now()),
-        transport_(open_transports(oculus_config(head), io, clock)) {}
+      : name_(head.name),
+        config_(oculus_config(head)),
+        address_(config_.device.address),
+        netmask_(config_.device.netmask),
+        device_(config_.device, clock.now()),
+        transport_(open_transports(io, clock)) {
+    tell_everybody();
+  }
 
   Device& device() override { return device_; }
   Transport& transport() override { return transport_; }
 
+  void follow_addresses(const std::vector<InterfaceAddress>& now) override {
+    const auto found = followed(config_.interface, address_, now);
+    if (!found) {
+      return;
+    }
+    try {
+      stream_->rebind({found->address, config_.tcp_port});
+      status_->rebind({found->address, 0});
+    } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is left
+      log_.error("head={} cannot follow {} to {}: {}", name_, found->interface, address_text(found->address),
+                 error.what());
+      return;
+    }
+    log_.info("head={} follows {}: its address is {} now", name_, found->interface,
+              address_text(found->address));
+    address_ = found->address;
+    netmask_ = config_.netmask_interface.empty() ? netmask_ : found->netmask;
+    device_.move_to(address_, netmask_);
+    tell_everybody();
+  }
+
+  std::optional<std::vector<Ipv4>> own_addresses() const override { return std::vector<Ipv4>{address_}; }
+
  private:
+  std::vector<std::unique_ptr<Transport>> open_transports(boost::asio::io_context& io, const Clock& clock) {
+    static_assert(oculus::Device::stream_channel == 0 && oculus::Device::status_channel == 1);
+    auto stream =
+        std::make_unique<TcpTransport>(io, TcpTransportConfig{{address_, config_.tcp_port}, config_.allow});
+    // Clients of some drivers connect to where status packets come from: they leave from the address that is
+    // connected to.
+    auto status = std::make_unique<UdpTransport>(
+        io, clock, UdpTransportConfig{.bind = {address_, 0}, .allow = {}, .link = {}});
+    stream_ = stream.get();
+    status_ = status.get();
+    std::vector<std::unique_ptr<Transport>> transports;
+    transports.push_back(std::move(stream));
+    transports.push_back(std::move(status));
+    return transports;
+  }
+
+  void tell_everybody() {
+    std::vector<Endpoint> hosts;
+    for (const Ipv4 host : status_hosts(config_.status, address_, netmask_)) {
+      hosts.push_back({host, config_.status_port});
+    }
+    status_->set_everybody(std::move(hosts), 0);
+  }
+
+  const std::string name_;
+  const OculusConfig config_;
+  Ipv4 address_, netmask_;
   oculus::Device device_;
+  TcpTransport* stream_ = nullptr;  ///< of transport_
+  UdpTransport* status_ = nullptr;  ///< likewise
   SeveralTransports transport_;
+  PeerLog log_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "server/config/loader.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <string_view>
 #include <tuple>
@@ -333,6 +334,95 @@ TEST_F(Loader, refuses_addresses_that_are_no_host) {
               ElementsAre(HasSubstr(
                   "'127.0.0.300' is not understood (expected an IPv4 address such as 127.0.0.2, or an "
                   "interface of this machine such as eth0)")));
+}
+
+TEST_F(Loader, an_interface_that_is_not_there_is_a_matter_of_the_network) {
+  const auto trouble = [&](const std::string& address, const std::string& mask, const std::string& more) {
+    std::string text = minimal_config + more;
+    text.replace(text.find("127.0.0.2"), 9, address);
+    text.replace(text.find("255.0.0.0"), 9, mask);
+    std::ofstream(folder_ / "config.yaml") << text;
+    try {
+      load_config(folder_ / "config.yaml", head_kinds());
+    } catch (const ConfigError& error) {
+      return std::pair(error.only_of_network(), error.lines());
+    }
+    return std::pair(false, std::vector<std::string>{});
+  };
+  const auto [later, lines] = trouble("usb77", "usb77", "");
+  EXPECT_TRUE(later);
+  EXPECT_THAT(lines,
+              ElementsAre(HasSubstr("config.yaml:9:26: heads[0].network.alternate_address: there is no "
+                                    "interface 'usb77' (yet); this machine has "),
+                          HasSubstr("config.yaml:10:16: heads[0].network.netmask: there is no interface")));
+  EXPECT_TRUE(trouble("usb77", "255.255.255.0", "").first);
+  EXPECT_FALSE(trouble("usb77", "usb77", "engine: gpus\n").first) << "starting again does not help";
+  EXPECT_FALSE(trouble("127.0.0.300", "usb77", "").first);
+}
+
+TEST_F(Loader, names_the_interface_that_a_head_is_named_by) {
+  std::string text = minimal_config;
+  text.replace(text.find("127.0.0.2"), 9, "lo");
+  text.replace(text.find("255.0.0.0"), 9, "lo");
+  const DaemonConfig config = load(text).config;
+  EXPECT_EQ(gemini_of(config).device.alternate_address, 0x7F000001U);
+  EXPECT_EQ(gemini_of(config).interface, "lo");
+  EXPECT_EQ(gemini_of(config).netmask_interface, "lo");
+  EXPECT_EQ(gemini_of(load(minimal_config).config).interface, "");
+}
+
+TEST_F(Loader, warns_of_radians_that_are_given_for_degrees) {
+  const auto warnings = [&](const std::string& rpy) {
+    return load(minimal_config + "    mount: {rpy_deg: " + rpy + "}\n").warnings;
+  };
+  EXPECT_THAT(warnings("[0, 1.57, 0]"),
+              ElementsAre(HasSubstr("heads[0].mount.rpy_deg: 0, 1.57, 0 look like radians (they are read as "
+                                    "degrees; 0, 89.95, 0 degrees are the same turn)")));
+  for (const char* rpy :
+       {"[0, 0.349, 0]", "[3.1416, 0, 0]", "[0, 0, -0.7854]", "[0, 0.5236, 3.14159]", "[0, 0, 4.712]"}) {
+    EXPECT_THAT(warnings(rpy), ElementsAre(HasSubstr("look like radians"))) << rpy;
+  }
+  for (const char* rpy : {"[0, 20, 0]", "[0, 1, 0]", "[0, 1.5, 0]", "[0, 2, 180]", "[0, 3.5, 0]", "[0, 5, 0]",
+                          "[0.5, 6, 0]", "[0, 1.2, 0]", "[0, 1.57, 90]", "[0, 0, 0]"}) {
+    EXPECT_THAT(warnings(rpy), IsEmpty()) << rpy;
+  }
+  std::string text = minimal_config;
+  text.replace(text.find("[1, 2, 3]"), 9, "[1, 2, 3], rpy_deg: [0, 0, 1.5708]");
+  EXPECT_THAT(load(text).warnings,
+              ElementsAre(HasSubstr("poses.initial.rpy_deg: 0, 0, 1.571 look like radians")));
+}
+
+TEST_F(Loader, warns_of_mounts_in_centimetres) {
+  const auto warnings = [&](const std::string& position) {
+    return load(minimal_config + "    mount: {position_m: " + position + "}\n").warnings;
+  };
+  EXPECT_THAT(warnings("[150, 0, -30]"),
+              ElementsAre(HasSubstr("heads[0].mount.position_m: puts the sonar 153 m from the origin of the "
+                                    "vehicle (is it in centimetres or millimetres? It is read as metres)")));
+  EXPECT_THAT(warnings("[20, 0, -10]"), ElementsAre(HasSubstr("puts the sonar 22.36 m from")));
+  EXPECT_THAT(warnings("[1.5, 0, -0.3]"), IsEmpty());
+}
+
+TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
+  const auto warnings = [&](const std::string& type, const std::string& water) {
+    return load("world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nwater: " + water +
+                "\nheads:\n  - name: a\n    type: oculus\n    model: " + type +
+                "\n    network: {address: 127.0.0.2, netmask: 255.0.0.0}\n")
+        .warnings;
+  };
+  // An m1200d has 1.2 MHz, beyond the 1 MHz of Francois and Garrison; an m750d 750 kHz.
+  EXPECT_THAT(
+      warnings("m1200d", "{}"),
+      ElementsAre(AllOf(HasSubstr("water: the absorption is computed outside of what its formula was made "
+                                  "for: 1200 kHz is not within 0.2 to 1000 kHz. It may be"),
+                        HasSubstr("(water.absorption_db_per_km sets it)"))));
+  EXPECT_THAT(warnings("m750d", "{}"), IsEmpty());
+  EXPECT_THAT(warnings("m750d", "{salinity_ppt: 0}"),
+              ElementsAre(HasSubstr("for: 0 ppt are not within 30 to 35 ppt.")));
+  EXPECT_THAT(
+      warnings("m1200d", "{temperature_c: 35}"),
+      ElementsAre(HasSubstr("for: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
+                            "degrees.")));
 }
 
 TEST_F(Loader, refuses_masks_with_holes) {

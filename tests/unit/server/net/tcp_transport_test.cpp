@@ -228,6 +228,29 @@ TEST_F(TcpTransportTest, WhoHasLeftBeforeAnotherCameIsToldFirst) {
   }
 }
 
+TEST_F(TcpTransportTest, MovesToAnotherAddressAndDisconnectsWhoWasAtTheOldOne) {
+  Client one = client();
+  const Endpoint before = transport_.local_endpoint();
+  transport_.rebind({0x7F000002, before.port});
+  EXPECT_EQ(transport_.local_endpoint(), (Endpoint{0x7F000002, before.port}));
+  EXPECT_EQ(gone_, came_);
+  ASSERT_TRUE(run_until([&] { return one.closed_by_peer(); }));
+  Client two = client();
+  two.write(Bytes{1, 2, 3});
+  ASSERT_TRUE(run_until([&] { return heard_.size() == 3; }));
+  EXPECT_EQ(from_.local, 0x7F000002U);
+}
+
+TEST_F(TcpTransportTest, StaysWhereItIsWhenItCannotMove) {
+  Client one = client();
+  const Endpoint before = transport_.local_endpoint();
+  TcpTransport other(io_, {{0x7F000002, 0}, {{0x7F000000, 8}}});
+  EXPECT_THROW(transport_.rebind(other.local_endpoint()), SocketError);
+  EXPECT_EQ(transport_.local_endpoint(), before);
+  one.write(Bytes{1, 2, 3});
+  ASSERT_TRUE(run_until([&] { return heard_.size() == 3; }));
+}
+
 TEST_F(TcpTransportTest, AnotherAddressThanThoseAllowedIsRefused) {
   TcpTransport closed(io_, {{localhost, 0}, {{0x0A000000, 8}}});
   TransportEvents events;

@@ -145,6 +145,18 @@ TEST(Commands, ProgrammedAddressTakesEffectAtReboot) {
   EXPECT_EQ(bench.all<Status>().back().second.alternate_ip, 0xC0A8024DU);
 }
 
+TEST(Commands, AMoveOfTheServerIsReportedAtOnceAndKeptByAReboot) {
+  Bench bench;
+  bench.device.move_to(0xC0A8024D, 0xFFFF0000);
+  EXPECT_EQ(bench.device.addresses(), (DeviceAddresses{0x0A3D13C8, 0xC0A8024D, 0xFFFF0000}));
+  bench.run_until(2s);
+  EXPECT_EQ(bench.all<Status>().back().second.alternate_ip, 0xC0A8024DU);
+  EXPECT_EQ(bench.all<Status>().back().second.subnet_mask, 0xFFFF0000U);
+  EXPECT_TRUE(answers(bench, "2b 01 59 02 00 00 02 01 01 00 00 00").empty());
+  bench.run_until(10s);
+  EXPECT_EQ(bench.device.addresses(), (DeviceAddresses{0x0A3D13C8, 0xC0A8024D, 0xFFFF0000}));
+}
+
 TEST(Commands, UnusableProgrammedAddressesLeaveTheHeadReachable) {
   const std::array<AddressBlock, 4> unusable{
       AddressBlock{0, 0xFFFFFF00}, AddressBlock{0xFFFFFFFF, 0xFFFFFF00}, AddressBlock{0xC0A8024D, 0xFF00FF00},

@@ -46,6 +46,8 @@ class Bench {
     }));
   }
 
+  Device& device() { return device_; }
+
   std::vector<Bytes> stream;
   std::vector<Bytes> statuses;
   std::vector<Peer> closed;
@@ -89,6 +91,15 @@ TEST(OculusDevice, sends_a_status_of_142_bytes_each_second) {
     EXPECT_EQ(status.client, (std::array<std::uint8_t, 4>{}));
     EXPECT_EQ(status.status, 3U);
   }
+}
+
+TEST(OculusDevice, a_move_of_the_server_is_in_the_next_status) {
+  Bench bench;
+  bench.device().move_to(0x0A3D13C9, 0xFFFFFF00);
+  bench.run_for(seconds{1});
+  const Status status = decode_status(bench.statuses.back()).value();
+  EXPECT_EQ(status.address, (std::array<std::uint8_t, 4>{10, 61, 19, 201}));
+  EXPECT_EQ(status.netmask, (std::array<std::uint8_t, 4>{255, 255, 255, 0}));
 }
 
 TEST(OculusDevice, status_follows_the_client_at_once) {
