@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "renderer/skip_ledger.hpp"
 #include "server/clock/clock.hpp"
@@ -28,6 +29,7 @@ class PoseHistory;
 class Recorder;
 class RenderService;
 struct HeadStatus;
+struct InterfaceAddress;
 struct RenderCounters;
 
 /// What a head needs of the daemon. Everything outlives the head.
