@@ -398,6 +398,9 @@ PingProgress Device::progress() const {
   return impl_->progress();
 }
 
+void Device::move_to(Ipv4 address, Ipv4 netmask) {
+  impl_->move_to(address, netmask);
+}
 std::vector<Counter> Device::counts() const {
   return impl_->counts();
 }
