@@ -250,14 +250,14 @@ void YamlSection::require(std::string_view key, std::string_view expected) {
 }
 
 void YamlSection::report(std::string_view key, const std::string& message) {
-  problem(place_of(key), path_of(key), message);
+  problem(place_of_key(key), path_of(key), message);
 }
 
 void YamlSection::report_network(std::string_view key, const std::string& message) {
-  problem(place_of(key), path_of(key), message, /*of_network=*/true);
+  problem(place_of_key(key), path_of(key), message, /*of_network=*/true);
 }
 
-SourcePosition YamlSection::place_of(std::string_view key) const {
+SourcePosition YamlSection::place_of_key(std::string_view key) const {
   const Entry* entry = peek(key);
   return entry != nullptr ? entry->value_at : at_;
 }

@@ -210,7 +210,7 @@ class YamlSection {
   const Entry* find(std::string_view key);
   const Entry* peek(std::string_view key) const;
   /// Where the value of a key stands; without one, the section.
-  SourcePosition place_of(std::string_view key) const;
+  SourcePosition place_of_key(std::string_view key) const;
   void problem(const SourcePosition& at, std::string path, std::string message, bool of_network = false);
   void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);
   void report_unknown(const Entry& entry);

@@ -154,8 +154,8 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Global
                arrival);
   }
   if (no_place) {
-    complain(++counters_.without_place,
-             "GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle does not know where it is");
+    ++counters_.without_place;
+    complain("GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle does not know where it is");
     return std::nullopt;
   }
   if (!earth_) {
