@@ -42,8 +42,8 @@ std::vector<Finding> TrialPings::ping(std::size_t head, const render::Pose& T_wo
   const ProcessorTime before = processor_time();
   renderer_.render_ping(ahead, static_cast<int>(head));
   const ProcessorTime after = processor_time();
-  // This thread has a part in all the work. If other threads were held up it did more, and if it was held up, they
-  // did.
+  // This thread has a part in all the work. If other threads were held up it did more, and if it was held up,
+  // they did.
   const auto share = (after.process - before.process) / render::usable_cores();
   last_ms_ = std::chrono::duration<double, std::milli>(std::max(after.thread - before.thread, share)).count();
   render::PingStatistics seen = renderer_.last_statistics();

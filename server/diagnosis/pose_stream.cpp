@@ -68,8 +68,8 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
                                   inputs.ping_clock())) {
     findings.push_back(std::move(*found));
   }
-  if (std::string doubt = inputs.source(index).doubt(); !doubt.empty()) {
-    findings.push_back({"doubtful_pose", std::move(doubt)});
+  if (std::string remark = inputs.source(index).remark(); !remark.empty()) {
+    findings.push_back({"depth_alone", std::move(remark)});
   }
   if (summary.poses >= enough_poses && summary.time_rate) {
     for (const Unit& unit : units) {

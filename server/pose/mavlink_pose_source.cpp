@@ -246,7 +246,7 @@ std::string MavlinkPoseSource::received() const {
                           : std::string();
 }
 
-std::string MavlinkPoseSource::doubt() const {
+std::string MavlinkPoseSource::remark() const {
   return impl_->poses.knows_depth_alone() ? "The vehicle knows its depth, and not where it is "
                                             "(GLOBAL_POSITION_INT is at latitude 0, longitude "
                                             "0): it stays at poses.mavlink.origin. Set its origin in the "

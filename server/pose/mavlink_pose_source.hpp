@@ -23,7 +23,7 @@ class MavlinkPoseSource final : public PoseSource {
   std::string details() const override;
   std::string received() const override;
   std::string stamp_name() const override { return "time_boot_ms (of ODOMETRY: time_usec)"; }
-  std::string doubt() const override;
+  std::string remark() const override;
   std::string silence_hint() const override;
   /// Where it listens, once started.
   Endpoint local_endpoint() const;

@@ -67,7 +67,7 @@ class PoseSource {
   /// What the publisher calls the stamp of a pose.
   virtual std::string stamp_name() const { return "time_ns"; }
   /// What is wrong with the newest pose, in whole sentences; empty: nothing is known to be.
-  virtual std::string doubt() const { return {}; }
+  virtual std::string remark() const { return {}; }
   /// What to look at when nothing at all has arrived, in one line.
   virtual std::string silence_hint() const {
     return "is the publisher running, does it send to this address and port, and is no firewall between?";

@@ -38,7 +38,7 @@ def schema_paths(schema):
             here = f"{path}.{name}" if path else name
             paths.setdefault(here, []).append(value)
             items = value.get("items", value)
-            for inner in items.get("oneOf", [items]):
+            for inner in items.get("oneOf", items.get("anyOf", [items])):
                 walk(inner, here)
 
     walk(schema, "")
