@@ -17,6 +17,7 @@
 #include "server/config/overlaps.hpp"
 #include "server/config/yaml_section.hpp"
 #include "server/config/yaml_trouble.hpp"
+#include "server/config/yaml_unclosed.hpp"
 #include "server/net/addresses.hpp"
 
 namespace sonard::server {
@@ -87,7 +88,11 @@ YAML::Node parse_yaml(const std::filesystem::path& file) {
     if (const int documents = count_documents(text); documents != 1) {
       throw ConfigError(file, {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents)}});
     }
-    return YAML::Load(text);
+    YAML::Node document = YAML::Load(text);
+    if (const auto endless = find_endless_quote(text)) {
+      throw ConfigError(file, {*endless});
+    }
+    return document;
   } catch (const YAML::Exception& error) {
     throw ConfigError(file, {yaml_trouble(text, position_of(error.mark), error.msg)});
   }

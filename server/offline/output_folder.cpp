@@ -45,7 +45,8 @@ std::map<std::string, std::string> members_of(const std::string& manifest) {
   std::map<std::string, std::string> members;
   const auto json = nlohmann::json::parse(manifest, nullptr, false);
   if (json.is_object()) {
-    for (const auto& [path, value] : json.flatten().items()) {
+    const auto flat = json.flatten();  // items() refers to it
+    for (const auto& [path, value] : flat.items()) {
       if (path.empty()) {
         continue;  // an empty object
       }

@@ -250,10 +250,5 @@ TEST(LookAround, SuspectsALocalPoseInAWorldOfUtmCoordinates) {
   EXPECT_EQ(look(world, {}, at({569300, 7034000, -15}))[0].code, "nothing_near") << "both are";
 }
 
-TEST(LookAround, SaysThatAWorldIsEmpty) {
-  EXPECT_EQ(look({}, {}, at({0, 0, 0})),
-            only("empty_world", "The world has no body that could send an echo."));
-}
-
 }  // namespace
 }  // namespace sonard::server

@@ -90,12 +90,13 @@ TEST_F(BodyTruthTest, FollowsTheMotionOfTheSonarWithinThePing) {
     return sum / count;
   };
   BodyTruth truth(world, {});
-  const double at_rest_rad = mean_azimuth_rad(truth.bodies_in(request));
+  const double port_rad = std::atan2(1.0, 4.0);
+  EXPECT_NEAR(mean_azimuth_rad(truth.bodies_in(request)), port_rad, 0.012) << "a beam is 0.016 wide";
   const double turn_rad = 0.3;
   request.T_world_sonar_at_end = {{0, 0, 0}, {std::cos(turn_rad / 2), 0, 0, std::sin(turn_rad / 2)}};
-  const double block_m = 4.0 / std::cos(std::atan2(1.0, 4.0));
+  const double block_m = 4.0 / std::cos(port_rad);
   EXPECT_NEAR(mean_azimuth_rad(truth.bodies_in(request)),
-              at_rest_rad - turn_rad * block_m / (range_lines * step_m), 0.012);
+              port_rad - turn_rad * block_m / (range_lines * step_m), 0.012);
 }
 
 TEST_F(BodyTruthTest, CompressedLinesBelongToWhatLiesInThem) {

@@ -120,7 +120,7 @@ TEST_F(RecoveryTest, CutsAnMcapFileAnywhere) {
 }
 
 TEST_F(RecoveryTest, LeavesAloneWhatItMayNotRead) {
-  for (const char* const name : {"log_a.mcap", "log_b.pcapng", "log_c.dat"}) {
+  for (const char* const name : {"log_a.mcap", "log_b.pcapng", "data_c.dat"}) {
     test::write_file(folder.path() / name, {1, 2, 3});
     fs::permissions(folder.path() / name, fs::perms::none);
   }
@@ -130,12 +130,12 @@ TEST_F(RecoveryTest, LeavesAloneWhatItMayNotRead) {
     const test::WithoutRights nobody;
     log = told();
   }
-  for (const char* const name : {"log_a.mcap", "log_b.pcapng", "log_c.dat"}) {
+  for (const char* const name : {"log_a.mcap", "log_b.pcapng", "data_c.dat"}) {
     EXPECT_THAT(log, HasSubstr(std::string("cannot read ") + (folder.path() / name).string() +
                                ": Permission denied"));
   }
   EXPECT_THAT(log, Not(HasSubstr("damaged")));
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"log_a.mcap", "log_b.pcapng", "log_c.dat"}));
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"data_c.dat", "log_a.mcap", "log_b.pcapng"}));
 }
 
 TEST_F(RecoveryTest, LeavesAloneWhatIsWhole) {

@@ -93,7 +93,7 @@ TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
 
 TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
   MicronClient client{server::micron_kind().make_default()};
-  EXPECT_LT(decibels_of(client.line(0, false)[bin_at(0.3)]), 6);  // noise
+  EXPECT_LT(decibels_of(client.line(0, false)[bin_at(0.3)]), 12);  // noise: 5 dB and two standard deviations
 }
 
 // Empty water to 50 m in bins of 64 mm at a gain of 28 %: 29 % zeros, some everywhere else, and from 34 m on
