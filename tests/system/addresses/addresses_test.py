@@ -185,6 +185,8 @@ class AddressThatChanges(Machine):
         self.assertEqual(self.findings(), [])
 
     def test_directed_broadcasts_and_the_mask_follow_too(self):
+        # The far side takes the broadcasts of networks in which it has an address.
+        self.far.ip("address", "add", OLD.rpartition(".")[0] + ".9/24", "brd", "+", "dev", "eth0")
         listener = self.far_socket(STATUS_OF_GEMINI)
         daemon = self.run_daemon(GEMINI, status="directed_broadcast")
         self.wait_for_status_from(listener, OLD)

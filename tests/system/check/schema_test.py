@@ -31,6 +31,8 @@ def for_heads_of_each_type():
     for head in schema["properties"]["heads"]["items"]["oneOf"]:
         one = copy.deepcopy(schema)
         one["properties"]["heads"]["items"] = head
+        # A world is a mapping or the word "empty"; the mapping has the keys.
+        one["properties"]["world"] = next(form for form in one["properties"]["world"]["anyOf"] if "properties" in form)
         yield one
 
 

@@ -279,7 +279,7 @@ class Log(HeadCase):
         code, seconds = self.daemon.terminate(10)
         self.assertEqual(code, 0, self.daemon.tail())
         self.assertLess(seconds, 1.0)
-        self.daemon.wait_for_line("head=ping360 ends: pings_sent=.* refused=2 commands_dropped=0 dropped_bytes=0 ", 1)
+        self.daemon.wait_for_line("head=ping360 ends: pings_sent=.* refused=2 commands_joined=0 commands_dropped=0 dropped_bytes=0 ", 1)
 
 
 if __name__ == "__main__":

@@ -147,7 +147,8 @@ class Link(TwoMachines):
         self.assertEqual(counts["received"], len(sent))
         self.assertEqual(counts["commands"], counts["from_surface_passed"], "every request that arrived was understood")
         answered = counts["to_surface_passed"] - counts["to_surface_duplicated"] + counts["to_surface_lost"]
-        self.assertEqual(answered, counts["commands"], "and was answered once")
+        # A copy of a command that still waits is no second one (docs/protocols/ping360.md).
+        self.assertEqual(answered, counts["commands"] - counts["commands_joined"], "and was answered once")
         self.assertEqual(counts["commands_dropped"] + counts["refused"] + counts["dropped_bytes"], 0)
         self.assertEqual(len(answers), counts["to_surface_passed"])
         for got in answers:
