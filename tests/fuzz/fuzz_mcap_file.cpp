@@ -30,7 +30,10 @@ std::uint64_t read_all(const Reader& reader, ByteView file) {
     }
     ++count;
   }
-  require(!cursor.error() || cursor.error()->offset <= file.size(), "an error lies inside the file");
+  for (const auto& damaged : cursor.damaged()) {
+    require(damaged.offset <= file.size() && damaged.error.offset <= file.size(),
+            "damage lies inside the file");
+  }
   return count;
 }
 

@@ -68,12 +68,14 @@ std::vector<Row> patch_rows() {
     for (const double range_m : {20.0, 30.0}) {
       for (const auto& [name, third] :
            {std::pair{"middle", Third::middle}, std::pair{"bright", Third::bright}}) {
-        const auto row = [&](const char* what, const char* recorded, double least, double most,
+        // Clang 14 captures no structured bindings.
+        const auto row = [&rows, head = head, config = config, range_m, name = name, third = third](
+                             const char* what, const char* recorded, double least, double most,
                              double Patch::*of) {
           rows.push_back({head,
                           fmt::format("patches of {} to {:.0f} m, {} third: {}", config, range_m, name, what),
                           recorded, least, most, "",
-                          [=, config = std::string(config)] { return measure(config, range_m, third, of); }});
+                          [=, file = std::string(config)] { return measure(file, range_m, third, of); }});
         };
         row("coefficient of variation", "0.35 to 0.58", 0.40, 0.60, &Patch::variation);
         row("variance of intensity over squared mean", "1.0 to 2.1", 1.0, 2.3, &Patch::index);

@@ -83,7 +83,7 @@ test("gain and colours change the picture and the bar", async () => {
 test("a viewer that comes late sees the last ping, and how old it is", async () => {
   mock.becomeIdle(75);
   await openPage();
-  await framesAdvance(page, 0, 1);
+  await until("the last ping", async () => (await framesOf(page, 0)) >= 1);
   await until("the age of the ping", async () => /^The last ping came 7[5-9] s ago\.$/.test(await head(page, 0).locator(".age").textContent()));
   assert.ok(await head(page, 0).locator(".empty").isHidden());
 });
