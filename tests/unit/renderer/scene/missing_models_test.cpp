@@ -31,7 +31,7 @@ class WithoutModels : public testing::Test {
         {}, missing);
   }
 
-  const test::TempFolder folder_;
+  test::TempFolder folder_;
 };
 
 glm::dvec3 place_of(const World& world, const char* body) {

@@ -116,7 +116,7 @@ class PlaceOfAnInclude : public testing::Test {
   std::vector<std::string> complaints_of(const std::string& content) const {
     return complaints(folder_.write("w.sdf", in_a_world(content)));
   }
-  const test::TempFolder folder_;
+  test::TempFolder folder_;
 };
 
 TEST_F(PlaceOfAnInclude, IsNamedForANameThatIsTaken) {

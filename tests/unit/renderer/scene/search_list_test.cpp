@@ -79,7 +79,7 @@ class SearchList : public testing::Test {
            "</uri></mesh></geometry></visual></link></model>";
   }
 
-  const test::TempFolder folder_;
+  test::TempFolder folder_;
 
  private:
   std::string home_;
