@@ -39,7 +39,9 @@ struct DamagedDat {
 };
 
 /// Finds the .dat by its local header, or else by the directory. Steps over damaged headers of stored blocks.
-/// nullopt when there is neither. @param max_size most bytes to unpack
+/// nullopt when there is neither.
+/// @param archive the whole file
+/// @param max_size most bytes to unpack
 std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std::uint64_t max_size);
 
 /// Unpacks an entry of at most `max_size` bytes and holds it to its CRC.

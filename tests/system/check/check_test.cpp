@@ -78,23 +78,23 @@ TEST_P(BrokenConfig, is_refused_with_file_line_and_key) {
 
 INSTANTIATE_TEST_SUITE_P(
     Keys, BrokenConfig,
-    testing::Values(Broken{"unknown_key.yaml", "14:5: heads[0].mounts", "",
-                           "unknown key, did you mean 'mount'?"},
-                    Broken{"duplicate_key.yaml", "15:5: heads[0].mount", "",
-                           "duplicate key (expected once; first given on line 14)"},
-                    Broken{"bad_unit.yaml", "15:18: water.temperature_c", "",
-                           "'10C' carries a unit; units belong to the key (expected a number from -4 to 45, "
-                           "in degrees Celsius)"},
-                    Broken{"wrong_type.yaml", "15:20: heads[0].timing.burst_lines", "",
-                           "is 'many' (expected a whole number"},
-                    Broken{"negative_range.yaml", "16:29: heads[0].acoustics.physical.near_field_blank_m", "",
-                           "-1 is out of range (expected a number from 0 to 120, in m)"},
-                    Broken{"sonar_id_1.yaml", "9:15: heads[0].sonar_id", "",
-                           "is '1' (expected a whole number from 2 to 65535)"},
-                    Broken{"alternate_address_zero.yaml", "11:26: heads[0].network.alternate_address", "",
-                           "0.0.0.0 is not the address of one host"},
-                    Broken{"malformed.yaml", "14:12", "", "the bracket that begins here is not closed (expected })"},
-                    Broken{"too_few_columns.yaml", "15:11: sampling", "", "gets no column"}),
+    testing::Values(
+        Broken{"unknown_key.yaml", "14:5: heads[0].mounts", "", "unknown key, did you mean 'mount'?"},
+        Broken{"duplicate_key.yaml", "15:5: heads[0].mount", "",
+               "duplicate key (expected once; first given on line 14)"},
+        Broken{"bad_unit.yaml", "15:18: water.temperature_c", "",
+               "'10C' carries a unit; units belong to the key (expected a number from -4 to 45, "
+               "in degrees Celsius)"},
+        Broken{"wrong_type.yaml", "15:20: heads[0].timing.burst_lines", "",
+               "is 'many' (expected a whole number"},
+        Broken{"negative_range.yaml", "16:29: heads[0].acoustics.physical.near_field_blank_m", "",
+               "-1 is out of range (expected a number from 0 to 120, in m)"},
+        Broken{"sonar_id_1.yaml", "9:15: heads[0].sonar_id", "",
+               "is '1' (expected a whole number from 2 to 65535)"},
+        Broken{"alternate_address_zero.yaml", "11:26: heads[0].network.alternate_address", "",
+               "0.0.0.0 is not the address of one host"},
+        Broken{"malformed.yaml", "14:12", "", "the bracket that begins here is not closed (expected })"},
+        Broken{"too_few_columns.yaml", "15:11: sampling", "", "gets no column"}),
     [](const auto& test) { return test.param.file.substr(0, test.param.file.find('.')); });
 
 INSTANTIATE_TEST_SUITE_P(
