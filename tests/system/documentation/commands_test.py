@@ -31,7 +31,7 @@ PROGRAMS = None  # folder of the programs under test
 PATIENCE_S = 120
 
 # Words that stand for something of the reader's.
-PLACEHOLDERS = {"CONFIG": "configs/demo.yaml", "LOG": "log.mcap", "DIR": "out", "NAME": "demo-micron", "SECONDS": "1",
+PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.yaml", "LOG": "log.mcap", "DIR": "out", "NAME": "demo-micron", "SECONDS": "1",
                 "FILE": "configs/trajectories/demo.csv", "ADDRESS": "127.0.0.3", "<device>": "micron", "E": "cpu", "L": "info"}
 
 # Files that the text gives: name -> (document, place among the blocks of that language).
@@ -127,14 +127,14 @@ RULES = [
     # sonard
     Run(SONARD + r"--version|" + SONARD + r"render --help|" + VIEW + r"(micron )?--help"),
     Run(SONARD + r"demo( <device>)?", until=PROGRESS),
-    Run(SONARD + r"selftest( \[--engine E\] \[--gpu-device D\])?"),
-    Run(SONARD + r"check (CONFIG|CONFIG \[--no-network\])"),
+    Run(SONARD + r"selftest( --json| \[--engine E\] \[--gpu-device D\] \[--json\])?"),
+    Run(SONARD + r"check (--json )?CONFIG( \[--no-network\] \[--json\])?"),
     Run(SONARD + r"check --no-network configs/gemini-netns.yaml"),
     Run(SONARD + r"check CONFIG --listen (5|SECONDS)", before="posecast configs/trajectories/docking_demo.csv --loop &"),
     Run(SONARD + r"check configs/ardusub.yaml --listen 5", codes=(2,)),  # no vehicle sends
     Run(SONARD + r"check my.yaml"),
     Run(SONARD + r"check my.yaml --listen 5", codes=(2, 3)),  # no Gazebo runs
-    Run(SONARD + r"run (CONFIG( \[--log-level L\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|two-vehicles-[ab]).yaml)", until=READY),
+    Run(SONARD + r"run (CONFIG( \[--log-level L\] \[--log-format F\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|gemini-and-ping360|two-vehicles-[ab]).yaml)", until=READY),
     Run(SONARD + r"run configs/gemini-netns.yaml", until=READY, addresses=VEHICLE),
     Run(SONARD + r"run configs/container.yaml", until=READY, before="ip link add eth0 type veth peer name eth1 && ip link set eth1 up && "
                                                                     "ip address add 10.61.19.201/24 dev eth0 && ip link set eth0 up"),
