@@ -45,7 +45,7 @@ constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes: a multibeam hea
 class Check {
  public:
   explicit Check(const LoadedConfig& loaded) : loaded_(loaded), config_(loaded.config) {
-    report_.warnings = loaded.warnings_as_data;
+    report_.warnings = loaded.warnings;
   }
 
   CheckReport run(bool try_addresses) {

@@ -132,7 +132,7 @@ LoadedConfig load_and_log(const CommandLine& arguments) {
   set_log(arguments.log_level.empty() ? level : arguments.log_level,
           arguments.log_format.empty() ? format : arguments.log_format);
   spdlog::info("sonard " SONARD_BUILD_INFO ": {}", arguments.config.string());
-  for (const std::string& warning : loaded.warnings) {
+  for (const std::string& warning : loaded.warning_lines()) {
     spdlog::warn("{}", warning);
   }
   return loaded;
@@ -203,7 +203,7 @@ int check(const CommandLine& arguments) {
 
 int render_offline(const OfflineArguments& arguments) {
   const LoadedConfig loaded = load_config(arguments.config(), head_kinds());
-  for (const std::string& warning : loaded.warnings) {
+  for (const std::string& warning : loaded.warning_lines()) {
     print_error("warning: " + warning);
   }
   try {

@@ -2,6 +2,7 @@
 #include "server/config/config_error.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 
 namespace sonard::server {
@@ -41,13 +42,21 @@ std::string problem_text(const std::filesystem::path& file, const ConfigProblem&
   return text + ": " + problem.message;
 }
 
+std::vector<std::string> problem_lines(const std::filesystem::path& file,
+                                       const std::vector<ConfigProblem>& problems) {
+  std::vector<std::string> lines;
+  std::ranges::transform(problems, std::back_inserter(lines),
+                         [&](const ConfigProblem& problem) { return problem_text(file, problem); });
+  return lines;
+}
+
 ConfigError::ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems)
     : std::runtime_error(problem_text(file, in_file_order(problems).front())),
-      problems_(in_file_order(std::move(problems))),
-      only_of_network_(std::ranges::all_of(problems_, &ConfigProblem::of_network)) {
-  for (const ConfigProblem& problem : problems_) {
-    lines_.push_back(problem_text(file, problem));
-  }
+      file_(file),
+      problems_(in_file_order(std::move(problems))) {}
+
+bool ConfigError::only_of_network() const {
+  return std::ranges::all_of(problems_, &ConfigProblem::of_network);
 }
 
 }  // namespace sonard::server

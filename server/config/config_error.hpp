@@ -40,6 +40,9 @@ SourcePosition nearest_position(const KeyPositions& positions, std::string_view 
 
 /// "file:line:column: key: message", without the parts that are unknown.
 std::string problem_text(const std::filesystem::path& file, const ConfigProblem& problem);
+/// problem_text() of each.
+std::vector<std::string> problem_lines(const std::filesystem::path& file,
+                                       const std::vector<ConfigProblem>& problems);
 
 /// Everything that was wrong with one file. what() is the first problem in one line.
 class ConfigError : public std::runtime_error {
@@ -47,17 +50,16 @@ class ConfigError : public std::runtime_error {
   /// @param problems at least one
   ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems);
 
-  /// One line per problem, in the order of the file.
-  const std::vector<std::string>& lines() const { return lines_; }
-  /// The same as data.
+  /// In the order of the file.
   const std::vector<ConfigProblem>& problems() const { return problems_; }
+  /// One line for each problem.
+  std::vector<std::string> lines() const { return problem_lines(file_, problems_); }
   /// Nothing is wrong with the file itself: when the network is up it can be used.
-  bool only_of_network() const { return only_of_network_; }
+  bool only_of_network() const;
 
  private:
+  std::filesystem::path file_;
   std::vector<ConfigProblem> problems_;
-  std::vector<std::string> lines_;
-  bool only_of_network_;
 };
 
 }  // namespace sonard::server

@@ -537,8 +537,7 @@ LoadedConfig load_config(const std::filesystem::path& file, std::span<const Head
   }
   loaded.positions = std::move(findings.positions);
   for (const ConfigWarning& warning : findings.warnings) {
-    loaded.warnings.push_back(loaded.problem_with(warning.key, warning.message));
-    loaded.warnings_as_data.push_back(loaded.problem_at(warning.key, warning.message));
+    loaded.warnings.push_back(loaded.problem_at(warning.key, warning.message));
   }
   return loaded;
 }

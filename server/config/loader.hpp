@@ -19,8 +19,10 @@ struct LoadedConfig {
   DaemonConfig config;
   /// Place of the value of every key that the file gives; "heads[0].network.bind" is the form of a key.
   KeyPositions positions;
-  std::vector<std::string> warnings;            ///< one line each, with place and key
-  std::vector<ConfigProblem> warnings_as_data;  ///< the same
+  std::vector<ConfigProblem> warnings;
+
+  /// The warnings, one line each, with place and key.
+  std::vector<std::string> warning_lines() const { return problem_lines(config.file, warnings); }
 
   /// A problem that showed only when the value of a key was used (a mesh that is missing, an address in use),
   /// in one line with the place of the key or of the nearest mapping around it that the file gives.

@@ -19,14 +19,22 @@ void report_trouble(YamlSection& section, std::string_view key, const OwnAddress
 
 }  // namespace
 
-void read_own_address(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning) {
+std::string read_own_address(YamlSection& section, std::string_view key, Ipv4& address,
+                             std::string_view meaning) {
+  OwnAddress own{.address = address};
   section.parsed(key, own, &parse_own_address, own_address_form, meaning);
   report_trouble(section, key, own);
+  address = own.address;
+  return own.interface;
 }
 
-void read_own_netmask(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning) {
+std::string read_own_netmask(YamlSection& section, std::string_view key, Ipv4& netmask,
+                             std::string_view meaning) {
+  OwnAddress own{.netmask = netmask};
   section.parsed(key, own, &parse_own_netmask, netmask_form, meaning);
   report_trouble(section, key, own);
+  netmask = own.netmask;
+  return own.interface;
 }
 
 void check_host_address(YamlSection& section, std::string_view key, Ipv4 address) {

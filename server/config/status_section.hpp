@@ -22,10 +22,13 @@ inline constexpr TextForm netmask_form{
 inline constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets",
                                    mac_schema};
 
-/// The key of an address of this machine, or of a mask of its network, by numbers or by the interface: what
-/// stood in `own` is the default.
-void read_own_address(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning);
-void read_own_netmask(YamlSection& section, std::string_view key, OwnAddress& own, std::string_view meaning);
+/// Reads the key of an address of this machine, given as numbers or by its interface. The value before is the
+/// default. @return the interface; empty: given as numbers
+std::string read_own_address(YamlSection& section, std::string_view key, Ipv4& address,
+                             std::string_view meaning);
+/// Reads the key of the mask of a network of this machine in the same way.
+std::string read_own_netmask(YamlSection& section, std::string_view key, Ipv4& netmask,
+                             std::string_view meaning);
 /// Reports an address that a head cannot own or talk to.
 void check_host_address(YamlSection& section, std::string_view key, Ipv4 address);
 /// The key `netmask` stands beside `address_key`: reports a mask that is none, and an address that is not

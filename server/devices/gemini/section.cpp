@@ -28,22 +28,18 @@ void read_identity(YamlSection& section, GeminiConfig& config) {
 void read_network(YamlSection& section, GeminiConfig& config) {
   gemini::DeviceConfig& device = config.device;
   section.require("alternate_address", "the address that clients find in the status packets");
-  OwnAddress own{.address = device.alternate_address};
-  read_own_address(section, "alternate_address", own,
-                   "the address that clients find in the status packets and send to, or the interface whose "
-                   "address it is, and which is followed when it changes; the head must be reachable there");
-  device.alternate_address = own.address;
-  config.interface = own.interface;
+  config.interface = read_own_address(
+      section, "alternate_address", device.alternate_address,
+      "the address that clients find in the status packets and send to, or the interface whose "
+      "address it is, and which is followed when it changes; the head must be reachable there");
   if (section.has("alternate_address")) {
     check_host_address(section, "alternate_address", device.alternate_address);
   }
   section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
-  OwnAddress mask{.netmask = device.netmask};
-  read_own_netmask(section, "netmask", mask,
-                   "the true mask of the interface served: some clients send nothing when it is not that of "
-                   "their own interface");
-  device.netmask = mask.netmask;
-  config.netmask_interface = mask.interface;
+  config.netmask_interface = read_own_netmask(
+      section, "netmask", device.netmask,
+      "the true mask of the interface served: some clients send nothing when it is not that of "
+      "their own interface");
   check_inside_network(section, "alternate_address", device.alternate_address, device.netmask);
   const std::string fixed_address = address_text(device.fixed_address);
   section.parsed("fixed_address", device.fixed_address, &parse_ipv4, address_form,

@@ -29,20 +29,15 @@ void read_identity(YamlSection& section, oculus::DeviceConfig& device) {
 void read_network(YamlSection& section, OculusConfig& config) {
   oculus::DeviceConfig& device = config.device;
   section.require("address", "the address that clients connect to");
-  OwnAddress own{.address = device.address};
-  read_own_address(section, "address", own,
-                   "the address that clients find in the status packets and connect to: one of this machine, "
-                   "or the interface whose address it is, and which is followed when it changes");
-  device.address = own.address;
-  config.interface = own.interface;
+  config.interface = read_own_address(
+      section, "address", device.address,
+      "the address that clients find in the status packets and connect to: one of this machine, "
+      "or the interface whose address it is, and which is followed when it changes");
   if (section.has("address")) {
     check_host_address(section, "address", device.address);
   }
   section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
-  OwnAddress mask{.netmask = device.netmask};
-  read_own_netmask(section, "netmask", mask, "of that interface");
-  device.netmask = mask.netmask;
-  config.netmask_interface = mask.interface;
+  config.netmask_interface = read_own_netmask(section, "netmask", device.netmask, "of that interface");
   check_inside_network(section, "address", device.address, device.netmask);
   section.integer("tcp_port", config.tcp_port, 1, 65535, "the head listens here; clients know no other");
   section.integer("status_port", config.status_port, 1, 65535, "status packets go to this port");

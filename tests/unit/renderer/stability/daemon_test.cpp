@@ -137,18 +137,18 @@ TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
   const std::string second_head =
       "  - name: aft\n    type: gemini_720i\n    sonar_id: 514\n"
       "    network: {alternate_address: 127.0.0.3, netmask: 255.0.0.0}\n";
-  EXPECT_TRUE(load(minimal_config).warnings.empty());
+  EXPECT_TRUE(load(minimal_config).warning_lines().empty());
   for (const char* water :
        {"salinity_ppt: 0", "salinity_ppt: 50", "temperature_c: -4", "temperature_c: 45"}) {
     const LoadedConfig loaded = load(minimal_config + second_head + "water: {" + water + "}\n");
-    ASSERT_EQ(loaded.warnings.size(), 1U) << water;
-    EXPECT_NE(loaded.warnings[0].find("water"), std::string::npos) << loaded.warnings[0];
+    ASSERT_EQ(loaded.warning_lines().size(), 1U) << water;
+    EXPECT_NE(loaded.warning_lines()[0].find("water"), std::string::npos) << loaded.warning_lines()[0];
     for (const HeadConfig& head : loaded.config.heads) {
       const double absorption = head.acoustics.physical.absorption_db_per_m;
       EXPECT_TRUE(std::isfinite(absorption) && absorption > 0 && absorption < 1) << water;
     }
   }
-  EXPECT_TRUE(load(minimal_config + "water: {salinity_ppt: 0, absorption_db_per_km: 161}\n").warnings.empty())
+  EXPECT_TRUE(load(minimal_config + "water: {salinity_ppt: 0, absorption_db_per_km: 161}\n").warning_lines().empty())
       << "a number that is given outright is nobody's extrapolation";
 }
 

@@ -40,7 +40,7 @@ const GeminiConfig& gemini_of(const DaemonConfig& config) {
 TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   const LoadedConfig loaded = load(minimal_config);
   const DaemonConfig& config = loaded.config;
-  EXPECT_THAT(loaded.warnings, IsEmpty());
+  EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   EXPECT_EQ(config.log_level, LogLevel::info);
   EXPECT_EQ(config.world_file, folder_ / "world.sdf");
   EXPECT_EQ(config.engine, render::EngineKind::automatic);
@@ -373,7 +373,7 @@ TEST_F(Loader, names_the_interface_that_a_head_is_named_by) {
 
 TEST_F(Loader, warns_of_radians_that_are_given_for_degrees) {
   const auto warnings = [&](const std::string& rpy) {
-    return load(minimal_config + "    mount: {rpy_deg: " + rpy + "}\n").warnings;
+    return load(minimal_config + "    mount: {rpy_deg: " + rpy + "}\n").warning_lines();
   };
   EXPECT_THAT(warnings("[0, 1.57, 0]"),
               ElementsAre(HasSubstr("heads[0].mount.rpy_deg: 0, 1.57, 0 look like radians (they are read as "
@@ -388,13 +388,13 @@ TEST_F(Loader, warns_of_radians_that_are_given_for_degrees) {
   }
   std::string text = minimal_config;
   text.replace(text.find("[1, 2, 3]"), 9, "[1, 2, 3], rpy_deg: [0, 0, 1.5708]");
-  EXPECT_THAT(load(text).warnings,
+  EXPECT_THAT(load(text).warning_lines(),
               ElementsAre(HasSubstr("poses.initial.rpy_deg: 0, 0, 1.571 look like radians")));
 }
 
 TEST_F(Loader, warns_of_mounts_in_centimetres) {
   const auto warnings = [&](const std::string& position) {
-    return load(minimal_config + "    mount: {position_m: " + position + "}\n").warnings;
+    return load(minimal_config + "    mount: {position_m: " + position + "}\n").warning_lines();
   };
   EXPECT_THAT(warnings("[150, 0, -30]"),
               ElementsAre(HasSubstr("heads[0].mount.position_m: puts the sonar 153 m from the origin of the "
@@ -408,7 +408,7 @@ TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
     return load("world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nwater: " + water +
                 "\nheads:\n  - name: a\n    type: oculus\n    model: " + type +
                 "\n    network: {address: 127.0.0.2, netmask: 255.0.0.0}\n")
-        .warnings;
+        .warning_lines();
   };
   // An m1200d has 1.2 MHz, beyond the 1 MHz of Francois and Garrison; an m750d 750 kHz.
   EXPECT_THAT(
@@ -457,15 +457,15 @@ TEST_F(Loader, reads_where_status_packets_go) {
 
 TEST_F(Loader, warns_of_what_cannot_work_but_may_be_meant) {
   EXPECT_THAT(
-      load(minimal_config + "      bind: 127.0.0.7\n").warnings,
+      load(minimal_config + "      bind: 127.0.0.7\n").warning_lines(),
       ElementsAre(HasSubstr("config.yaml:11:13: heads[0].network.bind: clients send to the alternate address "
                             "127.0.0.2, but only 127.0.0.7 is listened on")));
-  EXPECT_THAT(load(minimal_config + "      status: [10.0.0.1]\n").warnings,
+  EXPECT_THAT(load(minimal_config + "      status: [10.0.0.1]\n").warning_lines(),
               ElementsAre(HasSubstr("10.0.0.1 gets status packets but is not in `allow`")));
 }
 
 TEST_F(Loader, warns_of_keys_that_have_no_effect_here) {
-  const auto warnings = [&](const std::string& text) { return load(minimal_config + text).warnings; };
+  const auto warnings = [&](const std::string& text) { return load(minimal_config + text).warning_lines(); };
   EXPECT_THAT(warnings("engine: cpu\ngpu: {device: 0}\n"),
               ElementsAre(HasSubstr("gpu: has no effect: the engine is `cpu`")));
   EXPECT_THAT(warnings("engine: gpu\ngpu: {device: 0}\n"), IsEmpty());
@@ -531,7 +531,7 @@ TEST_F(Loader, takes_open_water_for_a_world) {
     const LoadedConfig loaded = load(world + rest);
     EXPECT_TRUE(loaded.config.open_water) << world;
     EXPECT_EQ(loaded.config.world_file, "") << world;
-    EXPECT_THAT(loaded.warnings, IsEmpty());
+    EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   }
   const DaemonConfig both =
       load("world: {file: world.sdf, empty: true, origin: {latitude_deg: 1, longitude_deg: 2}}\n" + rest)

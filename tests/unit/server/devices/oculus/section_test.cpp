@@ -36,7 +36,7 @@ class OculusSection : public ConfigFolder {
 
 TEST_F(OculusSection, gives_defaults_for_what_is_left_out) {
   const LoadedConfig loaded = load(document(with_network()));
-  EXPECT_THAT(loaded.warnings, IsEmpty());
+  EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   const HeadConfig& head = loaded.config.heads.at(0);
   EXPECT_EQ(head.kind, &oculus_kind());
   const OculusConfig& config = oculus_config(head);

@@ -31,7 +31,7 @@ class Ping360Section : public ConfigFolder {
 
 TEST_F(Ping360Section, gives_defaults_for_what_is_left_out) {
   const LoadedConfig loaded = load(document("name: mast, udp: [{bind: 127.0.0.1:12345}]"));
-  EXPECT_THAT(loaded.warnings, IsEmpty());
+  EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   const HeadConfig& head = loaded.config.heads.at(0);
   EXPECT_EQ(head.kind, &ping360_kind());
   const Ping360Config& config = ping360_config(head);
@@ -126,7 +126,7 @@ TEST_F(Ping360Section, warns_of_a_head_that_is_found_where_it_is_not) {
   const auto warnings = [this](const std::string& udp) {
     return load(document("name: m, udp: [" + udp +
                          "], discovery: {address: 192.168.2.4, allow: [192.168.2.0/24]}"))
-        .warnings;
+        .warning_lines();
   };
   EXPECT_THAT(warnings("{bind: 192.168.2.4:12345, allow: [192.168.2.0/24]}"), IsEmpty());
   EXPECT_THAT(warnings("{bind: 127.0.0.1:1}, {bind: 0.0.0.0:12345, allow: [192.168.2.0/24]}"), IsEmpty());
