@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -205,19 +204,6 @@ std::optional<std::pair<const char*, render::Pose>> Check::start() const {
   return std::nullopt;
 }
 
-/// Of three pings, as other programs on this machine make each look longer, none shorter.
-double least_cost_ms(TrialPings& pings, std::size_t head, render::Pose T_world_vehicle) {
-  constexpr int most = 3;
-  constexpr double long_ms = 2000.0;  // one such ping is enough to wait for
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most && (i == 0 || least < long_ms); ++i) {
-    T_world_vehicle.position_m.x += 1e-3;  // a world that stands still is not looked at again
-    pings.ping(head, T_world_vehicle);
-    least = std::min(least, pings.last_ms());
-  }
-  return least;
-}
-
 /// What the heads would see where the vehicle begins, and what a ping takes here.
 void Check::check_start(const render::World& world) {
   const auto beginning = start();
@@ -235,7 +221,7 @@ void Check::check_start(const render::World& world) {
     for (const Finding& finding : pings.ping(i, T_world_vehicle)) {
       warning(key, fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
     }
-    report_cost(config_.heads[i], least_cost_ms(pings, i, T_world_vehicle), world.triangle_count());
+    report_cost(config_.heads[i], pings.cost_ms(i, T_world_vehicle), world.triangle_count());
   }
 }
 

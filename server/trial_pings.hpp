@@ -36,16 +36,18 @@ class TrialPings {
   std::string view(std::size_t head, const std::optional<render::Pose>& T_world_vehicle,
                    const std::vector<PosedBody>& moved = {}) const;
 
-  /// What the newest ping would take with the machine to itself, in milliseconds: from processor time, as
-  /// time by the clock grows with what else runs.
-  double last_ms() const { return last_ms_; }
+  /// What a ping of a head takes here with the machine to itself, in milliseconds: the least of three, in
+  /// processor time, because other programs lengthen the time by the clock. Call ping() for the head first.
+  /// @throws render::RequestError when the sampling cannot be had
+  double cost_ms(std::size_t head, render::Pose T_world_vehicle);
 
  private:
+  void move_bodies(const std::vector<PosedBody>& moved);
+
   const DaemonConfig& config_;
   const render::World& world_;
   std::vector<BodyBox> boxes_;
   render::SonarRenderer renderer_;
-  double last_ms_ = 0.0;
 };
 
 }  // namespace sonard::server

@@ -84,10 +84,6 @@ void add_scaled(const float* __restrict in, float share, std::size_t count, floa
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// mean_response() in an echo's own line and in all lines to one side of it that it reaches.
 std::vector<double> mean_responses(Pulse pulse, double line_cells, double rounding) {
   const double reach = pulse == Pulse::tone ? 0.5 + rounding : reach_cells;
