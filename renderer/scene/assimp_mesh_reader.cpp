@@ -74,8 +74,9 @@ glm::dmat4 fbx_axes(const aiScene& scene) {
   return matrix;
 }
 
-/// Of the root node. That of COLLADA and 3DS is Assimp's own: it turns the file to y up and applies the unit,
-/// which mesh_file does. That of FBX is, too; releases differ in what of unit and axes they put into it.
+/// Transform of the root node. Assimp adds that node to COLLADA, 3DS and FBX. For COLLADA and 3DS it turns
+/// the file to y up and applies the unit, which is the task of mesh_file. For FBX, releases of Assimp differ
+/// in it.
 glm::dmat4 root_transform(const aiScene& scene, const std::string& extension) {
   if (extension == "dae" || extension == "3ds") {
     return glm::dmat4(1.0);

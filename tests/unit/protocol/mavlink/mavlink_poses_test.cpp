@@ -312,7 +312,7 @@ TEST_F(MavlinkPosesTest, AGlobalPositionIsMetresEastAndNorthOfTheOriginOfTheWorl
   EXPECT_THAT(samples[0].twist->linear_mps, IsVec3(Vec3{0, 1, -0.5}, 1e-6));
 }
 
-// ArduSub without GPS: latitude and longitude stay 0, and the altitude is that of the depth sensor.
+// ArduSub without GPS: latitude and longitude stay 0, and the depth sensor gives the altitude.
 TEST_F(MavlinkPosesTest, ADepthAloneIsAPoseAtTheOriginWhereNothingBetterComes) {
   MavlinkPoseInput input;
   input.T_world_local = {{5, 6, -1}, {1, 0, 0, 0}};

@@ -202,7 +202,7 @@ TEST(PulseEnergy, IsOneWhereLevelsDoNotFollowTheLength) {
   model.band_loss_db = -20;
   EXPECT_NEAR(pulse_energy(model, 0.01), 0.01, 1e-12);
   model = tone_of(0.02);
-  EXPECT_EQ(pulse_energy(model, 0.005), 1);  // exactly: pictures of the usual pulse are those of before
+  EXPECT_EQ(pulse_energy(model, 0.005), 1);  // exactly: pictures of the usual pulse do not change
 }
 
 // Worked out by hand: of a band of 200 kHz around 743.3 kHz the quality is 3.717; 500 kHz are detuned by

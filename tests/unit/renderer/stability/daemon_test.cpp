@@ -148,7 +148,8 @@ TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
       EXPECT_TRUE(std::isfinite(absorption) && absorption > 0 && absorption < 1) << water;
     }
   }
-  EXPECT_TRUE(load(minimal_config + "water: {salinity_ppt: 0, absorption_db_per_km: 161}\n").warning_lines().empty())
+  EXPECT_TRUE(
+      load(minimal_config + "water: {salinity_ppt: 0, absorption_db_per_km: 161}\n").warning_lines().empty())
       << "a number that is given outright is nobody's extrapolation";
 }
 
