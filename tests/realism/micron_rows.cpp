@@ -48,6 +48,22 @@ std::vector<double> means(const std::vector<std::vector<double>>& lines) {
   return all;
 }
 
+/// Levels of a turn at the ranges of an even echo some 25 dB over the noise, without their mean at each range,
+/// which grows with the TVG.
+std::vector<std::vector<double>> echo_turn(MicronClient& client) {
+  std::vector<std::vector<double>> lines = turn(client, 1e-7F, 8, 12);
+  for (std::size_t bin = 0; bin < lines.front().size(); ++bin) {
+    double mean = 0;
+    for (const std::vector<double>& line : lines) {
+      mean += line[bin] / static_cast<double>(lines.size());
+    }
+    for (std::vector<double>& line : lines) {
+      line[bin] -= mean;
+    }
+  }
+  return lines;
+}
+
 MicronClient client_at(double gain_percent) {
   MicronClient client{server::micron_kind().make_default(), bin_m, bins};
   client.gain_db = 0.8 * gain_percent;
@@ -64,7 +80,7 @@ double noise_sd() {
   return quantile_of(of_lines, 0.5);
 }
 
-/// From bin to bin, of noise under the ceiling of the TVG or of an even echo 25 dB over it.
+/// From bin to bin, of noise under the ceiling of the TVG or of an even echo.
 /// @param noise whether the client listens only
 double bins_shared(bool noise) {
   server::HeadConfig head = server::micron_kind().make_default();
@@ -72,9 +88,8 @@ double bins_shared(bool noise) {
   head.acoustics.physical.noise_by_bearing_db = 0;
   MicronClient client{head, bin_m, bins};
   client.gain_db = 0.8 * 45;
-  const double from_m = noise ? 38 : 8, to_m = noise ? 49 : 12;
   std::vector<double> here, next;
-  for (const std::vector<double>& line : turn(client, noise ? 0 : 1e-7F, from_m, to_m)) {
+  for (const std::vector<double>& line : noise ? turn(client, 0, 38, 49) : echo_turn(client)) {
     here.insert(here.end(), line.begin(), line.end() - 1);
     next.insert(next.end(), line.begin() + 1, line.end());
   }
@@ -88,17 +103,16 @@ double zeros() {
          static_cast<double>(levels.size());
 }
 
-/// Of an even echo some 25 dB over the noise.
 double echo_shared(std::size_t lines) {
   MicronClient client = client_at(45);
-  const auto levels = turn(client, 1e-7F, 8, 12);
+  const auto levels = echo_turn(client);
   return test::correlation(joined(levels, 0, lines), joined(levels, lines));
 }
 
 double sweeps_shared() {
   MicronClient client = client_at(45);
-  const auto first = turn(client, 1e-7F, 8, 12);
-  return test::correlation(joined(first), joined(turn(client, 1e-7F, 8, 12)));
+  const auto first = echo_turn(client);
+  return test::correlation(joined(first), joined(echo_turn(client)));
 }
 
 std::vector<double> ring_down_peaks(double gain_percent) {
