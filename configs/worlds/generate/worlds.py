@@ -204,7 +204,7 @@ def ssiv():
 
 def manifold():
     folder = "meshes/manifold"
-    seabed = Seabed(seed=61, depth_m=25.137, undulation_m=0.35, ripple_height_m=0.06, ripple_length_m=2.1,
+    seabed = Seabed(seed=61, depth_m=25.147, undulation_m=0.20, ripple_height_m=0.04, ripple_length_m=2.1,
                     ripple_heading_rad=math.radians(115.0))
 
     def sway(x):
