@@ -36,6 +36,9 @@ PROGRAMS = None
 NPM = None
 KILLS = 50
 SECONDS = 10
+# What a client has for so long is off the recorder's queue, however busy the machine (docs/logs.md 5): a few milliseconds
+# are usual.
+QUEUE_S = 0.5
 START_S = 60
 PATIENCE_S = 60
 
@@ -609,29 +612,34 @@ class Kills(RecordingTest):
         seen = []
         for life in range(lives):
             daemon, client, received = live(life)
-            time.sleep(moments.uniform(0.0, 0.5))
+            life_s = moments.uniform(0.0, 4 * QUEUE_S)
+            time.sleep(max(0.0, life_s - QUEUE_S))
+            long_before = len(received()) if life_s > QUEUE_S else 0
+            time.sleep(min(life_s, QUEUE_S))
             daemon.signal(signal.SIGKILL)
             daemon.wait(10)
             time.sleep(0.01)  # what it sent last arrives
             client.signal(signal.SIGKILL)
             client.wait(10)
-            seen.append(received())
+            seen.append((received(), long_before))
         self.end_daemon(self.start_daemon(seed=lives + 1, **daemon_options))
         self.check_folder()
-        self.assertGreater(sum(map(len, seen)), 3 * lives)
+        self.assertGreater(sum(long_before for _, long_before in seen), 3 * lives)
         return seen
 
     def check_kept(self, kind, recorded, seen):
-        """In a log of this kind is everything of every life but perhaps the last."""
+        """In a log of this kind is the beginning of every life, and at least what a client had long before the kill."""
         recorded = set(recorded)
-        for life, pings in enumerate(seen):
-            missing = [i for i, ping in enumerate(pings[:-1]) if ping not in recorded]
-            self.assertEqual(missing, [], f"{kind} of life {life}, which saw {len(pings)}")
-        kept = sum(len(pings) > 0 and pings[-1] in recorded for pings in seen)
-        print(f"{kind}: {len(recorded)}, the last of a life in {kept} of {len(seen)}")
+        lost = []
+        for life, (pings, long_before) in enumerate(seen):
+            kept = [ping in recorded for ping in pings]
+            lost.append(kept.count(False))
+            self.assertEqual(kept, sorted(kept, reverse=True), f"{kind} of life {life}: one is lost in the middle")
+            self.assertGreaterEqual(kept.count(True), long_before, f"{kind} of life {life}, which saw {len(pings)}")
+        print(f"{kind}: {len(recorded)}, lost of a life: {collections.Counter(lost)}")
 
-    def test_every_log_opens_and_holds_every_ping_but_the_last(self):
-        """From before the first ping to some tens of pings later."""
+    def test_every_log_opens_and_holds_every_ping_but_those_in_the_queue(self):
+        """From before the first ping to some thirty pings later."""
         def live(life):
             viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
             daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
@@ -646,7 +654,7 @@ class Kills(RecordingTest):
             self.assertEqual(len(set(recorded)), len(recorded), f"a ping is in {kind} twice")
             self.check_kept(kind, recorded, seen)
 
-    def test_every_log_opens_and_holds_every_line_but_the_last(self):
+    def test_every_log_opens_and_holds_every_line_but_those_in_the_queue(self):
         """From before the first line of a Micron to some tens of lines later."""
         def live(life):
             raw = os.path.join(self.folder.name, f"raw{life}")
@@ -658,15 +666,15 @@ class Kills(RecordingTest):
 
         seen = self.end_lives(live, (KILLS + 1) // 2, {"more": MICRON})  # a head takes two seconds to find its centre
         files = [[message["bins"] for message in messages if message["kind"] == "line"] for messages in self.mcap_files()]
-        for life, lines in enumerate(seen):
-            self.assertTrue(any(kept[:len(lines[:-1])] == lines[:-1] for kept in files), f"MCAP file of life {life}")
+        for life, (lines, long_before) in enumerate(seen):
+            self.assertTrue(any(kept[:long_before] == lines[:long_before] for kept in files), f"MCAP file of life {life}")
         self.check_kept("mcap", sum(files, []), seen)
         streams = collections.defaultdict(bytes)
         for packet in self.packets():
             if packet.protocol == "tcp" and packet.source == (HEAD_ADDRESS, 4001):
                 streams[packet.target] += packet.payload
         captured = b"".join(streams.values())
-        self.check_kept("pcapng", [bins for bins in sum(seen, []) if bytes.fromhex(bins) in captured], seen)
+        self.check_kept("pcapng", [bins for lines, _ in seen for bins in lines if bytes.fromhex(bins) in captured], seen)
 
 
 class FullDisk(RecordingTest):
