@@ -29,6 +29,7 @@ from commands import blocks, commands  # noqa: E402
 
 PROGRAMS = None  # folder of the programs under test
 PATIENCE_S = 120
+SOME_LOST = 4  # of sonarview, which is then right: a machine that runs several of these at once may be too slow for each ping
 
 # Words that stand for something of the reader's.
 PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.yaml", "LOG": "log.mcap", "DIR": "out", "NAME": "demo-micron", "SECONDS": "1",
@@ -145,11 +146,10 @@ RULES = [
     # clients
     Run(VIEW + r"(--range (10|20) (--compression 1 )?)?--out out", until=PICTURE, beside=GEMINI),
     Run(VIEW + r"--range 20 --pings 20 --out out", beside=GEMINI),
-    Run(VIEW + r"--(continuous 100|drop-rx 0.05 --drop-tx 0.05) --pings 200.*", until=PROGRESS, beside=GEMINI, codes=(0, 4)),
+    Run(VIEW + r"--(continuous 100|drop-rx 0.05 --drop-tx 0.05) --pings 200.*", until=PROGRESS, beside=GEMINI),
     Run(VIEW + r"--surface-address 10.61.19.10 --sonar-id 513", until=PROGRESS, beside=("configs/gemini-netns.yaml",), addresses=VEHICLE,
         before="posecast configs/trajectories/docking_demo.csv --loop &"),
-    Run(VIEW + r"--sonar-id 513,514( --out out)?", until=PROGRESS, beside=("two-heads.yaml",),
-        codes=(0, 4)),  # 4: two heads at once are too slow for this machine
+    Run(VIEW + r"--sonar-id 513,514( --out out)?", until=PROGRESS, beside=("two-heads.yaml",)),
     Run(VIEW + r"--bind 127.0.0.[13] .*", until=PICTURE, beside=("configs/two-vehicles-a.yaml", "configs/two-vehicles-b.yaml")),
     Run(VIEW + r"micron --tcp 127.0.0.1:4001 (--range 20 )?--out out(-micron)?", until=SCAN, beside=("configs/demo-micron.yaml",)),
     Run(VIEW + r"(micron|ping360) --tty /dev/ttyUSB0 .*", codes=(3,)),  # no such line on this machine
@@ -285,7 +285,7 @@ class Documentation(unittest.TestCase):
         done = subprocess.run(["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "bash", "-c", script], cwd=place,
                               env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True,
                               errors="replace", timeout=2 * PATIENCE_S, check=False)
-        if done.returncode in rule.codes:
+        if done.returncode in rule.codes or (done.returncode == SOME_LOST and re.search(r"[1-9]\d* (pings|lines)", done.stdout)):
             return command, ""
         return command, f"exit status {done.returncode}, expected {rule.codes}:\n{done.stdout[-3000:]}"
 
