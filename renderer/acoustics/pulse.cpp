@@ -5,8 +5,10 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "renderer/acoustics/decibels.hpp"
+#include "renderer/acoustics/tone.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -24,45 +26,37 @@ double sinc_at(double x) {
 constexpr double reach_cells = 16;
 constexpr int steps_per_cell = 32;  // of the integration
 
-/// Overlap of a tone that lasts from -1/2 to 1/2 with what the transducer's band makes of an instant, the
-/// main lobe of an even band; of any scale. @param rounding half of its width. Lengths in those of the tone.
-double rounded_tone(double at, double rounding) {
-  constexpr int steps = 64;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double offset = 2 * (i + 0.5) / steps - 1;
-    sum += std::abs(at + offset * rounding) <= 0.5 ? sinc_at(offset) : 0.0;
+/// Intensity of a chirp `cells` away from the echo, re its peak.
+double chirp_response(Pulse pulse, double cells) {
+  double amplitude = sinc_at(cells);
+  if (pulse == Pulse::windowed_chirp) {
+    // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
+    amplitude += 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
   }
-  return sum;
-}
-
-/// Intensity `cells` away from the echo, re its peak. @param rounding > 0 of a tone
-double response(Pulse pulse, double cells, double rounding) {
-  switch (pulse) {
-    case Pulse::tone:
-      return std::pow(rounded_tone(cells, rounding) / rounded_tone(0, rounding), 2);
-    case Pulse::windowed_chirp: {
-      // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
-      const double amplitude = sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
-      return amplitude * amplitude;
-    }
-    case Pulse::point:
-    case Pulse::chirp:
-      break;
-  }
-  return sinc_at(cells) * sinc_at(cells);
+  return amplitude * amplitude;
 }
 
 /// Two points that lie evenly in lines `lines` apart are x apart with a density that falls to 0 a line to
 /// either side of that.
-double mean_response(Pulse pulse, int lines, double line_cells, double rounding) {
+double mean_chirp(Pulse pulse, int lines, double line_cells) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(line_cells * steps_per_cell)));
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
     const double offset = 2 * (i + 0.5) / steps - 1;
-    sum += (1 - std::abs(offset)) * response(pulse, (lines + offset) * line_cells, rounding);
+    sum += (1 - std::abs(offset)) * chirp_response(pulse, (lines + offset) * line_cells);
   }
   return sum * 2 / steps;
+}
+
+/// Of an echo that lies evenly in its line, in the middle of the line `lines` away.
+double mean_rounded(const RoundedTone& tone, int lines, double step_m) {
+  constexpr int steps = 64;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double amplitude = tone.amplitude((lines + (i + 0.5) / steps - 0.5) * step_m);
+    sum += amplitude * amplitude;
+  }
+  return sum / steps;
 }
 
 /// The mean over a tone with sharp ends, exactly: differences of the second integral of a box.
@@ -84,15 +78,22 @@ void add_scaled(const float* __restrict in, float share, std::size_t count, floa
   }
 }
 
-/// mean_response() in an echo's own line and in all lines to one side of it that it reaches.
-std::vector<double> mean_responses(Pulse pulse, double line_cells, double rounding) {
-  const double reach = pulse == Pulse::tone ? 0.5 + rounding : reach_cells;
-  const int farthest = static_cast<int>(std::ceil(reach / line_cells));
+/// Mean of the response in an echo's own line and in all lines to one side of it that it reaches.
+std::vector<double> mean_responses(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
+  const double line_cells = step_m / cell_m;
   std::vector<double> responses;
-  for (int lines = 0; lines <= farthest; ++lines) {
-    responses.push_back(pulse == Pulse::tone && rounding == 0
-                            ? mean_tone(lines, line_cells)
-                            : mean_response(pulse, lines, line_cells, rounding));
+  const auto respond = [&](double reach_lines, auto mean) {
+    for (int lines = 0; lines <= static_cast<int>(std::ceil(reach_lines)); ++lines) {
+      responses.push_back(mean(lines));
+    }
+  };
+  if (pulse != Pulse::tone) {
+    respond(reach_cells / line_cells, [&](int lines) { return mean_chirp(pulse, lines, line_cells); });
+  } else if (tone_rounding_m > 0) {
+    const RoundedTone tone(cell_m, tone_rounding_m);
+    respond(tone.reach_m() / step_m, [&](int lines) { return mean_rounded(tone, lines, step_m); });
+  } else {
+    respond(0.5 / line_cells, [&](int lines) { return mean_tone(lines, line_cells); });
   }
   return responses;
 }
@@ -108,20 +109,16 @@ double total_of(const std::vector<double>& responses) {
 
 }  // namespace
 
-double energy_length_m(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
-  return step_m * total_of(mean_responses(pulse, step_m / cell_m, tone_rounding_m / cell_m));
-}
-
 double pulse_energy(const PhysicalModel& model, double step_m) {
   const double band = decibels_to_power(model.band_loss_db);
   const UsualPulse& usual = model.usual_pulse;
   if (model.pulse != Pulse::tone || !(model.range_cell_m > 0) || !(usual.cell_m > 0)) {
     return band;
   }
-  const auto length_in_lines = [&](double cell_m, double line_m) {
-    return energy_length_m(model.pulse, cell_m, line_m, model.tone_rounding_m) / line_m;
+  const auto lines = [&](double cell_m, double line_m) {
+    return tone_length_m(cell_m, model.tone_rounding_m) / line_m;
   };
-  return band * length_in_lines(model.range_cell_m, step_m) / length_in_lines(usual.cell_m, usual.step_m);
+  return band * lines(model.range_cell_m, step_m) / lines(usual.cell_m, usual.step_m);
 }
 
 PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m, double energy)
@@ -129,7 +126,7 @@ PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double t
   if (pulse == Pulse::point || !(cell_m > 0)) {
     return;
   }
-  const std::vector<double> responses = mean_responses(pulse, step_m / cell_m, tone_rounding_m / cell_m);
+  const std::vector<double> responses = mean_responses(pulse, cell_m, step_m, tone_rounding_m);
   const double total = total_of(responses);
   for (const double response : responses) {
     share_.push_back(static_cast<float>(response / total * energy));
@@ -162,8 +159,9 @@ namespace {
 
 constexpr int most_lines_each_side = 32;
 
-/// Amplitude received `lines` away from an echo, of any scale; 0 beyond the main lobe.
-double pulse_amplitude(Pulse pulse, int lines, double line_cells, double rounding) {
+/// Amplitude received `lines` away from an echo, of any scale; 0 beyond the main lobe. Of a tone with sharp
+/// ends.
+double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
   const double cells = lines * line_cells;
   switch (pulse) {
     case Pulse::point:
@@ -173,9 +171,6 @@ double pulse_amplitude(Pulse pulse, int lines, double line_cells, double roundin
     case Pulse::windowed_chirp:  // the transform of a Hann window
       return cells < 2 ? sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1)) : 0.0;
     case Pulse::tone:
-      if (rounding > 0) {
-        return rounded_tone(cells, rounding);
-      }
       return std::max(0.0, std::min(0.5, cells + line_cells / 2) - std::max(-0.5, cells - line_cells / 2));
   }
   return 0.0;
@@ -201,10 +196,15 @@ PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m, do
   if (!(cell_m > 0)) {
     return;
   }
+  std::optional<RoundedTone> rounded;
+  if (pulse == Pulse::tone && tone_rounding_m > 0) {
+    rounded.emplace(cell_m, tone_rounding_m);
+  }
   std::vector<double> amplitudes;
   double power = 0;
   for (int j = 0; j <= most_lines_each_side; ++j) {
-    const double amplitude = pulse_amplitude(pulse, j, step_m / cell_m, tone_rounding_m / cell_m);
+    const double amplitude =
+        rounded ? rounded->amplitude(j * step_m) : pulse_amplitude(pulse, j, step_m / cell_m);
     if (!(amplitude > 0)) {
       break;
     }

@@ -12,19 +12,15 @@
 
 namespace sonard::render {
 
-/// Length over which a pulse spreads energy, in metres: the integral over its intensity, whose peak is 1. c
-/// tau / 2 of a tone with sharp ends. @param cell_m PhysicalModel::range_cell_m, > 0. @param step_m > 0: of
-/// the lines over which it is averaged, to which it is the same up to the error of the integration
-double energy_length_m(PhysicalModel::Pulse pulse, double cell_m, double step_m, double tone_rounding_m);
-
 /// Energy that a pulse brings, re the usual pulse: of a tone per line, behind the band of the transducer. 1:
 /// the pulse has no length, or none for which levels are stated.
 /// @param step_m RangeLines::step_m
 double pulse_energy(const PhysicalModel& model, double step_m);
 
 /// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
-/// over the line, and over that in which it is received (docs/physics.md 2.6). Chirps are followed out to 16
-/// cells to either side; all shares of an echo add up to the energy.
+/// over the line, and over that in which it is received; a tone with rounded ends is sampled in the middle of
+/// the latter (docs/physics.md 2.6). Chirps are followed out to 16 cells to either side; all shares of an echo
+/// add up to the energy.
 class PulseResponse {
  public:
   using Pulse = PhysicalModel::Pulse;

@@ -9,6 +9,7 @@
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/quantizer.hpp"
 #include "renderer/acoustics/ring_down.hpp"
+#include "renderer/acoustics/tone.hpp"
 #include "renderer/acoustics/tvg.hpp"
 
 namespace sonard::render {
@@ -44,21 +45,20 @@ PulseCorrelation noise_correlation_of(const PhysicalModel& model, double step_m)
 
 /// Noise before the gain, re that beside the usual pulse: a filter that is matched to a tone lets through
 /// less of it, the longer the tone.
-double matched_noise(const PhysicalModel& model, double step_m) {
+double matched_noise(const PhysicalModel& model) {
   const UsualPulse& usual = model.usual_pulse;
   if (model.pulse != PhysicalModel::Pulse::tone || model.noise_cell_m > 0 || !(model.range_cell_m > 0) ||
       !(usual.cell_m > 0)) {
     return 1;
   }
-  return energy_length_m(model.pulse, usual.cell_m, usual.step_m, model.tone_rounding_m) /
-         energy_length_m(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m);
+  return tone_length_m(usual.cell_m, model.tone_rounding_m) /
+         tone_length_m(model.range_cell_m, model.tone_rounding_m);
 }
 
 /// @param gain per range bin, amplitude
-std::vector<float> noise_amplitudes(const PhysicalModel& model, double step_m,
-                                    const std::vector<float>& gain) {
+std::vector<float> noise_amplitudes(const PhysicalModel& model, const std::vector<float>& gain) {
   std::vector<float> amplitudes(gain.size(), 0.0F);
-  const double before_gain = decibels_to_power(model.noise_level_db) * matched_noise(model, step_m);
+  const double before_gain = decibels_to_power(model.noise_level_db) * matched_noise(model);
   const double behind_gain = decibels_to_power(model.output_noise_db);
   for (std::size_t k = 0; model.noise && k < gain.size(); ++k) {
     const double power = static_cast<double>(gain[k]) * static_cast<double>(gain[k]);
@@ -86,7 +86,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       ring_down(ring_down_amplitudes(model, range)),
       ring_down_lines(render::ring_down_lines(model.ring_down, range)),
       vehicle(vehicle_reverberation(model.ring_down, range)) {
-  noise = noise_amplitudes(model, range.step_m, gain);
+  noise = noise_amplitudes(model, gain);
   const float codes = codes_per_amplitude(settings);
   for (float& g : gain) {
     g *= codes;

@@ -227,9 +227,9 @@ render::SonarSettings gemini_acoustics() {
   acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines that are sampled at 90
   acoustics.physical.tvg_log_coefficient = 40.0;
   acoustics.physical.tvg_max_db = 78.0;
-  acoustics.physical.tone_rounding_m = 0.022;  // 34 kHz: a Q of 21
+  acoustics.physical.tone_rounding_m = 0.014;  // 54 kHz: a Q of 14
   acoustics.physical.gain_db = 31.0;
-  acoustics.physical.noise_level_db = -132.5;
+  acoustics.physical.noise_level_db = -132.0;
   acoustics.physical.output_noise_db = -46.0;
   acoustics.physical.texture_nu = 15.0;
   acoustics.physical.water_clutter.density_per_m3 = 0.1;

@@ -14,8 +14,8 @@ namespace {
 // No beam is steered further than this: c / c_d up to 1.15 is followed, more is not found in water.
 constexpr double widest_sin = 0.9962;  // of 85 degrees
 
-// Levels were set with what clients ask for at 20 m (docs/protocols/gemini.md 5).
-constexpr double usual_pulse_s = 11 / gemini::carrier_hz;
+// Levels were set between the pictures of 20 and 50 m (docs/physics.md 2.6): clients ask for it at 30 m.
+constexpr double usual_pulse_s = 18 / gemini::carrier_hz;
 
 // Device bearings are positive to starboard, azimuths of the renderer to port.
 // `steering`: the ratio c / c_d of the true sound speed to that which delays are computed with. A beam meant

@@ -24,6 +24,7 @@
 #include "renderer/acoustics/speckle_field.cpp"
 #include "renderer/acoustics/steady_echo.cpp"
 #include "renderer/acoustics/texture.cpp"
+#include "renderer/acoustics/tone.cpp"
 #include "renderer/acoustics/tvg.cpp"
 #include "renderer/sonar_settings.cpp"
 #include "renderer/usable_cores.cpp"
