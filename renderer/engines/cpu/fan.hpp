@@ -34,6 +34,8 @@ inline float fast_azimuth(float y, float x) {
 /// Made for one ping.
 class Fan {
  public:
+  static constexpr float widest_slice = 0.0174533F;  ///< radians, a degree
+
   Fan(const Aperture& aperture, double max_range_m);
 
   int beam_count() const { return static_cast<int>(edges_rad_.size()) - 1; }
@@ -47,6 +49,11 @@ class Fan {
   /// An edge that changes its azimuth by less than this, at most a tenth of a beam, runs along slices: from
   /// inside a slice it cannot be told how much of the slice lies to either side of it.
   float upright_rad() const { return std::min(1e-3F, 0.1F * width_rad_ / static_cast<float>(beam_count())); }
+
+  /// No slice is laid that is wider.
+  float widest_slice_rad() const {
+    return std::min(widest_slice, width_rad_ / static_cast<float>(beam_count()));
+  }
 
   /// Beams that azimuths [low, high] of (-pi, pi] may touch; a few more at the ends of the range may be
   /// named. first > last: none.

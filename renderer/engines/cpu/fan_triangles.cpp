@@ -149,6 +149,13 @@ void bound(const Fan& fan, std::size_t count, Bounds& out) {
   }
 }
 
+/// Whether a whole cluster may lie between two slices: a stone, a plate.
+bool is_small(const Fan& fan, std::size_t count, const Bounds& bounds) {
+  const float low = *std::min_element(bounds.low_azimuth.begin(), bounds.low_azimuth.begin() + count);
+  const float high = *std::max_element(bounds.high_azimuth.begin(), bounds.high_azimuth.begin() + count);
+  return high - low < fan.widest_slice_rad();
+}
+
 }  // namespace
 
 std::uint64_t FanTriangles::clusters_culled() const {
@@ -212,6 +219,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     bounds.height.gather(*part.clusters, cluster, at.z);
     bounds.tangent.gather(*part.clusters, cluster, at.tangent);
     bound(fan, cluster.triangle_count, bounds);
+    const bool small = is_small(fan, cluster.triangle_count, bounds);
     for (std::uint32_t n = 0; n < cluster.triangle_count; ++n) {
       if (bounds.in_elevation[n] == 0) {
         continue;
@@ -226,7 +234,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
            {at.z[i], at.z[j], at.z[k]},
            static_cast<std::uint32_t>(part_number),
            part.clusters->mesh_triangle[t],
-           !out && bounds.thin[n] != 0,
+           !out && (small || bounds.thin[n] != 0),
            bounds.upright[n] != 0,
            whole_turn ? -half_turn : bounds.low_azimuth[n],
            whole_turn ? half_turn : bounds.high_azimuth[n]},

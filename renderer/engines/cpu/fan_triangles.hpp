@@ -31,7 +31,8 @@ struct FanTriangle {
   float x[3], y[3], z[3];
   std::uint32_t part = 0;           ///< index of the PlacedPart
   std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
-  /// Much taller than wide, as seen from the sonar: the leg of a frame, a pole. A slice beside it misses it.
+  /// Much taller than wide, as seen from the sonar, or of something small: the leg of a frame, a stone. A
+  /// slice beside it misses it.
   bool thin = false;
   bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
   /// Between which it lies; -pi to pi where it may hold the sonar's vertical axis.

@@ -87,7 +87,7 @@ class SliceCutter {
   /// shared by two triangles is cut at the same point, to the bit.
   void cut(const Slice& slice, float tan_limit, Segments& segments);
 
-  /// Whether something narrow and tall, the leg of a frame or a pole, reaches into the wedge of a slice but
+  /// Whether something narrow, the leg of a frame, a pole or a stone, reaches into the wedge of a slice but
   /// not to its middle: the slice misses all of it.
   bool misses_thin_thing(const Slice& slice) const;
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "renderer/engines/cpu/slice_sampler_impl.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
@@ -14,7 +13,6 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double widest_first_slice_rad = std::numbers::pi / 180;
 constexpr double most_sag_lines = 0.06;  // at `change` 1 %
 
 /// How wide a first slice may be around an azimuth. Along a wall across the axis the range is d / cos psi and
@@ -25,7 +23,7 @@ double widest_first_slice(double azimuth_rad, double line_m, double max_range_m,
   const double for_echo = change * std::sqrt(12.0) / (3 * tangent + 1e-9);
   const double sag_m = most_sag_lines * line_m * (change / 0.01);
   const double for_range = std::sqrt(8 * sag_m / (max_range_m * (1 + 2 * tangent * tangent)));
-  return std::min({widest_first_slice_rad, for_echo, std::max(for_range, for_echo / 4)});
+  return std::min({static_cast<double>(Fan::widest_slice), for_echo, std::max(for_range, for_echo / 4)});
 }
 
 }  // namespace
