@@ -22,6 +22,7 @@
 #include <glm/vector_relational.hpp>
 
 #include "protocol/pose/trajectory.hpp"
+#include "renderer/engines/gpu/thin_things.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/scene/world.hpp"
 #include "server/clock/clock.hpp"
@@ -206,6 +207,14 @@ std::optional<std::pair<const char*, render::Pose>> Check::start() const {
 
 /// What the heads would see where the vehicle begins, and what a ping takes here.
 void Check::check_start(const render::World& world) {
+  if (config_.engine == render::EngineKind::gpu) {
+    for (const HeadConfig& head : config_.heads) {
+      const std::string lost = render::thin_things_not_looked_for(world, usual_settings(head));
+      if (!lost.empty()) {
+        warning("engine", fmt::format("head '{}': {}", head.name, lost));
+      }
+    }
+  }
   const auto beginning = start();
   TrialPings pings(config_, world);
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {

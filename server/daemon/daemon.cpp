@@ -23,6 +23,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
+#include "renderer/engines/gpu/thin_things.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/daemon/exhaustion.hpp"
@@ -130,6 +131,7 @@ class Daemon {
   RenderService& renderer_of(const HeadConfig& head) const {
     return *(kind_of(head).scanning() ? beam_renderer_ : fan_renderer_);
   }
+  void say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads, const render::World& world) const;
   std::string engine_text() const;
   void warm_up(const std::vector<HeadConfig>& heads) const;
   void start_inputs();
@@ -215,9 +217,23 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
   }
   start_inputs();
   warm_up(config.heads);
+  say_what_the_gpu_may_miss(config.heads, world);
   start_page(config, world);
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} engine=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(), engine_text());
+}
+
+void Daemon::say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads,
+                                       const render::World& world) const {
+  if (!engine_text().starts_with("gpu")) {
+    return;
+  }
+  for (const HeadConfig& head : heads) {
+    const std::string lost = render::thin_things_not_looked_for(world, usual_settings(head));
+    if (!lost.empty()) {
+      spdlog::warn("head={}: {}", head.name, lost);
+    }
+  }
 }
 
 // Of the renderers in use: the GPU may be lost to one of them alone.

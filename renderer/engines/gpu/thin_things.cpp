@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 namespace sonard::render {
@@ -153,6 +154,28 @@ std::vector<int> ThinThings::least_columns(const Pose& T_world_sonar, const Aper
     }
   }
   return columns;
+}
+
+std::string thin_things_not_looked_for(const World& world, const SonarSettings& settings) {
+  constexpr auto sentence = "engine gpu may miss posts and bars thinner than a column in some pings, {}";
+  if (settings.sampling.preset == Sampling::Preset::grid) {
+    return fmt::format(sentence, "since `sampling: {preset: grid}` does not look for them");
+  }
+  if (settings.aperture.bearing == Aperture::Bearing::conical) {
+    return fmt::format(sentence, "since `bearing: conical` does not look for them");
+  }
+  for (std::size_t body = 0; body < world.bodies.size(); ++body) {
+    for (std::size_t i = 0; i < world.bodies[body].parts.size(); ++i) {
+      const std::size_t triangles = world.bodies[body].parts[i].mesh->triangle_count();
+      if (triangles > most_triangles && !world.is_terrain(body, i)) {
+        return fmt::format(sentence,
+                           fmt::format("if they are part of '{}': its mesh has {} triangles, and those of "
+                                       "more than {} are not searched",
+                                       world.bodies[body].name, triangles, most_triangles));
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace sonard::render

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -41,5 +42,9 @@ class ThinThings {
   std::vector<ThinThing> things_;
   std::vector<Pose> T_world_body_;
 };
+
+/// Which posts and bars engine `gpu` may lose in single pings, since nobody looks for them: a sentence for
+/// the user. Empty: none.
+std::string thin_things_not_looked_for(const World& world, const SonarSettings& settings);
 
 }  // namespace sonard::render

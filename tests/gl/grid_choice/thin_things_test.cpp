@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <gmock/gmock.h>
+
 #include "tests/scenes/shapes.hpp"
 #include "tests/support/engine_test.hpp"
 
@@ -88,6 +90,20 @@ TEST(ThinThings, WideOnesAreLeftToTheGrid) {
       ThinThings(test::make_world({test::make_body("box", test::make_block({5, 0, 0}, {1, 1, 1}, 0))}))
           .all()
           .empty());
+}
+
+TEST(ThinThings, SayWhereNobodyLooksForThem) {
+  const World box = test::make_world({test::make_body("box", test::make_block({5, 0, 0}, {1, 1, 1}, 0))});
+  SonarSettings settings;
+  EXPECT_EQ(thin_things_not_looked_for(box, settings), "");
+  const World many =
+      test::make_world({test::make_body("hull", test::make_tube({0, 0, 0}, {0, 0, 1}, 1, 1000, 101))});
+  EXPECT_THAT(thin_things_not_looked_for(many, settings),
+              testing::HasSubstr("part of 'hull': its mesh has 20"));
+  settings.aperture.bearing = Aperture::Bearing::conical;
+  EXPECT_THAT(thin_things_not_looked_for(box, settings), testing::HasSubstr("`bearing: conical`"));
+  settings.sampling.preset = Sampling::Preset::grid;
+  EXPECT_THAT(thin_things_not_looked_for(box, settings), testing::HasSubstr("`sampling: {preset: grid}`"));
 }
 
 class ThinPost : public test::EngineTest {};
