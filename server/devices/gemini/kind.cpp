@@ -227,7 +227,7 @@ render::SonarSettings gemini_acoustics() {
   acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines that are sampled at 90
   acoustics.physical.tvg_log_coefficient = 40.0;
   acoustics.physical.tvg_max_db = 78.0;
-  acoustics.physical.tone_rounding_m = 0.014;  // 54 kHz: a Q of 14
+  acoustics.physical.tone_rounding_m = 0.018;  // 42 kHz: a Q of 17
   acoustics.physical.gain_db = 31.0;
   acoustics.physical.noise_level_db = -132.0;
   acoustics.physical.output_noise_db = -46.0;

@@ -122,8 +122,9 @@ class Demo(HeadCase):
         self.assertEqual(ids, sorted(set(ids)))
         if ids[-1] - ids[0] >= len(ids):  # this machine kept the client waiting: the head must have said so
             self.daemon.wait_for_line(TOO_SLOW, PATIENCE_S, said + 1)
-        gaps = sorted((after - before) % 2 ** 32 * 1e-9 for before, after in zip(times, times[1:]))
-        self.assertGreaterEqual(gaps[len(gaps) // 2], 0.0995, "no extra pings")
+        # A ping may start late on a busy machine, and the next one then in time: all of them together keep the rate.
+        took_s = sum((after - before) % 2 ** 32 for before, after in zip(times, times[1:])) * 1e-9
+        self.assertGreater(took_s, 0.1 * (len(times) - 2), "no extra pings")
         client.write(messages.user_config())
         answer = client.wait(USER_CONFIG, 1.5)
         self.assertEqual(answer.body, bytes([127, 0, 0, 3, 255, 0, 0, 0, 0, 0, 0, 0]))

@@ -518,10 +518,11 @@ class Levels(Case):
         self.assertLess(20 * math.log10(max(greatest) / min(greatest)), 0.5, greatest)
 
     def test_a_post_does_not_fade_under_a_longer_tone(self):
-        """Its ends are 16 mm farther away than its middle. A tone that holds all of that brightens it, by less than 2 dB."""
+        """Its ends are 16 mm farther away than its middle. A tone that holds all of that brightens it, by less than 2.5
+        dB: the shortest is heard over 16.3 mm (docs/physics.md 2.6)."""
         greatest = self.greatest(1)
         self.assertEqual(greatest, sorted(greatest))
-        self.assertLess(20 * math.log10(greatest[-1] / greatest[0]), 2, greatest)
+        self.assertLess(20 * math.log10(greatest[-1] / greatest[0]), 2.5, greatest)
 
 
 class Bytes(Case):

@@ -165,7 +165,7 @@ TEST(PulseEnergy, LevelsDoNotDependOnTheLengthOfLines) {
 // Rounded ends leave a tone its peak and its length, of which none is shorter than the square of the lobe:
 // 0.9028 of its half, by quadrature of (sin(pi x) / (pi x))^2 in other software.
 TEST(PulseEnergy, ARoundedToneKeepsItsPeakAndItsLength) {
-  constexpr double rounding_m = 0.014;
+  constexpr double rounding_m = 0.018;
   for (const double cell_m : {0.004, 0.0126, 0.02, 0.033, 0.13}) {
     const PhysicalModel model = tone_of(cell_m, rounding_m);
     const double length_m = std::max(cell_m, 0.9028 * rounding_m);
@@ -177,7 +177,7 @@ TEST(PulseEnergy, ARoundedToneKeepsItsPeakAndItsLength) {
 // The convolution of a box with the main lobe of a sinc, written down once more. The box that leaves a length
 // of 33.2 mm was found with other software.
 TEST(PulseResponse, ARoundedToneIsABoxBehindABand) {
-  constexpr double rounding_m = 0.014, box_m = 0.0398, dx = 1e-5, step_m = 0.0005;
+  constexpr double rounding_m = 0.018, box_m = 0.0417, dx = 1e-5, step_m = 0.0005;
   const auto amplitude = [](double x) {
     double sum = 0;
     for (double at = -rounding_m + dx / 2; at < rounding_m; at += dx) {

@@ -87,17 +87,20 @@ TEST(PulseLevels, APostKeepsItsLevelUnderAGeminisTones) {
 }
 
 TEST(PulseLevels, ABedGainsTheLengthOfAGeminisTone) {
-  const double usual_db = bed_db(gemini_with(11, 14), 9);
-  for (const std::uint16_t cycles : {18, 25, 32, 64, 89, 128, 255}) {
-    EXPECT_NEAR(bed_db(gemini_with(cycles, 14), 9) - usual_db, 10 * std::log10(cycles / 11.0), 0.5) << cycles;
+  const double usual_db = bed_db(gemini_with(18, 14), 9);
+  for (const std::uint16_t cycles : {16, 25, 32, 64, 89, 128, 255}) {
+    EXPECT_NEAR(bed_db(gemini_with(cycles, 14), 9) - usual_db, 10 * std::log10(cycles / 18.0), 0.2) << cycles;
   }
-  // Sharp ends: at any length. As the head is, no tone is shorter than its band lets it be, 12.6 mm.
-  const double sharp_db = bed_db(gemini_with(11, 14, 0), 9);
-  for (const std::uint16_t cycles : {4, 32, 128}) {
-    EXPECT_NEAR(bed_db(gemini_with(cycles, 14, 0), 9) - sharp_db, 10 * std::log10(cycles / 11.0), 0.5)
+  // No tone is shorter than the band of the head lets it be: 16.3 mm, 15.7 cycles.
+  for (const std::uint16_t cycles : {4, 11}) {
+    EXPECT_NEAR(bed_db(gemini_with(cycles, 14), 9) - usual_db, 10 * std::log10(15.7 / 18), 0.2) << cycles;
+  }
+  // With sharp ends the law holds at any length.
+  const double sharp_db = bed_db(gemini_with(18, 14, 0), 9);
+  for (const std::uint16_t cycles : {4, 11, 32, 128}) {
+    EXPECT_NEAR(bed_db(gemini_with(cycles, 14, 0), 9) - sharp_db, 10 * std::log10(cycles / 18.0), 0.2)
         << cycles;
   }
-  EXPECT_NEAR(bed_db(gemini_with(4, 14), 9), usual_db, 0.5);
 }
 
 TEST(PulseLevels, APostKeepsItsLevelUnderAPing360sTones) {
