@@ -11,7 +11,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int vector_lines = 8;                // a smeared step is added so many lines at a time
+constexpr int vector_lines = 4;                // a smeared step is added so many lines at a time
 constexpr float least_smear = 1e-3F;           // lines; below, a step is sharp
 constexpr double least_spread = 1e-3;          // lines; what is narrower is widened to this
 constexpr float widest_smear = 512.0F;         // lines; surfaces seen edge-on carry no energy
@@ -22,12 +22,13 @@ inline double rounded(double value) {
   return (value + round_to_integer) - round_to_integer;
 }
 
-/// Adds what a smeared step makes of four differences, the first of which is `first` lines after the one that
-/// add_smeared_step() counts from. A vector of four is what AVX2 has: one that is wider than the registers
-/// goes through the stack, operation by operation.
-[[gnu::always_inline]] inline void add_to_four_lines(double first, double from, double smear, double density,
-                                                     double* difference) {
-  using Lines = double __attribute__((vector_size(4 * sizeof(double))));
+/// Adds what a smeared step makes of four differences; most steps change three at most. The step begins
+/// `from` lines after the first of them; before that one, it has none. Written as a vector, for left to
+/// itself, the compiler makes several; of four, as AVX2 has: one that is wider than the registers goes
+/// through the stack, operation by operation.
+[[gnu::always_inline]] inline void add_smeared_step(double from, double smear, double density,
+                                                    double* difference) {
+  using Lines = double __attribute__((vector_size(vector_lines * sizeof(double))));
   const Lines none{};
   const Lines whole = none + density;
   const Lines to = none + smear;
@@ -38,7 +39,7 @@ inline double rounded(double value) {
     const Lines rising = begun < to ? begun : to;
     integral = rising * rising * half_over_smear + (begun - rising);
   };
-  const Lines y = Lines{0, 1, 2, 3} + first - from;
+  const Lines y = Lines{0, 1, 2, 3} - from;
   Lines before, here, after;
   integrate(y - 1, before);
   integrate(y, here);
@@ -50,14 +51,6 @@ inline double rounded(double value) {
   // Lines beyond the step hold all of it, free of rounding.
   changed += (y >= to ? whole : sum) - (y - 1 >= to ? whole : last);
   std::memcpy(difference, &changed, sizeof changed);
-}
-
-/// Adds what a smeared step makes of eight differences. The step begins `from` lines after the first of them;
-/// before that one, it has none. Written as vectors: left to itself, the compiler makes several of each.
-[[gnu::always_inline]] inline void add_smeared_step(double from, double smear, double density,
-                                                    double* difference) {
-  add_to_four_lines(0.0, from, smear, density, difference);
-  add_to_four_lines(4.0, from, smear, density, difference + 4);
 }
 
 }  // namespace
