@@ -107,7 +107,8 @@ class Ping360Survey final : public Survey {
                          device_.clamps_scan_to_stop);
     int before = asked_.scan.start_angle;
     int way_before = 0;
-    for (int ping = 0; ping < pings; ++ping) {
+    // One ping more says whether the last one ended a frame.
+    for (int ping = 0; ping <= pings; ++ping) {
       const int angle = sweep.angle();
       const int way = ping360::shortest_turn(before, angle);
       const bool turned = sweep.one_way() ? ping > 0 && angle == asked_.scan.start_angle
@@ -115,7 +116,9 @@ class Ping360Survey final : public Survey {
       if (turned) {
         first_pings.push_back(ping);
       }
-      angles_.push_back(angle);
+      if (ping < pings) {
+        angles_.push_back(angle);
+      }
       before = angle;
       way_before = way;
       sweep.advance();

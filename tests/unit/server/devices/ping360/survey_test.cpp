@@ -46,6 +46,7 @@ TEST(Ping360Survey, samples_and_times_are_those_of_clients_and_of_the_head) {
   EXPECT_EQ(all_round->natural_period(), std::chrono::nanoseconds(26'640'000 + 18'000'000 + 6'100'000));
   const std::vector<int> frames = all_round->frames(1000);
   EXPECT_THAT(frames, ElementsAre(0, 400, 800));
+  EXPECT_THAT(all_round->frames(800), ElementsAre(0, 400, 800)) << "no ping is wanted behind the last turn";
   const PingJob job = all_round->job(100);
   EXPECT_EQ(job.number, 100U);
   EXPECT_EQ(job.bins(), 1200);
@@ -61,6 +62,7 @@ TEST(Ping360Survey, a_sector_is_swept_to_and_fro) {
   EXPECT_NEAR(sector->sector().width_rad, 90.0 * degree, 1e-12);
   const std::vector<int> frames = sector->frames(32);
   EXPECT_THAT(frames, ElementsAre(0, 11, 21, 31)) << "the ends are not doubled";
+  EXPECT_THAT(sector->frames(31), ElementsAre(0, 11, 21, 31));
   EXPECT_NEAR(sector->job(0).bearing_rad, -45.0 * degree, 1e-12);
   EXPECT_NEAR(sector->job(10).bearing_rad, 45.0 * degree, 1e-12);
   EXPECT_NEAR(sector->job(11).bearing_rad, 36.0 * degree, 1e-12);
@@ -72,6 +74,7 @@ TEST(Ping360Survey, a_sector_of_more_than_half_a_turn_is_scanned_one_way) {
       survey(with(&SurveyOptions::step_deg, 9.0, with(&SurveyOptions::sector_deg, {-135.0, 135.0})));
   const std::vector<int> frames = sector->frames(70);
   EXPECT_THAT(frames, ElementsAre(0, 31, 62));
+  EXPECT_THAT(sector->frames(62), ElementsAre(0, 31, 62));
   EXPECT_NEAR(sector->job(30).bearing_rad, 135.0 * degree, 1e-12);
   EXPECT_NEAR(sector->job(31).bearing_rad, -135.0 * degree, 1e-12);
   EXPECT_NEAR(sector->sector().width_rad, 270.0 * degree, 1e-12);
