@@ -174,6 +174,10 @@ int replay(const CommandLine& arguments) {
   }
 }
 
+int exit_code_of(const ConfigError& error) {
+  return error.only_of_network() ? exit_network : exit_config;
+}
+
 /// @throws ConfigError, unless it goes out as JSON
 int check(const CommandLine& arguments) {
   const auto json_goes_out = [](const std::string& json) { fmt::print("{}\n", json); };
@@ -197,7 +201,7 @@ int check(const CommandLine& arguments) {
       throw;
     }
     json_goes_out(report_json(arguments.config, error));
-    return exit_config;
+    return exit_code_of(error);
   }
 }
 
@@ -223,7 +227,7 @@ int guarded(const Command& command) {
     for (const std::string& line : error.lines()) {
       print_error(line);
     }
-    return error.only_of_network() ? exit_network : exit_config;
+    return exit_code_of(error);
   } catch (const pose::TrajectoryError& error) {
     print_error(error.what());
     return exit_config;

@@ -230,22 +230,27 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
   section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0), "the least that it is");
 }
 
-/// Whether three angles are likely to be radians that stand for degrees: none is beyond a turn, and one is a
-/// multiple of 15 degrees, or of 10, to three digits, and no round number.
-bool look_like_radians(const glm::dvec3& angles) {
-  constexpr double pi = std::numbers::pi;
-  const auto near_multiple = [](double angle, double of, double tolerance) {
-    const double multiple = std::round(angle / of);
-    return multiple >= 1.0 && std::abs(angle - multiple * of) < tolerance * angle;
+/// Whether an angle is a multiple of 5 degrees in radians, of at least 10, as people write it: with two
+/// digits behind the point or more. What has one (0.5, 1.4) is more likely to be degrees.
+bool looks_like_radians(double angle) {
+  constexpr double step = std::numbers::pi / 36;
+  const double multiple = std::round(angle / step);
+  const double off = std::abs(angle - multiple * step);
+  const auto has_digits = [&](double scale) {
+    return std::abs(scale * angle - std::round(scale * angle)) < 1e-9;
   };
+  return multiple >= 2.0 && !has_digits(10.0) && off < (has_digits(100.0) ? 0.005 : 0.0006);
+}
+
+/// Whether three angles are likely to be radians that stand for degrees: none is beyond a turn.
+bool look_like_radians(const glm::dvec3& angles) {
   bool any = false;
   for (int axis = 0; axis < 3; ++axis) {
     const double angle = std::abs(angles[axis]);
-    if (angle > 2.001 * pi) {
+    if (angle > 2.001 * std::numbers::pi) {
       return false;
     }
-    const bool round = std::abs(2.0 * angle - std::round(2.0 * angle)) < 1e-9;
-    any = any || (!round && (near_multiple(angle, pi / 12, 0.003) || near_multiple(angle, pi / 18, 0.0015)));
+    any = any || looks_like_radians(angle);
   }
   return any;
 }

@@ -139,15 +139,19 @@ std::optional<ConfigProblem> Scanner::run() {
 }  // namespace
 
 std::optional<ConfigProblem> find_endless_quote(std::string_view text) {
-  const std::size_t last = text.rfind('\'');
-  if (last == npos) {
-    return std::nullopt;
+  for (const char quote : {'\'', '"'}) {
+    const std::size_t last = text.rfind(quote);
+    if (last == npos) {
+      continue;
+    }
+    const auto line = static_cast<int>(std::ranges::count(text.substr(0, last), '\n')) + 1;
+    const std::size_t column = last - (text.substr(0, last).rfind('\n') + 1) + 1;  // npos + 1 is 0
+    auto found = find_unclosed(text, line);
+    if (found && found->at.line == line && found->at.column == static_cast<int>(column)) {
+      return found;
+    }
   }
-  const auto line = static_cast<int>(std::ranges::count(text.substr(0, last), '\n')) + 1;
-  const std::size_t column = last - (text.substr(0, last).rfind('\n') + 1) + 1;  // npos + 1 is 0
-  auto found = find_unclosed(text, line);
-  const bool is_last = found && found->at.line == line && found->at.column == static_cast<int>(column);
-  return is_last ? found : std::nullopt;
+  return std::nullopt;
 }
 
 std::optional<ConfigProblem> find_unclosed(std::string_view text, int last_line) {

@@ -15,7 +15,7 @@ namespace sonard::server {
 /// @param last_line from 1; what begins behind it is no cause
 std::optional<ConfigProblem> find_unclosed(std::string_view text, int last_line);
 
-/// A single quote that opens a text which runs to the end of the file. yaml-cpp 0.7 takes that for valid.
+/// A quote that opens a text which runs to the end of the file. yaml-cpp 0.7 takes that for valid.
 std::optional<ConfigProblem> find_endless_quote(std::string_view text);
 
 }  // namespace sonard::server

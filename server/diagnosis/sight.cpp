@@ -19,7 +19,6 @@ namespace sonard::server {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr double thousand = 1000.0;
 
 bool contains(const BodyBox& box, const glm::dvec3& p, double margin_m = 0.0) {
   return glm::all(glm::lessThanEqual(box.min_m - margin_m, p)) &&
@@ -209,9 +208,19 @@ class LookAround {
     });
   }
 
-  bool is_a_thousand_times_off() const {
+  /// The unit that positions seem to be in, where they are not in metres: "centimetres or millimetres" if
+  /// either would put the sonar into the world. Empty: none would.
+  std::string wrong_unit() const {
     const glm::dvec3& p = sight_.T_world_sonar.position_m;
-    return glm::length(p) > thousand && !is_in_the_world(p) && is_in_the_world(p / thousand);
+    std::string unit;
+    const auto consider = [&](double per_m, const char* name) {
+      if (glm::length(p) > per_m && !is_in_the_world(p) && is_in_the_world(p / per_m)) {
+        unit += (unit.empty() ? "" : " or ") + std::string(name);
+      }
+    };
+    consider(100, "centimetres");
+    consider(1000, "millimetres");
+    return unit;
   }
 
   void note_surface() {
@@ -220,11 +229,12 @@ class LookAround {
       return;
     }
     const double above_m = p.z - *world_.water_surface_z_m;
+    const std::string unit = wrong_unit();
     const bool turned = is_in_the_world({p.x, p.y, -p.z}) && -p.z <= *world_.water_surface_z_m;
     add("above_surface", fmt::format("The sonar is {:.1f} m above the water surface, in the air{}.", above_m,
-                                     is_a_thousand_times_off() ? " (are positions in millimetres?)"
-                                     : turned                  ? " (is z down?)"
-                                                               : ""));
+                                     !unit.empty() ? fmt::format(" (are positions in {}?)", unit)
+                                     : turned      ? " (is z down?)"
+                                                   : ""));
   }
 
   /// A quaternion that comes with w first, read as x, y, z, w: that of a level vehicle leans by 180 degrees
@@ -352,10 +362,10 @@ class LookAround {
                       "world's origin from the poses, or give both in the same coordinates.",
                       text, looks_like_utm(p) ? "The position" : "The world",
                       looks_like_utm(p) ? "world does" : "position does"));
-    } else if (is_a_thousand_times_off()) {
-      add("millimetres", text +
-                             ". A thousandth of the position would be in the world: positions look like "
-                             "millimetres.");
+    } else if (const std::string unit = wrong_unit(); !unit.empty()) {
+      add("wrong_unit",
+          fmt::format("{}. Read as {} the position would be in the world: positions look like {}.", text,
+                      unit, unit));
     } else if (is_in_the_world({p.x, p.y, -p.z})) {
       add("z_down", text + ". With z the other way it would be in the world (is z down?).");
     } else {

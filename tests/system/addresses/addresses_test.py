@@ -98,7 +98,7 @@ class Machine(unittest.TestCase):
 
     def ended(self, command, *heads, **config):
         """(exit code, what it printed) of a program that does not go on."""
-        program = self.sonard(command, self.config(*heads, **config))
+        program = self.sonard(*command.split(), self.config(*heads, **config))
         return program.wait(START_S), program.output()
 
     def far_socket(self, port):
@@ -126,7 +126,7 @@ class Machine(unittest.TestCase):
 class AddressThatComesLate(Machine):
     def test_an_interface_without_an_address_is_said_and_the_service_tries_again(self):
         for head in (GEMINI, OCULUS):
-            for command in ("run", "check"):
+            for command in ("run", "check", "check --json"):
                 with self.subTest(head=head, command=command):
                     code, printed = self.ended(command, head)
                     self.assertEqual(code, EXIT_NETWORK, printed)

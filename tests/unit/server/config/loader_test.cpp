@@ -379,11 +379,13 @@ TEST_F(Loader, warns_of_radians_that_are_given_for_degrees) {
               ElementsAre(HasSubstr("heads[0].mount.rpy_deg: 0, 1.57, 0 look like radians (they are read as "
                                     "degrees; 0, 89.95, 0 degrees are the same turn)")));
   for (const char* rpy :
-       {"[0, 0.349, 0]", "[3.1416, 0, 0]", "[0, 0, -0.7854]", "[0, 0.5236, 3.14159]", "[0, 0, 4.712]"}) {
+       {"[0, 0.349, 0]", "[3.1416, 0, 0]", "[0, 0, -0.7854]", "[0, 0.5236, 3.14159]", "[0, 0, 4.712]",
+        "[0, 0.35, 0]", "[0, 0.17, 0]", "[0, 0.52, 0]", "[0, 0.79, 0]", "[0.1, 0.35, -0.2]"}) {
     EXPECT_THAT(warnings(rpy), ElementsAre(HasSubstr("look like radians"))) << rpy;
   }
-  for (const char* rpy : {"[0, 20, 0]", "[0, 1, 0]", "[0, 1.5, 0]", "[0, 2, 180]", "[0, 3.5, 0]", "[0, 5, 0]",
-                          "[0.5, 6, 0]", "[0, 1.2, 0]", "[0, 1.57, 90]", "[0, 0, 0]"}) {
+  for (const char* rpy :
+       {"[0, 20, 0]", "[0, 1, 0]", "[0, 1.5, 0]", "[0, 2, 180]", "[0, 3.5, 0]", "[0, 5, 0]", "[0.5, 6, 0]",
+        "[0, 1.2, 0]", "[0, 1.4, 0]", "[0, 0.25, 0]", "[0, 1.57, 90]", "[0, 0, 0]"}) {
     EXPECT_THAT(warnings(rpy), IsEmpty()) << rpy;
   }
   std::string text = minimal_config;
@@ -759,6 +761,11 @@ TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
               ElementsAre("config.yaml:1:15: " + quote + "' at its end)"));
   EXPECT_THAT(complaints("a: 'it''s'\nworld:\n  - \"x\n  - \"y\"\n"),
               ElementsAre("config.yaml:3:5: " + quote + "\" at its end)"));
+  // To the end of the file, which the parser takes for a text.
+  EXPECT_THAT(complaints("world: {file: w.sdf}\nengine: \"cpu\nposes: {initial: {}}\n"),
+              ElementsAre("config.yaml:2:9: " + quote + "\" at its end)"));
+  EXPECT_THAT(complaints("heads:\n  - name: \"bow\n    type: micron\n"),
+              ElementsAre("config.yaml:2:11: " + quote + "\" at its end)"));
   const std::string bracket = "the bracket that begins here is not closed (expected ";
   EXPECT_THAT(
       complaints("world: {file: w}\nposes:\n  initial:\n    position_m: [1, 2, 3\n    rpy_deg: [0, 0, 0]\n"),

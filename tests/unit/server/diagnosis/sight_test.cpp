@@ -85,11 +85,14 @@ TEST(LookAround, SuspectsThatZIsDown) {
   EXPECT_EQ(found[0].code, "z_down");
 }
 
-TEST(LookAround, SuspectsMillimetres) {
-  const auto found = look(pier(), {}, at({7000, 0, -20000}));
+TEST(LookAround, SuspectsMillimetresAndCentimetres) {
+  auto found = look(pier(), {}, at({7000, 0, -20000}));
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].code, "millimetres");
+  EXPECT_EQ(found[0].code, "wrong_unit");
   EXPECT_NE(found[0].text.find("positions look like millimetres"), std::string::npos);
+  found = look(pier(), {}, at({700, 0, -2000}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NE(found[0].text.find("positions look like centimetres"), std::string::npos);
 }
 
 TEST(LookAround, SuspectsAQuaternionWithWFirst) {
