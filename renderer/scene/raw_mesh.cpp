@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 
 #include "renderer/scene/blob.hpp"
+#include "renderer/scene/printable.hpp"
 
 namespace sonard::render {
 namespace {
@@ -69,7 +70,7 @@ RawMesh raw_mesh_of(const std::string& bytes) {
   const std::uint64_t parts = reader.get_number();
   for (std::uint64_t i = 0; i < parts; ++i) {
     RawPart& part = mesh.parts.emplace_back();
-    part.material_name = reader.get_string();
+    part.material_name = printable(reader.get_string());
     part.positions = reader.get_vector<glm::dvec3>();
     part.normals = reader.get_vector<glm::vec3>();
     part.texcoords = reader.get_vector<glm::vec2>();
@@ -77,7 +78,7 @@ RawMesh raw_mesh_of(const std::string& bytes) {
   }
   const std::uint64_t names = reader.get_number();
   for (std::uint64_t i = 0; i < names; ++i) {
-    mesh.names.push_back(reader.get_string());
+    mesh.names.push_back(printable(reader.get_string()));
   }
   return mesh;
 }

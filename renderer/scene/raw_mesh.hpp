@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,14 @@
 #include <glm/vec3.hpp>
 
 namespace sonard::render {
+
+/// What a reader is to read.
+struct MeshSource {
+  std::filesystem::path file;
+  std::string submesh{};  ///< only the parts of this name; empty: all
+  /// The files that `file` names must lie below one of these, or in its own folder or below.
+  std::vector<std::filesystem::path> folders{};
+};
 
 /// The triangles of one material; attribute arrays are empty or as long as `positions`.
 struct RawPart {
@@ -31,6 +40,7 @@ struct RawMesh {
 };
 
 std::string to_bytes(const RawMesh& mesh);
+/// Names are made printable().
 /// @throws std::runtime_error when the bytes are damaged.
 RawMesh raw_mesh_of(const std::string& bytes);
 

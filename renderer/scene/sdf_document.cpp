@@ -6,12 +6,14 @@
 #include <charconv>
 #include <map>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/local_file.hpp"
+#include "renderer/scene/printable.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -54,6 +56,13 @@ std::string with_own_prefix(const char* name, const tinyxml2::XMLElement& elemen
     }
   }
   return std::string(given);
+}
+
+/// A break of a line means no more than a blank in SDF.
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  return printable(text);
 }
 
 /// The last part of a URI that names a model: "post" of "model://post/model.sdf".
@@ -141,7 +150,7 @@ const SdfReader::Document& SdfReader::open(const fs::path& file) {
   if (document.root == nullptr) {
     throw WorldError(fmt::format("{}: holds no element (expected <sdf version=\"1.9\">)", file.string()));
   }
-  const std::string_view root = document.root->Name();
+  const std::string root = one_line(document.root->Name());
   if (root != "sdf") {
     throw WorldError(fmt::format("{}:{}: <{}> is no SDF (expected <sdf version=\"1.9\">){}", file.string(),
                                  document.root->GetLineNum(), root,
@@ -159,10 +168,11 @@ void SdfReader::check_version(const Document& document) {
   if (given == nullptr) {
     warnings_.push_back(fmt::format("{}: <sdf> has no version: it is read as 1.12", place()));
   } else if (version_of(given) < std::pair{1, 3}) {
-    throw WorldError(fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12)", place(), given));
+    throw WorldError(
+        fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12)", place(), one_line(given)));
   } else if (version_of(given) > std::pair{1, 12}) {
-    warnings_.push_back(
-        fmt::format("{}: SDF version {} is read as 1.12, the newest that is known", place(), given));
+    warnings_.push_back(fmt::format("{}: SDF version {} is read as 1.12, the newest that is known", place(),
+                                    one_line(given)));
   }
 }
 
@@ -174,12 +184,13 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
                                  around_.front().string(), most_elements));
   }
   auto element = std::make_unique<SdfElement>();
-  element->name = with_own_prefix(from.Name(), from, parent != nullptr);
+  element->name = one_line(with_own_prefix(from.Name(), from, parent != nullptr));
   element->parent = parent;
   element->file = file;
   element->line = from.GetLineNum();
   for (const auto* given = from.FirstAttribute(); given != nullptr; given = given->Next()) {
-    element->attributes.emplace_back(with_own_prefix(given->Name(), from, false), given->Value());
+    element->attributes.emplace_back(one_line(with_own_prefix(given->Name(), from, false)),
+                                     one_line(given->Value()));
   }
   const bool may_include = element->name == "world" || element->name == "model" || element->name == "sdf";
   for (const auto* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
@@ -194,7 +205,7 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
       }
     }
   }
-  element->text = trimmed(element->text);
+  element->text = trimmed(one_line(std::move(element->text)));
   return element;
 }
 
@@ -202,7 +213,10 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
 fs::path model_file_in(const fs::path& folder) {
   tinyxml2::XMLDocument manifest;
   fs::path newest = folder / "model.sdf";
-  if (manifest.LoadFile((folder / "model.config").c_str()) != tinyxml2::XML_SUCCESS ||
+  const fs::path manifest_file = folder / "model.config";
+  std::error_code error;
+  if (!fs::is_regular_file(manifest_file, error) ||
+      manifest.LoadFile(manifest_file.c_str()) != tinyxml2::XML_SUCCESS ||
       manifest.RootElement() == nullptr) {
     return newest;
   }
@@ -213,7 +227,7 @@ fs::path model_file_in(const fs::path& folder) {
     const std::pair<int, int> its = version_of(version == nullptr ? "" : version);
     if (sdf->GetText() != nullptr && its > newest_version) {
       newest_version = its;
-      newest = folder / trimmed(sdf->GetText());
+      newest = folder / trimmed(one_line(sdf->GetText()));
     }
   }
   return newest;
@@ -225,6 +239,7 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   const fs::path found = resolver_.resolve(uri == nullptr ? "" : uri->text, include.folder());
   fs::path file = found;
   if (fs::is_directory(found)) {
+    resolver_.check_place(uri->text, fs::weakly_canonical(found / "model.config"), found);
     file = model_file_in(found);
     resolver_.check_place(uri->text, file, found);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names that hold "::", places that complaints name, prefixes of XML, and warnings that come once for each
 // kind.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -263,6 +264,48 @@ TEST(GroupedWarnings, AreOneLineForEachKind) {
           testing::AllOf(HasSubstr("w.sdf:4: laser_retro is far above the usual 0 to 2.5"),
                          HasSubstr("(10): "), HasSubstr("4000 (m0::l::r), 4000 (m1::l::r), "),
                          EndsWith(", ..."))));
+}
+
+bool is_one_printable_line(const std::string& line) {
+  return std::ranges::none_of(line,
+                              [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\x7f'; }) &&
+         line.find("\xC2\x9B") == std::string::npos;
+}
+
+const std::string forged = "m&#27;[2J&#10;2026-11-28 12:00:00 [error] forged&#155;31m";
+
+// A name of a body goes into the log, the page and the status.
+TEST(NamesOfAWorld, HoldNoLineOfTheirOwnAndSteerNoTerminal) {
+  const World world = load_text("<model name=\"" + forged + "\"><link name=\"l\">" + small_box +
+                                "</link></model>\n<light name=\"" + forged + "\"/>");
+  EXPECT_EQ(world.bodies.at(0).name, "m\\x1b[2J 2026-11-28 12:00:00 [error] forged\\x9b31m");
+  for (const std::string& line : world.left_out) {
+    EXPECT_TRUE(is_one_printable_line(line)) << line;
+  }
+}
+
+TEST(NamesOfAWorld, AreOneLineOfAComplaint) {
+  const test::TempFolder folder;
+  folder.write("hull.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl st\x1b[2Jeel\nf 1 2 3\n");
+  folder.write("models/wreck/model.config", "<model><sdf>gone&#27;[2J\nerror: forged</sdf></model>");
+  const auto in_model = [](const std::string& name, const std::string& content) {
+    return "<model name=\"" + name + "\"><link name=\"l\"><visual name=\"" + forged + "\">" + content +
+           "</visual></link></model>\n";
+  };
+  const std::string mesh = "<geometry><mesh><uri>hull.obj</uri></mesh></geometry>";
+  const World world = load_world(folder.write("w.sdf", in_a_world(in_model("a", mesh))), {});
+  EXPECT_THAT(world.warnings, Contains(HasSubstr("'st\\x1b[2Jeel'")));
+  std::vector<std::string> lines = world.warnings;
+  for (const std::string& line : complaints(folder.write(
+           "w.sdf", in_a_world(in_model("a", "<geometry><mesh><uri>no&#27;\nfile</uri></mesh></geometry>") +
+                               in_model(forged, "<sonard:material>" + forged + "</sonard:material>" + mesh) +
+                               "<include><uri>model://wreck</uri></include>")))) {
+    lines.push_back(line);
+  }
+  EXPECT_GE(lines.size(), 4U);
+  for (const std::string& line : lines) {
+    EXPECT_TRUE(is_one_printable_line(line)) << line;
+  }
 }
 
 }  // namespace
