@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/assimp_mesh_reader.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <assimp/ColladaMetaData.h>
@@ -13,31 +16,61 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <fmt/format.h>
+
 #include "renderer/scene/local_file.hpp"
 
 namespace sonard::render {
 namespace {
 
-/// Lets Assimp open files in one folder and below: a .gltf may name any file as its buffer.
-class OneFolderOnly : public Assimp::DefaultIOSystem {
+/// Lets Assimp open the files that a world may name: regular ones below its folders. The first other one that
+/// a mesh names is kept as a sentence.
+class WorldFiles : public Assimp::DefaultIOSystem {
  public:
-  explicit OneFolderOnly(const std::filesystem::path& folder)
-      : folder_(std::filesystem::weakly_canonical(folder)) {}
+  WorldFiles(const MeshSource& source, std::string& refusal) : folders_(source.folders), refusal_(refusal) {
+    folders_.push_back(std::filesystem::weakly_canonical(source.file.parent_path()));
+  }
 
-  bool Exists(const char* name) const override { return is_inside(name) && DefaultIOSystem::Exists(name); }
+  bool Exists(const char* name) const override { return !permitted(name).empty(); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return is_inside(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+    const std::filesystem::path path = permitted(name);
+    return path.empty() ? nullptr : DefaultIOSystem::Open(path.c_str(), mode);
   }
 
  private:
-  bool is_inside(const char* name) const {
+  /// The file of this name; empty if there is none, or if it may not be read.
+  std::filesystem::path permitted(const std::string& name) const {
     std::error_code error;
-    const std::filesystem::path path =
-        std::filesystem::weakly_canonical(name, error).lexically_relative(folder_);
-    return !error && !path.empty() && *path.begin() != "..";
+    std::filesystem::path path = std::filesystem::canonical(name, error);
+    if (const std::size_t absolute = name.find("//"); error && absolute != std::string::npos) {
+      path =
+          std::filesystem::canonical(name.substr(absolute + 1), error);  // Assimp puts the folder before it
+    }
+    if (error || std::filesystem::is_directory(path, error)) {
+      return {};
+    }
+    if (std::ranges::none_of(folders_, [&](const auto& folder) { return lies_below(path, folder); })) {
+      refuse(
+          fmt::format("it names {}, outside of the folders of this world and its models; name its folder in "
+                      "GZ_SIM_RESOURCE_PATH if it may be read",
+                      path.string()));
+      return {};
+    }
+    if (!std::filesystem::is_regular_file(path, error)) {
+      refuse(fmt::format("it names {}, which is not a regular file", path.string()));
+      return {};
+    }
+    return path;
   }
 
-  std::filesystem::path folder_;
+  void refuse(std::string why) const {
+    if (refusal_.empty()) {
+      refusal_ = std::move(why);
+    }
+  }
+
+  std::vector<std::filesystem::path> folders_;
+  std::string& refusal_;
 };
 
 glm::dmat4 matrix_of(const aiMatrix4x4& m) {
@@ -168,9 +201,10 @@ class Collector {
 
 }  // namespace
 
-RawMesh read_with_assimp(const std::filesystem::path& file, const std::string& submesh) {
+RawMesh read_with_assimp(const MeshSource& source) {
+  std::string refusal;
   Assimp::Importer importer;
-  importer.SetIOHandler(new OneFolderOnly(file.parent_path()));  // the importer owns it
+  importer.SetIOHandler(new WorldFiles(source, refusal));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // no stand-ins for a scene without meshes
@@ -178,14 +212,18 @@ RawMesh read_with_assimp(const std::filesystem::path& file, const std::string& s
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+  const aiScene* scene =
+      importer.ReadFile(source.file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+  if (!refusal.empty()) {
+    throw std::runtime_error(refusal);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr) {
     throw std::runtime_error(importer.GetErrorString());
   }
   const aiNode& root = *scene->mRootNode;
   for (const SubmeshRule rule : {SubmeshRule::node_name, SubmeshRule::own_names, SubmeshRule::names_above}) {
-    Collector collector(*scene, submesh, rule);
-    collector.add(root, root_transform(*scene, lower_extension(file)), "", false);
+    Collector collector(*scene, source.submesh, rule);
+    collector.add(root, root_transform(*scene, lower_extension(source.file)), "", false);
     RawMesh mesh = collector.take();
     if (!mesh.parts.empty() || rule == SubmeshRule::names_above) {
       return mesh;

@@ -3,20 +3,18 @@
 // files.
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "renderer/scene/raw_mesh.hpp"
 
 namespace sonard::render {
 
-/// Reads `file`, and files that it names (buffers of a .gltf, materials of an .obj) if they lie in its folder
-/// or below. All transforms inside the file are applied. Axes and unit stay those of the file; only an FBX
-/// becomes metres with z up. Points, lines, skeletons and poses of animations are left out.
-/// @param submesh empty: all. Otherwise, as in Gazebo, the meshes of the nodes of that name, without those of
-/// named nodes below; if there are none, the meshes of that name or with a node of that id; if there are
-/// none, all below such a node.
-/// @throws std::runtime_error if Assimp cannot read the file.
-RawMesh read_with_assimp(const std::filesystem::path& file, const std::string& submesh);
+/// Reads the file, and files that it names (buffers of a .gltf, materials of an .obj) if they lie in the
+/// folders of `source`. All transforms inside the file are applied. Axes and unit stay those of the file;
+/// only an FBX becomes metres with z up. Points, lines, skeletons and poses of animations are left out. With
+/// a submesh are taken, as in Gazebo, the meshes of the nodes of that name, without those of named nodes
+/// below; if there are none, the meshes of that name or with a node of that id; if there are none, all below
+/// such a node.
+/// @throws std::runtime_error if Assimp cannot read the file, or if it names an existing one outside of the
+/// folders or one that is not regular.
+RawMesh read_with_assimp(const MeshSource& source);
 
 }  // namespace sonard::render

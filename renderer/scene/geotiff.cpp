@@ -68,8 +68,8 @@ const UtmZones* utm_of(int epsg) {
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-/// The values of a tag that libtiff has no name for. How it hands them out depends on whether GDAL, in the
-/// same process, has told it of the tag.
+/// The values of a tag that libtiff has no name for. How it hands them out depends on whether
+/// another library of the process has told it of the tag.
 template <typename T>
 std::span<const T> values_of(const Tiff& tiff, ttag_t tag) {
   const TIFFField* const field = TIFFFindField(tiff.get(), tag, TIFF_ANY);

@@ -11,13 +11,15 @@
 
 #include <fmt/format.h>
 #include <osg/Image>
-#include <osg/Shape>
 #include <osgDB/Options>
 #include <osgDB/Registry>
 
 #include "renderer/scene/blob.hpp"
+#include "renderer/scene/complete_file.hpp"
 #include "renderer/scene/isolated.hpp"
 #include "renderer/scene/local_file.hpp"
+#include "renderer/scene/osg_plugin.hpp"
+#include "renderer/scene/tiff_elevations.hpp"
 
 namespace sonard::render {
 namespace {
@@ -54,6 +56,7 @@ std::string packed(int width_px, int height_px, int channels, const std::vector<
 
 /// Runs inside run_isolated().
 std::string decode(const std::filesystem::path& file) {
+  require_complete(file);
   const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
   osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readImage(file.string(), options);
   const osg::ref_ptr<osg::Image> image = result.getImage();
@@ -84,29 +87,14 @@ std::string decode(const std::filesystem::path& file) {
   return packed(image->s(), image->t(), channels, value);
 }
 
-/// A height for each pixel, row by row from the bottom; NaN: none. GDAL knows what sample formats of TIFF
-/// mean; the reader of pictures takes signed numbers for unsigned ones. Runs inside run_isolated().
+/// Runs inside run_isolated().
 std::string decode_elevations(const std::filesystem::path& file) {
-  const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
-  osgDB::ReaderWriter::ReadResult result =
-      osgDB::Registry::instance()->readHeightField(file.string() + ".gdal", options);
-  const osg::ref_ptr<osg::HeightField> field = result.getHeightField();
-  if (!field) {
-    throw std::runtime_error("the map is damaged, or OpenSceneGraph has no plugin for GDAL here");
-  }
-  const auto width = static_cast<int>(field->getNumColumns()), height = static_cast<int>(field->getNumRows());
-  if (width > max_side_px || height > max_side_px) {
-    throw std::runtime_error(
-        fmt::format("{} x {} pixels is more than {} a side", width, height, max_side_px));
-  }
+  const TiffElevations elevations = read_tiff_elevations(file, max_side_px);
   const GeoTiffTags tags = read_geotiff_tags(file);
-  const auto no_data = static_cast<float>(tags.no_data.value_or(NAN));
-  std::vector<float> elevation_m(field->getFloatArray()->begin(), field->getFloatArray()->end());
-  std::ranges::replace(elevation_m, no_data, NAN);
   BlobWriter writer;
-  writer.put(static_cast<std::uint64_t>(width));
-  writer.put(static_cast<std::uint64_t>(height));
-  writer.put(elevation_m);
+  writer.put(static_cast<std::uint64_t>(elevations.width_px));
+  writer.put(static_cast<std::uint64_t>(elevations.height_px));
+  writer.put(elevations.value_m);
   writer.put(
       std::vector<Georeference>(tags.georeference ? 1 : 0, tags.georeference.value_or(Georeference())));
   writer.put(tags.problem);
@@ -119,7 +107,8 @@ auto read_isolated(const std::filesystem::path& file, std::string (*decoder)(con
                    const Unpack& unpack) {
   require_local_file(file, image_extensions, "image");
   try {
-    const IsolatedResult result = run_isolated([&] { return decoder(file); }, reading_limit_s(file));
+    const IsolatedResult result = run_isolated([&] { return decoder(file); }, reader_jail(file, {file}),
+                                               [&] { load_osg_plugin(file); });
     BlobReader reader(result.bytes);
     return unpack(reader);
   } catch (const std::runtime_error& error) {

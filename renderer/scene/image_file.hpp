@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of worlds: height maps and normal maps. Local PNG, JPEG, TIFF, BMP, TGA or PNM files, through osgDB.
+// Images of worlds: height maps and normal maps. Local PNG, JPEG, BMP, TGA or PNM files, through
+// osgDB, and TIFF files.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +29,7 @@ struct GreyImage {
   }
 };
 
-/// A map of elevations: a TIFF of any sample format that GDAL knows.
+/// A map of elevations: a TIFF of integers or reals.
 struct ElevationMap {
   GreyImage picture;  ///< the lowest elevation is 0, the highest 65535
   double lowest_m = 0.0;

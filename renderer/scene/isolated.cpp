@@ -2,21 +2,25 @@
 #include "renderer/scene/isolated.hpp"
 
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "renderer/scene/printable.hpp"
 
 namespace sonard::render {
 namespace {
@@ -83,31 +87,29 @@ class MemoryFile {
   int fd_;
 };
 
-void confine_child(int log_fd, unsigned int processor_limit_s) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+[[noreturn]] void run_child(const std::function<std::string()>& work, const ReaderJail& jail,
+                            const std::function<void()>& prepare, const MemoryFile& result, int log_fd) {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  const rlimit processor{processor_limit_s, processor_limit_s};
-  ::setrlimit(RLIMIT_CPU, &processor);
-  // Work that waits for something uses no processor time; a busy machine gives a share of one.
-  ::alarm(60 + 20 * processor_limit_s);
   ::dup2(log_fd, STDOUT_FILENO);
   ::dup2(log_fd, STDERR_FILENO);
-}
-
-[[noreturn]] void run_child(const std::function<std::string()>& work, const MemoryFile& result, int log_fd,
-                            unsigned int processor_limit_s) {
-  confine_child(log_fd, processor_limit_s);
   bool stored = false;
-  try {
-    const std::string bytes = work();
-    const char tag = static_cast<char>(Outcome::returned);
+  const auto store = [&](Outcome outcome, std::string_view bytes) {
+    const char tag = static_cast<char>(outcome);
     stored = result.append(&tag, 1) && result.append(bytes.data(), bytes.size());
+  };
+  try {
+    if (prepare) {
+      prepare();
+    }
+    enter_reader_jail(jail, std::array{result.fd()});
+    store(Outcome::returned, work());
+  } catch (const std::bad_alloc&) {
+    store(Outcome::threw,
+          fmt::format("reading it takes more than {} MiB of memory, the most that a reader gets",
+                      jail.memory_limit_bytes >> 20U));
   } catch (const std::exception& error) {
-    const char tag = static_cast<char>(Outcome::threw);
-    stored = result.append(&tag, 1) && result.append(error.what(), std::strlen(error.what()));
+    store(Outcome::threw, error.what());
   } catch (...) {
     stored = false;
   }
@@ -129,7 +131,8 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
-IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned int processor_limit_s) {
+IsolatedResult run_isolated(const std::function<std::string()>& work, const ReaderJail& jail,
+                            const std::function<void()>& prepare) {
   const MemoryFile result("sonard-result");
   const MemoryFile log("sonard-log");
   // Buffered text would otherwise be written twice.
@@ -140,7 +143,7 @@ IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned i
     throw_failed("fork");
   }
   if (child == 0) {
-    run_child(work, result, log.fd(), processor_limit_s);
+    run_child(work, jail, prepare, result, log.fd());
   }
   const int status = wait_for(child);
   if (WIFSIGNALED(status)) {
@@ -158,7 +161,7 @@ IsolatedResult run_isolated(const std::function<std::string()>& work, unsigned i
   const auto outcome = static_cast<Outcome>(bytes.front());
   bytes.erase(0, 1);
   if (outcome == Outcome::threw) {
-    throw IsolatedFailure(bytes);
+    throw IsolatedFailure(printable(bytes));
   }
   return {std::move(bytes), log.content()};
 }

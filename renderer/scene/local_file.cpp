@@ -11,12 +11,18 @@
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
+
+bool lies_below(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto differs = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first;
+  return !folder.empty() && differs == folder.end();
+}
 
 std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -28,13 +34,19 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-unsigned int reading_limit_s(const std::filesystem::path& file) {
+ReaderJail reader_jail(const std::filesystem::path& file, std::vector<std::filesystem::path> readable) {
   constexpr std::uintmax_t base_s = 3;
   constexpr std::uintmax_t bytes_per_s = 1'000'000;
   constexpr std::uintmax_t longest_s = 3600;
+  constexpr std::uint64_t memory_bytes_per_byte = 40;
   std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  return static_cast<unsigned int>(std::min(longest_s, base_s + (error ? 0 : size / bytes_per_s)));
+  const std::uintmax_t found = std::filesystem::file_size(file, error);
+  const std::uintmax_t size = error ? 0 : found;
+  ReaderJail jail;
+  jail.readable = std::move(readable);
+  jail.processor_limit_s = static_cast<unsigned int>(std::min(longest_s, base_s + size / bytes_per_s));
+  jail.memory_limit_bytes += memory_bytes_per_byte * size;
+  return jail;
 }
 
 std::string head_of(const std::filesystem::path& file, std::size_t limit) {

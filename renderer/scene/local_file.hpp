@@ -7,6 +7,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "renderer/scene/reader_jail.hpp"
 
 namespace sonard::render {
 
@@ -19,12 +22,16 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
 /// @throws WorldError naming the file and the system's reason, if this process may not read it.
 void require_readable(const std::filesystem::path& file);
 
-/// Processor time that reading the file may take: the plugins need about 0.05 s for a megabyte, and on some
-/// damaged files they never end.
-unsigned int reading_limit_s(const std::filesystem::path& file);
+/// The jail for reading a file: the libraries need about 0.05 s and 20 bytes of memory for each megabyte and
+/// byte of a mesh, and on some damaged files they never end.
+/// @param readable the file, or all that it may name
+ReaderJail reader_jail(const std::filesystem::path& file, std::vector<std::filesystem::path> readable);
 
 /// Up to `limit` bytes from the start of a file.
 std::string head_of(const std::filesystem::path& file, std::size_t limit);
+
+/// Whether `path` is `folder` or below it, by their names alone. Both absolute.
+bool lies_below(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 /// Extension in lower case without the dot.
 std::string lower_extension(const std::filesystem::path& file);

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <limits>
-#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -26,35 +24,6 @@ constexpr std::size_t many_triangles = 2'000'000;
 constexpr std::size_t max_triangles = 50'000'000;
 /// Beyond this a float coordinate is coarser than 4 mm: half a range cell of a high-frequency sonar.
 constexpr double far_from_origin_m = 32768.0;
-
-/// OpenSceneGraph reads "nan" and "inf" in a text file as 0.
-void check_text_ply(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  bool is_text = false;
-  bool in_header = true;
-  std::size_t number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (in_header) {
-      is_text = is_text || line.starts_with("format ascii");
-      in_header = !line.starts_with("end_header");
-      if (!in_header && !is_text) {
-        return;
-      }
-    } else if (line.find_first_of("nNiI") != std::string::npos) {
-      throw WorldError(fmt::format("line {}: '{}' is not made of finite numbers", number,
-                                   line.substr(0, std::min<std::size_t>(line.find_first_of("\r\n"), 60))));
-    }
-  }
-}
-
-/// OpenSceneGraph invents smooth normals, over sharp edges too, when the file has none.
-bool ply_has_normals(const std::filesystem::path& file) {
-  const std::string head = head_of(file, 16384);
-  const std::size_t end = head.find("end_header");
-  static const std::regex property(R"(property\s+\w+\s+nx\b)");
-  return std::regex_search(head.substr(0, end), property);
-}
 
 /// Middle of the box around all vertices that triangles use and that are numbers.
 glm::dvec3 box_centre(const RawMesh& raw) {
@@ -125,20 +94,12 @@ void require_parts(const RawMesh& raw, const MeshFileRequest& request) {
 MeshFile load_checked(const MeshFileRequest& request) {
   MeshFile loaded;
   const std::string extension = lower_extension(request.file);
-  const bool is_ply = extension == "ply";
-  if (is_ply) {
-    check_text_ply(request.file);
-  }
   // As in Gazebo, the unit is applied and the axes are not.
   const ColladaAsset asset = extension == "dae" ? read_collada_asset(request.file) : ColladaAsset();
   loaded.up_axis = asset.up_axis == "Z_UP" ? "" : asset.up_axis;
-  RawMesh raw = read_mesh(mesh_readers(request.file), request.file, request.submesh, loaded.warnings);
+  RawMesh raw = read_mesh(mesh_readers(request.file), {request.file, request.submesh, request.folders},
+                          loaded.warnings);
   require_parts(raw, request);
-  if (is_ply && !ply_has_normals(request.file)) {
-    for (RawPart& part : raw.parts) {
-      part.normals.clear();
-    }
-  }
 
   const glm::dvec3 origin = request.center_submesh ? box_centre(raw) : glm::dvec3(0.0);
   std::size_t triangles = 0;

@@ -20,6 +20,7 @@ struct MeshFileRequest {
   bool center_submesh = false;  ///< moves the centre of the bounding box to the origin, before scaling
   glm::dvec3 scale{1.0};        ///< negative values mirror
   bool tangents = false;        ///< for a normal map, where the mesh has texture coordinates
+  std::vector<std::filesystem::path> folders{};  ///< where files that it names may lie, beside its own folder
 
   bool operator==(const MeshFileRequest&) const = default;
 };

@@ -6,21 +6,30 @@
 #include <iterator>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "renderer/scene/assimp_mesh_reader.hpp"
+#include "renderer/scene/complete_file.hpp"
 #include "renderer/scene/isolated.hpp"
 #include "renderer/scene/local_file.hpp"
 #include "renderer/scene/osg_mesh_reader.hpp"
+#include "renderer/scene/osg_plugin.hpp"
+#include "renderer/scene/ply_reader.hpp"
 #include "renderer/scene/stl_reader.hpp"
 
 namespace sonard::render {
 namespace {
 
 constexpr MeshReader assimp{"Assimp", read_with_assimp};
-constexpr MeshReader osg{"OpenSceneGraph", read_with_osg};
-constexpr MeshReader stl{"STL", read_stl};
+constexpr MeshReader osg{"OpenSceneGraph",
+                         [](const MeshSource& source) { return read_with_osg(source.file, source.submesh); },
+                         load_osg_plugin};
+constexpr MeshReader ply{"PLY",
+                         [](const MeshSource& source) { return read_ply(source.file, source.submesh); }};
+constexpr MeshReader stl{"STL",
+                         [](const MeshSource& source) { return read_stl(source.file, source.submesh); }};
 
 struct Format {
   std::string_view extension;
@@ -28,11 +37,10 @@ struct Format {
   const MeshReader* second = nullptr;
 };
 
-/// Assimp is no reader of PLY: it takes the first bytes of a binary one for the end of its header if they
-/// look like one, and does not end on some texts that are cut short.
-constexpr std::array<Format, 11> formats{{{"obj", &assimp, &osg},
+/// Assimp reads every OBJ that OpenSceneGraph does, and OpenSceneGraph opens whatever its mtllib names.
+constexpr std::array<Format, 11> formats{{{"obj", &assimp},
                                           {"stl", &stl},
-                                          {"ply", &osg},
+                                          {"ply", &ply},
                                           {"dae", &assimp, &osg},
                                           {"glb", &assimp},
                                           {"gltf", &assimp},
@@ -41,6 +49,23 @@ constexpr std::array<Format, 11> formats{{{"obj", &assimp, &osg},
                                           {"osgb", &osg},
                                           {"ive", &osg},
                                           {"3ds", &assimp, &osg}}};
+
+RawMesh read_isolated(const MeshReader& reader, const MeshSource& source) {
+  std::vector<std::filesystem::path> readable = source.folders;
+  readable.push_back(source.file.parent_path());
+  const IsolatedResult result = run_isolated(
+      [&] {
+        require_complete(source.file);
+        return to_bytes(reader.read(source));
+      },
+      reader_jail(source.file, std::move(readable)),
+      [&] {
+        if (reader.prepare != nullptr) {
+          reader.prepare(source.file);
+        }
+      });
+  return raw_mesh_of(result.bytes);
+}
 
 }  // namespace
 
@@ -66,18 +91,17 @@ std::vector<MeshReader> mesh_readers(const std::filesystem::path& file) {
   return readers;
 }
 
-RawMesh read_mesh(std::span<const MeshReader> readers, const std::filesystem::path& file,
-                  const std::string& submesh, std::vector<std::string>& warnings) {
+RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
+                  std::vector<std::string>& warnings) {
   std::vector<std::string> failures;
   std::optional<RawMesh> without_triangles;
   for (const MeshReader& reader : readers) {
     try {
-      RawMesh mesh = raw_mesh_of(
-          run_isolated([&] { return to_bytes(reader.read(file, submesh)); }, reading_limit_s(file)).bytes);
+      RawMesh mesh = read_isolated(reader, source);
       if (!mesh.parts.empty()) {
         if (!failures.empty()) {
           warnings.push_back(fmt::format("{}: read by {}, as {}; check its shape, or export the mesh again",
-                                         file.string(), reader.name, fmt::join(failures, "; ")));
+                                         source.file.string(), reader.name, fmt::join(failures, "; ")));
         }
         return mesh;
       }

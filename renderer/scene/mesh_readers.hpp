@@ -14,7 +14,8 @@ namespace sonard::render {
 
 struct MeshReader {
   std::string_view name;
-  RawMesh (*read)(const std::filesystem::path& file, const std::string& submesh);
+  RawMesh (*read)(const MeshSource& source);
+  void (*prepare)(const std::filesystem::path& file) = nullptr;  ///< before the process is confined
 };
 
 /// Extensions of the formats that can be read, in lower case without the dot.
@@ -24,11 +25,11 @@ std::span<const std::string_view> mesh_extensions();
 std::vector<MeshReader> mesh_readers(const std::filesystem::path& file);
 
 /// The triangles that the first of `readers` finds, in the unit and the axes of the file (an FBX: in metres,
-/// z up). Each reader runs in a process of its own. With a `submesh` only the parts of that name are taken.
+/// z up). Each reader runs in a process of its own.
 /// The result has no parts if no reader finds triangles. If a reader fails and a later one reads the file,
 /// that is a warning.
 /// @throws std::runtime_error with what each reader said, if none can read the file.
-RawMesh read_mesh(std::span<const MeshReader> readers, const std::filesystem::path& file,
-                  const std::string& submesh, std::vector<std::string>& warnings);
+RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
+                  std::vector<std::string>& warnings);
 
 }  // namespace sonard::render

@@ -109,15 +109,18 @@ RawMesh read_text(std::string_view text, const std::string& submesh) {
   RawPart taken;
   std::vector<glm::dvec3> corners;
   bool selected = submesh.empty();
+  bool is_open = false;  // after "solid", before its "endsolid"
   Words words(text);
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
     if (is_word(word, "solid")) {
+      is_open = true;
       const std::string name(words.name());
       selected = submesh.empty() || name == submesh;
       if (!name.empty()) {
         mesh.names.push_back(name);
       }
     } else if (is_word(word, "endsolid")) {
+      is_open = false;
       words.name();
     } else if (is_word(word, "vertex")) {
       const double x = words.number(), y = words.number();
@@ -135,6 +138,9 @@ RawMesh read_text(std::string_view text, const std::string& submesh) {
   }
   if (!corners.empty()) {
     throw std::runtime_error("the file is cut short: it ends inside a facet");
+  }
+  if (is_open) {
+    throw std::runtime_error("the file is cut short: its last solid has no endsolid");
   }
   mesh.add(taken, glm::dmat4(1.0));
   return mesh;

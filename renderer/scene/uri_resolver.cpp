@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "renderer/scene/fuel_cache.hpp"
+#include "renderer/scene/local_file.hpp"
+#include "renderer/scene/printable.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -34,12 +36,6 @@ std::string list(const std::vector<fs::path>& folders) {
     names.push_back(folder.string());
   }
   return fmt::format("{}", fmt::join(names, ", "));
-}
-
-/// Both absolute.
-bool lies_below(const fs::path& path, const fs::path& folder) {
-  const auto differs = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first;
-  return !folder.empty() && differs == folder.end();
 }
 
 /// Not by a link that leads out of `folder`: an archive may hold some.
@@ -166,7 +162,7 @@ void UriResolver::check_place(const std::string& uri, const fs::path& path,
     throw WorldError(
         fmt::format("'{}' leads out of the folders of this world and its models, to {}; name its folder in "
                     "GZ_SIM_RESOURCE_PATH if it may be read",
-                    uri, place.string()));
+                    uri, printable(place.string())));
   }
 }
 

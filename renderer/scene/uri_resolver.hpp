@@ -42,6 +42,9 @@ class UriResolver {
   /// of `naming_folder` and all folders of models. Links are followed, and where they lead counts.
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
+  /// Folders below which files of the world and its models may lie; canonical.
+  const std::vector<std::filesystem::path>& folders() const { return roots_; }
+
   /// @throws WorldError where `path`, which `uri` has led to, is outside of `naming_folder` and all folders
   /// of models
   void check_place(const std::string& uri, const std::filesystem::path& path,

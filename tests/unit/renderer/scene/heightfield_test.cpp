@@ -36,6 +36,29 @@ TEST(ElevationMap, ReadsElevationsOfTiffs) {
               ElementsAre(39321, 52428, 65535, 0, 13107, 26214));
 }
 
+// GDAL opens these by what is in them: they name files and servers.
+TEST(ElevationMap, IsATiffAndNoRecipeOfGdal) {
+  const test::TempFolder folder;
+  const std::string source = (data / "elevation_f32.tif").string();
+  const auto error_of = [&](const std::string& text) -> std::string {
+    try {
+      load_elevation_map(folder.write("bed.tif", text));
+    } catch (const WorldError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error_of("<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Float32\" "
+                       "band=\"1\"><SimpleSource><SourceFilename>" +
+                       source +
+                       "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>"
+                       "</VRTDataset>"),
+              HasSubstr("bed.tif: it is no TIFF"));
+  EXPECT_THAT(error_of("<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:9/${z}/${x}/${y}.png"
+                       "</ServerUrl></Service></GDAL_WMS>"),
+              HasSubstr("bed.tif: it is no TIFF"));
+}
+
 TEST(NormalMapImage, HasRowZeroAtTheBottom) {
   const NormalMap map = load_normal_map(data / "normal_map.png");
   EXPECT_EQ(map.width_px, 2);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene/mesh_file.hpp"
 
+#include <sys/stat.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -235,6 +237,41 @@ TEST(MeshFile, KeepsTheNameOfAMaterialThatNothingDefines) {
   ASSERT_EQ(file.parts.size(), 1U);
   EXPECT_EQ(file.parts[0].material_name, "steel");
   EXPECT_TRUE(file.warnings.empty());
+}
+
+std::string triangle_with(const std::string& mtllib) {
+  return "mtllib " + mtllib + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl steel\nf 1 2 3\n";
+}
+
+TEST(MeshFile, NamesOnlyFilesOfItsWorld) {
+  const test::TempFolder world, elsewhere;
+  elsewhere.write("secret.mtl", "newmtl steel\n");
+  world.write("materials/hull.mtl", "newmtl steel\n");
+  std::filesystem::create_symlink(elsewhere.path() / "secret.mtl", world.path() / "meshes.mtl");
+  MeshFileRequest request;
+  const auto read = [&](const std::string& mtllib) {
+    request.file = world.write("meshes/hull.obj", triangle_with(mtllib));
+    return error_of(request);
+  };
+  const std::string far = (elsewhere.path() / "secret.mtl").string();
+  EXPECT_THAT(read("/etc/passwd"), HasSubstr("hull.obj: it names /etc/passwd, outside of the folders"));
+  EXPECT_THAT(read(far), HasSubstr("it names " + far));
+  EXPECT_THAT(read("../../" + elsewhere.path().filename().string() + "/secret.mtl"),
+              HasSubstr("it names " + far));
+  EXPECT_THAT(read("../meshes.mtl"), HasSubstr("it names " + far));
+  EXPECT_THAT(read("../materials/hull.mtl"), HasSubstr("it names"));
+  request.folders = {world.path()};
+  EXPECT_EQ(read("../materials/hull.mtl"), "");
+  EXPECT_EQ(read("/home/somebody/else/hull.mtl"), "");  // as an exporter elsewhere wrote it
+}
+
+TEST(MeshFile, NamesOnlyRegularFiles) {
+  const test::TempFolder folder;
+  ASSERT_EQ(::mkfifo((folder.path() / "hull.mtl").c_str(), 0600), 0);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(error_of(request_for(folder.write("hull.obj", triangle_with("hull.mtl")))),
+              HasSubstr("hull.mtl, which is not a regular file"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 TEST(MeshFile, RefusesWhatItShould) {

@@ -13,23 +13,23 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-RawMesh one_triangle(const std::filesystem::path&, const std::string& submesh) {
+RawMesh one_triangle(const MeshSource& source) {
   RawMesh mesh;
-  mesh.add({submesh, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2}}, glm::dmat4(1.0));
+  mesh.add({source.submesh, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2}}, glm::dmat4(1.0));
   return mesh;
 }
 
-RawMesh names_alone(const std::filesystem::path&, const std::string&) {
+RawMesh names_alone(const MeshSource&) {
   RawMesh mesh;
   mesh.names = {"hull"};
   return mesh;
 }
 
-RawMesh refuses(const std::filesystem::path&, const std::string&) {
+RawMesh refuses(const MeshSource&) {
   throw std::runtime_error("line 7 is odd");
 }
 
-RawMesh crashes(const std::filesystem::path&, const std::string&) {
+RawMesh crashes(const MeshSource&) {
   std::abort();
 }
 
@@ -41,20 +41,20 @@ constexpr MeshReader broken{"broken", crashes};
 TEST(MeshReaders, TakeTheFirstThatFindsTriangles) {
   std::vector<std::string> warnings;
   const MeshReader first[] = {good, broken};
-  const RawMesh mesh = read_mesh(first, "/hull.dae", "lid", warnings);
+  const RawMesh mesh = read_mesh(first, {"/hull.ply", "lid"}, warnings);
   ASSERT_EQ(mesh.parts.size(), 1U);
   EXPECT_EQ(mesh.parts[0].material_name, "lid");
   const MeshReader second[] = {empty, good};
-  EXPECT_EQ(read_mesh(second, "/hull.dae", "", warnings).parts.size(), 1U);
+  EXPECT_EQ(read_mesh(second, {"/hull.ply"}, warnings).parts.size(), 1U);
   EXPECT_THAT(warnings, IsEmpty());
 }
 
 TEST(MeshReaders, SayWhichOneCouldNotReadWhatAnotherRead) {
   std::vector<std::string> warnings;
   const MeshReader readers[] = {strict, broken, good};
-  EXPECT_EQ(read_mesh(readers, "/hull.dae", "", warnings).parts.size(), 1U);
+  EXPECT_EQ(read_mesh(readers, {"/hull.ply"}, warnings).parts.size(), 1U);
   EXPECT_THAT(warnings,
-              ElementsAre("/hull.dae: read by good, as strict says: line 7 is odd; broken says: the reader "
+              ElementsAre("/hull.ply: read by good, as strict says: line 7 is odd; broken says: the reader "
                           "crashed (signal 6): the file is damaged or of another format; check its shape, "
                           "or export the mesh again"));
 }
@@ -63,7 +63,7 @@ TEST(MeshReaders, SayWhatEachSaidIfNoneCanReadTheFile) {
   const auto error_of = [](std::span<const MeshReader> readers) -> std::string {
     std::vector<std::string> warnings;
     try {
-      read_mesh(readers, "/hull.dae", "", warnings);
+      read_mesh(readers, {"/hull.ply"}, warnings);
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -80,7 +80,7 @@ TEST(MeshReaders, SayWhatEachSaidIfNoneCanReadTheFile) {
 TEST(MeshReaders, HandBackTheNamesIfNoneFindsTriangles) {
   std::vector<std::string> warnings;
   const MeshReader readers[] = {strict, empty};
-  const RawMesh mesh = read_mesh(readers, "/hull.dae", "lid", warnings);
+  const RawMesh mesh = read_mesh(readers, {"/hull.ply", "lid"}, warnings);
   EXPECT_THAT(mesh.parts, IsEmpty());
   EXPECT_THAT(mesh.names, ElementsAre("hull"));
 }

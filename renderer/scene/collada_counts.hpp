@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counts that a COLLADA document states of its own numbers (COLLADA 1.4.1, 5 and 6).
+#pragma once
+
+#include <string_view>
+
+namespace sonard::render {
+
+/// Compares `count` of <float_array>, <triangles> and <polylist> with the numbers in them. Assimp refuses a
+/// difference; OpenSceneGraph, which reads what Assimp refuses, takes what is there. A document that tinyxml2
+/// cannot parse passes.
+/// @throws std::runtime_error naming the line, what is promised and what is there
+void require_collada_counts(std::string_view document);
+
+}  // namespace sonard::render

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether all of a file is there. Most libraries read what is there of a file that is cut short.
+#pragma once
+
+#include <filesystem>
+
+namespace sonard::render {
+
+/// Compares the lengths that a file states in its own header, or the mark that must end it, with its bytes.
+/// Knows PNG, JPEG, BMP, TGA, PNM, GLB, 3DS, COLLADA and OpenSceneGraph's text, by the extension; other
+/// formats pass. Runs inside run_isolated().
+/// @throws std::runtime_error saying what is promised and what is there
+void require_complete(const std::filesystem::path& file);
+
+}  // namespace sonard::render
