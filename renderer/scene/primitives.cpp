@@ -25,15 +25,6 @@ void require_size(double value, const char* what) {
   }
 }
 
-/// Segments around a circle so that radius (1 - cos(pi / n)) stays below the sagitta; a multiple of 4, so
-/// that the extremes of the axes are vertices.
-int segments_around(double radius_m) {
-  const double cosine = std::max(-1.0, 1.0 - sagitta_m / radius_m);
-  const double needed = std::numbers::pi / std::acos(cosine);
-  const int n = static_cast<int>(std::ceil(std::min(needed, static_cast<double>(max_segments)) / 4.0)) * 4;
-  return std::clamp(n, min_segments, max_segments);
-}
-
 std::uint32_t add_vertex(TriangleMesh& mesh, const glm::dvec3& position, const glm::dvec3& normal,
                          const glm::dvec2& uv) {
   mesh.positions.emplace_back(position);
@@ -147,6 +138,13 @@ void spread_texture(std::vector<Ring>& rings) {
 }
 
 }  // namespace
+
+int segments_around(double radius_m) {
+  const double cosine = std::max(-1.0, 1.0 - sagitta_m / radius_m);
+  const double needed = std::numbers::pi / std::acos(cosine);
+  const int n = static_cast<int>(std::ceil(std::min(needed, static_cast<double>(max_segments)) / 4.0)) * 4;
+  return std::clamp(n, min_segments, max_segments);
+}
 
 TriangleMesh make_box(const glm::dvec3& size_m) {
   require_size(size_m.x, "box size");

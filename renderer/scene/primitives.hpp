@@ -12,7 +12,11 @@
 
 namespace sonard::render {
 
-// Every function throws WorldError when a size is not finite and positive.
+/// Segments around a circle of this radius, > 0 and finite, so that radius (1 - cos(pi / n)) stays below the
+/// sagitta; a multiple of 4, so that the extremes of the axes are vertices.
+int segments_around(double radius_m);
+
+// Every function below throws WorldError when a size is not finite and positive.
 
 TriangleMesh make_box(const glm::dvec3& size_m);
 TriangleMesh make_sphere(double radius_m);

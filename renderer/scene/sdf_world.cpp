@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -21,11 +22,11 @@
 #include "renderer/scene/materials.hpp"
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/mesh_file.hpp"
-#include "renderer/scene/primitives.hpp"
 #include "renderer/scene/sdf_document.hpp"
 #include "renderer/scene/sdf_elements.hpp"
 #include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/sdf_material.hpp"
+#include "renderer/scene/sdf_shapes.hpp"
 #include "renderer/scene/sdf_state.hpp"
 #include "renderer/scene/terrain.hpp"
 #include "renderer/scene/uri_resolver.hpp"
@@ -44,55 +45,10 @@ struct Shape {
   Pose T_body_shape;
 };
 
-/// @param kind "visual" or "collision"
-bool has_shape(const SdfElement& model, std::string_view kind) {
-  return std::ranges::any_of(model.children, [&](const auto& child) {
-    return (child->name == "link" && child->child(kind) != nullptr) ||
-           (child->name == "model" && has_shape(*child, kind));
-  });
-}
-
-glm::dvec3 vec3_of(const SdfElement& parent, std::string_view name, const glm::dvec3& otherwise) {
-  const std::vector<double> n = numbers_of(parent.child(name), {otherwise.x, otherwise.y, otherwise.z});
-  return {n[0], n[1], n[2]};
-}
-
-double number_of(const SdfElement& parent, std::string_view name, double otherwise) {
-  return numbers_of(parent.child(name), {otherwise}).front();
-}
-
-std::string text_of(const SdfElement& parent, std::string_view name) {
-  const SdfElement* const child = parent.child(name);
-  return child == nullptr ? std::string() : child->text;
-}
-
-/// The triangles of a shape that needs no file, with the sizes that SDF takes where none is given; nullopt:
-/// it is none.
-std::optional<TriangleMesh> primitive_of(const SdfElement& geometry) {
-  if (geometry.name == "box") {
-    return make_box(vec3_of(geometry, "size", {1, 1, 1}));
-  }
-  if (geometry.name == "sphere") {
-    return make_sphere(number_of(geometry, "radius", 1));
-  }
-  if (geometry.name == "ellipsoid") {
-    return make_ellipsoid(vec3_of(geometry, "radii", {1, 1, 1}));
-  }
-  if (geometry.name == "cylinder") {
-    return make_cylinder(number_of(geometry, "radius", 1), number_of(geometry, "length", 1));
-  }
-  if (geometry.name == "cone") {
-    return make_cone(number_of(geometry, "radius", 1), number_of(geometry, "length", 1));
-  }
-  if (geometry.name == "capsule") {
-    return make_capsule(number_of(geometry, "radius", 0.5), number_of(geometry, "length", 1));
-  }
-  if (geometry.name == "plane") {
-    const std::vector<double> size = numbers_of(geometry.child("size"), {1, 1});
-    return make_plane({size[0], size[1]}, vec3_of(geometry, "normal", {0, 0, 1}));
-  }
-  return std::nullopt;
-}
+/// The world is given up: no shape may be added any more.
+struct TooManyTriangles : WorldError {
+  using WorldError::WorldError;
+};
 
 /// Of <spherical_coordinates>; nullopt, with a warning, where it means nothing that is known here.
 std::optional<GeographicOrigin> origin_of(const SdfElement& place, std::vector<std::string>& warnings) {
@@ -120,8 +76,8 @@ std::optional<GeographicOrigin> origin_of(const SdfElement& place, std::vector<s
 class WorldBuilder {
  public:
   WorldBuilder(const fs::path& file, const std::vector<fs::path>& model_folders, MissingFiles missing,
-               const std::optional<GeographicOrigin>& origin)
-      : file_(file), resolver_(file, model_folders), missing_(missing) {
+               const std::optional<GeographicOrigin>& origin, std::size_t max_triangles)
+      : file_(file), resolver_(file, model_folders), missing_(missing), max_triangles_(max_triangles) {
     world_.origin = origin;
   }
 
@@ -133,7 +89,12 @@ class WorldBuilder {
     check_own_elements(*sdf, problems_);
     add_warnings(unknown_elements(*sdf));
     add_warnings(look_alikes(*sdf));
-    add_bodies(world_or_model(*sdf));
+    try {
+      require_few_triangles(world_or_model(*sdf));
+      add_bodies(world_or_model(*sdf));
+    } catch (const TooManyTriangles& error) {
+      problems_.add(error.what());
+    }
     add_warnings(grouped_.lines());
     tell_what_may_lie();
     drop_repeated_warnings();
@@ -161,6 +122,43 @@ class WorldBuilder {
       throw WorldError(std::move(lines));
     }
     return *only;
+  }
+
+  /// Making the triangles of so many shapes would take minutes and all memory.
+  /// @throws TooManyTriangles
+  void require_few_triangles(const SdfElement& top) {
+    std::size_t count = 0;
+    const auto add = [&](const SdfElement& model) {
+      count += primitive_triangles_below(model, has_shape(model, "visual") ? "visual" : "collision");
+      if (count > max_triangles_) {
+        throw_too_many(model.given_name());
+      }
+    };
+    if (top.name == "model") {
+      add(top);
+    }
+    for (const auto& child : top.children) {
+      if (child->name == "model" && top.name != "model") {
+        add(*child);
+      }
+    }
+  }
+
+  [[noreturn]] void throw_too_many(const std::string& path) const {
+    throw TooManyTriangles(fmt::format(
+        "{}: the world has more than {} triangles, from {} on (world.max_triangles sets how many it may "
+        "have)",
+        file_.string(), max_triangles_, path));
+  }
+
+  /// @throws TooManyTriangles
+  void count_triangles(const std::vector<BodyPart>& parts, std::size_t first, const std::string& path) {
+    for (std::size_t i = first; i < parts.size(); ++i) {
+      triangles_ += parts[i].mesh->triangle_count();
+    }
+    if (triangles_ > max_triangles_) {
+      throw_too_many(path);
+    }
   }
 
   void add_bodies(const SdfElement& top) {
@@ -217,6 +215,8 @@ class WorldBuilder {
         world_.warnings.emplace_back(error.what());
       }
       return false;  // the include is a problem already, if it must be there
+    } catch (const TooManyTriangles&) {
+      throw;
     } catch (const WorldError& error) {
       problems_.add(error.what());
     }
@@ -235,6 +235,8 @@ class WorldBuilder {
       } else {
         problems_.add(std::move(line));
       }
+    } catch (const TooManyTriangles&) {
+      throw;
     } catch (const WorldError& error) {
       problems_.add(fmt::format("{}: {}: {}", element.place(), path, error.what()));
     }
@@ -319,7 +321,11 @@ class WorldBuilder {
         attempt([&] {
           Shape shape{path + "::" + child->given_name(), *child, nullptr,
                       T_body_model * frames_.T_model(*child)};
-          attempt(*child, shape.path, [&] { add_shape(body, shape); });
+          attempt(*child, shape.path, [&] {
+            const std::size_t first = body.parts.size();
+            add_shape(body, shape);
+            count_triangles(body.parts, first, shape.path);
+          });
         });
       }
     }
@@ -437,9 +443,12 @@ class WorldBuilder {
   std::vector<MeshFilePart> mesh_file(const SdfElement& mesh, bool tangents) {
     const SdfElement* const submesh = mesh.child("submesh");
     const std::string centre = submesh == nullptr ? "" : text_of(*submesh, "center");
-    const MeshFileRequest request{file_of(mesh), submesh == nullptr ? "" : text_of(*submesh, "name"),
-                                  centre == "true" || centre == "1", vec3_of(mesh, "scale", {1, 1, 1}),
-                                  tangents};
+    const MeshFileRequest request{file_of(mesh),
+                                  submesh == nullptr ? "" : text_of(*submesh, "name"),
+                                  centre == "true" || centre == "1",
+                                  vec3_of(mesh, "scale", {1, 1, 1}),
+                                  tangents,
+                                  resolver_.folders()};
     for (const auto& [known, parts] : mesh_files_) {
       if (known == request) {
         return parts;
@@ -544,6 +553,8 @@ class WorldBuilder {
   fs::path file_;
   UriResolver resolver_;
   const MissingFiles missing_;
+  const std::size_t max_triangles_;
+  std::size_t triangles_ = 0;
   World world_;
   LeftOut left_out_;
   GroupedWarnings grouped_;
@@ -560,13 +571,13 @@ class WorldBuilder {
 }  // namespace
 
 World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_folders, MissingFiles missing,
-                 const std::optional<GeographicOrigin>& origin) {
+                 const std::optional<GeographicOrigin>& origin, std::size_t max_triangles) {
   std::error_code error;
   const fs::path file = fs::canonical(sdf_file, error);
   if (error || !fs::is_regular_file(file, error)) {
     throw WorldError(fmt::format("{}: world file not found", sdf_file.string()));
   }
-  return WorldBuilder(file, model_folders, missing, origin).build();
+  return WorldBuilder(file, model_folders, missing, origin, max_triangles).build();
 }
 
 }  // namespace sonard::render

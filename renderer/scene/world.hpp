@@ -160,6 +160,9 @@ enum class MissingFiles {
   skip  ///< the world is loaded without it, and World::warnings names it
 };
 
+/// Of a world; 50 million take some 3 GB of memory and minutes to load.
+constexpr std::size_t default_max_triangles = 50'000'000;
+
 /// Folders of the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH,
 /// GAZEBO_RESOURCE_PATH (with `media` and `Media` in each, if they exist) and SDF_PATH (colon separated), in
 /// this order, then ~/.gazebo/models if it exists.
@@ -171,11 +174,12 @@ std::vector<std::filesystem::path> model_folders_from_environment();
 /// model of Fuel in Gazebo's local cache. Nothing is fetched from a network. Mesh files are read in forked
 /// child processes: call this before other threads are started. `origin` takes the place of the file's
 /// <spherical_coordinates>.
-/// A world may be without triangles.
+/// A world may be without triangles, and has at most `max_triangles`, each use of a mesh counted.
 /// @throws WorldError naming file, line and element for each missing mesh, unknown material, ...
 World load_world(const std::filesystem::path& sdf_file,
                  const std::vector<std::filesystem::path>& model_folders = model_folders_from_environment(),
                  MissingFiles missing = MissingFiles::error,
-                 const std::optional<GeographicOrigin>& origin = std::nullopt);
+                 const std::optional<GeographicOrigin>& origin = std::nullopt,
+                 std::size_t max_triangles = default_max_triangles);
 
 }  // namespace sonard::render

@@ -198,6 +198,7 @@ struct DaemonConfig {
   std::filesystem::path world_file;  ///< SDF; empty: open water, see `open_water`
   bool open_water = false;           ///< whether the world may be without a surface
   bool skips_missing_files = false;  ///< of the world
+  int world_max_triangles = 50'000'000;
   /// Where the world is on Earth, in the place of what its file says.
   std::optional<render::GeographicOrigin> origin;
   /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries

@@ -126,6 +126,9 @@ void read_world(YamlSection& section, const std::filesystem::path& folder, Daemo
       "missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
       "what becomes of an include, or a mesh, whose file is not there: the daemon does not start, or it does "
       "without, and warns");
+  section.integer(
+      "max_triangles", config.world_max_triangles, 1, 2'000'000'000,
+      "most triangles of the world, each use of a mesh counted: a world that has more is refused");
   section.text("vehicle_model", config.vehicle_model,
                "model of the world that is the vehicle itself: it moves as the vehicle does, whatever the "
                "pose stream says of a body of this name. Its frame is the vehicle's");

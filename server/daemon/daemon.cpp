@@ -24,6 +24,7 @@
 
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/engines/gpu/thin_things.hpp"
+#include "renderer/scene/reader_jail.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/daemon/exhaustion.hpp"
@@ -529,7 +530,8 @@ render::World read_world(const DaemonConfig& config) {
   }
   render::World world = render::load_world(
       config.world_file, render::model_folders_from_environment(),
-      config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error, config.origin);
+      config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error, config.origin,
+      static_cast<std::size_t>(config.world_max_triangles));
   if (world.triangle_count() == 0 && !config.open_water) {
     throw render::WorldError(
         {fmt::format("{}: the world has no triangles (expected a surface that echoes; for open "
@@ -543,6 +545,10 @@ render::World read_world(const DaemonConfig& config) {
 render::World load_world_of(DaemonConfig& config) {
   try {
     render::World world = read_world(config);
+    if (const std::string missing = render::missing_from_reader_jail();
+        !missing.empty() && !config.world_file.empty()) {
+      spdlog::warn("world {}: {}", world.name, missing);
+    }
     for (const std::string& warning : world.warnings) {
       spdlog::warn("{}", warning);
     }

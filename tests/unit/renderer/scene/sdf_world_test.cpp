@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 
@@ -282,11 +283,49 @@ TEST(SdfWorld, HoldsTenThousandModels) {
               " 0 0 0 0 0</pose><link name=\"l\">" + visual("v", ball) + "</link></model>\n";
   }
   const test::TempFolder folder;
-  const World world = load_world(
-      folder.write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + models + "</world></sdf>"), {});
+  const World world =
+      load_world(folder.write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + models + "</world></sdf>"),
+                 {}, MissingFiles::error, std::nullopt, 100'000'000);
   ASSERT_EQ(world.bodies.size(), 10'000U);
   EXPECT_EQ(world.bodies.front().parts.at(0).mesh, world.bodies.back().parts.at(0).mesh);
   expect_near(world.bodies.back().T_world_body.position_m, {9999, 0, 0});
+}
+
+std::string error_with_limit(const std::string& world, std::size_t max_triangles) {
+  const test::TempFolder folder;
+  folder.write("tetrahedron.stl", std::string());
+  std::filesystem::copy_file(shared_worlds / "tetrahedron.stl", folder.path() / "tetrahedron.stl",
+                             std::filesystem::copy_options::overwrite_existing);
+  try {
+    load_world(folder.write("w.sdf", world), {}, MissingFiles::error, std::nullopt, max_triangles);
+  } catch (const WorldError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SdfWorld, HasNoMoreTrianglesThanItMay) {
+  const std::string box = geometry("<box><size>1 2 3</size></box>");
+  const std::string mesh = geometry("<mesh><uri>tetrahedron.stl</uri></mesh>");
+  const std::string boxes = world_of(visual("a", box) + visual("b", box));
+  const std::string meshes = world_of(visual("a", mesh) + visual("b", mesh));
+  EXPECT_EQ(error_with_limit(boxes, 24), "");
+  EXPECT_THAT(error_with_limit(boxes, 23), HasSubstr("w.sdf: the world has more than 23 triangles"));
+  EXPECT_EQ(error_with_limit(meshes, 8), "");
+  EXPECT_THAT(error_with_limit(meshes, 7), HasSubstr("w.sdf: the world has more than 7 triangles"));
+}
+
+// 3,000 spheres of 260,608 triangles each, no two alike: to make them would take minutes.
+TEST(SdfWorld, CountsTheTrianglesOfShapesBeforeItMakesThem) {
+  std::string spheres;
+  for (int i = 0; i < 3000; ++i) {
+    spheres += visual("v" + std::to_string(i),
+                      geometry("<sphere><radius>" + std::to_string(50.0 + 0.001 * i) + "</radius></sphere>"));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(error_with_limit(world_of(spheres), default_max_triangles),
+              HasSubstr("the world has more than 50000000 triangles"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(SdfWorld, KnowsEveryShape) {
