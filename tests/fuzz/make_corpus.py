@@ -17,6 +17,7 @@ mavlink/           datagrams of each message, signed, among others, broken
 pose/              pose messages, and streams of them
 configuration/     configurations that are good, and those with one mistake each
 sdf/               small worlds
+ply/               text and binary of both byte orders, whole and cut
 stl/               text and binary, whole and cut
 web/               what a browser sends over one connection
 
@@ -402,6 +403,30 @@ def pcapng_files():
     yield "cut", (section + interface + packet)[:-5]
 
 
+def ply_files():
+    def header(encoding, count="3"):
+        return ("ply\nformat %s 1.0\ncomment by hand\nelement vertex %s\nproperty float x\nproperty double y\n"
+                "property short z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n"
+                "end_header\n" % (encoding, count)).encode()
+
+    text = header("ascii") + b"0.5 +1e-1 -3 255\n1 0 0 0\n0 2 258 7\n3 0 1 2\n"
+    vertices = [(0.5, 0.1, -3, 255), (1, 0, 0, 0), (0, 2, 258, 7)]
+
+    def binary(order):
+        return b"".join(struct.pack(order + "fdhB", *vertex) for vertex in vertices) + struct.pack(order + "Biii", 3, 0, 1, 2)
+
+    yield "text", text
+    yield "text_cut", text[:-9]
+    yield "many", header("ascii", "18446744073709551615") + b"0 0 0 0\n"
+    yield "mapped", (b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                     b"property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n"
+                     b"element face 1\nproperty list uint8 uint32 vertex_index\nend_header\n"
+                     b"0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n1 1 0 0 0 1 1 1\n0 1 0 0 0 1 0 1\n4 0 1 2 3\n")
+    yield "little_endian", header("binary_little_endian") + binary("<")
+    yield "big_endian", header("binary_big_endian") + binary(">")
+    yield "binary_cut", header("binary_little_endian") + binary("<")[:-3]
+
+
 def stl_files():
     text = (b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex +1e0 2 -0.5\nendloop\nendfacet\n"
             b"endsolid a\n")
@@ -521,7 +546,8 @@ def main():
                             ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
-                            ("configuration", configurations()), ("sdf", sdf_worlds()), ("stl", stl_files()), ("web", web_connections())):
+                            ("configuration", configurations()), ("sdf", sdf_worlds()), ("ply", ply_files()),
+                            ("stl", stl_files()), ("web", web_connections())):
         for name, script in scripts:
             write(folder, name, script)
 
