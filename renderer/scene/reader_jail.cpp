@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <fstream>
 #include <memory>
 #include <string_view>
@@ -208,8 +209,8 @@ void restrict_calls() {
     forbid(name, {});
   }
   const auto forbid_flag = [&](scmp_datum_t mask, scmp_datum_t value) {
-    forbid("open", std::array{SCMP_A1(SCMP_CMP_MASKED_EQ, mask, value)});
-    forbid("openat", std::array{SCMP_A2(SCMP_CMP_MASKED_EQ, mask, value)});
+    forbid("open", std::array{scmp_arg_cmp{1, SCMP_CMP_MASKED_EQ, mask, value}});
+    forbid("openat", std::array{scmp_arg_cmp{2, SCMP_CMP_MASKED_EQ, mask, value}});
   };
   forbid_flag(O_ACCMODE, O_WRONLY);
   forbid_flag(O_ACCMODE, O_RDWR);

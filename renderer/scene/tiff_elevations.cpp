@@ -30,7 +30,7 @@ std::string& last_complaint() {
   return text;
 }
 
-void keep_complaint(const char*, const char* format, va_list arguments) {
+[[gnu::format(printf, 2, 0)]] void keep_complaint(const char*, const char* format, va_list arguments) {
   std::array<char, 300> text{};
   std::vsnprintf(text.data(), text.size(), format, arguments);
   last_complaint() = text.data();
