@@ -13,4 +13,7 @@ struct Finding {
   bool operator==(const Finding&) const = default;
 };
 
+/// Of poses whose stamps stand still while pings wait for them to move: no ping is made.
+inline constexpr const char* no_ping_by_stamps = "stamps_never_moved";
+
 }  // namespace sonard::server

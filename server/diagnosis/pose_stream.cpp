@@ -38,7 +38,7 @@ std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::strin
                                  1e-9 * static_cast<double>(stamps.last_step().count()), name)};
     case StampWatch::Looks::never_moved:
       if (clock != PingClock::wall) {
-        return Finding{"stamps_never_moved",
+        return Finding{no_ping_by_stamps,
                        fmt::format("The stamps have not moved since the first pose, so no ping is made "
                                    "(poses.clock): is the simulation paused, or {} left out?",
                                    name)};

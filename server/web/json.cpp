@@ -214,6 +214,13 @@ std::vector<std::string> why_not_ready(const DaemonStatus& status) {
                                             : fmt::format("no pose of the vehicle is known: send poses to {}",
                                                           status.inputs.front().input));
   }
+  for (const PoseInputStatus& input : status.inputs) {
+    for (const Finding& finding : input.findings) {
+      if (finding.code == no_ping_by_stamps) {
+        reasons.push_back(fmt::format("{}: {}", input.input, finding.text));
+      }
+    }
+  }
   for (const HeadStatus& head : status.heads) {
     if (head.serves.empty()) {
       reasons.push_back(fmt::format("head '{}' serves no address", head.name));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules are those of docs/page.md: the pose of the vehicle is known, and each head serves an address.
+// The rules are those of docs/page.md: the pose of the vehicle is known, its stamps let pings begin, and each
+// head serves an address.
 #include <chrono>
 
 #include <gmock/gmock.h>
@@ -55,6 +56,15 @@ TEST(Readiness, NamesWhatIsMissing) {
   EXPECT_EQ(readiness_json(status)["ready"], false);
   status.inputs.clear();
   EXPECT_EQ(why_not_ready(status)[0], "no pose of the vehicle is known");
+}
+
+TEST(Readiness, NeedsStampsThatMoveWherePingsWaitForThem) {
+  DaemonStatus status = ready_status();
+  status.inputs[0].findings = {{"several_publishers", "2 publishers send poses at once."}};
+  EXPECT_THAT(why_not_ready(status), IsEmpty()) << "pings are made all the same";
+  status.inputs[0].findings.push_back({no_ping_by_stamps, "The stamps have not moved."});
+  EXPECT_THAT(why_not_ready(status),
+              ElementsAre("pose stream udp 127.0.0.1:14600: The stamps have not moved."));
 }
 
 }  // namespace
