@@ -97,6 +97,7 @@ struct IgnitionPoseInput {
   };
   std::string topic;
   std::string partition;          ///< empty: that of IGN_PARTITION
+  Ipv4 address = 0x7F000001;      ///< of this machine: of loopback, Gazebo on this machine only
   SimulatorEntity vehicle;        ///< carrier of the sonars; without a name: DaemonConfig::vehicle_model
   render::Pose T_entity_vehicle;  ///< mount of the vehicle frame on that entity
   std::vector<Body> bodies;

@@ -15,6 +15,7 @@
 #include "server/config/head_section.hpp"
 #include "server/config/network_section.hpp"
 #include "server/config/overlaps.hpp"
+#include "server/config/status_section.hpp"
 #include "server/config/yaml_section.hpp"
 #include "server/config/yaml_trouble.hpp"
 #include "server/config/yaml_unclosed.hpp"
@@ -239,6 +240,11 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
   section.text("topic", ignition.topic, "with messages `Pose_V` or `Pose`");
   section.text("partition", ignition.partition, "of the transport");
   section.default_is("partition", "that of `IGN_PARTITION`");
+  read_own_address(
+      section, "address", ignition.address,
+      "this machine's address on the network to Gazebo, instead of `IGN_IP` or `GZ_IP`. An "
+      "address of loopback: Gazebo on this machine only. Any other: whoever reaches that network "
+      "can publish poses");
   section.require("frame", "world, or relative for poses that are relative to parents");
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
                  "what poses are relative to: the world, or `parents`");

@@ -13,7 +13,10 @@
 #include <mutex>
 #include <utility>
 
+#include "server/net/addresses.hpp"
 #include "server/pose/entity_poses.hpp"
+#include "server/pose/ignition_network.hpp"
+#include "server/program_log/library_lines.hpp"
 #include "server/program_log/reasons.hpp"
 #ifdef SONARD_GAZEBO_GZ
 #include <gz/msgs/pose.pb.h>
@@ -56,6 +59,16 @@ pose::NamedTransform entity(const gazebo::msgs::Pose& pose) {
   const auto& p = pose.position();
   const auto& q = pose.orientation();
   return {pose.name(), {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+/// The library and protobuf print about what peers send, as often as these like.
+void take_lines_of_the_library() {
+  take_library_lines();
+#if GOOGLE_PROTOBUF_VERSION < 4022000  // later ones log by Abseil
+  google::protobuf::SetLogHandler([](google::protobuf::LogLevel, const char*, int, const std::string& text) {
+    log_library_line("libprotobuf", text);
+  });
+#endif
 }
 
 Result<EntityPoses, std::string> parse(const Message& message) {
@@ -198,7 +211,12 @@ void IgnitionPoseSource::start() {
   if (!input.partition.empty() && !options.SetPartition(input.partition)) {
     throw PoseSourceError(fmt::format("ignition: '{}' is no partition", input.partition));
   }
+  take_lines_of_the_library();
+  set_ignition_address(input.address);
   subscription_ = std::make_unique<Subscription>(options);
+  if (is_loopback(input.address)) {
+    keep_ignition_to_this_machine();
+  }
   const auto receive = [impl = impl_](const char* data, std::size_t size,
                                       const gazebo::transport::MessageInfo& info) {
     impl->on_message(data, size, info.Type());
@@ -225,8 +243,11 @@ std::vector<std::string> IgnitionPoseSource::entities() const {
 }
 
 std::string IgnitionPoseSource::silence_hint() const {
-  return "is the simulator running, is the topic spelt as it spells it, is the partition the same, and does "
-         "multicast reach it (docs/simulators/gazebo.md)?";
+  const std::string reach = is_loopback(impl_->input.address)
+                                ? "does it run on this machine (another one needs poses.ignition.address)"
+                                : "does multicast reach it";
+  return "is the simulator running, is the topic spelt as it spells it, is the partition the same, and " +
+         reach + " (docs/simulators/gazebo.md)?";
 }
 
 const PoseSourceCounters& IgnitionPoseSource::counters() const {

@@ -8,7 +8,9 @@ publishers are a program on the stock library, and its command line tool.
 
 import argparse
 import os
+import subprocess
 import sys
+import time
 import unittest
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
@@ -16,7 +18,7 @@ sys.path.insert(0, os.path.join(SOURCE, "tests", "system", "gemini"))
 
 import link_test  # noqa: E402
 import wire  # noqa: E402
-from lab import HEAD_ADDRESS, SECOND_HEAD_ADDRESS, Deadline  # noqa: E402
+from lab import HEAD_ADDRESS, SECOND_HEAD_ADDRESS, Deadline, need  # noqa: E402
 
 BASIN = os.path.join(SOURCE, "configs", "worlds", "gazebo_basin.sdf")
 TWO_WALLS = os.path.join(SOURCE, "tests", "data", "system", "two_walls.sdf")
@@ -195,6 +197,36 @@ class Gazebo(link_test.LinkTest):
                               "--log-pings", "--wait", "60", "--ping-wait", "60", "--range", "8", "--out", self.folder.name)
         self.assertEqual(view.wait(100), 0, view.tail())
         self.end_daemon(self.daemon)
+
+    def publish_from_elsewhere(self, relay):
+        """Another machine, which sends discovery to the group, or to `relay` alone."""
+        return self.lab.start(self.lab.topside, "env", f"IGN_RELAY={relay}", PUBLISHER, TOPIC, "200", "1",
+                              "ignition.msgs.Pose_V", "rov", "-1", "1.1", "-2.3", "0", "0", "90")
+
+    def test_other_machines_are_not_listened_to(self):
+        need("ss")
+        self.start()
+        sockets = subprocess.run(self.lab.head.command("ss", "-Hltnp"), capture_output=True, text=True, check=True).stdout
+        own = [line.split()[3] for line in sockets.splitlines() if f"pid={self.daemon.pid}," in line]
+        self.assertGreaterEqual(len(own), 3, sockets)
+        self.assertEqual([address for address in own if not address.startswith("127.")], [])
+        elsewhere = self.publish_from_elsewhere(relay=HEAD_ADDRESS)  # nothing routes the group to the head yet
+        time.sleep(4)  # discovery takes less than two
+        elsewhere.kill()
+        # To the group, which a simulator joins here on all interfaces that is not told of an address.
+        self.lab.topside.ip("route", "add", "239.0.0.0/8", "dev", "eth0")
+        self.lab.start(self.lab.head, PUBLISHER, "/bystander", "200", "1", "ignition.msgs.Pose_V", "rov", *["0"] * 6)
+        self.publish_from_elsewhere(relay="")
+        time.sleep(4)
+        self.assertNotIn("the vehicle is entity", self.daemon.output())
+        # A simulator of this machine, likewise.
+        self.publish(("rov", 2, 0, -2.5, 0, 0, 0))
+        self.daemon.wait_for_line(r"first at \(2.000, 0.000, -2.500\)", link_test.PATIENCE_S)
+
+    def test_other_machines_are_listened_to_at_an_address(self):
+        self.start(ignition=BASIN_INPUT + f"    address: {HEAD_ADDRESS}\n")
+        self.publish_from_elsewhere(relay=HEAD_ADDRESS)
+        self.daemon.wait_for_line(r"first at \(-1.000, 1.100, -2.300\)", link_test.PATIENCE_S)
 
     def test_check_tells_what_arrives(self):
         sonard = os.path.join(link_test.PROGRAMS, "sonard")

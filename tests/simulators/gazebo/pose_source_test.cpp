@@ -5,9 +5,12 @@
 
 #include <gmock/gmock.h>
 #include <sched.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 
 #include "server/pose/pose_history.hpp"
 #include "tests/unit/server/pose/child_process.hpp"
@@ -132,6 +135,36 @@ TEST_F(IgnitionPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
   ASSERT_FALSE(delivered_.empty());
   expect_the_pose();
   EXPECT_EQ(delivered_.back().sample.time_ns, 7'000'000'005);
+}
+
+// Names that are no UTF-8, 50 in a second: libprotobuf prints about each.
+TEST_F(IgnitionPoseSourceTest, LinesOfLibrariesGoToTheLogAndAreLimited) {
+  const auto ring = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
+  const auto before = spdlog::default_logger();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", ring));
+  testing::internal::CaptureStderr();
+  const auto source = started("/bytes");
+  const ChildProcess other{
+      {GAZEBO_PUBLISHER, "/bytes", "20", "1", "ignition.msgs.Pose_V", "r\xff", "1", "2", "3", "0", "0", "0"}};
+  const auto complaints = [&] { return source->counters().bad_value + source->counters().malformed; };
+  ASSERT_TRUE(run_until([&] { return complaints() > 100; }));
+  std::cerr << "a library printed this" << std::endl;
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::IsEmpty());
+  spdlog::set_default_logger(before);
+  std::vector<std::string> lines = ring->last_formatted();
+  std::erase_if(lines, [](const std::string& line) { return line.find("libprotobuf: ") == line.npos; });
+  EXPECT_GE(lines.size(), 1U);
+  EXPECT_LE(lines.size(), 20U);
+  EXPECT_THAT(ring->last_formatted(),
+              testing::Contains(testing::HasSubstr("library: a library printed this")));
+}
+
+TEST_F(IgnitionPoseSourceTest, RefusesAnAddressThatIsNotOfThisMachine) {
+  IgnitionPoseInput input;
+  input.topic = "/elsewhere";
+  input.address = 0xC0000201;  // 192.0.2.1, of documents (RFC 5737)
+  IgnitionPoseSource source{io_, input, clock_, sink_};
+  EXPECT_THROW(source.start(), PoseSourceError);
 }
 
 TEST_F(IgnitionPoseSourceTest, RefusesATopicThatIsNone) {
