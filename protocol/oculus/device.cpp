@@ -81,6 +81,8 @@ class Device::Impl {
   void send(std::vector<std::uint8_t> bytes) {
     actions_.send.push_back({Outgoing::To::peer, *client_, SharedBytes(std::move(bytes))});
   }
+  bool client_is_idle(TimePoint now) const;
+  void forget_client();
   void stop_ping();
   void read_commands(TimePoint now);
   void handle(TimePoint now, const SimpleFire& fire);
@@ -105,6 +107,7 @@ class Device::Impl {
   std::optional<double> depth_m_;  ///< for the status; nullopt: not known
 
   std::optional<Peer> client_;
+  TimePoint newest_command_{};  ///< of the client; when it came, if there is none
   CommandBuffer input_;
   std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: there is none, or it was for standby
   std::optional<RecordedPing> fed_;
@@ -125,13 +128,27 @@ class Device::Impl {
 
 // ---- The client
 
+/// A client that pings may only listen, for as long as it likes. One that did not say anything for long, and
+/// has no pings, keeps others out for nothing.
+bool Device::Impl::client_is_idle(TimePoint now) const {
+  return !pinging() && now - newest_command_ >= most_silence;
+}
+
 void Device::Impl::take(TimePoint now, const ClientCame& came) {
   if (client_) {
     ++other_clients_;
-    actions_.disconnect.push_back(came.who);
-    return;
+    if (!client_is_idle(now)) {
+      actions_.disconnect.push_back(came.who);
+      return;
+    }
+    actions_.notices.push_back(
+        {Notice::Level::info, "client " + endpoint_text(client_->remote) +
+                                  " is closed: it is silent, and another wants its place"});
+    actions_.disconnect.push_back(*client_);
+    forget_client();
   }
   client_ = came.who;
+  newest_command_ = now;
   next_dummy_ = now + config_.dummy_period;
   next_status_ = now;
   actions_.notices.push_back(
@@ -145,11 +162,15 @@ void Device::Impl::take(TimePoint now, const ClientGone& gone) {
   }
   actions_.notices.push_back(
       {Notice::Level::info, "client " + endpoint_text(client_->remote) + " disconnected"});
+  forget_client();
+  next_status_ = now;
+}
+
+void Device::Impl::forget_client() {
   client_.reset();
   plan_.reset();
   input_.clear();
   stop_ping();
-  next_status_ = now;
 }
 
 void Device::Impl::take(TimePoint now, const BytesReceived& received) {
@@ -164,6 +185,7 @@ void Device::Impl::read_commands(TimePoint now) {
     const auto command = decode_command(*message);
     if (command) {
       ++commands_;
+      newest_command_ = now;
       std::visit([&](const auto& it) { handle(now, it); }, *command);
     } else {
       ++bad_commands_;

@@ -3,6 +3,7 @@
 // Source: docs/protocols/oculus.md.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -13,11 +14,13 @@
 namespace sonard::oculus {
 
 /// One head, with one client at a time. Its channels are the stream of that client and the status datagrams,
-/// which go to everybody. A second client is disconnected at once, and what it sends is not read.
+/// which go to everybody. A second client is disconnected at once, and what it sends is not read; but it
+/// takes the place of a client that has no pings and sent no command for most_silence.
 class Device final : public sonard::Device {
  public:
   static constexpr int stream_channel = 0;
   static constexpr int status_channel = 1;
+  static constexpr std::chrono::seconds most_silence{30};
 
   /// @throws std::invalid_argument naming the field of `config` that is out of range
   Device(const DeviceConfig& config, TimePoint boot_time);

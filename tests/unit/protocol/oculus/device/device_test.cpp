@@ -184,6 +184,33 @@ TEST(OculusDevice, a_second_client_is_closed) {
   EXPECT_GE(bench.count(MessageId::simple_ping_result), 9U);
 }
 
+TEST(OculusDevice, a_silent_client_without_pings_gives_its_place_to_the_next) {
+  Bench bench;
+  bench.connect();
+  bench.run_for(Device::most_silence - milliseconds{1});
+  bench.connect(second_client);
+  EXPECT_EQ(bench.closed, std::vector<Peer>{second_client}) << "it is not silent for long";
+  bench.receive(Bytes(15, 0x4F));  // less than a message
+  bench.run_for(milliseconds{1});
+  bench.closed.clear();
+  bench.connect(second_client);
+  EXPECT_EQ(bench.closed, std::vector<Peer>{client});
+  bench.step(ClientGone{client});
+  bench.receive(encode(fire_at(0)), second_client);
+  bench.run_for(seconds{1});
+  EXPECT_GE(bench.count(MessageId::simple_ping_result), 9U);
+}
+
+// Most drivers fire once and listen from then on.
+TEST(OculusDevice, a_client_that_pings_keeps_its_place_however_long_it_only_listens) {
+  Bench bench;
+  bench.connect();
+  bench.receive(encode(fire_at(4)));
+  bench.run_for(std::chrono::minutes{10});
+  bench.connect(second_client);
+  EXPECT_EQ(bench.closed, std::vector<Peer>{second_client});
+}
+
 TEST(OculusDevice, a_command_of_5000_bytes_closes_the_connection) {
   Bench bench;
   bench.connect();
