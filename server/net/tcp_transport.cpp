@@ -30,19 +30,22 @@ constexpr std::size_t read_bytes = 4096;
 struct TcpTransport::Impl : std::enable_shared_from_this<TcpTransport::Impl> {
   class Session;
 
-  Impl(asio::io_context& used_io, const TcpTransportConfig& config)
+  Impl(asio::io_context& used_io, const TcpTransportConfig& config, const Clock& used_clock)
       : io(used_io),
+        clock(used_clock),
         allow(config.allow),
         listener(std::make_shared<TcpListener>(io, "tcp", config.bind, config.allow)) {}
 
   void listen();
 
   void admit(tcp::socket socket, const Endpoint& remote);
+  void close_stalled();
   void left(const std::shared_ptr<Session>& session);
   std::shared_ptr<Session> find(const Peer& peer) const;
   void stop();
 
   asio::io_context& io;
+  const Clock& clock;
   AllowList allow;
   std::shared_ptr<TcpListener> listener;
   TransportEvents events;
@@ -96,6 +99,9 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
   }
 
   bool is_open() const { return socket_.is_open(); }
+  bool is_stalled() const {
+    return !waiting_.empty() && transport_->clock.now() - write_begun_at_ >= most_stall;
+  }
   /// Pending handlers find the socket closed.
   void close() {
     error_code ignored;
@@ -124,6 +130,7 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
 
   void write() {
     const SharedBytes& message = waiting_.front();
+    write_begun_at_ = transport_->clock.now();
     asio::async_write(socket_, asio::buffer(message.data(), message.size()),
                       [self = shared_from_this()](const error_code& error, std::size_t length) {
                         self->on_written(error, length);
@@ -156,6 +163,7 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
   WireEnds ends_;
   std::deque<SharedBytes> waiting_;  ///< the first is being sent
   std::size_t waiting_bytes_ = 0;    ///< of those behind it
+  TimePoint write_begun_at_{};       ///< of the first
   std::array<std::uint8_t, read_bytes> buffer_{};
 };
 
@@ -167,7 +175,18 @@ void TcpTransport::Impl::listen() {
   });
 }
 
+void TcpTransport::Impl::close_stalled() {
+  const auto present = sessions;  // each is taken off the list
+  for (const auto& session : present) {
+    if (session->is_stalled()) {
+      session->close();
+      left(session);
+    }
+  }
+}
+
 void TcpTransport::Impl::admit(tcp::socket socket, const Endpoint& remote) {
+  close_stalled();
   if (sessions.size() >= most_clients) {
     listener->refuse(remote, "too many clients");
     return;
@@ -209,8 +228,8 @@ void TcpTransport::Impl::stop() {
   sessions.clear();
 }
 
-TcpTransport::TcpTransport(asio::io_context& io, const TcpTransportConfig& config)
-    : impl_(std::make_shared<Impl>(io, config)) {
+TcpTransport::TcpTransport(asio::io_context& io, const TcpTransportConfig& config, const Clock& clock)
+    : impl_(std::make_shared<Impl>(io, config, clock)) {
   impl_->listener->open();
 }
 

@@ -2,12 +2,14 @@
 // A head that is a TCP server and sends messages of any length.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "server/clock/clock.hpp"
 #include "server/net/addresses.hpp"
 #include "server/net/transport.hpp"
 
@@ -27,7 +29,9 @@ struct TcpTransportConfig {
 /// for streams.
 ///
 /// A client that reads too slowly misses whole messages: while one waits for it, only short ones wait behind
-/// that, and the others are dropped. A message that has begun is always sent to its end.
+/// that, and the others are dropped. A message that has begun is always sent to its end. A client that did
+/// not take a message for most_stall is closed when another one comes: a device that serves one client at a
+/// time would be lost to it.
 class TcpTransport final : public Transport {
  public:
   /// Further clients are closed at once, and counted as refused.
@@ -35,9 +39,11 @@ class TcpTransport final : public Transport {
   /// Short messages, and how many bytes of them may wait.
   static constexpr std::size_t short_message_bytes = 4096;
   static constexpr std::size_t most_waiting_bytes = 65536;
+  static constexpr std::chrono::seconds most_stall{30};
 
+  /// @param clock outlives this
   /// @throws SocketError
-  TcpTransport(boost::asio::io_context& io, const TcpTransportConfig& config);
+  TcpTransport(boost::asio::io_context& io, const TcpTransportConfig& config, const Clock& clock);
   ~TcpTransport() override;
 
   void start(TransportEvents events) override;

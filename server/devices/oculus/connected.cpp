@@ -59,8 +59,8 @@ class ConnectedOculus final : public ConnectedDevice {
  private:
   std::vector<std::unique_ptr<Transport>> open_transports(boost::asio::io_context& io, const Clock& clock) {
     static_assert(oculus::Device::stream_channel == 0 && oculus::Device::status_channel == 1);
-    auto stream =
-        std::make_unique<TcpTransport>(io, TcpTransportConfig{{address_, config_.tcp_port}, config_.allow});
+    auto stream = std::make_unique<TcpTransport>(
+        io, TcpTransportConfig{{address_, config_.tcp_port}, config_.allow}, clock);
     // Clients of some drivers connect to where status packets come from: they leave from the address that is
     // connected to.
     auto status = std::make_unique<UdpTransport>(

@@ -13,6 +13,7 @@
 
 #include "server/net/udp_endpoint.hpp"
 #include "tests/support/serial_client.hpp"
+#include "tests/unit/server/net/link_fixture.hpp"
 
 namespace sonard::server {
 namespace {
@@ -56,7 +57,7 @@ std::vector<int> numbers_in(const Bytes& stream) {
 
 class TcpTransportTest : public testing::Test {
  protected:
-  TcpTransportTest() : transport_(io_, {{localhost, 0}, {{0x7F000000, 8}}}) {
+  TcpTransportTest() : transport_(io_, {{localhost, 0}, {{0x7F000000, 8}}}, clock_) {
     TransportEvents events;
     events.received = [this](const BytesReceived& received) {
       heard_.insert(heard_.end(), received.bytes.begin(), received.bytes.end());
@@ -105,6 +106,7 @@ class TcpTransportTest : public testing::Test {
   }
 
   boost::asio::io_context io_;
+  SteppedClock clock_;
   TcpTransport transport_;
   Bytes heard_;
   Peer from_;
@@ -189,6 +191,20 @@ TEST_F(TcpTransportTest, ShortMessagesWaitUpToABound) {
   EXPECT_EQ(count("messages_dropped"), 2 * fit);
 }
 
+TEST_F(TcpTransportTest, WhoTakesNoMessageForHalfAMinuteIsClosedWhenAnotherComes) {
+  Client deaf = client(4096);
+  Client idle = client();
+  send(came_[0], numbered(1, 3'000'000));
+  io_.poll();
+  io_.restart();
+  clock_.time += TcpTransport::most_stall - TimePoint{1};
+  const Client early = client();
+  EXPECT_THAT(gone_, IsEmpty());
+  clock_.time += TimePoint{1};
+  const Client next = client();
+  EXPECT_EQ(gone_, std::vector<Peer>{came_[0]}) << "nothing was sent to the others";
+}
+
 TEST_F(TcpTransportTest, DisconnectsAClientAndTellsSoAfterwards) {
   Client one = client();
   Client two = client();
@@ -244,7 +260,7 @@ TEST_F(TcpTransportTest, MovesToAnotherAddressAndDisconnectsWhoWasAtTheOldOne) {
 TEST_F(TcpTransportTest, StaysWhereItIsWhenItCannotMove) {
   Client one = client();
   const Endpoint before = transport_.local_endpoint();
-  TcpTransport other(io_, {{0x7F000002, 0}, {{0x7F000000, 8}}});
+  TcpTransport other(io_, {{0x7F000002, 0}, {{0x7F000000, 8}}}, clock_);
   EXPECT_THROW(transport_.rebind(other.local_endpoint()), SocketError);
   EXPECT_EQ(transport_.local_endpoint(), before);
   one.write(Bytes{1, 2, 3});
@@ -252,13 +268,13 @@ TEST_F(TcpTransportTest, StaysWhereItIsWhenItCannotMove) {
 }
 
 TEST_F(TcpTransportTest, AnotherAddressThanThoseAllowedIsRefused) {
-  TcpTransport closed(io_, {{localhost, 0}, {{0x0A000000, 8}}});
+  TcpTransport closed(io_, {{localhost, 0}, {{0x0A000000, 8}}}, clock_);
   TransportEvents events;
   events.came = [](const ClientCame&) { ADD_FAILURE() << "came in"; };
   closed.start(std::move(events));
   Client one = Client::tcp(closed.local_endpoint());
   EXPECT_TRUE(run_until([&] { return one.closed_by_peer(); }));
-  EXPECT_THROW(TcpTransport(io_, {closed.local_endpoint(), {}}), SocketError);
+  EXPECT_THROW(TcpTransport(io_, {closed.local_endpoint(), {}}, clock_), SocketError);
 }
 
 }  // namespace
