@@ -35,6 +35,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
         message_timeout(timeout) {}
 
   void admit(tcp::socket socket, const Endpoint& peer);
+  bool make_room();
   void stop();
 
   std::shared_ptr<TcpListener> listener;
@@ -58,6 +59,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
         timer_(socket_.get_executor()),
         hold_timer_(socket_.get_executor()),
         peer_(peer),
+        newest_message_(source_->clock.now()),
         buffer_(pose::max_frame_bytes) {}
 
   void read() {
@@ -66,6 +68,10 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
                               self->on_read(error, length);
                             });
   }
+
+  TimePoint newest_message() const { return newest_message_; }
+
+  void give_place() { close_faulty("it is silent, and another publisher wants its place"); }
 
   /// Ends the session; pending handlers find the socket closed.
   void close() {
@@ -136,6 +142,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   void take_message(std::span<const std::uint8_t> message, TimePoint arrival) {
     const auto sample = pose::decode(message);
     if (sample) {
+      newest_message_ = arrival;
       ++source_->counters.samples;
       source_->publisher = peer_;
       source_->sink(*sample, arrival);
@@ -191,14 +198,28 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   asio::steady_timer timer_;
   asio::steady_timer hold_timer_;
   Endpoint peer_;
+  TimePoint newest_message_;  // when it came, if there is none
   std::vector<std::uint8_t> buffer_;
   std::size_t filled_ = 0;
   bool unfinished_ = false;  // the timer runs for a message that has begun
   Reasons complaints_;
 };
 
+/// While `hold` lets publishers wait, none is silent.
+bool TcpPoseSource::Impl::make_room() {
+  if (std::ssize(sessions) < max_clients) {
+    return true;
+  }
+  const auto silent = *std::ranges::min_element(sessions, {}, &Session::newest_message);
+  if (clock.now() - silent->newest_message() < most_silence || (hold && hold())) {
+    return false;
+  }
+  silent->give_place();
+  return true;
+}
+
 void TcpPoseSource::Impl::admit(tcp::socket socket, const Endpoint& peer) {
-  if (std::ssize(sessions) >= max_clients) {
+  if (!make_room()) {
     listener->refuse(peer, "too many publishers");
     return;
   }

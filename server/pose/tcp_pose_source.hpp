@@ -12,10 +12,13 @@ namespace sonard::server {
 /// - sends a length that is none or beyond pose::max_message_bytes, or bytes that are no pose message,
 /// - leaves a message unfinished for longer than `message_timeout`.
 /// A message with a value that means nothing (NaN) is dropped, and the connection stays. So does one on which
-/// nothing comes: a paused simulation keeps its connection.
-/// While `hold` says so nothing is read, so that a publisher waits in its own send() before long.
+/// nothing comes: a paused simulation keeps its connection, until all places are taken. Then the next
+/// publisher takes the place of the one that sent no pose for longest, and for most_silence at least. While
+/// `hold` says so nothing is read, so that a publisher waits in its own send() before long.
 class TcpPoseSource final : public PoseSource {
  public:
+  static constexpr std::chrono::seconds most_silence{30};
+
   /// `hold` may be empty: publishers do not wait then.
   TcpPoseSource(boost::asio::io_context& io, const TcpPoseInput& input, const Clock& clock, PoseSink sink,
                 PoseHold hold = {}, std::chrono::milliseconds message_timeout = std::chrono::seconds{5});

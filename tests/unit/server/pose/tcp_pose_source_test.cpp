@@ -206,6 +206,31 @@ TEST_F(TcpPoseSourceTest, RefusesOneTooMany) {
   EXPECT_TRUE(run_until_delivered(1));
 }
 
+TEST_F(TcpPoseSourceTest, ASilentPublisherGivesItsPlaceToTheNextWhenAllAreTaken) {
+  struct : Clock {
+    TimePoint time{std::chrono::hours{1}};
+    TimePoint now() const override { return time; }
+  } clock;
+  TcpPoseSource source{io_, {{localhost, 0}, loopback, 2}, clock, sink_};
+  source.start();
+  tcp::socket silent = connect(source);
+  ASSERT_TRUE(run_until([&] { return source.client_count() == 1; }));
+  tcp::socket paused = connect(source);
+  ASSERT_TRUE(run_until([&] { return source.client_count() == 2; }));
+  clock.time += TcpPoseSource::most_silence - TimePoint{1};
+  send(paused, pose::encode_frame(sample(1)));
+  ASSERT_TRUE(run_until_delivered(1));
+  tcp::socket early = connect(source);
+  EXPECT_TRUE(closed_by_source(early));
+
+  clock.time += TimePoint{1};
+  tcp::socket next = connect(source);
+  EXPECT_TRUE(closed_by_source(silent));
+  send(next, pose::encode_frame(sample(2)));
+  send(paused, pose::encode_frame(sample(3)));
+  EXPECT_TRUE(run_until_delivered(3));
+}
+
 TEST_F(TcpPoseSourceTest, ListensOnlyToWhomItIsAllowed) {
   const auto source = started({{localhost, 0}, {{localhost, 32}}, 8});
   tcp::socket unauthorised = connect(*source, 0x7F000009);
