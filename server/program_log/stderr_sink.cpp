@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/common/printable.hpp"
+
 namespace sonard::server {
 
 StderrSink::StderrSink(int descriptor) : descriptor_(descriptor) {
@@ -42,8 +44,11 @@ StderrSink::~StderrSink() {
 }
 
 void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
+  const std::string payload = printable({message.payload.data(), message.payload.size()});
+  spdlog::details::log_msg safe = message;
+  safe.payload = payload;
   spdlog::memory_buf_t line;
-  formatter_->format(message, line);
+  formatter_->format(safe, line);
   std::string text = std::exchange(cut_, false) ? "\n" : "";
   if (dropped_ > 0) {
     text += dropped_text(message);

@@ -13,7 +13,7 @@ namespace sonard::server {
 
 /// Where a reader has stopped (a full pipe, a terminal that is held), lines are dropped and counted, and the
 /// next one that goes out says how many were. Any thread; a line is written whole or not at all, except that
-/// one longer than PIPE_BUF may be cut.
+/// one longer than PIPE_BUF may be cut. The message of a line is printable(), whoever made up parts of it.
 class StderrSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   /// @param descriptor stays open for as long as the sink lives; it is not changed, for other processes may
