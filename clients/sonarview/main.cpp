@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "clients/sonarview/command_line.hpp"
+#include "protocol/common/printable.hpp"
 
 int main(int argc, char** argv) {
   using namespace sonard::client;
@@ -14,7 +15,7 @@ int main(int argc, char** argv) {
     try {
       status = (*run)();
     } catch (const std::exception& error) {
-      fmt::print(stderr, "sonarview: {}\n", error.what());
+      fmt::print(stderr, "sonarview: {}\n", sonard::printable(error.what()));
       status = ExitStatus::system;
     }
   }

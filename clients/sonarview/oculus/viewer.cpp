@@ -13,6 +13,7 @@
 #include "clients/sonarview/common/line_viewer.hpp"
 #include "clients/sonarview/oculus/ping_pictures.hpp"
 #include "clients/sonarview/oculus/status_listener.hpp"
+#include "protocol/common/printable.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/host.hpp"
 
@@ -23,9 +24,7 @@ namespace {
 std::string one_line(std::string text) {
   constexpr std::size_t longest = 200;
   text.resize(std::min(text.size(), longest));
-  std::ranges::replace_if(
-      text, [](char c) { return c < ' ' || c > '~'; }, ' ');
-  return text;
+  return printable(text);
 }
 
 class Viewer final : public LineViewer {
