@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/common/printable.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -50,25 +52,25 @@ Json findings_json(const std::vector<std::string>& summary) {
 }
 
 std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json.dump(2, ' ', /*ensure_ascii=*/true, Json::error_handler_t::replace);
 }
 
 }  // namespace
 
 void print_report(const std::filesystem::path& file, const CheckReport& report) {
   for (const std::string& line : report.summary) {
-    fmt::print("{}\n", line);
+    fmt::print("{}\n", printable(line));
   }
   for (const ConfigProblem& warning : report.warnings) {
-    fmt::print(stderr, "warning: {}\n", problem_text(file, warning));
+    fmt::print(stderr, "warning: {}\n", printable(problem_text(file, warning)));
   }
   for (const ConfigProblem& problem : report.problems) {
-    fmt::print(stderr, "{}\n", problem_text(file, problem));
+    fmt::print(stderr, "{}\n", printable(problem_text(file, problem)));
   }
   if (report.problems.empty()) {
-    fmt::print("{}: good\n", file.string());
+    fmt::print("{}: good\n", printable(file.string()));
   } else {
-    fmt::print("{}: {} problem{}\n", file.string(), report.problems.size(),
+    fmt::print("{}: {} problem{}\n", printable(file.string()), report.problems.size(),
                report.problems.size() == 1 ? "" : "s");
   }
 }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
 
+#include "protocol/common/printable.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/diagnosis/pose_stream.hpp"
@@ -46,7 +47,7 @@ std::vector<std::string> names_of(const std::vector<pose::NamedTransform>& bodie
 
 void print_names(const char* what, const std::vector<std::string>& names) {
   if (!names.empty()) {
-    fmt::print("  {} {}\n", what, fmt::join(names, ", "));
+    fmt::print("  {} {}\n", what, printable(fmt::format("{}", fmt::join(names, ", "))));
   }
 }
 
@@ -88,7 +89,7 @@ void print_places(const DaemonConfig& config, const render::World& world, const 
     fmt::print("  looks    head '{}': {}\n", config.heads[i].name,
                pings.view(i, to_render(sample.T_world_vehicle), moved));
     for (const Finding& finding : pings.ping(i, to_render(sample.T_world_vehicle), moved)) {
-      fmt::print("  wrong?   head '{}': {}\n", config.heads[i].name, finding.text);
+      fmt::print("  wrong?   head '{}': {}\n", config.heads[i].name, printable(finding.text));
     }
   }
 }
@@ -96,7 +97,8 @@ void print_places(const DaemonConfig& config, const render::World& world, const 
 void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   const PoseSource& source = inputs.source(index);
   const PoseStatistics& statistics = inputs.statistics(index);
-  fmt::print("{}{}{}\n", source.description(), source.received().empty() ? "" : " ", source.received());
+  const std::string received = source.received();
+  fmt::print("{}{}{}\n", printable(source.description()), received.empty() ? "" : " ", printable(received));
   print_names("names   ", source.entities());
   if (statistics.newest()) {
     fmt::print("  {}\n", to_string(statistics.in_all(now)));
@@ -105,10 +107,10 @@ void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
     fmt::print("  no pose of the vehicle: {}\n", likely_cause(source));
   }
   if (const std::string details = source.details(); !details.empty()) {
-    fmt::print(" {}\n", details);
+    fmt::print(" {}\n", printable(details));
   }
   for (const Finding& finding : look_at_stream(inputs, index, now)) {
-    fmt::print("  wrong?   {}\n", finding.text);
+    fmt::print("  wrong?   {}\n", printable(finding.text));
   }
 }
 

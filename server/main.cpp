@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "protocol/common/printable.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/renderer_options.hpp"
@@ -101,7 +102,7 @@ void print_error(const std::string& line) {
   if (logs_json) {
     spdlog::error("{}", line);
   } else {
-    fmt::print(stderr, "{}\n", line);
+    fmt::print(stderr, "{}\n", printable(line));
   }
 }
 
@@ -392,7 +393,7 @@ int main_program(int argc, char** argv) {
   arguments.timing.start_now = start_now;
   start_log();
   if (run_command->parsed() || replay_command->parsed()) {
-    ignore_broken_pipes_and_hang_ups();
+    ignore_harmless_signals();
   }
   return guarded([&] {
     if (run_command->parsed()) {

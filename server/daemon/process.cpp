@@ -62,9 +62,10 @@ void open_standard_descriptors() {
   }
 }
 
-void ignore_broken_pipes_and_hang_ups() {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGHUP, SIG_IGN);
+void ignore_harmless_signals() {
+  for (const int signal : {SIGPIPE, SIGHUP, SIGUSR1, SIGUSR2}) {
+    std::signal(signal, SIG_IGN);
+  }
 }
 
 void tell_service_manager(std::string_view line) {

@@ -11,9 +11,10 @@ namespace sonard::server {
 /// number would be written to as a log. Call it before anything is opened.
 void open_standard_descriptors();
 
-/// SIGPIPE is ignored for the rest of the process (a peer that goes is an error of the write), SIGHUP until
-/// catch_signals(). For a daemon that starts: SIGINT and SIGTERM still end it at once.
-void ignore_broken_pipes_and_hang_ups();
+/// SIGPIPE is ignored for the rest of the process (a peer that goes is an error of the write), and so are
+/// SIGUSR1 and SIGUSR2, which mean nothing here; SIGHUP is ignored until catch_signals(). For a daemon that
+/// starts: SIGINT and SIGTERM still end it at once.
+void ignore_harmless_signals();
 
 /// From here on, for the rest of the process, each SIGINT, SIGTERM and SIGHUP is a byte, its number, to be
 /// read without waiting. An order to end that comes within `grace` of the first one is that one once more

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/common/printable.hpp"
 #include "server/devices/kinds/kinds.hpp"
 #include "server/info/info_text.hpp"
 #include "server/info/thumbnails.hpp"
@@ -28,7 +29,7 @@ void info(const std::filesystem::path& path, const InfoOptions& options) {
   const std::int32_t offset_s = utc_offset_s(log, options);
   fmt::print("{}", options.json ? info_json(log, offset_s) : info_text(log, offset_s));
   for (const std::string& problem : log.problems) {
-    fmt::print(stderr, "warning: {}: {}\n", path.string(), problem);
+    fmt::print(stderr, "warning: {}: {}\n", printable(path.string()), printable(problem));
   }
   if (options.pictures) {
     const std::uint64_t written =

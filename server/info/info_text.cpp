@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/common/printable.hpp"
+
 #include "server/devices/kinds/kinds.hpp"
 
 namespace sonard::server {
@@ -31,7 +33,7 @@ std::string title_of(const HeadSummary& head, LogKind log) {
   const DeviceKind* const kind = kind_of_logged(head.device, head.scanning, log);
   const std::string_view usual = head.scanning ? "scanning sonar" : "multibeam sonar";
   return fmt::format("{} {}{}", kind != nullptr ? kind->title() : usual, head.id,
-                     head.name.empty() ? "" : fmt::format(" '{}'", head.name));
+                     head.name.empty() ? "" : fmt::format(" '{}'", printable(head.name)));
 }
 
 std::string settings_text(const RecordedSettings& settings, bool scanning) {
@@ -164,10 +166,11 @@ std::int32_t local_utc_offset_s(std::int64_t local_time_ns) {
 }
 
 std::string info_text(const LogSummary& log, std::int32_t utc_offset_s) {
-  std::string text = fmt::format("log      {}: {}, {} bytes{}\n", log.path, name_of(log.kind), log.size_bytes,
-                                 !log.closed   ? ""
-                                 : *log.closed ? ", closed"
-                                               : ", not closed");
+  std::string text =
+      fmt::format("log      {}: {}, {} bytes{}\n", printable(log.path), name_of(log.kind), log.size_bytes,
+                  !log.closed   ? ""
+                  : *log.closed ? ", closed"
+                                : ", not closed");
   if (log.span_ns) {
     text += span_text(log, utc_offset_s);
   }
@@ -178,7 +181,7 @@ std::string info_text(const LogSummary& log, std::int32_t utc_offset_s) {
     text += "head     none\n";
   }
   for (const auto& [what, number] : log.other_records) {
-    text += fmt::format("also     {} {}\n", number, what);
+    text += fmt::format("also     {} {}\n", number, printable(what));
   }
   return text;
 }
@@ -200,7 +203,7 @@ std::string info_json(const LogSummary& log, std::int32_t utc_offset_s) {
                   {"heads", heads},
                   {"other_records", others},
                   {"problems", log.problems}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(-1, ' ', /*ensure_ascii=*/true, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace sonard::server

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "protocol/common/linear_samples.hpp"
+#include "protocol/common/printable.hpp"
 #include "renderer/picture/fan_image.hpp"
 #include "renderer/picture/picture_file.hpp"
 #include "server/info/recorded_sweeps.hpp"
@@ -39,9 +40,9 @@ bool drawable(const picture::FanShape& shape, const RecordedSettings& settings) 
 
 // Names come from the log: they are no way out of the folder.
 std::string file_name(const LoggedHead& head, std::uint64_t number) {
-  std::string name = head.name.empty() ? fmt::format("{}", head.device_id) : head.name;
+  std::string name = head.name.empty() ? fmt::format("{}", head.device_id) : printable(head.name);
   std::ranges::replace_if(
-      name, [](char c) { return c == '/' || c == '\0'; }, '_');
+      name, [](char c) { return c == '/'; }, '_');
   return fmt::format("{}_{:06}.png", name, number);
 }
 

@@ -235,6 +235,14 @@ class Signals(DaemonCase):
         self.lines(client, 3)
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
+    def test_signals_that_mean_nothing_change_nothing(self):
+        daemon = self.start()
+        for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGPIPE):
+            daemon.signal(number)
+        time.sleep(0.5)
+        client = self.client()
+        self.assertIsNotNone(client.read_until(ALIVE, PATIENCE_S), daemon.tail())
+
     def test_sighup_begins_anew_with_a_good_configuration(self):
         daemon = self.start()
         client = self.client()
