@@ -148,7 +148,7 @@ void FoxgloveSession::advertise(const DaemonStatus& status) {
 // ---- What the other side asks for
 
 void FoxgloveSession::take(const std::string& text) {
-  const json message = json::parse(text, nullptr, false);
+  const json message = json_of_peer(text);
   const std::string op = message.is_object() && message.contains("op") && message["op"].is_string()
                              ? message["op"].get<std::string>()
                              : "";

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include <fmt/format.h>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/rfc7230.hpp>
 #include <boost/beast/http/write.hpp>
@@ -22,6 +23,8 @@ namespace {
 
 constexpr std::uint32_t most_header_bytes = 8192;
 constexpr std::uint64_t most_body_bytes = 4096;
+constexpr std::size_t most_drained_bytes = 256 << 10;
+constexpr std::chrono::seconds drain_patience{2};
 constexpr std::chrono::seconds patience{30};  // for a request to come, and for an answer to go
 
 /// Whether a client that asks for a WebSocket would speak this on it.
@@ -53,7 +56,7 @@ void HttpSession::read() {
 
 void HttpSession::on_read(beast::error_code error) {
   if (error) {
-    close();
+    refuse(error);
     return;
   }
   HttpRequest request = parser_->release();
@@ -70,6 +73,42 @@ void HttpSession::on_read(beast::error_code error) {
   stream_.expires_never();  // the answer may take a while, and is not theirs to make
   site_.answer(request, peer_,
                [self = shared_from_this()](HttpResponse response) { self->send(std::move(response)); });
+}
+
+/// Answers a request that cannot be read. One that did not come to its end gets no answer.
+void HttpSession::refuse(beast::error_code why) {
+  const bool malformed = why.category() == http::make_error_code(http::error::bad_method).category();
+  if (!malformed || why == http::error::end_of_stream || why == http::error::partial_message) {
+    close();
+    return;
+  }
+  refused_ = true;
+  HttpRequest none;
+  none.version(11);
+  none.keep_alive(false);
+  if (why == http::error::header_limit || why == http::error::buffer_overflow) {
+    send(error_response(none, http::status::request_header_fields_too_large,
+                        fmt::format("The header has more than {} bytes.", most_header_bytes)));
+  } else if (why == http::error::body_limit) {
+    send(error_response(none, http::status::payload_too_large,
+                        fmt::format("The body has more than {} bytes.", most_body_bytes)));
+  } else {
+    send(error_response(none, http::status::bad_request, fmt::format("This is no HTTP: {}.", why.message())));
+  }
+}
+
+/// What comes after a refused request is read and dropped for a while: a connection that is closed with bytes
+/// unread is reset, and the answer may be lost with it.
+void HttpSession::drain() {
+  buffer_.clear();
+  stream_.expires_after(drain_patience);
+  stream_.async_read_some(buffer_.prepare(most_header_bytes),
+                          [self = shared_from_this()](beast::error_code error, std::size_t length) {
+                            self->drained_bytes_ += length;
+                            if (!error && self->drained_bytes_ < most_drained_bytes) {
+                              self->drain();
+                            }
+                          });
 }
 
 template <class Session>
@@ -96,6 +135,9 @@ void HttpSession::send(HttpResponse response) {
 void HttpSession::close() {
   beast::error_code ignored;
   stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  if (refused_) {
+    drain();
+  }
 }
 
 }  // namespace sonard::server

@@ -34,12 +34,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   template <class Session>
   void upgrade(HttpRequest request);
   void send(HttpResponse response);
+  void refuse(boost::beast::error_code why);
+  void drain();
   void close();
 
   Site& site_;
   boost::beast::tcp_stream stream_;
   Endpoint peer_;
   bool counted_ = true;
+  bool refused_ = false;
+  std::size_t drained_bytes_ = 0;
   boost::beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
 };

@@ -247,6 +247,17 @@ json readiness_json(const DaemonStatus& status) {
           {"heads", std::move(heads)}};
 }
 
+json json_of_peer(std::string_view text) {
+  constexpr int deepest = 16;
+  bool too_deep = false;
+  const auto keep = [&](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > deepest;
+    return !too_deep;
+  };
+  json value = json::parse(text, keep, /*allow_exceptions=*/false);
+  return too_deep ? json(json::value_t::discarded) : value;
+}
+
 std::string text_of(const json& value) {
   return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

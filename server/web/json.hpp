@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -31,6 +32,10 @@ std::vector<std::string> why_not_ready(const DaemonStatus& status);
 
 /// The answer to GET /ready (docs/page.md); 503 goes with "ready": false.
 nlohmann::json readiness_json(const DaemonStatus& status);
+
+/// JSON that a peer sent, to be looked at by code that calls itself for each level: discarded if it is none,
+/// or nested more deeply than any message that is served.
+nlohmann::json json_of_peer(std::string_view text);
 
 /// Text of JSON; bytes that are no UTF-8, as a name from the network may have, are replaced.
 std::string text_of(const nlohmann::json& value);

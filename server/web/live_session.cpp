@@ -30,7 +30,7 @@ void LiveSession::close() {
 // ---- What the viewer asks for
 
 void LiveSession::take(const std::string& text) {
-  const auto message = nlohmann::json::parse(text, nullptr, false);
+  const auto message = json_of_peer(text);
   const std::string type = message.is_object() ? message.value("type", nlohmann::json()).dump() : "";
   if (type == "\"want\"" && message.value("head", nlohmann::json()).is_number_unsigned() &&
       message.value("max_rows", nlohmann::json()).is_number_unsigned()) {

@@ -53,10 +53,6 @@ HttpResponse json_response(const HttpRequest& request, http::status status, cons
   return response(request, status, "application/json", text_of(json) + "\n");
 }
 
-HttpResponse error_response(const HttpRequest& request, http::status status, const std::string& text) {
-  return json_response(request, status, {{"error", text}});
-}
-
 std::string_view path_of(const HttpRequest& request) {
   const std::string_view target = as_view(request.target());
   return target.substr(0, target.find('?'));
@@ -67,6 +63,10 @@ bool reads(const HttpRequest& request) {
 }
 
 }  // namespace
+
+HttpResponse error_response(const HttpRequest& request, http::status status, const std::string& text) {
+  return json_response(request, status, {{"error", text}});
+}
 
 void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping) {
   const auto size_of = [](const ShownPing& of) {
@@ -169,7 +169,7 @@ HttpResponse Site::change_recording(const HttpRequest& request, const Endpoint& 
     return error_response(request, http::status::conflict,
                           "The configuration has no section recording, so nothing can be recorded.");
   }
-  const auto wish = nlohmann::json::parse(request.body(), nullptr, false);
+  const auto wish = json_of_peer(request.body());
   if (!wish.is_object() || !wish.contains("on") || !wish["on"].is_boolean()) {
     return error_response(request, http::status::bad_request, "Send {\"on\": true} or {\"on\": false}.");
   }

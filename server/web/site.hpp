@@ -53,6 +53,10 @@ class Viewer {
 using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
 using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
 
+/// {"error": text}
+HttpResponse error_response(const HttpRequest& request, boost::beast::http::status status,
+                            const std::string& text);
+
 /// Belongs to the thread of the page.
 class Site {
  public:

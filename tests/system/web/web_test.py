@@ -14,6 +14,7 @@ import http.client
 import json
 import os
 import re
+import resource
 import socket
 import struct
 import sys
@@ -216,6 +217,50 @@ class Web(OwnMachine):
                 await live.send("x" * 5000)  # longer than any message: the connection ends
                 with self.assertRaises(websockets.ConnectionClosed):
                     await asyncio.wait_for(live.recv(), PATIENCE_S)
+
+        asyncio.run(talk())
+        self.assertEqual(self.ask("GET", "/health")[0], 200)
+
+    def raw_answer(self, request):
+        """The first line of the answer to these bytes, though more of them wait to be read."""
+        with socket.create_connection(("127.0.0.1", PORT), timeout=PATIENCE_S) as raw:
+            raw.sendall(request)
+            answer = b""
+            while b"\r\n" not in answer:
+                more = raw.recv(4096)
+                if not more:
+                    break
+                answer += more
+            return answer.split(b"\r\n")[0].decode()
+
+    def test_requests_that_cannot_be_read_are_answered(self):
+        self.start()
+        host = b"Host: 127.0.0.1\r\n"
+        for status, request in ((400, b"\0" * 100), (400, b"GET\r\n\r\n"), (400, b"\x16\x03\x01\x02\x00 this is TLS\r\n\r\n"),
+                                (400, b"GET / HTTP/1.1\r\nno colon\r\n\r\n"),
+                                (431, b"GET / HTTP/1.1\r\n" + host + b"X: " + b"a" * 100_000),
+                                (413, b"POST /api/recording HTTP/1.1\r\n" + host + b"Content-Length: 99999999\r\n\r\n"),
+                                (413, b"POST /api/recording HTTP/1.1\r\n" + host + b"Content-Length: 5000\r\n\r\n" + b"a" * 5000)):
+            with self.subTest(request=request[:60]):
+                self.assertTrue(self.raw_answer(request).startswith(f"HTTP/1.1 {status} "), self.raw_answer(request))
+        self.assertEqual(self.ask("GET", "/health")[0], 200)
+
+    def test_deeply_nested_json_ends_nothing(self):
+        soft, hard = resource.getrlimit(resource.RLIMIT_STACK)
+        resource.setrlimit(resource.RLIMIT_STACK, (2 << 20, hard))  # as in small containers
+        try:
+            self.start()
+        finally:
+            resource.setrlimit(resource.RLIMIT_STACK, (soft, hard))
+        deep = "[" * 32_000 + "]" * 32_000
+
+        async def talk():
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/", subprotocols=["foxglove.websocket.v1"]) as viewer:
+                await viewer.send('{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": ' + deep + "}]}")
+                while True:
+                    message = await asyncio.wait_for(viewer.recv(), PATIENCE_S)
+                    if isinstance(message, str) and json.loads(message)["op"] == "status":
+                        return
 
         asyncio.run(talk())
         self.assertEqual(self.ask("GET", "/health")[0], 200)
