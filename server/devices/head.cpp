@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,7 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr std::chrono::seconds report_period{10};
+constexpr std::chrono::milliseconds pause_without_memory{100};
 constexpr std::size_t most_waiting_events = 4096;  // while a transport is blocked; then messages are dropped
 
 /// What a recording keeps of the job that is out: a ping goes onto the wire before the next job comes.
@@ -81,6 +83,9 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
 
   void happen(Event event);
   void pump();
+  void take_or_lose(TimePoint now, const Event& event);
+  template <typename Work>
+  bool done_or_lost(const Work& work);
   void take(TimePoint now, const Event& event);
   void step(TimePoint now, const Event& event);
   std::optional<std::uint64_t> carry_out(TimePoint now, Actions actions);
@@ -290,11 +295,38 @@ void Head::Impl::pump() {
   while (running && !events.empty() && !connected->transport().blocked()) {
     const Event event = std::move(events.front());
     events.pop_front();
-    take(services.clock.now(), event);
+    take_or_lose(services.clock.now(), event);
   }
   pumping = false;
   if (running) {
     schedule(services.clock.now());
+  }
+}
+
+/// Does what may run out of memory: this head then loses what it was about to do, a ping at most, and other
+/// heads lose nothing. @return whether it was done
+template <typename Work>
+bool Head::Impl::done_or_lost(const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const std::bad_alloc&) {
+  }
+  try {
+    log.notice({Notice::Level::warning, "memory has run out: a ping or an answer is lost"});
+  } catch (const std::bad_alloc&) {
+    // The line is lost, too.
+  }
+  return false;
+}
+
+void Head::Impl::take_or_lose(TimePoint now, const Event& event) {
+  if (done_or_lost([&] { take(now, event); })) {
+    return;
+  }
+  wake_at = now + pause_without_memory;
+  if (const auto* const rendered = std::get_if<PingRendered>(&event)) {
+    done_or_lost([&] { step(now, PingNotRendered{rendered->image.number}); });
   }
 }
 
@@ -319,15 +351,15 @@ void Head::Impl::step(TimePoint now, const Event& event) {
   connected->after_step();
 }
 
-// The number of a job that will get no image.
+// The number of a job that will get no image. The device waits for the answer to its job, whatever is lost.
 std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions actions) {
   for (const Notice& notice : actions.notices) {
     log.notice(notice);
   }
   if (actions.record) {
-    record(now, std::move(*actions.record));
+    done_or_lost([&] { record(now, std::move(*actions.record)); });
   }
-  send(std::move(actions.send));
+  done_or_lost([&] { send(std::move(actions.send)); });
   for (const Peer& client : actions.disconnect) {
     connected->transport().disconnect(client);
   }
@@ -342,7 +374,8 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
   if (actions.cancelled && rendering.withdraw()) {
     return actions.cancelled;
   }
-  if (actions.render && !render(*actions.render)) {
+  bool rendered = true;
+  if (actions.render && !(done_or_lost([&] { rendered = render(*actions.render); }) && rendered)) {
     return actions.render->number;
   }
   return std::nullopt;
@@ -479,9 +512,11 @@ bool Head::Impl::render(const PingJob& job) {
           return;
         }
         if (self->rendering.take(result)) {
-          self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
-                               self->rendering.bodies_at(pose_time), result.statistics.sees_surface,
-                               result.statistics.echo_over_floor);
+          self->done_or_lost([&] {
+            self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
+                                 self->rendering.bodies_at(pose_time), result.statistics.sees_surface,
+                                 result.statistics.echo_over_floor);
+          });
           self->happen(
               PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16), sensed}});
         } else {

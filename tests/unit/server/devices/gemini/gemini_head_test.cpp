@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@
 
 #include "server/devices/gemini/config.hpp"
 #include "server/devices/gemini/kind.hpp"
+#include "server/devices/ping_viewer.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/rendering/render_service.hpp"
@@ -63,6 +65,7 @@ struct GeminiHeadTest : testing::Test {
   GeminiConfig gemini_config;
   std::optional<double> water_surface_z_m;
   std::string vehicle_model;
+  PingViewer* viewer = nullptr;
 
   std::unique_ptr<PoseHistory> poses;
   std::unique_ptr<RenderService> service;
@@ -99,6 +102,7 @@ struct GeminiHeadTest : testing::Test {
     service = std::make_unique<RenderService>(test::fake_renderer_factory(renderer), 1, hooks);
     HeadServices services{io, clock, *service, *poses, water_surface_z_m};
     services.vehicle_model = vehicle_model;
+    services.viewer = viewer;
     config.device = std::make_shared<GeminiConfig>(gemini_config);
     head = std::make_unique<Head>(config, 0, services);
     head->start();
@@ -130,6 +134,25 @@ struct GeminiHeadTest : testing::Test {
     return run_until([&] { return of_type(type).size() >= count; });
   }
 };
+
+// Where the first ping goes out there is no memory for people who watch.
+TEST_F(GeminiHeadTest, MemoryThatRunsOutCostsAPingAtMost) {
+  struct : PingViewer {
+    int shown = 0;
+    void show(std::shared_ptr<const ShownPing>) override {
+      if (shown++ == 0) {
+        throw std::bad_alloc();
+      }
+    }
+  } without_memory;
+  viewer = &without_memory;
+  start();
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return without_memory.shown == 1; }));
+  ASSERT_TRUE(run_until_received(0x42, config_lines)) << "what goes onto the wire is not lost with it";
+  command(ping_config);
+  EXPECT_TRUE(run_until([&] { return without_memory.shown == 2; }));
+}
 
 TEST_F(GeminiHeadTest, SendsStatusFromItsCommandPort) {
   start();
