@@ -73,7 +73,7 @@ class MountResolver {
       problem(key, fmt::format("'{}' is the name of several sonars of the world (expected one of {})",
                                head.mount_from_world, paths(found)));
     } else if (found.front()->type != head.kind->type()) {
-      problem(key, fmt::format("{} is a {} in the world (expected a {}, as this head is)",
+      problem(key, fmt::format("{} is of type {} in the world (expected {}, as this head is)",
                                found.front()->path, found.front()->type, head.kind->type()));
     } else {
       head.T_vehicle_sonar = found.front()->T_body_sonar;

@@ -18,7 +18,7 @@ class OptionsOf {
 
   void refuse(const char* option, bool given) const {
     if (given) {
-      throw CLI::ValidationError(option, fmt::format("means nothing to a {}", device_));
+      throw CLI::ValidationError(option, fmt::format("not an option for {}", device_));
     }
   }
 
@@ -26,8 +26,8 @@ class OptionsOf {
   void take(const char* option, const std::optional<double>& value, double least, double most,
             double& setting) const {
     if (value && !(*value >= least && *value <= most)) {
-      throw CLI::ValidationError(option, fmt::format("{} is out of range for a {} (expected {} to {})",
-                                                     *value, device_, least, most));
+      throw CLI::ValidationError(
+          option, fmt::format("{} is out of range for {} (expected {} to {})", *value, device_, least, most));
     }
     setting = value.value_or(setting);
   }

@@ -364,7 +364,7 @@ class Files(Case):
         refused = render(self.config(), "--trajectory", self.way(1.0), "--out", self.path("out"), "--frequency", "high",
                          check=False)
         self.assertEqual(refused.returncode, 64)
-        self.assertIn("--frequency: means nothing to a Gemini", refused.stderr)
+        self.assertIn("--frequency: not an option for Gemini", refused.stderr)
 
     def test_sweeps_of_a_micron(self):
         out = self.path("out")
@@ -704,8 +704,8 @@ class Complaints(Case):
                     "--out", out, "--head", "stern")
         self.expect(2, f"{way}: ends before the first sweep of head 'mast' does", config, "--trajectory", way, "--out", out,
                     "--head", "mast")
-        self.expect(64, "--bins: means nothing to a Gemini", config, "--trajectory", way, "--out", out, "--bins", "100")
-        self.expect(64, "--range: 190 is out of range for a Gemini (expected 0.3 to 150)", config, "--trajectory", way, "--out",
+        self.expect(64, "--bins: not an option for Gemini", config, "--trajectory", way, "--out", out, "--bins", "100")
+        self.expect(64, "--range: 190 is out of range for Gemini (expected 0.3 to 150)", config, "--trajectory", way, "--out",
                     out, "--range", "190")
         self.expect(64, "--shard: expected I/N with 0 <= I <= N and N >= 1, found '4/3'", config, "--trajectory", way, "--out",
                     out, "--shard", "4/3")

@@ -82,7 +82,7 @@ TEST_F(ResolveMounts, WantsOneSonarOfTheRightTypeOnOneVehicle) {
       take(),
       ElementsAre(
           is_problem("heads[0].mount.from_world", "(expected one of crab::left::eye, crab::right::eye)"),
-          is_problem("heads[1].mount.from_world", "is a micron in the world (expected a gemini_720i")));
+          is_problem("heads[1].mount.from_world", "is of type micron in the world (expected gemini_720i")));
   config_ = {};
   add_gemini("gemini");
   add_gemini("left::eye");

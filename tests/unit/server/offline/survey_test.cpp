@@ -132,7 +132,7 @@ TEST(Survey, an_oculus_has_two_frequencies_and_other_heads_refuse_the_option) {
     SCOPED_TRACE(kind->type());
     if (kind->type() != "oculus") {
       EXPECT_THAT(complaint(*kind, with(&SurveyOptions::frequency, "high")),
-                  testing::StartsWith("--frequency: means nothing to a "));
+                  testing::StartsWith("--frequency: not an option for "));
       continue;
     }
     const auto low = survey(*kind, with(&SurveyOptions::frequency, "low"));
@@ -147,16 +147,16 @@ TEST(Survey, an_oculus_has_two_frequencies_and_other_heads_refuse_the_option) {
 TEST(GeminiSurvey, refuses_what_it_does_not_know_or_cannot_do) {
   const DeviceKind& kind = gemini_kind();
   EXPECT_EQ(complaint(kind, {}), "");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 400)), "--bins: means nothing to a Gemini");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.8)), "--step: means nothing to a Gemini");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 400)), "--bins: not an option for Gemini");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.8)), "--step: not an option for Gemini");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {0.0, 90.0})),
-            "--sector: means nothing to a Gemini");
+            "--sector: not an option for Gemini");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 190.0)),
-            "--range: 190 is out of range for a Gemini (expected 0.3 to 150)");
+            "--range: 190 is out of range for Gemini (expected 0.3 to 150)");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 0.2)),
-            "--range: 0.2 is out of range for a Gemini (expected 0.3 to 150)");
+            "--range: 0.2 is out of range for Gemini (expected 0.3 to 150)");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::sound_speed_mps, 1600.0)),
-            "--sound-speed: 1600 is out of range for a Gemini (expected 1400 to 1588)");
+            "--sound-speed: 1600 is out of range for Gemini (expected 1400 to 1588)");
 }
 
 // ---- Micron
@@ -208,14 +208,14 @@ TEST(MicronSurvey, refuses_what_it_does_not_know_or_cannot_do) {
   const DeviceKind& kind = micron_kind();
   EXPECT_EQ(complaint(kind, {}), "");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::compression_log2, 1)),
-            "--compression: means nothing to a Micron");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bits, 8)), "--bits: means nothing to a Micron");
+            "--compression: not an option for Micron");
+  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bits, 8)), "--bits: not an option for Micron");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 201.0)),
-            "--range: 201 is out of range for a Micron (expected 0.1 to 200)");
+            "--range: 201 is out of range for Micron (expected 0.1 to 200)");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::sound_speed_mps, 1200.0)),
-            "--sound-speed: 1200 is out of range for a Micron (expected 1300 to 1700)");
+            "--sound-speed: 1200 is out of range for Micron (expected 1300 to 1700)");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 1501)),
-            "--bins: 1501 is out of range for a Micron (expected 1 to 1500)");
+            "--bins: 1501 is out of range for Micron (expected 1 to 1500)");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.0)),
             "--step: expected a multiple of 0.05625 degrees, 14.34375 at most, found 1");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {30.0, 30.0})),
