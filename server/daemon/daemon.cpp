@@ -68,6 +68,8 @@ std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig
   }
 }
 
+constexpr unsigned threads_of_opengl = 6;  // of Mesa, beside one for each core
+
 // By stream; null for a head that keeps nothing.
 std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>& heads) {
   std::vector<std::unique_ptr<PingDump>> dumps(heads.size());
@@ -598,6 +600,9 @@ int run_daemon(DaemonConfig config, const std::function<bool()>& may_begin_anew)
     }
   }
   const render::RendererOptions options = renderer_options(config);
+  if (options.engine == render::EngineKind::gpu) {
+    make_sure_of_threads(std::thread::hardware_concurrency() + threads_of_opengl);
+  }
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     if (!config.skip.on(entry.rule)) {
       spdlog::info("skip rule {} is off", entry.name);

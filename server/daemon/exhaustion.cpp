@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <latch>
 #include <new>
 #include <string_view>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <boost/system/system_error.hpp>
@@ -93,6 +96,20 @@ std::optional<std::string> exhausted(const std::exception& error) {
     return sentence_for({of_boost->code().value(), std::system_category()}, error.what());
   }
   return std::nullopt;
+}
+
+void make_sure_of_threads(unsigned count) {
+  std::latch all_started{1};
+  std::vector<std::jthread> threads;
+  try {
+    for (unsigned i = 0; i < count; ++i) {
+      threads.emplace_back([&] { all_started.wait(); });
+    }
+  } catch (...) {
+    all_started.count_down();
+    throw;
+  }
+  all_started.count_down();
 }
 
 void end_by_sentence_when_exhausted() {

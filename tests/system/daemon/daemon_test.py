@@ -362,21 +362,37 @@ class Exhaustion(DaemonCase):
         self.outcomes(self.configuration(heads=GEMINI.format(head=HEAD, topside_port=free_port())), resource.RLIMIT_NOFILE,
                       (*range(6, 20), 64), "(?m)^out of file descriptors .*ulimit -n")
 
-    def test_of_threads(self):
-        if os.geteuid() != 0:
-            raise RuntimeError("needs root, to start the program as a user that has no processes")
+    def as_nobody(self, engine="cpu"):
+        """Command line, environment and ID of a user that has no processes."""
         # Where that user may read it.
         program = shutil.copy(os.path.join(PROGRAMS, "sonard"), self.folder.name)
         shutil.copy(WORLD, self.folder.name)
         os.chmod(self.folder.name, 0o755)
         _, run, config = self.configuration()
         with open(config, encoding="utf-8") as file:
-            text = file.read().replace(WORLD, os.path.basename(WORLD))
+            text = file.read().replace(WORLD, os.path.basename(WORLD)).replace("engine: cpu", f"engine: {engine}")
         with open(config, "w", encoding="utf-8") as file:
             file.write(text)
-        nobody = 1_700_000_000 + os.getpid()
-        self.outcomes([program, run, config], resource.RLIMIT_NPROC, (*range(2, 9), 64), "(?m)^out of threads .*ulimit -u",
-                      user=nobody, group=nobody, extra_groups=[], env={**os.environ, "HOME": self.folder.name})
+        return [program, run, config], {**os.environ, "HOME": self.folder.name}, 1_700_000_000 + os.getpid()
+
+    def test_of_threads(self):
+        if os.geteuid() != 0:
+            raise RuntimeError("needs root, to start the program as a user that has no processes")
+        command, environment, nobody = self.as_nobody()
+        self.outcomes(command, resource.RLIMIT_NPROC, (*range(2, 9), 64), "(?m)^out of threads .*ulimit -u",
+                      user=nobody, group=nobody, extra_groups=[], env=environment)
+
+    def test_of_threads_of_opengl(self):
+        """Mesa waits for ever for threads that it could not start."""
+        if os.geteuid() != 0:
+            raise RuntimeError("needs root, to start the program as a user that has no processes")
+        command, environment, nobody = self.as_nobody(engine="gpu")
+        for limit in (3, 4, 5):
+            done = subprocess.run(command, capture_output=True, text=True, timeout=2 * START_S, check=False, user=nobody,
+                                  group=nobody, extra_groups=[], env=environment,
+                                  preexec_fn=lambda n=limit: resource.setrlimit(resource.RLIMIT_NPROC, (n, n)))
+            self.assertEqual(done.returncode, 71, done.stderr)
+            self.assertRegex(done.stderr, "(?m)^out of threads .*ulimit -u")
 
     def test_of_memory(self):
         command = self.configuration()
