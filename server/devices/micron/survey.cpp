@@ -33,7 +33,7 @@ micron::ScanSettings scan_settings(const SurveyOptions& options) {
   taken.take("--sound-speed", options.sound_speed_mps, 1300.0, 1700.0, settings.sound_speed_mps);
   settings.bins = options.bins.value_or(settings.bins);
   if (settings.bins > micron::max_bins) {
-    throw CLI::ValidationError("--bins", fmt::format("{} is out of range for a Micron (expected 1 to {})",
+    throw CLI::ValidationError("--bins", fmt::format("{} is out of range for Micron (expected 1 to {})",
                                                      settings.bins, micron::max_bins));
   }
   if (options.step_deg) {

@@ -70,7 +70,7 @@ Asked asked_of(const SurveyOptions& options, const ping360::DeviceConfig& device
   taken.take("--sound-speed", options.sound_speed_mps, 1300.0, 1700.0, asked.sound_speed_mps);
   if (options.bins && (*options.bins < 200 || *options.bins > 1200)) {
     throw CLI::ValidationError(
-        "--bins", fmt::format("{} is out of range for a Ping360 (expected 200 to 1200)", *options.bins));
+        "--bins", fmt::format("{} is out of range for Ping360 (expected 200 to 1200)", *options.bins));
   }
   const auto scan =
       ping360::usual_scan(asked.range_m, options.bins, asked.sound_speed_mps, device.bearing_offset);

@@ -122,6 +122,14 @@ class HostileText(DaemonCase):
             with self.subTest(command):
                 self.expect_clean(self.run_to_end("sonard", *command, codes=(0, 2)))
 
+    def test_the_page_makes_no_html_of_text(self):
+        page = os.path.join(SOURCE, "server", "web", "page")
+        scripts = [name for name in os.listdir(page) if name.endswith(".js")]
+        self.assertTrue(scripts)
+        for name in scripts:
+            with open(os.path.join(page, name), encoding="utf-8") as file:
+                self.assertNotRegex(file.read(), r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(", name)
+
     def test_what_a_head_says_in_sonarview(self):
         with socket.create_server(("127.0.0.1", 0)) as head:
             port = head.getsockname()[1]
