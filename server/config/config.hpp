@@ -181,7 +181,8 @@ struct RecordingConfig {
   std::chrono::nanoseconds rotate_after{std::chrono::hours{1}};  ///< > 0; and so does this time
   RecordingZone zone = RecordingZone::utc;
   RecordingSync sync = RecordingSync::on_close;
-  std::size_t queue_bytes = std::size_t{128} << 20;  ///< what does not fit is dropped
+  std::size_t queue_bytes = std::size_t{128} << 20;                 ///< what does not fit is dropped
+  std::chrono::nanoseconds stop_deadline{std::chrono::seconds{5}};  ///< for what waits, when the daemon ends
 };
 
 /// The page in the browser, and what monitors ask.

@@ -83,8 +83,7 @@ int count_documents(const std::string& text) {
   return static_cast<int>(starts.marks.size());
 }
 
-YAML::Node parse_yaml(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
+YAML::Node parse_yaml(const std::filesystem::path& file, const std::string& text) {
   try {
     if (const int documents = count_documents(text); documents != 1) {
       throw ConfigError(file, {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents)}});
@@ -447,6 +446,10 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
       "queue_mib", mebibytes, 1, 16'384,
       "what waits to be written; beyond that is dropped and counted, for nothing ever waits for the disk");
   recording.queue_bytes = mebibytes << 20;
+  section.duration(
+      "stop_deadline_s", recording.stop_deadline, Range::from(0.0, 3600.0),
+      "when the daemon ends, it waits no longer than this for the disk; it then logs what is not "
+      "on the disk, and the next start repairs the logs");
 }
 
 void read_web(YamlSection& section, WebConfig& web) {
@@ -525,8 +528,17 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
 
 }  // namespace
 
+std::string read_config(const std::filesystem::path& file) {
+  return read_file(file);
+}
+
 LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds) {
-  const YAML::Node document = parse_yaml(file);
+  return load_config(file, read_file(file), kinds);
+}
+
+LoadedConfig load_config(const std::filesystem::path& file, const std::string& text,
+                         std::span<const HeadKind* const> kinds) {
+  const YAML::Node document = parse_yaml(file, text);
   YamlFindings findings;
   LoadedConfig loaded;
   loaded.config.file = file;

@@ -37,6 +37,13 @@ struct LoadedConfig {
 /// @throws ConfigError with every problem of the file.
 LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds);
 
+/// Bytes of a configuration file. @throws ConfigError
+std::string read_config(const std::filesystem::path& file);
+/// The same for bytes that were read before.
+/// @param file for messages and relative paths; not read
+LoadedConfig load_config(const std::filesystem::path& file, const std::string& text,
+                         std::span<const HeadKind* const> kinds);
+
 /// All keys of a configuration whose heads are of one kind: for the schema and docs/configuration.md.
 std::vector<KeyReference> describe_config(const HeadKind& kind);
 

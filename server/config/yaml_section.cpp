@@ -179,7 +179,7 @@ SourcePosition place_of(const YAML::Node& node, const SourcePosition& otherwise)
 }
 
 double ns_per_unit(std::string_view key) {
-  return key.ends_with("_us") ? 1e3 : key.ends_with("_ms") ? 1e6 : 60e9;
+  return key.ends_with("_us") ? 1e3 : key.ends_with("_ms") ? 1e6 : key.ends_with("_s") ? 1e9 : 60e9;
 }
 
 }  // namespace

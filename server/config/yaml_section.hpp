@@ -108,7 +108,7 @@ class YamlSection {
   void number_or_word(std::string_view key, double& out, const Range& range,
                       const std::vector<std::pair<std::string_view, double>>& words,
                       std::string_view meaning);
-  /// The key ends in _us, _ms or _min.
+  /// The key ends in _us, _ms, _s or _min.
   void duration(std::string_view key, std::chrono::nanoseconds& out, const Range& range,
                 std::string_view meaning);
   /// The key ends in _deg; the result is in radians.
