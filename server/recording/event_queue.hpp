@@ -44,6 +44,8 @@ class EventQueue {
   /// Frees the memory of a processed event.
   void done(const RecordingEvent& event);
 
+  /// Any thread. Memory of the events that are not done yet.
+  std::size_t bytes() const { return bytes_; }
   /// Any thread.
   DroppedEvents dropped() const;
 

@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <deque>
+#include <mutex>
 #include <optional>
+#include <semaphore>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -30,7 +32,7 @@ namespace fs = std::filesystem;
 constexpr int nice_value = 5;  // a third of the processor time of a thread that serves, where they compete
 constexpr std::chrono::milliseconds look_again{100};  // for chunks and syncs that are due without an event
 constexpr std::chrono::seconds sync_period{1};
-constexpr std::chrono::seconds report_period{10};
+constexpr std::chrono::seconds report_period{2};
 
 /// The right to use a folder, which ends with the process.
 class DirectoryLock {
@@ -60,10 +62,17 @@ class DirectoryLock {
   int fd_ = -1;
 };
 
-bool has_room(const fs::path& directory) {
+/// Why no logs can begin in a folder; empty: they can.
+std::string obstacle(const fs::path& directory) {
   std::error_code error;
   const fs::space_info space = fs::space(directory, error);
-  return !error && space.available >= Recorder::least_room_bytes;
+  if (error) {
+    return fmt::format("{} cannot be used ({}; make the folder again)", directory.string(), error.message());
+  }
+  return space.available >= Recorder::least_room_bytes
+             ? ""
+             : fmt::format("{} has no room for new logs (free at least {} MiB)", directory.string(),
+                           Recorder::least_room_bytes >> 20);
 }
 
 }  // namespace
@@ -80,6 +89,7 @@ struct Recorder::Impl {
   void pack_slice();
   void report_drops();
   void log_totals() const;
+  void log_unwritten() const;
   RecorderCounters counters() const;
 
   const RecordingConfig config;
@@ -88,26 +98,32 @@ struct Recorder::Impl {
   EventQueue queue;
   SteadyClock clock;
   std::atomic<bool> stopping{false};
+  std::atomic<bool> abandoned{false};  // nothing more is written
+  std::binary_semaphore ended{0};
   std::atomic<bool> on{true};
-  std::atomic<std::uint64_t> images{0}, images_lost{0}, logs_written{0}, logs_failed{0};
+  std::atomic<std::uint64_t> images_pushed{0}, images{0}, images_lost{0}, logs_written{0}, logs_failed{0};
+  std::mutex report;  // of the two below
+  TimePoint reported_at{};
+  std::uint64_t drops_reported = 0;
 
   // Used by the recorder's thread only:
   std::optional<LogSet> set;
   std::deque<GlfPacking> packings;
   TimePoint synced_at{};
-  TimePoint reported_at{};
-  std::uint64_t drops_reported = 0;
   bool without_room = false;
 
   std::thread thread;  // last: it uses all of the above
 };
 
 Recorder::Recorder(const RecordingConfig& config, std::vector<HeadToRecord> heads)
-    : impl_(std::make_unique<Impl>(config, std::move(heads))) {
+    : impl_(std::make_shared<Impl>(config, std::move(heads))) {
   for (const fs::path& dat : recover_logs(config.directory)) {
     impl_->packings.emplace_back(dat, config.sync);
   }
-  impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
+  impl_->thread = std::thread([impl = impl_] {
+    impl->run();
+    impl->ended.release();
+  });
 }
 
 Recorder::~Recorder() {
@@ -115,8 +131,14 @@ Recorder::~Recorder() {
 }
 
 void Recorder::push(RecordingEvent event) {
-  if (impl_->on) {
-    impl_->queue.push(std::move(event));
+  if (!impl_->on) {
+    return;
+  }
+  const bool image = std::holds_alternative<PingSent>(event.what);
+  if (impl_->queue.push(std::move(event))) {
+    impl_->images_pushed += image ? 1 : 0;
+  } else {
+    impl_->report_drops();  // here: the recorder's thread may be waiting for the disk
   }
 }
 
@@ -131,12 +153,20 @@ bool Recorder::on() const {
   return impl_->on;
 }
 
-void Recorder::stop() {
-  if (!impl_->stopping.exchange(true)) {
-    impl_->queue.wake();
-    impl_->thread.join();
-    impl_->log_totals();
+bool Recorder::stop() {
+  if (impl_->stopping.exchange(true)) {
+    return !impl_->abandoned;
   }
+  impl_->queue.wake();
+  if (impl_->ended.try_acquire_for(impl_->config.stop_deadline)) {
+    impl_->thread.join();
+  } else {
+    impl_->abandoned = true;
+    impl_->thread.detach();
+    impl_->log_unwritten();
+  }
+  impl_->log_totals();
+  return !impl_->abandoned;
 }
 
 RecorderCounters Recorder::counters() const {
@@ -155,6 +185,9 @@ void Recorder::Impl::run() {
     last = stopping;
     const bool off = !on;
     for (RecordingEvent& event : queue.take()) {
+      if (abandoned) {
+        return;
+      }
       record(event);
       queue.done(event);
       event.what = StreamEnded{};  // gives its memory back now
@@ -165,8 +198,10 @@ void Recorder::Impl::run() {
     look_after_logs();
     pack_slice();
   }
-  end_set();
-  while (!packings.empty()) {
+  if (!abandoned) {
+    end_set();
+  }
+  while (!abandoned && !packings.empty()) {
     pack_slice();
   }
 }
@@ -198,17 +233,14 @@ void Recorder::Impl::look_after_logs() {
       synced_at = now;
     }
   }
-  if (now - reported_at >= report_period) {
-    reported_at = now;
-    report_drops();
-  }
+  report_drops();
 }
 
 void Recorder::Impl::begin_set(TimePoint now) {
-  const bool room = has_room(config.directory);
+  const std::string why = obstacle(config.directory);
+  const bool room = why.empty();
   if (!room && !without_room) {
-    spdlog::error("recording: {} has no room for new logs: nothing is recorded, serving continues",
-                  config.directory.string());
+    spdlog::error("recording: {}: nothing is recorded, serving continues", why);
   }
   without_room = !room;
   set.emplace(config, heads, now, room);
@@ -233,13 +265,28 @@ void Recorder::Impl::pack_slice() {
   }
 }
 
+/// Any thread; never waits.
 void Recorder::Impl::report_drops() {
+  const std::unique_lock lock_report(report, std::try_to_lock);
+  const TimePoint now = clock.now();
+  if (!lock_report || (drops_reported > 0 && now - reported_at < report_period)) {
+    return;
+  }
   const DroppedEvents dropped = queue.dropped();
   if (dropped.total() > drops_reported) {
+    reported_at = now;
     drops_reported = dropped.total();
     spdlog::warn("recording: disk too slow, dropped so far: images={} wire_pieces={} others={}",
                  dropped.images, dropped.pieces, dropped.others);
   }
+}
+
+void Recorder::Impl::log_unwritten() const {
+  spdlog::error(
+      "recording: the disk is too slow to end within stop_deadline_s={}, not on the disk: images={} bytes={} "
+      "(the next start repairs the logs in {})",
+      std::chrono::duration<double>(config.stop_deadline).count(), images_pushed - images, queue.bytes(),
+      config.directory.string());
 }
 
 void Recorder::Impl::log_totals() const {
@@ -249,6 +296,13 @@ void Recorder::Impl::log_totals() const {
       "dropped_wire_pieces={} dropped_others={}",
       total.images, total.images_lost, total.logs_written, total.logs_failed, total.dropped.images,
       total.dropped.pieces, total.dropped.others);
+}
+
+void try_recording_into(const fs::path& directory) {
+  std::error_code error;
+  if (fs::exists(directory, error)) {
+    const DirectoryLock lock(directory);
+  }
 }
 
 }  // namespace sonard::server

@@ -2,6 +2,7 @@
 // Writes what the heads report to logs, on its own thread.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -17,6 +18,9 @@ namespace sonard::server {
 struct RecordingError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// Locks a folder for a moment, if there is one. @throws RecordingError if another daemon records into it
+void try_recording_into(const std::filesystem::path& directory);
 
 /// Counters, which only grow.
 struct RecorderCounters {
@@ -58,15 +62,17 @@ class Recorder {
   /// it is turned on again, with new logs.
   void turn(bool on);
   bool on() const;
-  /// Writes what was pushed before, closes and packs the logs, and logs what was done. Harmless when called
-  /// again.
-  void stop();
+  /// Writes what was pushed before, closes and packs the logs, and logs what was done. After
+  /// RecordingConfig::stop_deadline it logs what is not on the disk, and leaves the thread to itself: the
+  /// thread ends after the write that it waits in, and the next daemon repairs the logs.
+  /// @return false if the thread was left; the same when called again
+  bool stop();
 
   RecorderCounters counters() const;
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;  ///< of the thread, too
 };
 
 }  // namespace sonard::server
