@@ -6,16 +6,13 @@
 #include <exception>
 #include <limits>
 #include <set>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
 
-#include "renderer/picture/picture_file.hpp"
 #include "server/web/assets.hpp"
+#include "server/web/foxglove_time.hpp"
 #include "server/web/json.hpp"
 #include "server/web/little_endian.hpp"
 
@@ -66,11 +63,6 @@ std::string status_schema() {
   return schema == nullptr ? "{}" : std::string(schema->bytes);
 }
 
-json timestamp_json(std::chrono::nanoseconds since_epoch) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(since_epoch);
-  return {{"sec", seconds.count()}, {"nsec", (since_epoch - seconds).count()}};
-}
-
 json transform_json(const render::Pose& T_world_head, const std::string& head, json timestamp) {
   const glm::dvec3& p = T_world_head.position_m;
   const glm::dquat& q = T_world_head.orientation;
@@ -79,13 +71,6 @@ json transform_json(const render::Pose& T_world_head, const std::string& head, j
           {"child_frame_id", head},
           {"translation", {{"x", p.x}, {"y", p.y}, {"z", p.z}}},
           {"rotation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
-}
-
-std::string base64(const std::string& bytes) {
-  using namespace boost::archive::iterators;
-  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-  std::string text(Digits(bytes.begin()), Digits(bytes.end()));
-  return text.append((4 - text.size() % 4) % 4, '=');
 }
 
 /// @throws std::invalid_argument for what is no whole number of 32 bits
@@ -210,43 +195,25 @@ void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
   if (head >= heads_.size()) {
     return;  // before the channels were made known
   }
-  const json timestamp = timestamp_json(ping->time + unix_time_offset());
   if (subscriptions_.contains({head, Kind::transform}) && ping->T_world_mount && has_room()) {
-    send_on({head, Kind::transform}, text_of(transform_json(*ping->T_world_mount, heads_[head], timestamp)));
+    send_on({head, Kind::transform},
+            text_of(transform_json(*ping->T_world_mount, heads_[head], foxglove_time(ping->time))));
   }
-  if (!subscriptions_.contains({head, Kind::image})) {
-    pictures_.erase(head);
+  if (!subscriptions_.contains({head, Kind::image}) || !has_room()) {
     return;
   }
-  PingPicture& picture = pictures_[head];
-  if (ping->record.settings.beams == 1) {
-    picture.keep(ping->record);
+  const std::shared_ptr<const std::string> picture = site().picture_of(ping->head, heads_[head]);
+  if (picture && std::exchange(shown_[head], picture) != picture) {
+    send_on({head, Kind::image}, *picture);
   }
-  const auto last = shown_.find(head);
-  if (!has_room() || (last != shown_.end() && site().now() - last->second < 2 * site().interval())) {
-    return;
-  }
-  if (const cv::Mat drawn = picture.draw(ping->record); !drawn.empty()) {
-    const std::string png = picture::png_file(drawn, 1);
-    send_on({head, Kind::image}, text_of({{"timestamp", timestamp},
-                                          {"frame_id", heads_[head]},
-                                          {"data", base64(png)},
-                                          {"format", "png"}}));
-  }
-  shown_[head] = site().now();
 }
 
-/// A subscriber begins with the newest ping, or turn.
+/// A subscriber begins with the newest picture.
 void FoxgloveSession::show_last(std::size_t head) {
-  const Pings& pings = site().last_pings(static_cast<int>(head));
-  if (pings.empty()) {
-    return;
-  }
   shown_.erase(head);
-  for (const std::shared_ptr<const ShownPing>& line : std::span(pings).first(pings.size() - 1)) {
-    pictures_[head].keep(line->record);
+  if (const Pings& pings = site().last_pings(static_cast<int>(head)); !pings.empty()) {
+    show(pings.back());
   }
-  show(pings.back());
 }
 
 /// Message data: the opcode 1, the subscription, the time, and the message.

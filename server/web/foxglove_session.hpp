@@ -13,7 +13,6 @@
 
 #include <boost/asio/steady_timer.hpp>
 
-#include "server/picture/ping_picture.hpp"
 #include "server/web/web_socket.hpp"
 
 namespace sonard::server {
@@ -47,11 +46,10 @@ class FoxgloveSession final : public WebSocket {
   void send_on(const Channel& channel, std::string_view json_text);
   void complain(const std::string& what);
 
-  std::map<std::uint32_t, Channel> channels_;       ///< by id
-  std::map<Channel, std::uint32_t> subscriptions_;  ///< ids that the other side chose
-  std::vector<std::string> heads_;                  ///< their names
-  std::map<std::size_t, PingPicture> pictures_;     ///< by head
-  std::map<std::size_t, TimePoint> shown_;          ///< by head, when an image last went
+  std::map<std::uint32_t, Channel> channels_;                        ///< by id
+  std::map<Channel, std::uint32_t> subscriptions_;                   ///< ids that the other side chose
+  std::vector<std::string> heads_;                                   ///< their names
+  std::map<std::size_t, std::shared_ptr<const std::string>> shown_;  ///< by head, the picture that went last
   boost::asio::steady_timer timer_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "server/web/access.hpp"
 #include "server/web/assets.hpp"
+#include "server/web/head_picture.hpp"
 #include "server/web/json.hpp"
 #include "server/web/live_frame.hpp"
 #include "server/web/metrics.hpp"
@@ -82,6 +83,8 @@ void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping) {
 
 Site::Site(WebConfig config, WebSources sources)
     : config_(std::move(config)), sources_(std::move(sources)), started_(clock_.now()) {}
+
+Site::~Site() = default;
 
 // ---- Requests
 
@@ -245,6 +248,18 @@ const Pings& Site::last_pings(int head) const {
 
 std::chrono::milliseconds Site::interval() const {
   return std::max(least_interval, interval_of_each * static_cast<int>(viewers_.size()));
+}
+
+std::shared_ptr<const std::string> Site::picture_of(int head, const std::string& name) {
+  const Pings& pings = last_pings(head);
+  if (pings.empty()) {
+    return nullptr;
+  }
+  std::unique_ptr<HeadPicture>& picture = pictures_[head];
+  if (!picture) {
+    picture = std::make_unique<HeadPicture>();
+  }
+  return picture->newest(pings, name, now(), 2 * interval());
 }
 
 std::shared_ptr<const std::string> Site::frame_of(const std::shared_ptr<const ShownPing>& ping,

@@ -38,6 +38,8 @@ using Pings = std::vector<std::shared_ptr<const ShownPing>>;
 /// stay for a turn of its finest steps, if they have the size of the new one.
 void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping);
 
+class HeadPicture;
+
 /// A connection that shows pings.
 class Viewer {
  public:
@@ -61,6 +63,9 @@ HttpResponse error_response(const HttpRequest& request, boost::beast::http::stat
 class Site {
  public:
   Site(WebConfig config, WebSources sources);
+  ~Site();
+  Site(const Site&) = delete;
+  Site& operator=(const Site&) = delete;
 
   const WebConfig& config() const { return config_; }
   const WebSources& sources() const { return sources_; }
@@ -91,6 +96,8 @@ class Site {
   std::chrono::milliseconds interval() const;
   /// live_frame() of one ping; made once for all viewers who want it in one size.
   std::shared_ptr<const std::string> frame_of(const std::shared_ptr<const ShownPing>& ping, int max_rows);
+  /// HeadPicture::newest() of a head from which pings have come; drawn once for all viewers.
+  std::shared_ptr<const std::string> picture_of(int head, const std::string& name);
   TimePoint now() const { return clock_.now(); }
 
   static constexpr int most_connections = 128;
@@ -107,7 +114,8 @@ class Site {
   const TimePoint started_;
   int connections_ = 0;
   std::vector<std::weak_ptr<Viewer>> viewers_;
-  std::map<int, Pings> last_pings_;  ///< by head
+  std::map<int, Pings> last_pings_;                       ///< by head
+  std::map<int, std::unique_ptr<HeadPicture>> pictures_;  ///< by head; of those that were asked for
 
   std::optional<DaemonStatus> status_;  ///< the newest
   TimePoint status_at_{};

@@ -88,12 +88,10 @@ void WebServer::stop() {
   if (!impl_->thread.joinable()) {
     return;
   }
-  asio::post(impl_->io, [impl = impl_.get()] {
-    impl->listener->close();
-    impl->site->close_viewers();
-    impl->io.stop();
-  });
+  impl_->io.stop();  // not posted: it would wait until all pictures in the queue are drawn
   impl_->thread.join();
+  impl_->listener->close();
+  impl_->site->close_viewers();
 }
 
 void WebServer::on_page(std::function<void()> task) {
