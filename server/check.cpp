@@ -15,8 +15,6 @@
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ip/udp.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
@@ -34,6 +32,7 @@
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/to_render.hpp"
 #include "server/trial_pings.hpp"
+#include "server/try_bind.hpp"
 
 namespace sonard::server {
 namespace {
@@ -76,8 +75,6 @@ class Check {
   void check_recording();
   void check_head(std::size_t index);
   void check_addresses();
-  template <typename Protocol>
-  void try_socket(const Endpoint& endpoint, const std::string& key);
   void list_bodies(const render::World& world);
   void load_trajectory();
   std::optional<std::pair<const char*, render::Pose>> start() const;
@@ -416,10 +413,8 @@ void Check::try_connecting(std::size_t head) {
 void Check::check_addresses() {
   const std::size_t problems_before = report_.problems.size();
   for (const PlannedSocket& socket : planned_sockets(config_)) {
-    if (socket.transport == PlannedSocket::Transport::udp) {
-      try_socket<asio::ip::udp>(socket.endpoint, socket.key);
-    } else {
-      try_socket<asio::ip::tcp>(socket.endpoint, socket.key);
+    if (const std::optional<std::string> why = obstacle_to_binding(socket)) {
+      problem(socket.key, *why);
     }
   }
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
@@ -429,44 +424,6 @@ void Check::check_addresses() {
     for (const ConfigWarning& found : config_.heads[i].kind->network_warnings(config_.heads[i])) {
       warning(fmt::format("heads[{}].{}", i, found.key), found.message);
     }
-  }
-}
-
-template <typename Protocol>
-void Check::try_socket(const Endpoint& endpoint, const std::string& key) {
-  asio::io_context io;
-  typename Protocol::socket socket(io);
-  boost::system::error_code error;
-  socket.open(Protocol::v4(), error);
-  if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
-    // Like the listener: connections of an earlier run that still linger are no obstacle.
-    if (!error) {
-      socket.set_option(asio::socket_base::reuse_address(true), error);
-    }
-  }
-  if (!error) {
-    socket.bind({asio::ip::address_v4(endpoint.address), endpoint.port}, error);
-  }
-  if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
-    if (!error) {
-      asio::ip::tcp::acceptor(io, Protocol::v4(), socket.release()).listen(1, error);
-    }
-  }
-  if (!error) {
-    return;
-  }
-  const char* const transport = std::is_same_v<Protocol, asio::ip::udp> ? "UDP" : "TCP";
-  if (error == asio::error::address_in_use) {
-    problem(key, fmt::format("{} {} is in use by another program (expected a free port)", transport,
-                             endpoint_text(endpoint)));
-  } else if (error.value() == EADDRNOTAVAIL) {
-    problem(key,
-            fmt::format("{} is not an address of this machine (expected one of an interface here; a network "
-                        "namespace can have it, or skip this with --no-network)",
-                        address_text(endpoint.address)));
-  } else {
-    problem(key, fmt::format("{} {} cannot be bound: {} (expected an address and port to listen on)",
-                             transport, endpoint_text(endpoint), error.message()));
   }
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: command line, log, and the one place where exceptions become exit codes.
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <system_error>
 
@@ -123,11 +124,12 @@ void print_start_error(const LoadedConfig& loaded, const StartError& error) {
 }
 
 /// Loads CONFIG, and logs as it says from then on.
-LoadedConfig load_and_log(const CommandLine& arguments) {
+/// @param text of CONFIG
+LoadedConfig load_and_log(const CommandLine& arguments, const std::string& text) {
   if (!arguments.log_format.empty()) {
     set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
   }
-  LoadedConfig loaded = load_config(arguments.config, head_kinds());
+  LoadedConfig loaded = load_config(arguments.config, text, head_kinds());
   const std::string level{spdlog::level::to_string_view(spdlog_level(loaded.config.log_level)).data()};
   const std::string format = loaded.config.log_format == LogFormat::json ? "json" : "text";
   set_log(arguments.log_level.empty() ? level : arguments.log_level,
@@ -140,18 +142,40 @@ LoadedConfig load_and_log(const CommandLine& arguments) {
 }
 
 /// @param argv of main()
-int run(const CommandLine& arguments, char** argv) {
-  const LoadedConfig loaded = load_and_log(arguments);
+/// @param go_back called with the reason if the daemon cannot start
+int run(const CommandLine& arguments, const std::string& text, char** argv,
+        const std::function<void(const std::string&)>& go_back) {
+  const LoadedConfig loaded = load_and_log(arguments, text);
+  Reload reload(loaded.config, text);
   try {
-    const int code = run_daemon(loaded.config, [&] { return configuration_is_good(arguments.config); });
-    if (code == begins_anew) {
-      begin_anew(argv);
-      throw std::system_error(errno, std::generic_category(), "cannot begin anew");
+    const int code =
+        run_daemon(loaded.config, [&](const std::stop_token& stop) { return reload.check(stop); });
+    if (code != begins_anew) {
+      return code;
     }
-    return code;
+    reload.begin_anew(argv);
+    return exit_clean;
   } catch (const StartError& error) {
     print_start_error(loaded, error);
+    go_back(error.what());
     return error.exit_code;
+  }
+}
+
+/// @param argv of main()
+int run(const CommandLine& arguments, char** argv) {
+  const InheritedConfig inherited = inherit_config();
+  const auto go_back = [&](const std::string& why) {
+    if (inherited.fallback) {
+      spdlog::error("the new configuration cannot be served: going back to the one before: {}", why);
+      go_back_to(*inherited.fallback, argv);
+    }
+  };
+  try {
+    return run(arguments, inherited.text ? *inherited.text : read_config(arguments.config), argv, go_back);
+  } catch (const std::exception& error) {
+    go_back(error.what());
+    throw;
   }
 }
 
@@ -160,7 +184,7 @@ int replay(const CommandLine& arguments) {
   if (arguments.config.empty()) {
     set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
   } else {
-    loaded = load_and_log(arguments);
+    loaded = load_and_log(arguments, read_config(arguments.config));
   }
   try {
     return replay(arguments.log, arguments.config.empty() ? std::nullopt : std::optional(loaded.config),
@@ -183,7 +207,9 @@ int exit_code_of(const ConfigError& error) {
 int check(const CommandLine& arguments) {
   const auto json_goes_out = [](const std::string& json) { fmt::print("{}\n", json); };
   try {
-    const LoadedConfig loaded = load_config(arguments.config, head_kinds());
+    const InheritedConfig inherited = inherit_config();
+    const LoadedConfig loaded = load_config(
+        arguments.config, inherited.text ? *inherited.text : read_config(arguments.config), head_kinds());
     const CheckReport report = check_config(loaded, !arguments.no_network);
     const int code = report.problems.empty() ? exit_clean : exit_config;
     if (arguments.json) {
@@ -394,6 +420,7 @@ int main_program(int argc, char** argv) {
   start_log();
   if (run_command->parsed() || replay_command->parsed()) {
     ignore_harmless_signals();
+    let_orders_to_end();
   }
   return guarded([&] {
     if (run_command->parsed()) {

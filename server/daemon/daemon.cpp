@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -122,10 +123,12 @@ std::unique_ptr<WebServer> make_page(const DaemonConfig& config) {
 class Daemon {
  public:
   Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-         Playback* playback, std::function<bool()> may_begin_anew);
+         Playback* playback, ReloadCheck may_begin_anew);
 
   /// Serves until it shall end. Returns the exit code.
   int run();
+  /// False: the recorder's thread still waits for the disk.
+  bool all_written() const { return all_written_; }
 
  private:
   RenderServiceHooks hooks();
@@ -146,6 +149,7 @@ class Daemon {
   DaemonStatus status() const;
   void wait_for_signal();
   void reload();
+  void checked(const std::optional<std::string>& problem);
   void end_when_played();
   void run_io();
   void stop_io();
@@ -158,7 +162,7 @@ class Daemon {
   int exit_code_ = exit_clean;                         // of main
   asio::io_context io_;
   Playback* playback_;  // may be null
-  std::function<bool()> may_begin_anew_;
+  ReloadCheck may_begin_anew_;
   asio::steady_timer playback_timer_;
   PoseHistory poses_;
   PoseIntake intake_;
@@ -176,10 +180,13 @@ class Daemon {
   std::set<std::string> told_;  // codes of findings on poses that were logged, by input
   std::filesystem::path recorded_into_;
   std::string ready_line_;
+  bool checking_ = false, check_again_ = false;  // of main
+  bool all_written_ = true;
+  std::jthread check_;  // last: it uses lifetime_
 };
 
 Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-               Playback* playback, std::function<bool()> may_begin_anew)
+               Playback* playback, ReloadCheck may_begin_anew)
     : playback_(playback),
       may_begin_anew_(std::move(may_begin_anew)),
       playback_timer_(io_),
@@ -424,6 +431,7 @@ int Daemon::run() {
   });
 
   lifetime_.run();
+  check_ = {};  // ends it, if it is under way
   tell_service_manager(exit_code_ == begins_anew ? "RELOADING=1" : "STOPPING=1");
 
   if (page_) {
@@ -438,7 +446,7 @@ int Daemon::run() {
   io_work.reset();
   io_thread.join();
   if (recorder_) {
-    recorder_->stop();
+    all_written_ = recorder_->stop();
   }
   return exit_code_;
 }
@@ -451,6 +459,7 @@ void Daemon::wait_for_signal() {
                              }
                              if (signal_ == SIGHUP) {
                                reload();
+                               wait_for_signal();
                                return;
                              }
                              spdlog::info("signal {}: ending", signal_);
@@ -461,15 +470,30 @@ void Daemon::wait_for_signal() {
 void Daemon::reload() {
   if (!may_begin_anew_) {
     spdlog::info("SIGHUP ignored: a replay has no configuration to read again");
-  } else if (spdlog::info("SIGHUP: the configuration is read again"); may_begin_anew_()) {
+    return;
+  }
+  check_again_ = checking_;
+  if (checking_) {
+    return;
+  }
+  checking_ = true;
+  spdlog::info("SIGHUP: the configuration is read again");
+  check_ = std::jthread([this](const std::stop_token& stop) {
+    asio::post(lifetime_, [this, problem = may_begin_anew_(stop)] { checked(problem); });
+  });
+}
+
+void Daemon::checked(const std::optional<std::string>& problem) {
+  checking_ = false;
+  if (check_again_) {  // the file may have changed since it was read
+    reload();
+  } else if (problem) {
+    spdlog::error("the configuration cannot be used: going on with the one in use: {}", *problem);
+  } else {
     spdlog::info("the configuration is good: beginning anew with it");
     exit_code_ = begins_anew;
     lifetime_.stop();
-    return;
-  } else {
-    spdlog::error("the configuration has problems: going on with the one in use");
   }
-  wait_for_signal();
 }
 
 // Checks now and then: a replay may end a little late. For its timer the same holds.
@@ -590,7 +614,7 @@ render::RendererOptions renderer_options(const DaemonConfig& config) {
   return options;
 }
 
-int run_daemon(DaemonConfig config, const std::function<bool()>& may_begin_anew) {
+int run_daemon(DaemonConfig config, const ReloadCheck& may_begin_anew) {
   const render::World world = load_world_of(config);
   for (const HeadConfig& head : config.heads) {
     try {
@@ -613,9 +637,15 @@ int run_daemon(DaemonConfig config, const std::function<bool()>& may_begin_anew)
 }
 
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-          Playback* playback, const std::function<bool()>& may_begin_anew) {
-  Daemon daemon(config, world, make_renderer, playback, may_begin_anew);
-  return daemon.run();
+          Playback* playback, const ReloadCheck& may_begin_anew) {
+  auto daemon = std::make_unique<Daemon>(config, world, make_renderer, playback, may_begin_anew);
+  const int code = daemon->run();
+  const bool all_written = daemon->all_written();
+  daemon.reset();
+  if (!all_written && code != begins_anew) {
+    std::_Exit(code);  // a thread still waits for the disk, and uses what exit() destroys
+  }
+  return code;
 }
 
 }  // namespace sonard::server

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,21 +43,24 @@ render::World load_world_of(DaemonConfig& config);
 /// What a renderer is made with.
 render::RendererOptions renderer_options(const DaemonConfig& config);
 
+/// Why the daemon cannot begin anew and goes on; nullopt: it ends, to begin anew. Called on a thread of its
+/// own; a requested stop ends it.
+using ReloadCheck = std::function<std::optional<std::string>(const std::stop_token&)>;
+
 /// Loads the world, starts the renderer (self-test first), binds the sockets and serves until SIGINT or
 /// SIGTERM, which end it within the time of one ping. When all is up it logs one line that begins with
 /// "sonard ready": one ping of each head has then been rendered and dropped, so that the first one for
 /// a client takes no longer than others. A signal a second after the first kills at once.
-/// @param may_begin_anew asked at SIGHUP, on the thread that called this: true ends the daemon to begin anew,
-/// false lets it go on. Empty: SIGHUP is one line in the log.
+/// @param may_begin_anew asked at SIGHUP. Empty: SIGHUP is one line in the log.
 /// @return exit_clean; begins_anew; exit_renderer when the renderer fails while serving; exit_internal
 /// @throws StartError, render::RendererError, render::RequestError, std::system_error before it is ready
-int run_daemon(DaemonConfig config, const std::function<bool()>& may_begin_anew = {});
+int run_daemon(DaemonConfig config, const ReloadCheck& may_begin_anew = {});
 
 inline constexpr int begins_anew = -1;  ///< no exit code: the daemon has ended, and is to be started again
 
 /// Runs the daemon with a loaded world and any renderer; for replay, and for tests without rendering.
 /// @param playback what heads play back that are told to; the daemon ends when it is finished. May be null.
 int serve(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
-          Playback* playback = nullptr, const std::function<bool()>& may_begin_anew = {});
+          Playback* playback = nullptr, const ReloadCheck& may_begin_anew = {});
 
 }  // namespace sonard::server

@@ -68,6 +68,30 @@ void ignore_harmless_signals() {
   }
 }
 
+namespace {
+
+void mask_orders_to_end(int how) {
+  sigset_t orders;
+  sigemptyset(&orders);
+  sigaddset(&orders, SIGINT);
+  sigaddset(&orders, SIGTERM);
+  pthread_sigmask(how, &orders, nullptr);
+}
+
+}  // namespace
+
+bool ordered_to_end() {
+  return deadly_from_ns != 0;
+}
+
+void hold_orders_to_end() {
+  mask_orders_to_end(SIG_BLOCK);
+}
+
+void let_orders_to_end() {
+  mask_orders_to_end(SIG_UNBLOCK);
+}
+
 void tell_service_manager(std::string_view line) {
   const char* const path = std::getenv("NOTIFY_SOCKET");
   sockaddr_un address{};

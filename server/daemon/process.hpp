@@ -24,6 +24,12 @@ void ignore_harmless_signals();
 /// @throws std::system_error
 int catch_signals(std::chrono::nanoseconds grace);
 
+/// Whether a SIGINT or SIGTERM has come since catch_signals().
+bool ordered_to_end();
+/// SIGINT and SIGTERM wait, also for a program that replaces this one, until let_orders_to_end().
+void hold_orders_to_end();
+void let_orders_to_end();
+
 /// Sends one line of the protocol of sd_notify(3), such as "READY=1", to the service manager that has started
 /// this process (NOTIFY_SOCKET); does nothing where there is none.
 void tell_service_manager(std::string_view line);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/try_bind.hpp"
+
+#include <cerrno>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
+
+#include "server/net/addresses.hpp"
+#include "server/net/udp_endpoint.hpp"
+
+namespace sonard::server {
+namespace {
+
+namespace asio = boost::asio;
+
+template <typename Protocol>
+boost::system::error_code bind_error(const Endpoint& endpoint) {
+  asio::io_context io;
+  typename Protocol::socket socket(io);
+  boost::system::error_code error;
+  socket.open(Protocol::v4(), error);
+  if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
+    // Like the listener: connections of an earlier run that still linger are no obstacle.
+    if (!error) {
+      socket.set_option(asio::socket_base::reuse_address(true), error);
+    }
+  }
+  if (!error) {
+    socket.bind({asio::ip::address_v4(endpoint.address), endpoint.port}, error);
+  }
+  if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
+    if (!error) {
+      asio::ip::tcp::acceptor(io, Protocol::v4(), socket.release()).listen(1, error);
+    }
+  }
+  return error;
+}
+
+}  // namespace
+
+std::optional<std::string> obstacle_to_binding(const PlannedSocket& planned) {
+  const bool udp = planned.transport == PlannedSocket::Transport::udp;
+  const Endpoint& endpoint = planned.endpoint;
+  const boost::system::error_code error =
+      udp ? bind_error<asio::ip::udp>(endpoint) : bind_error<asio::ip::tcp>(endpoint);
+  if (!error) {
+    return std::nullopt;
+  }
+  const char* const transport = udp ? "UDP" : "TCP";
+  if (error == asio::error::address_in_use) {
+    return fmt::format("{} {} is in use by another program (expected a free port)", transport,
+                       endpoint_text(endpoint));
+  }
+  if (error.value() == EADDRNOTAVAIL) {
+    return fmt::format(
+        "{} is not an address of this machine (expected one of an interface here; a network "
+        "namespace can have it, or skip this with --no-network)",
+        address_text(endpoint.address));
+  }
+  return fmt::format("{} {} cannot be bound: {} (expected an address and port to listen on)", transport,
+                     endpoint_text(endpoint), error.message());
+}
+
+}  // namespace sonard::server
