@@ -9,6 +9,7 @@ Frames of the Micron are those of tests/data/micron, which says where each is fr
 
 import argparse
 import contextlib
+import fcntl
 import os
 import re
 import resource
@@ -257,6 +258,97 @@ class Signals(DaemonCase):
             socket.create_connection(("127.0.0.1", before))
         code, _ = daemon.terminate(PATIENCE_S)
         self.assertEqual(code, 0)
+
+    def served_port(self, *ports):
+        """The port on which the daemon serves within PATIENCE_S."""
+        deadline = Deadline(PATIENCE_S)
+        while not deadline.over():
+            for port in ports:
+                with contextlib.suppress(ConnectionRefusedError):
+                    socket.create_connection(("127.0.0.1", port)).close()
+                    return port
+            time.sleep(0.02)
+        self.fail(f"none of {ports} is served")
+
+    def refused(self, daemon, why):
+        """SIGHUP leaves the daemon as it is, and one line says why."""
+        daemon.signal(signal.SIGHUP)
+        daemon.wait_for_line(f"going on with the one in use: .*{why}", PATIENCE_S)
+        self.configured(self.client())
+
+    def test_sighup_with_a_taken_port_changes_nothing(self):
+        daemon, before = self.start(), self.port
+        with socket.socket() as other:
+            other.bind(("127.0.0.1", 0))
+            other.listen()
+            self.port = other.getsockname()[1]
+            self.configuration()
+            self.port = before
+            self.refused(daemon, "in use by another program")
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def test_sighup_with_the_recording_folder_of_another_daemon_changes_nothing(self):
+        daemon = self.start()
+        directory = os.path.join(self.folder.name, "logs")
+        os.mkdir(directory)
+        holder = os.open(directory, os.O_RDONLY)
+        self.addCleanup(os.close, holder)
+        fcntl.flock(holder, fcntl.LOCK_EX)
+        self.configuration(more=f"recording: {{directory: {directory}}}")
+        self.refused(daemon, "another daemon records into")
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def test_sighup_serves_the_bytes_that_were_checked(self):
+        """The file becomes unusable at each of 50 moments after SIGHUP, as an editor writes it in two steps."""
+        daemon, ports = self.start(), (self.port, free_port())
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        for moment in range(50):
+            self.port = ports[moment % 2]
+            self.configuration()
+            daemon.signal(signal.SIGHUP)
+            time.sleep(0.02 * moment)
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+            with open(path, "w", encoding="utf-8") as file:
+                file.flush()  # empty for a moment
+                file.write(text[:len(text) // 2])
+            self.served_port(*ports)
+            self.assertTrue(daemon.running(), daemon.tail())
+        daemon.wait_for_line("SIGHUP: the configuration is read again", 1)
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0, daemon.tail())
+
+    def test_a_configuration_that_cannot_be_served_after_all_gives_way_to_the_one_before(self):
+        """The check makes no pseudo terminal, so a file in the place of its link shows at the start."""
+        daemon = self.start()
+        link = os.path.join(self.folder.name, "link")
+        with open(link, "w", encoding="utf-8"):
+            pass
+        path = os.path.join(self.folder.name, "sonard.yaml")
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace("serial: {", f"serial: {{pty: [{{link: {link}}}], "))
+        daemon.signal(signal.SIGHUP)
+        daemon.wait_for_line("going back to the one before: .*link", PATIENCE_S)
+        daemon.wait_for_line("sonard ready", START_S, count=2)
+        self.configured(self.client())
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+
+    def test_sigterm_ends_a_check_that_hangs(self):
+        """The process that checks is stopped, as one that waits for a file server is."""
+        daemon = self.start()
+        daemon.signal(signal.SIGHUP)
+        deadline = Deadline(PATIENCE_S)
+        checks = []
+        while not checks and not deadline.over():
+            for process in filter(str.isdigit, os.listdir("/proc")):
+                with contextlib.suppress(OSError), open(f"/proc/{process}/stat", encoding="ascii") as file:
+                    if int(file.read().rsplit(")", 1)[1].split()[1]) == daemon.pid:
+                        checks.append(int(process))
+        os.kill(checks[0], signal.SIGSTOP)
+        code, took = daemon.terminate(PATIENCE_S)
+        self.assertEqual(code, 0)
+        self.assertLess(took, 5.0)
 
     def test_the_service_manager_is_told(self):
         """By the protocol of sd_notify(3)."""
