@@ -304,6 +304,49 @@ class Web(OwnMachine):
         client.terminate(PATIENCE_S)
         self.assertRegex(client.output(), r"summary pings_complete=[1-9].* lines_missing=0 ")
 
+    def test_sigterm_does_not_wait_for_sixty_viewers(self):
+        """Of pictures for Foxglove; half of the viewers never read."""
+        daemon = self.start()
+        self.client(600)
+
+        news = asyncio.Event()
+
+        async def viewer(reads):
+            peer = await websockets.connect(f"ws://127.0.0.1:{PORT}", max_size=None, max_queue=1,
+                                              subprotocols=["foxglove.websocket.v1"], close_timeout=0.1)
+            channels = []
+            while not channels:
+                message = json.loads(await asyncio.wait_for(peer.recv(), PATIENCE_S))
+                channels = [channel["id"] for channel in message.get("channels", [])
+                            if channel["topic"].endswith("/image")]
+            await peer.send(json.dumps({"op": "subscribe", "subscriptions":
+                                          [{"id": channel, "channelId": channel} for channel in channels]}))
+            if reads:
+                await asyncio.wait_for(peer.recv(), PATIENCE_S)
+
+            async def read_on():
+                with contextlib.suppress(websockets.ConnectionClosed):
+                    while reads:
+                        await peer.recv()
+                        news.set()
+            return peer, asyncio.create_task(read_on())
+
+        async def all_of_them():
+            kept = [await viewer(reads=i % 2 == 0) for i in range(60)]
+            await asyncio.sleep(3)
+            news.clear()
+            await asyncio.wait_for(news.wait(), PATIENCE_S)  # the first of 60 has a picture
+            took = await asyncio.to_thread(daemon.terminate, PATIENCE_S)
+            for peer, task in kept:
+                task.cancel()
+                peer.transport.abort()
+            return took
+
+        code, took_s = asyncio.run(all_of_them())
+        print(f"SIGTERM with 60 viewers: {took_s:.2f} s")
+        self.assertEqual(code, 0)
+        self.assertLess(took_s, 5.0, "promised: 1 s, on a machine that has nothing else to do")
+
     def test_a_hidden_viewer_gets_nothing(self):
         self.start()
         self.client(600)
