@@ -59,6 +59,80 @@ bool is_known(const Block& block) {
          (is(block, BlockType::enhanced_packet) && read_packet(block));
 }
 
+/// The value of the first option `code` of a block; nullopt if the block has none. @param skip bytes of the
+/// body before its options
+std::optional<std::string_view> option_of(const Block& block, std::size_t skip, std::uint16_t code) {
+  ByteReader reader{block.body};
+  reader.skip(skip, "body");
+  while (reader.ok() && reader.remaining() > 0) {
+    const std::uint16_t found = reader.u16le("option_code");
+    const std::size_t size = reader.u16le("option_length");
+    const ByteView value = reader.bytes(size, "option_value");
+    reader.skip(padding(size), "option_value");
+    if (reader.ok() && found == code) {
+      return std::string_view{reinterpret_cast<const char*>(value.data()), value.size()};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Block types of draft-ietf-opsawg-pcapng, section 11.1. The highest bit marks types for local use.
+bool is_registered(std::uint32_t type) {
+  constexpr std::uint32_t local_use = 0x80000000;
+  return (type & local_use) != 0 || (type >= 1 && type <= 0xA) || (type >= 0x101 && type <= 0x102) ||
+         (type >= 0x201 && type <= 0x221) || type == 0xBAD || type == 0x40000BAD || type == 0x0A0D0D0A;
+}
+
+/// The body is exactly that of a packet block, so only the type can be wrong.
+bool holds_packet(const Block& block) {
+  constexpr std::size_t front = 20;
+  const auto packet = read_packet(block);
+  return packet && !packet->bytes.empty() &&
+         block.body.size() == front + packet->bytes.size() + padding(packet->bytes.size());
+}
+
+/// Tells damaged blocks by their content, where their lengths are right.
+class BlockCheck {
+ public:
+  /// Expects all blocks of a file, in their order.
+  std::optional<WireError> error_in(const Block& block) {
+    switch (static_cast<BlockType>(block.type)) {
+      case BlockType::section_header:
+        return error_in_section(block);
+      case BlockType::interface_description:
+        return std::nullopt;
+      case BlockType::enhanced_packet:
+        return error_in_packet(block);
+    }
+    const bool damaged = ours_ || !is_registered(block.type) || holds_packet(block);
+    return damaged ? std::optional(WireError{WireErrorReason::bad_value, block.offset, "block_type"})
+                   : std::nullopt;
+  }
+
+ private:
+  std::optional<WireError> error_in_section(const Block& block) {
+    constexpr std::size_t front = 16;
+    if (ByteReader{block.body}.u32le("magic") != byte_order_magic) {
+      return WireError{WireErrorReason::bad_value, block.offset + 8, "byte_order_magic"};
+    }
+    ours_ = option_of(block, front, options::application).value_or("").starts_with("sonard ");
+    return std::nullopt;
+  }
+
+  std::optional<WireError> error_in_packet(const Block& block) const {
+    const auto packet = read_packet(block);
+    if (!packet) {
+      return packet.error();
+    }
+    const bool is_ipv4 = !packet->bytes.empty() && packet->bytes[0] >> 4 == 4;
+    return ours_ && !is_ipv4
+               ? std::optional(WireError{WireErrorReason::bad_value, block.offset + 28, "ip_version"})
+               : std::nullopt;
+  }
+
+  bool ours_ = false;  ///< sonard wrote the section: it has no other types of blocks, and no other packets
+};
+
 /// Where the next block of a known type starts behind `offset`. Blocks lie on multiples of four bytes.
 std::optional<std::size_t> next_block(ByteView file, std::size_t offset) {
   for (std::size_t at = (offset / 4 + 1) * 4; at < file.size(); at += 4) {
@@ -160,20 +234,21 @@ Result<Packet, WireError> read_packet(const Block& block) {
 Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
                                                       const std::function<void(const Block&)>& take) {
   std::vector<Damage> damaged;
+  BlockCheck check;
   bool found = false;
   for (std::size_t offset = 0; offset < file.size();) {
     const auto block = block_at(file, offset);
-    const bool readable =
-        block && *block && (!is(**block, BlockType::enhanced_packet) || read_packet(**block));
-    if (readable) {
+    const bool whole = block && *block;
+    const auto error = whole    ? check.error_in(**block)
+                       : !block ? std::optional(block.error())
+                                : WireError{WireErrorReason::truncated, offset, "block"};
+    const std::size_t next = whole ? (*block)->end() : next_block(file, offset).value_or(file.size());
+    if (error) {
+      damaged.push_back({offset, next - offset, *error});
+    } else {
       found = true;
       take(**block);
-      offset = (*block)->end();
-      continue;
     }
-    const WireError error = block ? WireError{WireErrorReason::truncated, offset, "block"} : block.error();
-    const std::size_t next = next_block(file, offset).value_or(file.size());
-    damaged.push_back({offset, next - offset, error});
     offset = next;
   }
   if (!found) {

@@ -73,8 +73,9 @@ struct Packet {
 /// Requires a block of type enhanced_packet.
 Result<Packet, WireError> read_packet(const Block& block);
 
-/// Calls `take` for each block that can be read, and goes on behind damaged ones at the next block that is
-/// consistent: a known type, two equal lengths.
+/// Calls `take` for each readable block. A block with two equal lengths is damaged if its type is not
+/// registered, or if sonard wrote the section and never writes such a block. After a block with wrong
+/// lengths, reading continues at the next block that has a known type and two equal lengths.
 /// @return the parts that cannot be read; an error when no block of the file can be
 Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
                                                       const std::function<void(const Block&)>& take);

@@ -93,8 +93,11 @@ Bytes tcp_packet(const Endpoint& from, const Endpoint& to, std::uint32_t sequenc
 }  // namespace
 
 bool has_right_checksums(ByteView packet) {
-  if (packet.size() < ip_header_size || packet[0] >> 4 != 4) {
+  if (packet.empty() || packet[0] >> 4 != 4) {
     return true;
+  }
+  if (packet.size() < ip_header_size) {
+    return false;
   }
   const std::size_t header_size = (packet[0] & 0xFU) * 4U;
   const std::size_t size = std::size_t{packet[2]} << 8 | packet[3];

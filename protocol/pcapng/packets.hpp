@@ -27,8 +27,8 @@ inline constexpr std::size_t max_udp_payload = 65'507;
 /// One datagram as an IPv4 packet. Requires a payload of at most max_udp_payload: no more arrives in one.
 Bytes udp_packet(const Endpoint& from, const Endpoint& to, ByteView payload);
 
-/// True unless a checksum of the IPv4 packet is wrong: of its header (RFC 791), or of UDP or TCP inside. A
-/// UDP checksum of 0 is none (RFC 768). Packets of other kinds are not checked.
+/// True unless the IPv4 packet is cut or one of its checksums is wrong: of its header (RFC 791), or of UDP or
+/// TCP inside. A UDP checksum of 0 is none (RFC 768). Packets of other kinds are not checked.
 bool has_right_checksums(ByteView packet);
 
 /// Bytes that passed both ways between two ends, as segments of one TCP connection from its first packet to
