@@ -53,24 +53,53 @@ void add_packet(LogSummary& log, const pcapng::Packet& packet, const PingFinder&
   }
 }
 
+// What is wrong with packets whose blocks are readable.
+struct PacketFaults {
+  std::uint64_t times = 0;
+  std::uint64_t checksums = 0;
+  std::uint64_t interfaces = 0;
+};
+
+void add_faults(LogSummary& log, const PacketFaults& faults) {
+  if (faults.times > 0) {
+    log.problems.push_back(fmt::format("{} packet{} impossible times; their pings are left out", faults.times,
+                                       faults.times == 1 ? " has" : "s have"));
+  }
+  if (faults.interfaces > 0) {
+    log.problems.push_back(
+        fmt::format("damaged: {} packet{} an interface that the capture does not describe; "
+                    "their pings are counted",
+                    faults.interfaces, faults.interfaces == 1 ? " names" : "s name"));
+  }
+  if (faults.checksums > 0) {
+    log.problems.push_back(
+        fmt::format("{} packet{} wrong checksums: damaged, or captured before the network card "
+                    "filled them in",
+                    faults.checksums, faults.checksums == 1 ? " has" : "s have"));
+  }
+}
+
 }  // namespace
 
 void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& ping_in) {
   std::uint64_t interfaces = 0;
+  std::uint64_t of_section = 0;  // interfaces of this section, which packets name by their number
   std::uint64_t others = 0;
-  std::uint64_t wrong_checksums = 0;
-  std::uint64_t wrong_times = 0;
+  PacketFaults faults;
   const auto damaged = pcapng::for_each_block(file.bytes(), [&](const pcapng::Block& block) {
     switch (static_cast<pcapng::BlockType>(block.type)) {
       case pcapng::BlockType::section_header:
+        of_section = 0;
         return;
       case pcapng::BlockType::interface_description:
         ++interfaces;
+        ++of_section;
         return;
       case pcapng::BlockType::enhanced_packet:
         if (const auto packet = pcapng::read_packet(block)) {
-          wrong_times += plausible_time(static_cast<std::int64_t>(packet->time_ns)) ? 0 : 1;
-          wrong_checksums += pcapng::has_right_checksums(packet->bytes) ? 0 : 1;
+          faults.times += plausible_time(static_cast<std::int64_t>(packet->time_ns)) ? 0 : 1;
+          faults.checksums += pcapng::has_right_checksums(packet->bytes) ? 0 : 1;
+          faults.interfaces += packet->interface < of_section ? 0 : 1;
           add_packet(log, *packet, ping_in);
         }
         return;
@@ -86,16 +115,7 @@ void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& p
   }
   add_damage(log.problems, *damaged,
              [](const Damage&) { return std::string("the packets in them are lost"); });
-  if (wrong_times > 0) {
-    log.problems.push_back(fmt::format("{} packet{} impossible times; their pings are left out", wrong_times,
-                                       wrong_times == 1 ? " has" : "s have"));
-  }
-  if (wrong_checksums > 0) {
-    log.problems.push_back(
-        fmt::format("{} packet{} wrong checksums: damaged, or captured before the network card "
-                    "filled them in",
-                    wrong_checksums, wrong_checksums == 1 ? " has" : "s have"));
-  }
+  add_faults(log, faults);
 }
 
 }  // namespace sonard::server

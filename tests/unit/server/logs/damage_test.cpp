@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,6 +27,7 @@ namespace sonard::server {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -223,35 +227,67 @@ TEST(Damage, a_wrong_byte_among_raw_pixels_of_a_glf_shows_in_its_checksum) {
   EXPECT_THAT(outcome_of(".glf", glf_log(5), pings_written(5)).problems, IsEmpty());
 }
 
-/// Datagrams of 7, 7, ... bytes: each is a ping of the head 7.
-TEST(Damage, a_flipped_bit_in_a_capture_costs_its_packet) {
-  pcapng::Writer writer("test");
+constexpr std::size_t captured_pings = 8;
+constexpr std::size_t captured_block = 80;  ///< 32 bytes around an IPv4 packet of 48
+
+/// Datagrams of 20 bytes: each is a ping of the head 7.
+Bytes capture(std::string_view application) {
+  pcapng::Writer writer(application);
   const std::uint32_t lan = writer.add_interface("lan");
-  constexpr std::size_t count = 8;
-  for (std::uint64_t i = 0; i < count; ++i) {
+  for (std::uint64_t i = 0; i < captured_pings; ++i) {
     const Bytes payload(20, static_cast<std::uint8_t>(i));
     writer.add_packet(lan, 1'000'000'000 + i, pcapng::udp_packet({0x7F000002, 1}, {0x7F000001, 2}, payload));
   }
-  const Bytes whole = writer.take();
-  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
-    return datagram.size() == 20 ? std::optional(PingSeen{"fan", 7, {}}) : std::nullopt;
-  };
+  return writer.take();
+}
+
+LogSummary summary_of_capture(Bytes bytes, std::size_t at, int bit) {
+  bytes[at] ^= static_cast<std::uint8_t>(1U << bit);
+  const test::TemporaryLog temporary(".pcapng", bytes);
+  return summarise(LogFile(temporary.path()),
+                   [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
+                     return datagram.size() == 20 ? std::optional(PingSeen{"fan", 7, {}}) : std::nullopt;
+                   });
+}
+
+TEST(Damage, a_flipped_bit_in_a_capture_costs_its_packet) {
+  const Bytes whole = capture("sonard 0.1.0");
   for (std::size_t at = 0; at < whole.size(); ++at) {
-    Bytes damaged = whole;
-    damaged[at] ^= static_cast<std::uint8_t>(1U << at % 8);
-    const test::TemporaryLog temporary(".pcapng", damaged);
-    const LogSummary log = summarise(LogFile(temporary.path()), find);
-    ASSERT_FALSE(log.heads.empty()) << at;
-    const std::size_t pings = log.heads[0].pings();
-    ASSERT_GE(pings, count - 1) << at;
-    if (pings < count) {
-      const bool other_block = std::ranges::any_of(
-          log.other_records, [](const auto& other) { return other.first == "blocks of other types"; });
-      const bool other_packet = std::ranges::any_of(
-          log.other_records, [](const auto& other) { return other.first == "other packets"; });
-      ASSERT_TRUE(!log.problems.empty() || other_block || other_packet) << "a loss is said: byte " << at;
+    for (int bit = 0; bit < 8; ++bit) {
+      const LogSummary log = summary_of_capture(whole, at, bit);
+      ASSERT_FALSE(log.heads.empty()) << at;
+      ASSERT_GE(log.heads[0].pings(), captured_pings - 1) << at;
+      if (log.heads[0].pings() < captured_pings) {
+        ASSERT_FALSE(log.problems.empty()) << "a loss is said: bit " << bit << " of byte " << at;
+      }
     }
   }
+}
+
+TEST(Damage, info_says_where_a_block_type_of_a_capture_is_damaged) {
+  for (const std::string_view application : {"sonard 0.1.0", "another program"}) {
+    const Bytes whole = capture(application);
+    const std::size_t at = whole.size() - 3 * captured_block;
+    for (int bit = 0; bit < 32; ++bit) {
+      const LogSummary log = summary_of_capture(whole, at + static_cast<std::size_t>(bit) / 8, bit % 8);
+      EXPECT_EQ(log.heads.at(0).pings(), captured_pings - 1);
+      EXPECT_THAT(log.problems, Contains(AllOf(HasSubstr(fmt::format("80 bytes at byte {} ", at)),
+                                               HasSubstr("block_type"))))
+          << application << ": bit " << bit;
+    }
+  }
+}
+
+TEST(Damage, info_tells_a_packet_of_an_interface_that_is_not_there) {
+  const Bytes whole = capture("another program");
+  const LogSummary log = summary_of_capture(whole, whole.size() - 3 * captured_block + 8, 1);
+  EXPECT_EQ(log.heads.at(0).pings(), captured_pings);
+  EXPECT_THAT(log.problems, Contains(HasSubstr("1 packet names an interface")));
+}
+
+TEST(Damage, info_tells_a_damaged_byte_order_magic_of_a_capture) {
+  EXPECT_THAT(summary_of_capture(capture("sonard 0.1.0"), 8, 3).problems,
+              Contains(HasSubstr("byte_order_magic")));
 }
 
 }  // namespace
