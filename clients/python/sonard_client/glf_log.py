@@ -59,14 +59,19 @@ def _records(dat: Pieces, path: Any) -> Iterator[tuple[int, bytes]]:
         except (EOFError, ValueError) as error:
             following = _next_record(dat, at)
             if following is None:
-                if not isinstance(error, EOFError):
+                closed = dat.size >= 2 and dat.read(dat.size - 2, 2) == _TERMINATOR
+                if closed or not isinstance(error, EOFError):  # else it is the record that is being written
                     warn_of_bytes(path, at, dat.size - at, str(error), "what follows is lost")
                 return
             warn_of_bytes(path, at, following - at, str(error), "the images in them are lost")
             at = following
             continue
-        if dat.read(at + 14, 1)[0] == _IMAGE:
+        kind = dat.read(at + 14, 1)[0]
+        if kind == _IMAGE:
             yield at, dat.read(at, end - at)
+        elif kind != _STATUS and (end_of_image := _end_if_image(dat, at)) is not None:
+            warn_of_bytes(path, at, end_of_image - at, f"an image of type {kind}", "the image is lost")
+            end = end_of_image
         at = end
 
 
@@ -98,6 +103,14 @@ def _end_of_image(dat: Pieces, at: int) -> int:
     if dat.read(end - 3, 3) != b"\0" + _TERMINATOR:
         raise ValueError("an image without its end")
     return end
+
+
+def _end_if_image(dat: Pieces, at: int) -> Optional[int]:
+    """The end of a record that is an image by all but its type."""
+    try:
+        return _end_of_image(dat, at)
+    except (EOFError, ValueError):
+        return None
 
 
 def _next_record(dat: Pieces, at: int) -> Optional[int]:

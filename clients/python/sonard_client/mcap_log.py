@@ -15,10 +15,15 @@ from .damage import warn, warn_of_bytes
 from .ping import Array, LoggedPing
 
 MAGIC = b"\x89MCAP0\r\n"
-_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 3, 4, 5, 6, 15
-_OF_DATA = (1, _SCHEMA, _CHANNEL, _CHUNK, 7, 9, 12, _DATA_END)  # also header, message index, attachment, metadata
-# The front of a chunk with a compression that there is, and of a schema of ours.
-_READABLE = re.compile(rb"\x06.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4)|\x03.{14}sonard\.log\.", re.DOTALL)
+_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _ATTACHMENT, _STATISTICS, _METADATA, _DATA_END = (
+    1, 2, 3, 4, 5, 6, 7, 9, 11, 12, 15)
+# Bytes of a record, and how many fields with a length of their own follow them.
+_FORMS = {_HEADER: (0, 2), _FOOTER: (20, 0), _SCHEMA: (2, 3), _CHANNEL: (4, 3), _MESSAGE_INDEX: (2, 1),
+          _STATISTICS: (42, 1), _METADATA: (0, 2), _DATA_END: (4, 0)}
+_AFTER_DATA = (_FOOTER, _STATISTICS, _DATA_END)
+# The front of a chunk with a compression that there is, of a schema of ours, and of a message index below 16 MiB.
+_READABLE = re.compile(rb"\x06(?=.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4))|\x03(?=.{14}sonard\.log\.)"
+                       rb"|\x07(?=.{3}\x00{5}.{5}\x00)", re.DOTALL)
 _MOST_BYTES = 1 << 30  # of one chunk
 
 
@@ -28,51 +33,95 @@ class _Damaged(Exception):
 
 def pings(data: Any, path: Any) -> Iterator[LoggedPing]:
     """`data` is the file as bytes or as a memory map, `path` is for messages."""
-    schemas: dict[int, str] = {}
-    channels: dict[int, int] = {}
-    for kind, body in _records_of_file(data, path):
-        # Only those in chunks have a checksum, and they come first.
-        if kind == _SCHEMA and len(body) >= 6:
-            schemas.setdefault(struct.unpack_from("<H", body)[0], _text(body, 2))
-        elif kind == _CHANNEL and len(body) >= 4:
-            number, schema = struct.unpack_from("<HH", body)
-            channels.setdefault(number, schema)
-        elif kind == _MESSAGE and len(body) >= 22:
-            schema_name = schemas.get(channels.get(struct.unpack_from("<H", body)[0], 0), "")
-            if schema_name in _MAKERS:
-                try:
-                    ping = _MAKERS[schema_name](_fields(body[22:]))
-                except (IndexError, ValueError, struct.error) as error:
-                    warn(path, f"a {schema_name} cannot be decoded ({error}); it is lost")
+    yield from _Reader(data, path).pings()
+
+
+class _Reader:
+    """Goes over a file, from record to record and over damaged parts."""
+
+    def __init__(self, data: Any, path: Any) -> None:
+        self._data, self._path = data, path
+        self._schemas: dict[int, str] = {}
+        self._channels: dict[int, int] = {}
+        self._lost_chunk: Optional[tuple[int, int, str]] = None  # place, size and reason; its message indexes may follow
+        self._lost_messages: dict[int, int] = {}  # by channel, as these say
+
+    def pings(self) -> Iterator[LoggedPing]:
+        for kind, body in self._records():
+            # Only those in chunks have a checksum, and they come first.
+            if kind == _SCHEMA and len(body) >= 6:
+                self._schemas.setdefault(struct.unpack_from("<H", body)[0], _text(body, 2))
+            elif kind == _CHANNEL and len(body) >= 4:
+                number, schema = struct.unpack_from("<HH", body)
+                self._channels.setdefault(number, schema)
+            elif kind == _MESSAGE and len(body) >= 22:
+                schema_name = self._schema_of(struct.unpack_from("<H", body)[0])
+                if schema_name in _MAKERS:
+                    try:
+                        ping = _MAKERS[schema_name](_fields(body[22:]))
+                    except (IndexError, ValueError, struct.error) as error:
+                        warn(self._path, f"a {schema_name} cannot be decoded ({error}); it is lost")
+                    else:
+                        yield ping
+
+    def _schema_of(self, channel: int) -> str:
+        return self._schemas.get(self._channels.get(channel, 0), "")
+
+    def _records(self) -> Iterator[tuple[int, bytes]]:
+        """Records outside and inside of chunks, up to the end of the data or the record that is being written."""
+        data = self._data
+        at: Optional[int] = len(MAGIC)
+        while at is not None and at < len(data):
+            end = _end(data, at)
+            try:
+                if end is None:
+                    raise _Damaged("a length beyond the end")
+                if data[at] == _CHUNK:
+                    if not _sizes_agree(data, at):
+                        raise _Damaged("the length of a chunk")
+                    self._tell_lost_chunk()
+                    yield from _records_of_chunk(data[at + 9: end], self._path)
+                elif _sizes_agree(data, at) or not (data[at] == _ATTACHMENT or _has_form(data, at, data[at])):
+                    raise _Damaged(f"a record of type {data[at]}")
+                elif data[at] in _AFTER_DATA:
+                    break
+                elif data[at] == _MESSAGE_INDEX:
+                    self._count_lost(data[at + 9: end])
                 else:
-                    yield ping
+                    yield data[at], data[at + 9: end]
+                at = end
+            except _Damaged as why:
+                at = self._behind_damage(at, end, str(why))
+        self._tell_lost_chunk()
 
+    def _behind_damage(self, at: int, end: Optional[int], why: str) -> Optional[int]:
+        """Where reading goes on; None if nowhere."""
+        self._tell_lost_chunk()
+        data = self._data
+        following = _next_readable(data, at, end)
+        if following is None and end is None and not data[-len(MAGIC):] == MAGIC:
+            return None  # the record that is being written
+        size = (len(data) if following is None else following) - at
+        if _was_chunk(data, at):
+            self._lost_chunk = at, size, why
+        else:
+            warn_of_bytes(self._path, at, size, why, "no ping is lost" if following else "what follows is lost")
+        return following
 
-def _records_of_file(data: Any, path: Any) -> Iterator[tuple[int, bytes]]:
-    """Records outside and inside of chunks, up to the end of the data or the record that is being written."""
-    at = len(MAGIC)
-    while at < len(data) and data[at] != _DATA_END:
-        end = _end(data, at)
-        try:
-            if end is None:
-                raise _Damaged("a length beyond the end")
-            if data[at] == _CHUNK:
-                if not _sizes_agree(data, at):
-                    raise _Damaged("the length of a chunk")
-                yield from _records_of_chunk(data[at + 9: end], path)
-            elif data[at] not in _OF_DATA or _sizes_agree(data, at):
-                raise _Damaged(f"a record of type {data[at]}")
-            else:
-                yield data[at], data[at + 9: end]
-            at = end
-        except _Damaged as why:
-            following = _next_readable(data, at, end)
-            if following is None:
-                if end is not None:
-                    warn_of_bytes(path, at, len(data) - at, str(why), "what follows is lost")
-                return  # else it is the record that is being written
-            warn_of_bytes(path, at, following - at, str(why), "its pings are lost")
-            at = following
+    def _count_lost(self, index: bytes) -> None:
+        """`index` is a message index, of a chunk that is lost if there is one."""
+        if self._lost_chunk is not None:
+            channel, size = struct.unpack_from("<HI", index)
+            self._lost_messages[channel] = self._lost_messages.get(channel, 0) + size // 16
+
+    def _tell_lost_chunk(self) -> None:
+        if self._lost_chunk is not None:
+            count = sum(messages for channel, messages in self._lost_messages.items() if self._schema_of(channel) in _MAKERS)
+            lost = ("its pings are lost" if not self._lost_messages else "no ping is lost" if not count else
+                    "1 ping is lost" if count == 1 else f"{count} pings are lost")
+            warn_of_bytes(self._path, *self._lost_chunk, lost)
+        self._lost_chunk = None
+        self._lost_messages = {}
 
 
 def _end(data: Any, at: int) -> Optional[int]:
@@ -92,23 +141,34 @@ def _sizes_agree(data: Any, at: int) -> bool:
     return bool(name <= end - at - 49 and at + 49 + name + struct.unpack_from("<Q", data, at + 41 + name)[0] == end)
 
 
-def _is_schema(data: Any, at: int) -> bool:
+def _has_form(data: Any, at: int, kind: int) -> bool:
+    """The lengths in the record are those of a record of that kind, whatever its type says."""
     end = _end(data, at)
-    place = at + 11  # behind its number
-    for _ in range(3):
-        if end is None or place + 4 > end:
+    if end is None or kind not in _FORMS:
+        return False
+    fixed, fields = _FORMS[kind]
+    place = at + 9 + fixed
+    for _ in range(fields):
+        if place + 4 > end:
             return False
         place += 4 + struct.unpack_from("<I", data, place)[0]
-    return place == end
+    return place == end and (kind != _MESSAGE_INDEX or (end - at - 15) % 16 == 0)
+
+
+def _was_chunk(data: Any, at: int) -> bool:
+    """A record that cannot be read is a chunk: its length or its type is right, as one bit is wrong."""
+    return _sizes_agree(data, at) or (data[at] == _CHUNK and not any(_has_form(data, at, kind) for kind in _FORMS))
 
 
 def _next_readable(data: Any, at: int, end: Optional[int]) -> Optional[int]:
-    """Behind a chunk whose sizes agree, so that its length is right; else at the next such chunk or schema."""
-    if end is not None and _sizes_agree(data, at):
+    """Behind a record whose content fits its length, so that this is right; else at the next chunk, message index or
+    schema."""
+    if end is not None and (_sizes_agree(data, at) or any(_has_form(data, at, kind) for kind in _FORMS)):
         return end
-    for found in _READABLE.finditer(data, at + 1):
-        if _sizes_agree(data, found.start()) or (data[found.start()] == _SCHEMA and _is_schema(data, found.start())):
-            return found.start()
+    for match in _READABLE.finditer(data, at + 1):
+        found = match.start()
+        if _sizes_agree(data, found) if data[found] == _CHUNK else _has_form(data, found, data[found]):
+            return found
     return None
 
 
@@ -128,6 +188,8 @@ def _records_of_chunk(body: bytes, path: Any) -> Iterator[tuple[int, bytes]]:
         end = _end(data, at)
         if end is None:
             raise _Damaged("a record beyond its chunk")
+        if crc == 0 and data[at] != _MESSAGE and not (data[at] in (_SCHEMA, _CHANNEL) and _has_form(data, at, data[at])):
+            raise _Damaged(f"a record of type {data[at]} in a chunk")
         yield data[at], data[at + 9: end]
         at = end
 
