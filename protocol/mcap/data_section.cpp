@@ -2,6 +2,7 @@
 #include "protocol/mcap/data_section.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "protocol/mcap/compression.hpp"
@@ -46,53 +47,72 @@ bool looks_like_chunk(ByteView content) {
   return reader.ok() && stored_size == reader.remaining();
 }
 
-/// Channel and number of entries; nullopt when the record is no message index.
-std::optional<std::pair<std::uint16_t, std::uint64_t>> read_message_index(const Record& record) {
+/// Channel and number of entries; nullopt when the content is not that of a message index.
+std::optional<std::pair<std::uint16_t, std::uint64_t>> read_message_index(ByteView content) {
   constexpr std::size_t entry_size = 16;
-  ByteReader reader{record.content};
+  ByteReader reader{content};
   const std::uint16_t channel_id = reader.u16le("message_index.channel_id");
   const std::uint32_t size = reader.u32le("message_index.records");
-  if (!record.is(Opcode::message_index) || !reader.ok() || size != reader.remaining() ||
-      size % entry_size != 0) {
+  if (!reader.ok() || size != reader.remaining() || size % entry_size != 0) {
     return std::nullopt;
   }
   return std::pair{channel_id, std::uint64_t{size / entry_size}};
 }
 
-/// The record is one of the data section, and its content is as long as the sizes in it say.
-bool is_consistent(const Record& record) {
-  ByteReader reader{record.content};
-  const auto skip_strings = [&](int count) {
-    for (int i = 0; i < count; ++i) {
-      reader.skip(reader.u32le("size"), "string");
-    }
-    return reader.ok() && reader.remaining() == 0;
-  };
-  switch (static_cast<Opcode>(record.opcode)) {
+/// `fixed` bytes and `strings` strings fill the content.
+bool consists_of(ByteView content, std::size_t fixed, int strings) {
+  ByteReader reader{content};
+  reader.skip(fixed, "fixed");
+  for (int i = 0; i < strings; ++i) {
+    reader.skip(reader.u32le("size"), "string");
+  }
+  return reader.ok() && reader.remaining() == 0;
+}
+
+/// The content is as long as the sizes in it say, taken for a record of the data section of type `opcode`.
+bool has_form(ByteView content, Opcode opcode) {
+  switch (opcode) {
     case Opcode::chunk:
-      return looks_like_chunk(record.content);
+      return looks_like_chunk(content);
     case Opcode::message_index:
-      return read_message_index(record).has_value();
+      return read_message_index(content).has_value();
     case Opcode::header:
-      return skip_strings(2);
+      return consists_of(content, 0, 2);
     case Opcode::schema:
-      reader.skip(2, "schema.id");
-      return skip_strings(3);
+      return consists_of(content, 2, 3);
     case Opcode::channel:
-      reader.skip(4, "channel.ids");
-      return skip_strings(3);
+      return consists_of(content, 4, 3);
     case Opcode::data_end:
-      return record.content.size() == 4;
+      return content.size() == 4;
     default:
       return false;
   }
+}
+
+bool is_consistent(const Record& record) {
+  return has_form(record.content, static_cast<Opcode>(record.opcode));
+}
+
+/// A record other than a chunk by its content, whatever its type says.
+bool looks_like_no_chunk(ByteView content) {
+  constexpr std::array others{Opcode::message_index, Opcode::header, Opcode::schema, Opcode::channel,
+                              Opcode::data_end};
+  return std::ranges::any_of(others, [&](Opcode opcode) { return has_form(content, opcode); });
+}
+
+/// The unreadable record at `at` is a chunk: either its type or its length is right, as one bit is wrong.
+bool was_chunk(ByteView file, std::size_t at) {
+  const auto record = record_at(file, at);
+  const bool named = file[at] == static_cast<std::uint8_t>(Opcode::chunk);
+  return record ? looks_like_chunk(record->content) || (named && !looks_like_no_chunk(record->content))
+                : named;
 }
 
 /// Where reading may go on after a record at `from` that cannot be read: behind it if the sizes in it agree
 /// with its length, so that its length is right; else at the next consistent record.
 std::optional<std::size_t> next_readable(ByteView file, std::size_t from) {
   const auto damaged = record_at(file, from);
-  if (damaged && (looks_like_chunk(damaged->content) || is_consistent(*damaged))) {
+  if (damaged && (looks_like_chunk(damaged->content) || looks_like_no_chunk(damaged->content))) {
     return damaged->end();
   }
   for (std::size_t at = from + 1; at < file.size(); ++at) {
@@ -120,7 +140,7 @@ class Scanner {
 
   /// @return false: stop here
   bool take(const Record& record) {
-    if (record.is(Opcode::data_end)) {
+    if (record.is(Opcode::data_end) && is_consistent(record)) {
       section_.ended = true;
       return false;
     }
@@ -145,13 +165,17 @@ class Scanner {
     return true;
   }
 
-  /// Goes on at `next` and lists what lies between as damaged. @param chunk it was a chunk
-  void skip_to(std::size_t next, bool chunk) {
+  enum class Skipped : std::uint8_t { chunk, end_of_chunk, other };
+
+  /// Goes on at `next` and lists the bytes before it as damaged.
+  void skip_to(std::size_t next, Skipped what) {
     const WireError truncated{WireErrorReason::truncated, section_.end, "record"};
-    section_.damaged.push_back({{section_.end, next - section_.end, section_.error.value_or(truncated)}, {}});
+    section_.damaged.push_back({{section_.end, next - section_.end, section_.error.value_or(truncated)},
+                                {},
+                                what != Skipped::other});
     section_.error.reset();
     section_.end = next;
-    behind_damage_ = behind_damage_ || chunk;
+    behind_damage_ = behind_damage_ || what == Skipped::chunk;
   }
 
   std::size_t end() const { return section_.end; }
@@ -174,7 +198,7 @@ class Scanner {
     }
     // An opcode of zero: a part of the disk that was never written.
     if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
-        record.opcode == 0 || looks_like_chunk(record.content)) {
+        record.is(Opcode::data_end) || record.opcode == 0 || looks_like_chunk(record.content)) {
       return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
     }
     return std::nullopt;
@@ -218,7 +242,7 @@ class Scanner {
   }
 
   std::optional<WireError> take_message_index(const Record& record) {
-    const auto index = read_message_index(record);
+    const auto index = read_message_index(record.content);
     if (!index || (section_.summary.chunks.empty() && !behind_damage_)) {
       return WireError{WireErrorReason::bad_value, record.offset, "message_index"};
     }
@@ -340,7 +364,8 @@ std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const Chu
   std::map<std::uint16_t, std::uint64_t> messages;
   for (const auto& [channel_id, offset] : index.message_index_offsets) {
     const auto record = record_at(file, static_cast<std::size_t>(offset));
-    const auto read = record ? read_message_index(*record) : std::nullopt;
+    const auto read =
+        record && record->is(Opcode::message_index) ? read_message_index(record->content) : std::nullopt;
     if (read && read->first == channel_id) {
       messages.emplace(*read);
     }
@@ -371,7 +396,8 @@ Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_dama
       const auto whole = record_at(file, scanner.end());
       goes_on = scanner.take_open_chunk(scanner.end(), *records);
       if (on_damage == OnDamage::skip && goes_on && whole && whole->end() > scanner.end()) {
-        scanner.skip_to(whole->end(), false);  // one of its records has a wrong type or length
+        scanner.skip_to(whole->end(),
+                        Scanner::Skipped::end_of_chunk);  // one of its records has a wrong type or length
       }
     } else {
       record = record_at(file, scanner.end());
@@ -383,9 +409,8 @@ Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_dama
       if (!next) {
         return std::move(scanner).done();
       }
-      const bool chunk = file[scanner.end()] == static_cast<std::uint8_t>(Opcode::chunk) ||
-                         (record && looks_like_chunk(record->content));
-      scanner.skip_to(*next, chunk);
+      scanner.skip_to(*next,
+                      was_chunk(file, scanner.end()) ? Scanner::Skipped::chunk : Scanner::Skipped::other);
     }
   }
 }

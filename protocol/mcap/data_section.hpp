@@ -55,6 +55,7 @@ void add_contents(const Chunk& chunk, Summary& summary);
 struct DamagedChunk : Damage {
   /// By channel, from the message indexes behind the chunk; empty when these cannot be read either.
   std::map<std::uint16_t, std::uint64_t> lost_messages;
+  bool holds_messages = true;  ///< false: a header, schema, channel or index, so no message is lost
 };
 
 /// What a scan of a file finds.
