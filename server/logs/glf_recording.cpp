@@ -51,9 +51,13 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
     if (records[place].type != glf::RecordType::image) {
       continue;
     }
-    const auto image = view_.image_outline(records[place]);
-    const std::optional<std::int64_t> time_ns =
-        image ? glf::unix_ns(image->transmit_time_s, 0) : std::optional<std::int64_t>{};
+    const auto image =
+        view_.image(records[place]);  // unpacked, so that problems() knows each image that is lost
+    if (!image) {
+      damaged_images_.push_back({records[place].offset, records[place].size, image.error()});
+      continue;
+    }
+    const std::optional<std::int64_t> time_ns = glf::unix_ns(image->transmit_time_s, 0);
     if (!time_ns || !plausible_time(*time_ns) || !makes_sense(*image)) {
       ++bad_images_;
       continue;
@@ -90,6 +94,7 @@ std::vector<std::string> GlfRecording::problems() const {
   }
   add_damage(problems, index.damaged,
              [](const Damage&) { return std::string("the images and statuses in them are lost"); });
+  add_damage(problems, damaged_images_, [](const Damage&) { return std::string("1 ping is lost"); });
   if (index.tail_size > 0) {
     problems.push_back(
         fmt::format("cut or damaged: of {} bytes after the last whole record no more can be read ({})",
@@ -98,19 +103,9 @@ std::vector<std::string> GlfRecording::problems() const {
     problems.emplace_back("not closed: still being written, or its writer went away");
   }
   if (bad_images_ > 0) {
-    problems.push_back(fmt::format("{} images cannot be decoded and are left out", bad_images_));
+    problems.push_back(fmt::format("{} images have impossible values and are left out", bad_images_));
   }
   return problems;
-}
-
-std::uint64_t GlfRecording::count_unreadable() const {
-  std::uint64_t unreadable = 0;
-  for (const LoggedHead& head : heads()) {
-    for (const LoggedPing& ping : head.pings) {
-      unreadable += view_.image(view_.index().records.at(ping.place)) ? 0 : 1;
-    }
-  }
-  return unreadable;
 }
 
 }  // namespace sonard::server

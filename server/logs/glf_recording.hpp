@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "protocol/common/damage.hpp"
 #include "protocol/glf/log_view.hpp"
 #include "server/logs/recording.hpp"
 
@@ -11,6 +13,7 @@ namespace sonard::server {
 
 class GlfRecording final : public Recording {
  public:
+  /// Unpacks each image once: a damaged one is no ping, and a problem().
   /// @throws LogError
   explicit GlfRecording(const LogFile& file);
 
@@ -18,14 +21,13 @@ class GlfRecording final : public Recording {
   std::vector<std::string> problems() const override;
   bool closed() const override { return view_.index().closed && !archive_error_; }
   const glf::LogView& view() const { return view_; }
-  /// Number of pings whose samples do not unpack. Unpacks all of them.
-  std::uint64_t count_unreadable() const;
 
  private:
   const LogFile& file_;
   std::optional<WireError>
       archive_error_;  ///< why the archive itself is damaged; before view_, which sets it
   glf::LogView view_;
+  std::vector<Damage> damaged_images_;  ///< whole records whose image does not decode; offsets in the .dat
   std::uint64_t bad_images_ = 0;
 };
 

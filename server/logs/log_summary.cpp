@@ -29,12 +29,7 @@ void summarise_glf(LogSummary& log, const LogFile& file) {
   const GlfRecording recording(file);
   log.local_time = true;
   add_pings(log, recording);
-  if (const std::uint64_t unreadable = recording.count_unreadable(); unreadable > 0) {
-    log.problems.push_back(
-        fmt::format("damaged: the samples of {} images do not unpack; `sonard replay` leaves "
-                    "them out",
-                    unreadable));
-  } else if (log.problems.empty() && !recording.view().matches_checksum()) {
+  if (log.problems.empty() && !recording.view().matches_checksum()) {
     log.problems.emplace_back(
         "damaged: the checksum of the archive does not match; bytes of images without a checksum of their "
         "own, or "

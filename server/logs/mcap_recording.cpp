@@ -149,6 +149,9 @@ std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
 }
 
 std::string McapRecording::lost_pings(const mcap::DamagedChunk& part) const {
+  if (!part.holds_messages) {
+    return "no ping is lost";
+  }
   if (part.lost_messages.empty()) {
     return "its pings are lost";
   }

@@ -28,7 +28,10 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 using testing::AllOf;
+using testing::AnyOf;
 using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -179,6 +182,10 @@ void expect_at_most(std::size_t most_lost, const std::string& suffix, const Byte
     if (outcome.pings < written.size()) {
       ASSERT_GT(outcome.problems.size(), undamaged.problems.size()) << "a loss is said: byte " << at;
     }
+    if (outcome.lost == 0) {
+      ASSERT_THAT(outcome.problems, Each(AnyOf(HasSubstr("; no ping is lost"), Not(HasSubstr("lost")))))
+          << at;
+    }
     flips_that_lose += outcome.lost > 0 ? 1 : 0;
   }
   EXPECT_GT(flips_that_lose, whole.size() / 4) << "most bytes are those of pings";
@@ -195,6 +202,21 @@ TEST(Damage, a_flipped_bit_in_a_compressed_mcap_costs_its_chunk) {
 TEST(Damage, a_flipped_bit_in_an_mcap_that_was_not_closed_costs_its_chunk) {
   expect_at_most(2, ".mcap", mcap_log(7, false, false), pings_written(7));
   expect_at_most(2, ".mcap", mcap_log(6, true, false), pings_written(6));
+}
+
+TEST(Damage, each_bit_in_the_type_of_an_index_of_an_mcap_that_was_not_closed_costs_no_ping) {
+  const Bytes whole = mcap_log(6, false, false);
+  constexpr std::uint8_t message_index = 7;
+  const Bytes front{message_index, 6 + 2 * 16, 0, 0, 0, 0, 0, 0, 0};
+  const auto index = std::search(whole.begin(), whole.end(), front.begin(), front.end());
+  ASSERT_NE(index, whole.end());
+  for (int bit = 0; bit < 8; ++bit) {
+    Bytes damaged = whole;
+    damaged[static_cast<std::size_t>(index - whole.begin())] ^= static_cast<std::uint8_t>(1U << bit);
+    const Outcome outcome = outcome_of(".mcap", damaged, pings_written(6));
+    EXPECT_EQ(outcome.lost, 0U) << bit;
+    EXPECT_THAT(outcome.problems, Each(Not(HasSubstr("pings are lost")))) << bit;
+  }
 }
 
 TEST(Damage, a_flipped_bit_in_a_dat_costs_its_record) {
@@ -215,6 +237,27 @@ TEST(Damage, info_says_where_a_chunk_is_damaged_and_how_many_pings_are_lost) {
   EXPECT_THAT(outcome.problems, Contains(HasSubstr("chunk.uncompressed_crc at byte")));
   EXPECT_THAT(outcome.problems, Contains(HasSubstr("; 2 pings are lost")));
   EXPECT_THAT(outcome.problems, Not(Contains(HasSubstr("what follows"))));
+}
+
+TEST(Damage, replay_and_info_tell_an_image_that_does_not_unpack_when_they_open_the_log) {
+  Bytes dat;
+  for (int number = 0; number < 3; ++number) {
+    glf::ImageRecord image = glf_image(number);
+    image.pixels.assign(60, static_cast<std::uint8_t>(number));  // short when packed
+    Bytes record = glf::encode(image);
+    if (number == 1) {
+      record[glf::ci_header_size + glf::image_header_size + 4] ^= 1U;  // of the zlib stream
+    }
+    dat.insert(dat.end(), record.begin(), record.end());
+  }
+  dat.insert(dat.end(), glf::dat_terminator.begin(), glf::dat_terminator.end());
+  const test::TemporaryLog temporary(".dat", dat);
+  const LogFile file(temporary.path());
+  const auto recording = open_recording(file);
+  ASSERT_EQ(recording->heads().at(0).pings.size(), 2U);
+  EXPECT_EQ(recording->samples(recording->heads()[0].pings[1]), Bytes(60, 2));
+  EXPECT_THAT(recording->problems(),
+              ElementsAre(AllOf(HasSubstr("damaged: "), HasSubstr("; 1 ping is lost"))));
 }
 
 TEST(Damage, a_wrong_byte_among_raw_pixels_of_a_glf_shows_in_its_checksum) {
