@@ -128,6 +128,24 @@ class Logs(ReplayTest):
         self.assertEqual(daemon.wait(10), 0, daemon.tail())
         self.assertRegex(daemon.output(), "warning .*: cut or damaged")
 
+    def test_a_broken_image_is_told_at_the_start_and_left_out(self):
+        self.images = glf_writer.noise(6, LINES)
+        for image in self.images:
+            image.pixels = bytes(byte & 15 for byte in image.pixels)  # so that they are packed
+        path = os.path.join(self.folder, "log.glf")
+        glf_writer.write_glf(path, self.images)
+        with open(path, "r+b") as file:
+            content = file.read()
+            broken = content.index(glf_writer.image_record(self.images[3])[:60]) + 1000
+            file.seek(broken)
+            file.write(bytes([content[broken] ^ 1]))
+        daemon = self.replay(path)
+        self.assertRegex(daemon.output(), r"warning .*damaged: .* cannot be read .*; 1 ping is lost")
+        pings = self.view(5, "--range", "4")
+        self.assertEqual([ping["crc32"] for ping in pings], self.crcs()[:3] + self.crcs()[4:])
+        self.assertEqual(daemon.wait(10), 0, daemon.tail())
+        self.assertNotIn("cannot render", daemon.output())
+
     def refused(self, *arguments):
         """The one line that `sonard replay` says."""
         daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), "replay", *arguments)
