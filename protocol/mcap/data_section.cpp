@@ -190,6 +190,10 @@ class Scanner {
     if (record.is(Opcode::message_index)) {
       return take_message_index(record);
     }
+    if ((record.is(Opcode::schema) || record.is(Opcode::channel)) && !is_consistent(record)) {
+      return WireError{WireErrorReason::bad_length, record.offset + 1,
+                       "length"};  // it would hide what follows
+    }
     if (record.is(Opcode::schema)) {
       return put(read_schema(record));
     }
