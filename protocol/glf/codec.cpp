@@ -130,19 +130,7 @@ std::vector<std::uint8_t> encode(const StatusRecord& status) {
   return record;
 }
 
-namespace {
-
-using PixelReader = std::vector<std::uint8_t> (*)(ByteReader&, const ImageHeader&);
-
-std::vector<std::uint8_t> skipped_pixels(ByteReader& reader, const ImageHeader& header) {
-  if (header.lines() * header.beams() > max_pixels) {
-    reader.fail(WireErrorReason::bad_length, "pixels");
-  }
-  reader.skip(header.data_size, "pixels");
-  return {};
-}
-
-Result<ImageRecord, WireError> read_image(std::span<const std::uint8_t> record, PixelReader read_pixels) {
+Result<ImageRecord, WireError> decode_image(std::span<const std::uint8_t> record) {
   ByteReader reader{record};
   ImageRecord image;
   image.origin = read_header_of(RecordType::image, reader).origin();
@@ -152,7 +140,7 @@ Result<ImageRecord, WireError> read_image(std::span<const std::uint8_t> record, 
   image.range_compression = header.range_compression;
   image.first_beam = header.first_beam;
   image.beams = static_cast<std::uint32_t>(header.beams());
-  image.pixels = read_pixels(reader, header);
+  image.pixels = unpacked_pixels(reader, header);
   image.bearings_rad = read_bearings(reader, header.beams());
   read_fields<Layout<ImageRecord>>(reader, image);
   read_image_end(reader);
@@ -160,16 +148,6 @@ Result<ImageRecord, WireError> read_image(std::span<const std::uint8_t> record, 
     return *reader.error();
   }
   return image;
-}
-
-}  // namespace
-
-Result<ImageRecord, WireError> decode_image(std::span<const std::uint8_t> record) {
-  return read_image(record, unpacked_pixels);
-}
-
-Result<ImageRecord, WireError> decode_image_outline(std::span<const std::uint8_t> record) {
-  return read_image(record, skipped_pixels);
 }
 
 Result<StatusRecord, WireError> decode_status(std::span<const std::uint8_t> record) {

@@ -27,8 +27,6 @@ std::vector<std::uint8_t> encode(const StatusRecord& status);
 /// which other programs write wrong. Offsets of errors count from the header. An image is refused when its
 /// pixels do not unpack to lines * beams bytes, when they are H.264, or when it has an acoustic zoom.
 Result<ImageRecord, WireError> decode_image(std::span<const std::uint8_t> record);
-/// Decodes an image record without unpacking its pixels: cheap, for an overview of a log.
-Result<ImageRecord, WireError> decode_image_outline(std::span<const std::uint8_t> record);
 Result<StatusRecord, WireError> decode_status(std::span<const std::uint8_t> record);
 
 }  // namespace sonard::glf

@@ -108,10 +108,6 @@ Result<ImageRecord, WireError> LogView::image(const RecordEntry& entry) const {
   return placed(decode_image(record_bytes(entry)), entry);
 }
 
-Result<ImageRecord, WireError> LogView::image_outline(const RecordEntry& entry) const {
-  return placed(decode_image_outline(record_bytes(entry)), entry);
-}
-
 Result<StatusRecord, WireError> LogView::status(const RecordEntry& entry) const {
   return placed(decode_status(record_bytes(entry)), entry);
 }

@@ -46,8 +46,6 @@ class LogView {
 
   /// @param entry one of index().records; offsets of errors are in the .dat
   Result<ImageRecord, WireError> image(const RecordEntry& entry) const;
-  /// The image without its pixels (decode_image_outline()).
-  Result<ImageRecord, WireError> image_outline(const RecordEntry& entry) const;
   Result<StatusRecord, WireError> status(const RecordEntry& entry) const;
 
  private:

@@ -45,17 +45,6 @@ TEST(Image, part_of_a_fan_keeps_where_it_starts) {
   EXPECT_EQ(*decode_image(record), image);
 }
 
-TEST(Image, outline_is_the_image_without_its_pixels) {
-  for (const ImageRecord& image : {small_image(), patterned_image(3)}) {
-    ImageRecord expected = image;
-    expected.pixels.clear();
-    EXPECT_EQ(*decode_image_outline(encode(image)), expected);
-  }
-  Bytes cut = encode(patterned_image(3));
-  cut.pop_back();
-  EXPECT_FALSE(decode_image_outline(cut));
-}
-
 TEST(Image, packed_ones_have_the_size_that_the_layout_says) {
   for (const int level : {1, 6, 9}) {
     const Bytes record = encode(patterned_image(3), level);
