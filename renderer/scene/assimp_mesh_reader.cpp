@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -18,6 +20,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/collada_for_assimp.hpp"
 #include "renderer/scene/local_file.hpp"
 
 namespace sonard::render {
@@ -199,6 +202,18 @@ class Collector {
   RawMesh mesh_;
 };
 
+const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& file) {
+  constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType;
+  if (lower_extension(file) != "dae") {
+    return importer.ReadFile(file.string(), steps);
+  }
+  // A COLLADA document names no file that its triangles need.
+  std::ifstream in(file, std::ios::binary);
+  const std::string document =
+      collada_for_assimp({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()});
+  return importer.ReadFileFromMemory(document.data(), document.size(), steps, "dae");
+}
+
 }  // namespace
 
 RawMesh read_with_assimp(const MeshSource& source) {
@@ -212,8 +227,7 @@ RawMesh read_with_assimp(const MeshSource& source) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-  const aiScene* scene =
-      importer.ReadFile(source.file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+  const aiScene* scene = read_scene(importer, source.file);
   if (!refusal.empty()) {
     throw std::runtime_error(refusal);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "renderer/scene/assimp_mesh_reader.hpp"
 #include "renderer/scene/complete_file.hpp"
@@ -67,6 +68,19 @@ RawMesh read_isolated(const MeshReader& reader, const MeshSource& source) {
   return raw_mesh_of(result.bytes);
 }
 
+/// Whether a triangle has an area: a reader that mistakes the file may find corners that are all alike.
+bool has_surface(const RawPart& part) {
+  for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) { return part.positions[part.indices[i + k]]; };
+    const auto is_there = [&](std::size_t k) { return part.indices[i + k] < part.positions.size(); };
+    if (is_there(0) && is_there(1) && is_there(2) &&
+        glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0.0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::span<const std::string_view> mesh_extensions() {
@@ -98,7 +112,7 @@ RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
   for (const MeshReader& reader : readers) {
     try {
       RawMesh mesh = read_isolated(reader, source);
-      if (!mesh.parts.empty()) {
+      if (std::ranges::any_of(mesh.parts, has_surface)) {
         if (!failures.empty()) {
           warnings.push_back(fmt::format("{}: read by {}, as {}; check its shape, or export the mesh again",
                                          source.file.string(), reader.name, fmt::join(failures, "; ")));

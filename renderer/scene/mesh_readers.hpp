@@ -24,10 +24,10 @@ std::span<const std::string_view> mesh_extensions();
 /// The readers of the file's format, the best one first; at least one if its extension is known.
 std::vector<MeshReader> mesh_readers(const std::filesystem::path& file);
 
-/// The triangles that the first of `readers` finds, in the unit and the axes of the file (an FBX: in metres,
-/// z up). Each reader runs in a process of its own.
-/// The result has no parts if no reader finds triangles. If a reader fails and a later one reads the file,
-/// that is a warning.
+/// The triangles of the first of `readers` that finds one with an area, in the unit and the axes of the file
+/// (an FBX: in metres, z up). Each reader runs in a process of its own.
+/// If no reader finds one, this returns the result of the first that can read the file. If a reader fails and
+/// a later one reads the file, that is a warning.
 /// @throws std::runtime_error with what each reader said, if none can read the file.
 RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
                   std::vector<std::string>& warnings);

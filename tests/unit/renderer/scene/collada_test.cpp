@@ -292,6 +292,43 @@ TEST_F(Collada, FindsASubmeshByOtherNamesToo) {
                     HasSubstr("hull"), HasSubstr("lid"), HasSubstr("handle"), HasSubstr("mast")));
 }
 
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// Gazebo goes by the stride and ignores <param>.
+TEST_F(Collada, TakesValuesInTheirOrderWhateverTheirNames) {
+  Document document = boat();
+  const std::string whole = document.geometries;
+  const std::string x = "<param name=\"X\" type=\"float\"/>", y = "<param name=\"Y\" type=\"float\"/>",
+                    z = "<param name=\"Z\" type=\"float\"/>";
+  for (const std::string parameters :
+       {"<param type=\"float\"/><param type=\"float\"/><param type=\"float\"/>", "",
+        "<param name=\"x\" type=\"float\"/><param name=\"y\" type=\"float\"/><param name=\"z\" "
+        "type=\"float\"/>",
+        "<param name=\"X\"/>"}) {
+    SCOPED_TRACE(parameters);
+    document.geometries = with(whole, x + y + z, parameters);
+    ASSERT_NE(document.geometries, whole);
+    expect_box(load(document, "lid"), {20, 0, 0}, {21, 2, 3});
+    EXPECT_THAT(load(document).warnings, IsEmpty());
+  }
+}
+
+/// As Blender writes it for a picture that is part of its own file.
+TEST_F(Collada, IsReadWithATextureThatHasNoFile) {
+  for (const std::string name : {"<init_from/>", "<init_from></init_from>", "<init_from> </init_from>"}) {
+    SCOPED_TRACE(name);
+    Document document = boat();
+    document.libraries = "<library_images><image id=\"i\">" + name + "</image></library_images>";
+    expect_box(load(document, "hull"), {0, 0, 0}, {11, 2, 3});
+    EXPECT_THAT(load(document).warnings, IsEmpty());
+  }
+}
+
 TEST_F(Collada, CentresASubmesh) {
   MeshFileRequest request;
   Document document = boat();
@@ -318,6 +355,21 @@ TEST_F(Collada, AppliesTransformsOfNodes) {
       "<node name=\"a\"><matrix>0 -1000 0 1000 1000 0 0 0 0 0 1000 0 0 0 0 1</matrix>" + instance + "</node>";
   expect_box(load(document), {-1, 0, 0}, {1, 1, 3});
   EXPECT_NEAR(measures_of(load(document)).volume_m3, 1.0, 1e-5);
+}
+
+/// Gazebo composes them as translation, rotation, scale, whatever their order; a matrix stands alone.
+TEST_F(Collada, OrdersTransformsAsGazebo) {
+  const auto box_of_node = [&](const std::string& transforms) {
+    Document document;
+    document.nodes = "<node name=\"hull\">" + transforms + instance + "</node>";
+    return load(document);
+  };
+  expect_box(box_of_node("<scale>2 2 2</scale><translate>10 0 0</translate>"), {10, 0, 0}, {12, 4, 6});
+  expect_box(box_of_node("<rotate>0 0 1 90</rotate><translate>10 0 0</translate>"), {8, 0, 0}, {10, 1, 3});
+  expect_box(box_of_node("<translate>10 0 0</translate><translate>5 0 0</translate>"), {10, 0, 0},
+             {11, 2, 3});
+  expect_box(box_of_node("<scale>2 2 2</scale><matrix>1 0 0 7 0 1 0 0 0 0 1 0 0 0 0 1</matrix>"), {7, 0, 0},
+             {8, 2, 3});
 }
 
 TEST_F(Collada, KeepsTheOutsideOfAMirroredNodeOutside) {

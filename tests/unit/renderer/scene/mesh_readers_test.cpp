@@ -33,6 +33,13 @@ RawMesh crashes(const MeshSource&) {
   std::abort();
 }
 
+RawMesh one_point(const MeshSource&) {
+  RawMesh mesh;
+  mesh.add({"", {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {}, {}, {0, 1, 2}}, glm::dmat4(1.0));
+  return mesh;
+}
+
+constexpr MeshReader flat{"flat", one_point};
 constexpr MeshReader good{"good", one_triangle};
 constexpr MeshReader empty{"empty", names_alone};
 constexpr MeshReader strict{"strict", refuses};
@@ -46,6 +53,9 @@ TEST(MeshReaders, TakeTheFirstThatFindsTriangles) {
   EXPECT_EQ(mesh.parts[0].material_name, "lid");
   const MeshReader second[] = {empty, good};
   EXPECT_EQ(read_mesh(second, {"/hull.ply"}, warnings).parts.size(), 1U);
+  const MeshReader third[] = {flat, good};
+  EXPECT_EQ(read_mesh(third, {"/hull.ply", "lid"}, warnings).parts.at(0).material_name, "lid")
+      << "triangles without an area are none";
   EXPECT_THAT(warnings, IsEmpty());
 }
 

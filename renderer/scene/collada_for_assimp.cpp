@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene/collada_for_assimp.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include <tinyxml2.h>
+
+namespace sonard::render {
+namespace {
+
+using tinyxml2::XMLElement;
+
+std::string_view name_of(const XMLElement* element) {
+  return element == nullptr ? "" : element->Name();
+}
+
+/// Children of these names, each in the order of the file.
+std::vector<XMLElement*> children_of(XMLElement& element, const std::vector<const char*>& names) {
+  std::vector<XMLElement*> children;
+  for (const char* const name : names) {
+    for (auto* child = element.FirstChildElement(name); child != nullptr;
+         child = child->NextSiblingElement(name)) {
+      children.push_back(child);
+    }
+  }
+  return children;
+}
+
+class Mender : public tinyxml2::XMLVisitor {
+ public:
+  /// Notes what to mend: a visitor must not change what it visits.
+  bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute*) override {
+    const std::string_view name = element.Name();
+    in_mesh_ += name == "mesh" ? 1 : 0;
+    if ((name == "accessor" && in_mesh_ > 0) || name == "node" || name == "init_from") {
+      found_.push_back(const_cast<XMLElement*>(&element));
+    }
+    return true;
+  }
+  bool VisitExit(const XMLElement& element) override {
+    in_mesh_ -= name_of(&element) == "mesh" ? 1 : 0;
+    return true;
+  }
+
+  /// @return whether anything was changed
+  bool mend() {
+    for (XMLElement* const element : found_) {
+      const std::string_view name = element->Name();
+      if (name == "accessor") {
+        name_values(*element);
+      } else if (name == "node") {
+        order_transforms(*element);
+      } else {
+        name_picture(*element);
+      }
+    }
+    return changed_;
+  }
+
+ private:
+  void name_values(XMLElement& accessor) {
+    constexpr std::array<const char*, 4> names{"X", "Y", "Z", "A"};  // Assimp's for the values 0 to 3
+    constexpr std::array<const char*, 4> texture_names{"S", "T", "P", "A"};
+    constexpr std::array<const char*, 4> colour_names{"R", "G", "B", "A"};
+    const unsigned int values = std::min(accessor.UnsignedAttribute("stride", 1), 4U);
+    XMLElement* parameter = accessor.FirstChildElement("param");
+    for (unsigned int i = 0; i < values; ++i) {
+      if (parameter == nullptr) {
+        parameter = accessor.InsertNewChildElement("param");
+        parameter->SetAttribute("type", "float");
+      }
+      const char* const given = parameter->Attribute("name");
+      const std::string_view known = given == nullptr ? "" : given;
+      if (known != names[i] && known != texture_names[i] && known != colour_names[i]) {
+        parameter->SetAttribute("name", names[i]);
+        changed_ = true;
+      }
+      parameter = parameter->NextSiblingElement("param");
+    }
+  }
+
+  void order_transforms(XMLElement& node) {
+    const std::vector<const char*> kinds{"matrix", "translate", "rotate", "scale", "skew", "lookat"};
+    std::vector<XMLElement*> wanted = children_of(node, {"matrix"});
+    if (wanted.empty()) {
+      wanted = children_of(node, {"translate", "rotate", "scale"});
+    }
+    const auto repeats = [&](const XMLElement* transform) {
+      const std::string_view name = transform->Name();
+      return name != "rotate" && transform != node.FirstChildElement(transform->Name());
+    };
+    std::erase_if(wanted, repeats);
+    std::vector<XMLElement*> given;
+    for (auto* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+      if (std::ranges::find(kinds, name_of(child)) != kinds.end()) {
+        given.push_back(child);
+      }
+    }
+    if (given == wanted) {
+      return;
+    }
+    changed_ = true;
+    for (XMLElement* const transform : given) {
+      if (std::ranges::find(wanted, transform) == wanted.end()) {
+        node.DeleteChild(transform);
+      }
+    }
+    std::ranges::for_each(wanted.rbegin(), wanted.rend(),
+                          [&](XMLElement* transform) { node.InsertFirstChild(transform); });
+  }
+
+  void name_picture(XMLElement& init_from) {
+    if (name_of(init_from.Parent()->ToElement()) == "image" && init_from.GetText() == nullptr &&
+        init_from.FirstChildElement() == nullptr) {
+      init_from.SetText("absent");
+      changed_ = true;
+    }
+  }
+
+  std::vector<XMLElement*> found_;
+  int in_mesh_ = 0;
+  bool changed_ = false;
+};
+
+}  // namespace
+
+std::string collada_for_assimp(std::string document) {
+  tinyxml2::XMLDocument xml;
+  if (xml.Parse(document.data(), document.size()) != tinyxml2::XML_SUCCESS) {
+    return document;
+  }
+  Mender mender;
+  xml.Accept(&mender);
+  if (!mender.mend()) {
+    return document;
+  }
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  xml.Print(&printer);
+  return printer.CStr();
+}
+
+}  // namespace sonard::render
