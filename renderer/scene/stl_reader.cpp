@@ -31,6 +31,11 @@ bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
+/// The rest of the line means nothing, as in Gazebo.
+bool begins_comment(char c) {
+  return c == '#' || c == '!' || c == '$';
+}
+
 char lower(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
@@ -49,9 +54,10 @@ class Words {
 
   /// Empty at the end.
   std::string_view next() {
-    while (!text_.empty() && is_blank(text_.front())) {
+    while (!text_.empty() && (is_blank(text_.front()) || begins_comment(text_.front()))) {
       line_ += text_.front() == '\n' ? 1 : 0;
-      text_.remove_prefix(1);
+      text_.remove_prefix(begins_comment(text_.front()) ? std::min(text_.find_first_of("\r\n"), text_.size())
+                                                        : 1);
     }
     return take(static_cast<std::size_t>(std::ranges::find_if(text_, is_blank) - text_.begin()));
   }
@@ -175,10 +181,12 @@ RawMesh read_binary(std::string_view bytes, std::uint32_t count, const std::stri
   return mesh;
 }
 
-/// Begins with "solid" and has no byte that no text has: headers of binary files begin with "solid", too.
+/// Begins with "solid" (or with a facet, if that line is missing) and has no byte that no text has: headers
+/// of binary files begin with "solid", too.
 bool is_text(std::string_view bytes) {
   const std::string_view head = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0, 1024);
-  return is_word(Words(head).next(), "solid") && head.find('\0') == std::string_view::npos;
+  const std::string_view first = Words(head).next();
+  return (is_word(first, "solid") || is_word(first, "facet")) && head.find('\0') == std::string_view::npos;
 }
 
 }  // namespace

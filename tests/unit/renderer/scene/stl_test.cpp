@@ -105,6 +105,15 @@ TEST_F(Stl, ReadsATextWhateverItBeginsWith) {
   expect_triangles(replaced(text, " a\n", "\n"), 1, 5, 6);  // without a name
 }
 
+TEST_F(Stl, ReadsCommentsAndATextWithoutItsFirstLine) {
+  const std::string text = solid("a", 5);
+  for (const std::string comment : {"# solid by a tool 1.2\n", "! vertex 9 9 9\r\n", "  $ endloop\n#\n"}) {
+    expect_triangles(comment + text, 1, 5, 6);
+    expect_triangles(replaced(text, "outer loop\n", "outer loop\n" + comment), 1, 5, 6);
+  }
+  expect_triangles(text.substr(text.find("facet")), 1, 5, 6);
+}
+
 TEST_F(Stl, ReadsAllSolidsOfAText) {
   const std::string three =
       solid("bow", 0) + solid("stern post", 10) + "solid empty\nendsolid empty\n" + solid("bow", 20);
