@@ -61,9 +61,9 @@ void check_heightfield(const GreyImage& image, const glm::dvec3& size_m, const g
         fmt::format("heightmap of {} x {} pixels: expected at least 2 x 2", image.width_px, image.height_px));
   }
   const bool finite = std::isfinite(glm::length(size_m)) && std::isfinite(glm::length(centre_m));
-  if (!finite || size_m.x <= 0.0 || size_m.y <= 0.0 || size_m.z < 0.0) {
+  if (!finite || size_m.x <= 0.0 || size_m.y <= 0.0) {
     throw WorldError(
-        fmt::format("heightmap size {} {} {}: expected x and y > 0, z >= 0", size_m.x, size_m.y, size_m.z));
+        fmt::format("heightmap size {} {} {}: expected x and y > 0", size_m.x, size_m.y, size_m.z));
   }
 }
 

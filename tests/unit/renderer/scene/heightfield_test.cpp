@@ -131,10 +131,16 @@ TEST(Heightfield, MayBeFlat) {
   EXPECT_EQ(test::bounds(mesh).high.z, -3.0);
 }
 
+TEST(Heightfield, OfANegativeHeightHasItsBrightestPixelBelow) {
+  const TriangleMesh mesh = make_heightfield({2, 2, {0, 0, 0, 100}}, {20.0, 10.0, -4.0}, {0.0, 0.0, 1.0});
+  EXPECT_EQ(test::bounds(mesh).high.z, 1.0);
+  EXPECT_EQ(test::bounds(mesh).low.z, -3.0);
+}
+
 TEST(Heightfield, RefusesImpossibleSizes) {
   const GreyImage image{2, 2, {0, 0, 0, 1}};
   EXPECT_THROW(make_heightfield(image, {0.0, 1.0, 1.0}, {}), WorldError);
-  EXPECT_THROW(make_heightfield(image, {1.0, 1.0, -1.0}, {}), WorldError);
+  EXPECT_THROW(make_heightfield(image, {1.0, -1.0, 1.0}, {}), WorldError);
   EXPECT_THROW(make_heightfield(image, {1.0, std::numeric_limits<double>::infinity(), 1.0}, {}), WorldError);
   EXPECT_THROW(make_heightfield({1, 4, {0, 0, 0, 0}}, {1.0, 1.0, 1.0}, {}), WorldError);
 }
