@@ -93,6 +93,17 @@ TEST_F(Ply, MakesAFanOfEachPolygon) {
   EXPECT_EQ(mesh.parts[0].texcoords.at(3), glm::vec2(0.5F, 1.0F));
 }
 
+TEST_F(Ply, TakesEveryTypeOfACount) {
+  for (const std::string type : {"char", "uint8", "short", "uint16", "int", "uint32", "float"}) {
+    const RawMesh mesh = read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list " +
+        type + " uint32 vertex_indices\nend_header\n0 0 0\n1 0 0\n0 2 3\n3 0 1 2\n");
+    ASSERT_EQ(mesh.parts.size(), 1U) << type;
+    EXPECT_THAT(mesh.parts[0].indices, ElementsAre(0, 1, 2)) << type;
+  }
+}
+
 TEST_F(Ply, SaysWhatIsPromisedAndWhatIsThere) {
   EXPECT_EQ(error_of(header("ascii", "1720") + "0 0 0 0\n1 0 0 0\n"),
             "the file is cut short: its header promises 1720 of element vertex, there are 2");
