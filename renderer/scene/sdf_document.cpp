@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <iterator>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -12,8 +13,10 @@
 #include <tinyxml2.h>
 
 #include "renderer/scene/fuel_cache.hpp"
+#include "renderer/scene/grouped_warnings.hpp"
 #include "renderer/scene/local_file.hpp"
 #include "renderer/scene/printable.hpp"
+#include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -100,7 +103,10 @@ class SdfReader {
   std::unique_ptr<SdfElement> read(const fs::path& world_file) {
     const Document& document = open(world_file);
     around_.push_back(world_file);
-    return copy(*document.root, document.file, nullptr);
+    auto root = copy(*document.root, document.file, nullptr);
+    const std::vector<std::string> skipped = skipped_.lines();
+    warnings_.insert(warnings_.end(), skipped.begin(), skipped.end());
+    return root;
   }
 
  private:
@@ -124,6 +130,7 @@ class SdfReader {
   const MissingFiles missing_;
   std::vector<std::string>& warnings_;
   WorldProblems& problems_;
+  GroupedWarnings skipped_;  ///< includes
   std::map<fs::path, Document> documents_;
   std::vector<fs::path> around_;  ///< files that are being copied, from the world's to the innermost
   std::size_t elements_ = 0;
@@ -169,7 +176,9 @@ void SdfReader::check_version(const Document& document) {
     warnings_.push_back(fmt::format("{}: <sdf> has no version: it is read as 1.12", place()));
   } else if (version_of(given) < std::pair{1, 3}) {
     throw WorldError(
-        fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12)", place(), one_line(given)));
+        fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12); convert it by Gazebo Classic's "
+                    "`gz sdf -c FILE`",
+                    place(), one_line(given)));
   } else if (version_of(given) > std::pair{1, 12}) {
     warnings_.push_back(fmt::format("{}: SDF version {} is read as 1.12, the newest that is known", place(),
                                     one_line(given)));
@@ -209,11 +218,19 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
   return element;
 }
 
+/// What libsdformat looks for: model.config, else the manifest.xml of old models.
+fs::path manifest_in(const fs::path& folder) {
+  std::error_code error;
+  const fs::path old = folder / "manifest.xml";
+  return !fs::exists(folder / "model.config", error) && fs::exists(old, error) ? old
+                                                                               : folder / "model.config";
+}
+
 /// The newest file that a model's manifest names, or its model.sdf.
 fs::path model_file_in(const fs::path& folder) {
   tinyxml2::XMLDocument manifest;
   fs::path newest = folder / "model.sdf";
-  const fs::path manifest_file = folder / "model.config";
+  const fs::path manifest_file = manifest_in(folder);
   std::error_code error;
   if (!fs::is_regular_file(manifest_file, error) ||
       manifest.LoadFile(manifest_file.c_str()) != tinyxml2::XML_SUCCESS ||
@@ -239,8 +256,12 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   const fs::path found = resolver_.resolve(uri == nullptr ? "" : uri->text, include.folder());
   fs::path file = found;
   if (fs::is_directory(found)) {
-    resolver_.check_place(uri->text, fs::weakly_canonical(found / "model.config"), found);
+    resolver_.check_place(uri->text, fs::weakly_canonical(manifest_in(found)), found);
     file = model_file_in(found);
+    if (manifest_in(found).filename() == "manifest.xml") {
+      warnings_.push_back(
+          fmt::format("{}: manifest.xml is out of date; rename it to model.config", found.string()));
+    }
     resolver_.check_place(uri->text, file, found);
   }
   std::error_code error;
@@ -254,12 +275,13 @@ fs::path SdfReader::included_file(const SdfElement& include) {
     resolver_.name_model(fuel->name, canonical.parent_path());
   }
   if (const auto same = std::ranges::find(around_, canonical); same != around_.end()) {
+    const auto from_world = [&](const fs::path& step) {
+      return step.lexically_relative(around_.front().parent_path()).string();
+    };
     std::vector<std::string> way;
-    for (auto step = same; step != around_.end(); ++step) {
-      way.push_back(step->filename().string());
-    }
+    std::transform(same, around_.end(), std::back_inserter(way), from_world);
     throw WorldError(fmt::format("'{}' includes itself: {} -> {}", uri->text, fmt::join(way, " -> "),
-                                 canonical.filename().string()));
+                                 from_world(canonical)));
   }
   return canonical;
 }
@@ -277,6 +299,11 @@ const tinyxml2::XMLElement* content_of(const tinyxml2::XMLElement& sdf) {
 
 void SdfReader::include(const SdfElement& include, SdfElement& into) {
   try {
+    const SdfElement* const new_name = include.child("name");
+    if (new_name != nullptr && new_name->text.empty()) {
+      throw WorldError(fmt::format("of '{}': its <name> is empty; write a name, or remove <name>",
+                                   include.child("uri") == nullptr ? "" : include.child("uri")->text));
+    }
     const fs::path file = included_file(include);
     const Document& document = open(file);
     const auto* const from = content_of(*document.root);
@@ -321,11 +348,10 @@ void SdfReader::do_without(const SdfElement& include, SdfElement& into, const st
     }
     return;
   }
-  std::string line = fmt::format("{}: include {}", include.place(), why);
   if (missing_ == MissingFiles::skip) {
-    warnings_.push_back(std::move(line));
+    skipped_.add(fmt::format("include {}", why), include.place(), given_name);
   } else {
-    problems_.add(std::move(line));
+    problems_.add(fmt::format("{}: include {}{}", include.place(), why, how_to_skip));
   }
   if (!in_model && into.name != "world") {
     return;
@@ -381,6 +407,24 @@ void place_by(const std::string& frame, SdfElement& part) {
   }
 }
 
+/// The model's frame in its placement_frame; none without one.
+Pose T_placement(const SdfElement& model) {
+  const std::string* const frame = model.attribute("placement_frame");
+  if (model.name != "model" || frame == nullptr || frame->empty()) {
+    return {};
+  }
+  return inverse(SdfFrames().of_frame(model, *frame, model));
+}
+
+void write_pose(const Pose& T, const std::string& relative_to, SdfElement& element) {
+  SdfElement& pose = element.add_child("pose", element);
+  pose.set_attribute("relative_to", relative_to);
+  pose.set_attribute("rotation_format", "quat_xyzw");
+  const glm::dvec3& p = T.position_m;
+  const glm::dquat& q = T.orientation;
+  pose.text = fmt::format("{} {} {} {} {} {} {}", p.x, p.y, p.z, q.x, q.y, q.z, q.w);
+}
+
 /// The parts of a model become parts of the one around it, and keep their places by a frame that stands for
 /// it (SDF 1.9, <include merge="true">). Parts of a world become parts of the world around it.
 void SdfReader::merge(SdfElement& model, SdfElement& into, const SdfElement& include) {
@@ -388,16 +432,17 @@ void SdfReader::merge(SdfElement& model, SdfElement& into, const SdfElement& inc
       Inclusion{include.place(), fmt::format("rename it at {}, or include without merge", model.place())});
   const std::string frame = "_merged__" + model.given_name() + "__model__";
   const SdfElement* const material = model.child("sonard:material");
-  if (model.attribute("placement_frame") != nullptr) {
-    throw WorldError(fmt::format("of '{}': a placement_frame and merge=\"true\" are not read together",
-                                 model.given_name()));
-  }
   if (model.name == "model") {
+    const Pose T_placement_model = T_placement(model);
+    const std::string placement = "_merged__" + model.given_name() + "__placement__";
+    SdfElement& placed = into.add_child("frame", model);
+    placed.set_attribute("name", placement);
+    if (const SdfElement* const pose = model.child("pose")) {
+      placed.add_copy(*pose).inclusion = pose->inclusion;
+    }
     SdfElement& stands_for_it = into.add_child("frame", model);
     stands_for_it.set_attribute("name", frame);
-    if (const SdfElement* const pose = model.child("pose")) {
-      stands_for_it.add_copy(*pose).inclusion = pose->inclusion;
-    }
+    write_pose(T_placement_model, placement, stands_for_it);
   }
   for (auto& part : model.children) {
     if (part->name == "pose" || part->name == "static" || part.get() == material) {

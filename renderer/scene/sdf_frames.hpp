@@ -31,11 +31,13 @@ class SdfFrames {
   const Pose& T_scope(const SdfElement& element);
   /// Pose of a visual, collision or sensor in the model around its link. @throws WorldError likewise
   Pose T_model(const SdfElement& in_link);
+  /// Pose of what is called `name` in the model or world `scope`. @throws WorldError likewise, with the place
+  /// of `named_by`
+  Pose of_frame(const SdfElement& scope, std::string_view name, const SdfElement& named_by);
 
  private:
   using Names = std::map<std::string_view, const SdfElement*>;
 
-  Pose of_frame(const SdfElement& scope, std::string_view name, const SdfElement& named_by);
   std::optional<Pose> find(const SdfElement& scope, std::string_view name);
   Pose worked_out(const SdfElement& element);
   const Names& names_in(const SdfElement& scope);

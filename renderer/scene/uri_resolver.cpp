@@ -142,7 +142,8 @@ fs::path UriResolver::search(const std::string& uri, std::string_view rest,
   if (leads_out) {
     throw WorldError(*leads_out);
   }
-  throw MissingFile(fmt::format("'{}' not found; looked in {}{}", uri, list(folders),
+  throw MissingFile(fmt::format("'{}' not found; looked in {}{}; GZ_SIM_RESOURCE_PATH names more folders",
+                                uri, list(folders),
                                 absent_.empty() ? "" : "; these folders do not exist: " + list(absent_)));
 }
 

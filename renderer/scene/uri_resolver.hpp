@@ -12,6 +12,10 @@
 
 namespace sonard::render {
 
+/// What to do about a MissingFile that ends the world.
+inline constexpr std::string_view how_to_skip =
+    "; correct it, or go on without it by `world: {missing: skip}`";
+
 /// A file that a world names is not there.
 struct MissingFile : WorldError {
   using WorldError::WorldError;

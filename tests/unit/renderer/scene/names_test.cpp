@@ -143,6 +143,15 @@ TEST_F(PlaceOfAnInclude, IsNamedForANameThatIsTaken) {
       ElementsAre(EndsWith("w.sdf:4: another model is called 'a': rename one of them")));
 }
 
+TEST_F(PlaceOfAnInclude, IsNamedForAnEmptyName) {
+  for (const char* name : {"<name/>", "<name> </name>"}) {
+    EXPECT_THAT(
+        complaints_of(std::string("\n<include><uri>model://post</uri>") + name + "</include>"),
+        ElementsAre(EndsWith(
+            "w.sdf:4: include of 'model://post': its <name> is empty; write a name, or remove <name>")));
+  }
+}
+
 TEST_F(PlaceOfAnInclude, IsNamedForFramesAroundIt) {
   EXPECT_THAT(complaints_of("\n<include><uri>model://quay_post</uri></include>"),
               ElementsAre(HasSubstr("/w.sdf:4: there is no frame 'quay' in world 'w'")));
