@@ -146,8 +146,8 @@ fs::path resolve_in_fuel_cache(const std::string& uri, const FuelUri& fuel) {
   }
   throw MissingFile(
       fmt::format("'{}' is not in the local cache of Fuel; looked in {}. Nothing is fetched here: "
-                  "`gz fuel download -u {}` does, or `world: {{missing: skip}}` goes on without",
-                  uri, fmt::join(looked_in, ", "), uri));
+                  "`gz fuel download -u {}` does",
+                  uri, fmt::join(looked_in, ", "), uri.substr(0, uri.find("/files/"))));
 }
 
 }  // namespace sonard::render

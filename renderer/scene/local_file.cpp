@@ -82,7 +82,7 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
   require_readable(file);
   const std::string extension = lower_extension(file);
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
-    throw WorldError(fmt::format("{}: '{}' is not a {} format that can be read; supported: {}", file.string(),
+    throw WorldError(fmt::format("{}: '{}' is no {} format that can be read; supported: {}", file.string(),
                                  extension, what, fmt::join(extensions, ", ")));
   }
 }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <string>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -19,9 +19,16 @@ constexpr double sagitta_m = 1e-3;
 constexpr int min_segments = 48;
 constexpr int max_segments = 512;
 
+void require_extent(double value, const char* what) {
+  if (!std::isfinite(value) || value < 0.0) {
+    throw WorldError(fmt::format("{} is {}: expected a number >= 0", what, value));
+  }
+}
+
 void require_size(double value, const char* what) {
-  if (!std::isfinite(value) || value <= 0.0) {
-    throw WorldError(std::string(what) + " is " + std::to_string(value) + ": expected a number > 0");
+  require_extent(value, what);
+  if (value == 0.0) {
+    throw ShapeOfNothing(fmt::format("{} is 0", what));
   }
 }
 
@@ -116,6 +123,13 @@ void add_disc(TriangleMesh& mesh, double radius, double z, int n) {
   }
 }
 
+/// A cylinder or a cone without a length.
+TriangleMesh make_disc(double radius_m) {
+  TriangleMesh mesh;
+  add_disc(mesh, radius_m, 0.0, segments_around(radius_m));
+  return mesh;
+}
+
 /// Rings of a half sphere; `from` and `to` are latitude steps of n / 4 per quarter.
 void add_latitudes(std::vector<Ring>& rings, double radius, double centre_z, int n, int from, int to) {
   for (int i = from; i <= to; ++i) {
@@ -147,19 +161,30 @@ int segments_around(double radius_m) {
 }
 
 TriangleMesh make_box(const glm::dvec3& size_m) {
-  require_size(size_m.x, "box size");
-  require_size(size_m.y, "box size");
-  require_size(size_m.z, "box size");
+  require_extent(size_m.x, "box size");
+  require_extent(size_m.y, "box size");
+  require_extent(size_m.z, "box size");
+  if (std::max({std::min(size_m.x, size_m.y), std::min(size_m.y, size_m.z), std::min(size_m.x, size_m.z)}) ==
+      0.0) {
+    throw ShapeOfNothing("two sides of the box are 0");
+  }
   const glm::dvec3 x(0.5 * size_m.x, 0.0, 0.0);
   const glm::dvec3 y(0.0, 0.5 * size_m.y, 0.0);
   const glm::dvec3 z(0.0, 0.0, 0.5 * size_m.z);
   TriangleMesh mesh;
-  add_rectangle(mesh, x, y, z);
-  add_rectangle(mesh, -x, -y, z);
-  add_rectangle(mesh, y, -x, z);
-  add_rectangle(mesh, -y, x, z);
-  add_rectangle(mesh, z, x, y);
-  add_rectangle(mesh, -z, -x, y);
+  const glm::dvec3 none(0.0);
+  const auto add_faces = [&](const glm::dvec3& out, const glm::dvec3& u, const glm::dvec3& v) {
+    if (u == none || v == none) {
+      return;
+    }
+    add_rectangle(mesh, out, u, v);
+    if (out != none) {
+      add_rectangle(mesh, -out, -u, v);
+    }
+  };
+  add_faces(x, y, z);
+  add_faces(y, -x, z);
+  add_faces(z, x, y);
   return mesh;
 }
 
@@ -190,7 +215,10 @@ TriangleMesh make_ellipsoid(const glm::dvec3& radii_m) {
 
 TriangleMesh make_cylinder(double radius_m, double length_m) {
   require_size(radius_m, "radius");
-  require_size(length_m, "length");
+  require_extent(length_m, "length");
+  if (length_m == 0.0) {
+    return make_disc(radius_m);
+  }
   const int n = segments_around(radius_m);
   const double half = 0.5 * length_m;
   TriangleMesh mesh;
@@ -202,7 +230,10 @@ TriangleMesh make_cylinder(double radius_m, double length_m) {
 
 TriangleMesh make_cone(double radius_m, double length_m) {
   require_size(radius_m, "radius");
-  require_size(length_m, "length");
+  require_extent(length_m, "length");
+  if (length_m == 0.0) {
+    return make_disc(radius_m);
+  }
   const int n = segments_around(radius_m);
   const double half = 0.5 * length_m;
   const glm::dvec2 normal = glm::normalize(glm::dvec2(length_m, radius_m));
@@ -214,7 +245,10 @@ TriangleMesh make_cone(double radius_m, double length_m) {
 
 TriangleMesh make_capsule(double radius_m, double length_m) {
   require_size(radius_m, "radius");
-  require_size(length_m, "length");
+  require_extent(length_m, "length");
+  if (length_m == 0.0) {
+    return make_sphere(radius_m);
+  }
   const int n = segments_around(radius_m);
   std::vector<Ring> rings;
   add_latitudes(rings, radius_m, -0.5 * length_m, n, -n / 4, 0);

@@ -16,7 +16,13 @@ namespace sonard::render {
 /// sagitta; a multiple of 4, so that the extremes of the axes are vertices.
 int segments_around(double radius_m);
 
-// Every function below throws WorldError when a size is not finite and positive.
+/// A shape without a surface, because sizes are 0.
+struct ShapeOfNothing : WorldError {
+  using WorldError::WorldError;
+};
+
+// Every function below throws WorldError if a size is not finite or below 0, and ShapeOfNothing if no surface
+// is left. A box with one side of 0 is a plate; a cylinder or cone of length 0 is a disc, a capsule a sphere.
 
 TriangleMesh make_box(const glm::dvec3& size_m);
 TriangleMesh make_sphere(double radius_m);

@@ -22,6 +22,7 @@
 #include "renderer/scene/materials.hpp"
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/mesh_file.hpp"
+#include "renderer/scene/primitives.hpp"
 #include "renderer/scene/sdf_document.hpp"
 #include "renderer/scene/sdf_elements.hpp"
 #include "renderer/scene/sdf_frames.hpp"
@@ -229,12 +230,15 @@ class WorldBuilder {
     try {
       work();
     } catch (const MissingFile& error) {
-      std::string line = fmt::format("{}: {}: {}", element.place(), path, error.what());
       if (missing_ == MissingFiles::skip) {
-        world_.warnings.push_back(std::move(line));
+        grouped_.add(fmt::format("shapes are left out: {}", error.what()), element.place(), path);
       } else {
-        problems_.add(std::move(line));
+        problems_.add(fmt::format("{}: {}: {}{}", element.place(), path, error.what(), how_to_skip));
       }
+    } catch (const ShapeOfNothing& error) {
+      grouped_.add(
+          fmt::format("a shape without a surface is left out: {}; correct it, or remove it", error.what()),
+          element.place(), path);
     } catch (const TooManyTriangles&) {
       throw;
     } catch (const WorldError& error) {
@@ -347,7 +351,7 @@ class WorldBuilder {
   void add_shape(Body& body, Shape& shape) {
     const SdfElement* const geometry = shape.element.child("geometry");
     if (geometry == nullptr || geometry->children.empty()) {
-      throw WorldError("there is no geometry");
+      throw ShapeOfNothing("its <geometry> is missing or empty");
     }
     shape.geometry = geometry->children.front().get();
     const std::string& kind = shape.geometry->name;
@@ -443,10 +447,16 @@ class WorldBuilder {
   std::vector<MeshFilePart> mesh_file(const SdfElement& mesh, bool tangents) {
     const SdfElement* const submesh = mesh.child("submesh");
     const std::string centre = submesh == nullptr ? "" : text_of(*submesh, "center");
+    std::string name = submesh == nullptr ? "" : text_of(*submesh, "name");
+    const bool is_whole = name == "__default__";  // as Gazebo Classic writes it
+    const glm::dvec3 scale = vec3_of(mesh, "scale", {1, 1, 1});
+    if (scale.x * scale.y * scale.z == 0.0) {
+      throw ShapeOfNothing("a number of the <scale> of its mesh is 0");
+    }
     const MeshFileRequest request{file_of(mesh),
-                                  submesh == nullptr ? "" : text_of(*submesh, "name"),
-                                  centre == "true" || centre == "1",
-                                  vec3_of(mesh, "scale", {1, 1, 1}),
+                                  is_whole ? "" : std::move(name),
+                                  !is_whole && (centre == "true" || centre == "1"),
+                                  scale,
                                   tangents,
                                   resolver_.folders()};
     for (const auto& [known, parts] : mesh_files_) {
@@ -479,16 +489,9 @@ class WorldBuilder {
       return *inherited;
     }
     if (shape.element.name == "visual" && shape.element.child("laser_retro") != nullptr) {
-      std::vector<std::string> remarks;
-      AcousticMaterial material =
-          material_of_laser_retro(number_of(shape.element, "laser_retro", 0), remarks);
-      if (!remarks.empty()) {
-        grouped_.add(
-            "laser_retro is far above the usual 0 to 2.5, so these surfaces scatter all energy; write "
-            "<sonard:material> instead",
-            shape.element.place(), fmt::format("{} ({})", text_of(shape.element, "laser_retro"), shape.path));
+      if (const auto material = material_by_laser_retro(shape)) {
+        return *material;
       }
-      return material;
     }
     if (!mesh_material.empty()) {
       grouped_.add(
@@ -499,6 +502,28 @@ class WorldBuilder {
     return {};
   }
 
+  /// Nullopt, with a warning, if it is no number >= 0: it is meant for a laser.
+  std::optional<AcousticMaterial> material_by_laser_retro(const Shape& shape) {
+    const std::string name = fmt::format("{} ({})", text_of(shape.element, "laser_retro"), shape.path);
+    try {
+      std::vector<std::string> remarks;
+      AcousticMaterial material =
+          material_of_laser_retro(number_of(shape.element, "laser_retro", 0), remarks);
+      if (!remarks.empty()) {
+        grouped_.add(
+            "laser_retro is far above the usual 0 to 2.5, so these surfaces scatter all energy; write "
+            "<sonard:material> instead",
+            shape.element.place(), name);
+      }
+      return material;
+    } catch (const WorldError&) {
+      grouped_.add(
+          "laser_retro is not used, because it is not a number >= 0; write <sonard:material> instead",
+          shape.element.place(), name);
+      return std::nullopt;
+    }
+  }
+
   /// A map only refines a surface: one that cannot be used is left out with a warning.
   std::shared_ptr<const NormalMap> normal_map_of(const Shape& shape) {
     const SdfElement* const material =
@@ -507,10 +532,11 @@ class WorldBuilder {
       const std::string uri = material == nullptr ? "" : normal_map_uri(*material);
       return uri.empty() ? nullptr : normal_map_file(resolver_.resolve(uri, shape.element.folder()));
     } catch (const WorldError& error) {
-      world_.warnings.push_back(
-          fmt::format("{}: the normal map is left out: {}; the shape is used without it, correct or remove "
+      grouped_.add(
+          fmt::format("the normal map is left out: {}; the shape is used without it, correct or remove "
                       "<normal_map>",
-                      shape.element.place(), error.what()));
+                      error.what()),
+          shape.element.place(), shape.path);
       return nullptr;
     }
   }

@@ -171,9 +171,30 @@ TEST(Plane, FacesItsNormal) {
   EXPECT_EQ(ceiling.normals[0], glm::vec3(0, 0, -1));
 }
 
+TEST(Shapes, OfOneSizeZeroAreFlat) {
+  for (const glm::dvec3 size : {glm::dvec3(0, 2, 3), glm::dvec3(2, 0, 3), glm::dvec3(2, 3, 0)}) {
+    const TriangleMesh plate = make_box(size);
+    expect_sound(plate);
+    EXPECT_NEAR(area_m2(plate), 6.0, 1e-9) << "one sheet, which echoes on both sides";
+  }
+  for (const TriangleMesh& disc : {make_cylinder(1.0, 0.0), make_cone(1.0, 0.0)}) {
+    expect_sound(disc);
+    EXPECT_NEAR(area_m2(disc), pi, 0.02);
+  }
+  EXPECT_NEAR(bounds(make_capsule(1.0, 0.0)).high.z, 1.0, 1e-9);
+}
+
+TEST(Shapes, WithoutASurfaceSaySo) {
+  EXPECT_THROW(make_box({0.0, 2.0, 0.0}), ShapeOfNothing);
+  EXPECT_THROW(make_sphere(0.0), ShapeOfNothing);
+  EXPECT_THROW(make_cylinder(0.0, 1.0), ShapeOfNothing);
+  EXPECT_THROW(make_ellipsoid({1.0, 0.0, 1.0}), ShapeOfNothing);
+  EXPECT_THROW(make_plane({0.0, 1.0}, {0.0, 0.0, 1.0}), ShapeOfNothing);
+}
+
 TEST(Shapes, RefuseImpossibleSizes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(make_box({1.0, 0.0, 1.0}), WorldError);
+  EXPECT_THROW(make_box({1.0, -1.0, 1.0}), WorldError);
   EXPECT_THROW(make_sphere(-1.0), WorldError);
   EXPECT_THROW(make_sphere(nan), WorldError);
   EXPECT_THROW(make_cylinder(1.0, std::numeric_limits<double>::infinity()), WorldError);

@@ -219,6 +219,41 @@ TEST(SdfWorld, MergesWhatIsIncludedSo) {
   EXPECT_EQ(parts[2].material.name, "steel");
 }
 
+/// The pose of an include is that of the frame that it names, also if the model is merged.
+TEST(SdfWorld, MergesByAPlacementFrame) {
+  const test::TempFolder folder;
+  folder.write("crane.sdf", "<sdf version=\"1.9\"><model name=\"crane\"><link name=\"l\">" +
+                                visual("v", ball) +
+                                "</link><link name=\"tip\"><pose>2 0 1 0 0 1.5707963267948966</pose>" +
+                                visual("v", ball) + "</link></model></sdf>");
+  const World world = load_world(
+      folder.write("w.sdf",
+                   "<sdf version=\"1.10\"><world name=\"w\"><model name=\"m\"><pose>0 0 20 0 0 0</pose>"
+                   "<include merge=\"true\"><uri>crane.sdf</uri><placement_frame>tip</placement_frame>"
+                   "<pose>1 0 0 0 0 0</pose></include></model></world></sdf>"),
+      {});
+  const Body& body = world.bodies.at(0);
+  ASSERT_EQ(body.parts.size(), 2U);
+  expect_near(body.parts[0].T_body_part.position_m, {1, 2, -1});
+  expect_near(body.parts[1].T_body_part.position_m, {1, 0, 0});
+  EXPECT_THAT(world.warnings, IsEmpty());
+}
+
+TEST(SdfWorld, TakesTheManifestOfOldModels) {
+  const test::TempFolder folder;
+  folder.write("post/manifest.xml", "<model><name>post</name><sdf version=\"1.4\">old.sdf</sdf></model>");
+  folder.write("post/old.sdf", "<sdf version=\"1.4\"><model name=\"post\"><link name=\"l\">" +
+                                   visual("v", ball) + "</link></model></sdf>");
+  const World world =
+      load_world(folder.write("w.sdf",
+                              "<sdf version=\"1.9\"><world name=\"w\"><include><uri>model://post"
+                              "</uri></include></world></sdf>"),
+                 {});
+  EXPECT_EQ(world.bodies.at(0).parts.size(), 1U);
+  EXPECT_THAT(world.warnings,
+              ElementsAre(HasSubstr("post: manifest.xml is out of date; rename it to model.config")));
+}
+
 // As `gz fuel download` leaves it: owner and name in lower case, a folder for each version.
 TEST(SdfWorld, FindsModelsOfFuelInTheLocalCache) {
   const test::TempFolder folder;
@@ -254,7 +289,9 @@ TEST(SdfWorld, GoesOnWithoutWhatIsMissingIfItMay) {
   EXPECT_THROW(load_world(file, {}), WorldError);
   const World world = load_world(file, {}, MissingFiles::skip);
   EXPECT_EQ(world.bodies.at(0).parts.size(), 1U);
-  EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("m::l::gone: 'gone.obj' not found")));
+  EXPECT_THAT(world.warnings,
+              ElementsAre(testing::AllOf(HasSubstr("shapes are left out: 'gone.obj' not found"),
+                                         HasSubstr("(1): m::l::gone"))));
   const auto including = folder.write("i.sdf",
                                       "<sdf version=\"1.9\"><world "
                                       "name=\"w\"><include><uri>w.sdf</uri></include><include><uri>model://"
@@ -465,7 +502,7 @@ TEST(SdfWorld, LeavesANormalMapOutThatItCannotUse) {
            Case{with_map(ball, "model://gone/a.png"), "the normal map is left out: "},
            Case{with_map(ball, "http://127.0.0.1/a.png"), "the normal map is left out: "},
            Case{with_map(ball, "bad.png"), "bad.png: "},
-           Case{with_map(ball, "ripples.webp"), "ripples.webp: 'webp' is not a image format"},
+           Case{with_map(ball, "ripples.webp"), "ripples.webp: 'webp' is no image format"},
            Case{with_map(ball, "grey.png"), "grey.png: a normal map needs 3 channels, this image has 1"},
            Case{with_map(ball, "ripples.png", " type=\"object\""),
                 "object-space normal maps are not supported"},
@@ -481,6 +518,45 @@ TEST(SdfWorld, LeavesANormalMapOutThatItCannotUse) {
     EXPECT_EQ(world.bodies[0].parts[0].normal_map, nullptr) << given.warning;
     EXPECT_THAT(world.warnings, testing::ElementsAre(HasSubstr(given.warning)));
   }
+}
+
+TEST(SdfWorld, NamesAMissingNormalMapOnce) {
+  const test::TempFolder folder;
+  std::string visuals;
+  for (int i = 0; i < 12; ++i) {
+    visuals +=
+        visual("v" + std::to_string(i),
+               ball + "<material><pbr><metal><normal_map>gone.png</normal_map></metal></pbr></material>");
+  }
+  EXPECT_THAT(
+      load_world(folder.write("w.sdf", world_of(visuals)), {}).warnings,
+      ElementsAre(testing::AllOf(HasSubstr("w.sdf:4: the normal map is left out: 'gone.png' not found"),
+                                 HasSubstr("(12): m::l::v0"), testing::Not(HasSubstr("missing: skip")))));
+}
+
+TEST(SdfWorld, NamesAMissingModelOnce) {
+  const test::TempFolder folder;
+  std::string includes;
+  for (int i = 0; i < 9; ++i) {
+    includes += "<include><uri>model://gone</uri><name>b" + std::to_string(i) + "</name></include>\n";
+  }
+  const World world = load_world(
+      folder.write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">\n" + includes + "</world></sdf>"), {},
+      MissingFiles::skip);
+  EXPECT_THAT(world.warnings,
+              ElementsAre(testing::AllOf(HasSubstr("w.sdf:2: include 'model://gone' not found"),
+                                         HasSubstr("(9): b0, b1"))));
+}
+
+TEST(SdfWorld, TakesADefaultSubmeshForTheWholeMesh) {
+  const test::TempFolder folder;
+  folder.write("two.obj", "o a\nv 5 0 0\nv 5 1 0\nv 5 0 1\nf 1 2 3\no b\nf 1 3 2\n");
+  const World world = load_world(
+      folder.write("w.sdf", world_of(visual("v", geometry("<mesh><uri>two.obj</uri><submesh><name>__default__"
+                                                          "</name><center>1</center></submesh></mesh>")))),
+      {});
+  EXPECT_EQ(world.triangle_count(), 2U);
+  EXPECT_EQ(test::bounds(*world.bodies.at(0).parts.at(0).mesh).low.x, 5.0) << "only a submesh is centred";
 }
 
 TEST(SdfWorld, LoadsNormalMapsOfBothKindsOnce) {
