@@ -118,37 +118,56 @@ std::string scale_text(const render::Body& body) {
   return "";
 }
 
-/// The box around the mesh files of a body, in its frame; nullopt if it has none. Those that are scaled have
-/// a unit.
-std::optional<BodyBox> mesh_box(const render::Body& body, bool unscaled) {
-  render::World alone;
-  alone.bodies.push_back({body.name, {}, {}});
+/// The extents of the mesh files of a body, along its axes. The parts of one file stand in one place.
+/// @param wanted which parts count
+template <typename Wanted>
+std::vector<glm::dvec3> mesh_sizes(const render::Body& body, const Wanted& wanted) {
+  render::World meshes;
   for (const render::BodyPart& part : body.parts) {
-    if (part.is_mesh_file && (!unscaled || part.scale == glm::dvec3(1.0))) {
-      alone.bodies[0].parts.push_back(part);
+    if (!part.is_mesh_file || !wanted(part)) {
+      continue;
     }
+    const auto is_in_its_place = [&](const render::Body& mesh) {
+      const render::Pose& T = mesh.parts.front().T_body_part;
+      return T.position_m == part.T_body_part.position_m && T.orientation == part.T_body_part.orientation;
+    };
+    auto mesh = std::ranges::find_if(meshes.bodies, is_in_its_place);
+    if (mesh == meshes.bodies.end()) {
+      mesh = meshes.bodies.insert(mesh, render::Body{});
+    }
+    mesh->parts.push_back(part);
   }
-  return alone.bodies[0].parts.empty() ? std::nullopt : std::optional(boxes_of(alone).front());
+  std::vector<glm::dvec3> sizes;
+  for (const BodyBox& box : boxes_of(meshes)) {
+    sizes.push_back(box.max_m - box.min_m);
+  }
+  return sizes;
+}
+
+bool is_unscaled(const render::BodyPart& part) {
+  return part.scale == glm::dvec3(1.0);
+}
+
+bool is_made_small(const render::BodyPart& part) {
+  return glm::all(glm::lessThan(glm::abs(part.scale), glm::dvec3(0.1)));
 }
 
 /// What the extent of mesh files says of their unit; "" if nothing is odd. A metre is the unit of SDF. A
-/// seabed of kilometres is usual, but it is flat: its height is far less than its width.
+/// seabed or a pipeline of kilometres is usual: its height is far less than its length.
 std::string unit_hint(const render::Body& body) {
   constexpr double large_m = 2000.0;
   constexpr double small_m = 0.005;
   constexpr double flat = 0.2;
-  if (const auto box = mesh_box(body, true)) {
-    const glm::dvec3 size = box->max_m - box->min_m;
-    const bool has_scaled_sibling = std::ranges::any_of(body.parts, [](const render::BodyPart& part) {
-      return glm::all(glm::lessThan(glm::abs(part.scale), glm::dvec3(0.1)));
-    });
-    if (std::max({size.x, size.y, size.z}) > large_m &&
-        (size.z > flat * std::min(size.x, size.y) || has_scaled_sibling)) {
-      return "is its mesh in millimetres? <scale>0.001 0.001 0.001</scale> makes metres of them";
-    }
+  const bool has_scaled_sibling = std::ranges::any_of(body.parts, is_made_small);
+  const auto is_in_millimetres = [&](const glm::dvec3& size) {
+    const double longest = std::max({size.x, size.y, size.z});
+    return longest > large_m && (size.z > flat * longest || has_scaled_sibling);
+  };
+  if (std::ranges::any_of(mesh_sizes(body, is_unscaled), is_in_millimetres)) {
+    return "is its mesh in millimetres? <scale>0.001 0.001 0.001</scale> makes metres of them";
   }
-  const auto box = mesh_box(body, false);
-  return box && glm::distance(box->min_m, box->max_m) < small_m ? "is its mesh scaled twice?" : "";
+  const auto is_tiny = [](const glm::dvec3& size) { return glm::length(size) < small_m; };
+  return std::ranges::any_of(mesh_sizes(body, is_made_small), is_tiny) ? "is its mesh scaled twice?" : "";
 }
 
 /// "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete", of the first bodies.
@@ -157,10 +176,10 @@ void Check::list_bodies(const render::World& world) {
   const std::vector<BodyBox> boxes = boxes_of(world);
   for (std::size_t i = 0; i < std::min(most, world.bodies.size()); ++i) {
     const render::Body& body = world.bodies[i];
-    const glm::dvec3 size = boxes[i].max_m - boxes[i].min_m;
     // To the micrometre: turned bodies are off by the last digit, which reads as 2e-16.
-    const glm::dvec3 middle =
-        1e-6 * glm::round(1e6 * (body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m))));
+    const auto rounded = [](const glm::dvec3& length_m) { return 1e-6 * glm::round(1e6 * length_m); };
+    const glm::dvec3 size = rounded(boxes[i].max_m - boxes[i].min_m);
+    const glm::dvec3 middle = rounded(body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m)));
     if (body.parts.empty()) {
       continue;
     }

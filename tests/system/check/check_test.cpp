@@ -285,10 +285,10 @@ TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
               testing::ContainsRegex("cost     bow: a ping to [0-9]+ m takes about [0-9.e+]+ ms"));
 }
 
-/// The hull of a vehicle and a pipe in millimetres, and a flat plate beside a mesh that has a scale.
+/// The hull of a vehicle and a frame in millimetres, and a flat plate beside a mesh that has a scale.
 TEST_F(CheckedWorld, whose_meshes_are_in_millimetres_says_so) {
-  write("hull.obj", "v 0 0 0\nv 2500 0 0\nv 0 600 0\nv 0 0 500\nf 1 2 3\nf 1 2 4\nf 2 3 4\n");
-  write("pipe.obj", "v 0 0 0\nv 6000 200 0\nv 0 0 200\nf 1 2 3\n");
+  write("hull.obj", "v 0 0 0\nv 2500 0 0\nv 0 600 0\nv 0 0 600\nf 1 2 3\nf 1 2 4\nf 2 3 4\n");
+  write("frame.obj", "v 0 0 0\nv 6000 200 0\nv 0 0 2000\nf 1 2 3\n");
   write("plate.obj", "v 0 0 0\nv 3000 0 0\nv 0 3000 20\nf 1 2 3\n");
   const std::string plate_beside_a_bolt =
       "<model name=\"plate\"><link name=\"l\"><visual "
@@ -296,28 +296,58 @@ TEST_F(CheckedWorld, whose_meshes_are_in_millimetres_says_so) {
       "</visual><visual name=\"b\"><geometry><mesh><uri>hull.obj</uri><scale>0.001 0.001 "
       "0.001</scale></mesh></geometry>"
       "</visual></link></model>";
-  const ProcessResult result = check(model("hull", "<mesh><uri>hull.obj</uri></mesh>") +
-                                     model("pipe", "<mesh><uri>pipe.obj</uri></mesh>") + plate_beside_a_bolt);
-  for (const char* text : {"body 'hull' is 2500 x 600 x 500 m: is its mesh in millimetres?",
-                           "body 'pipe' is 6000 x 200 x 200 m: is its mesh in millimetres?",
+  const ProcessResult result =
+      check(model("hull", "<mesh><uri>hull.obj</uri></mesh>") +
+            model("frame", "<mesh><uri>frame.obj</uri></mesh>") + plate_beside_a_bolt);
+  for (const char* text : {"body 'hull' is 2500 x 600 x 600 m: is its mesh in millimetres?",
+                           "body 'frame' is 6000 x 200 x 2000 m: is its mesh in millimetres?",
                            "body 'plate' is 3000 x 3000 x 20 m: is its mesh in millimetres?"}) {
     EXPECT_THAT(result.err, HasSubstr(text));
   }
 }
 
-/// A seabed of kilometres is usual, and shapes without a file have metres.
+/// A seabed or a pipeline of kilometres is usual, as are meshes far from each other, and shapes without a
+/// file have metres.
 TEST_F(CheckedWorld, that_is_large_is_not_taken_for_millimetres) {
   write("bed.obj", "v 0 0 0\nv 7000 0 80\nv 0 9000 0\nf 1 2 3\n");
+  write("pipe.obj", "v 0 0 0\nv 3000 1 0\nv 0 0 1\nf 1 2 3\n");
+  write("mark.obj", "v 0 0 0\nv 1 0 0\nv 0 2 3\nf 1 2 3\n");
+  const std::string marks_3_km_apart =
+      "<model name=\"marks\"><link name=\"l\"><visual name=\"a\"><geometry><mesh><uri>mark.obj</uri></mesh>"
+      "</geometry></visual><visual name=\"b\"><pose>3000 0 1000 0 0 "
+      "0</pose><geometry><mesh><uri>mark.obj</uri>"
+      "</mesh></geometry></visual></link></model>";
   const ProcessResult result = check(
       model("sea", "<plane><size>3000 3000</size></plane>") +
           model("bed", "<box><size>2500 2500 0.1</size></box>") +
           model("berg", "<box><size>2500 2500 2500</size></box>") +
           model("chart", "<heightmap><uri>" + source_folder +
                              "/tests/data/worlds/grey16.png</uri><size>7000 9000 3000</size></heightmap>") +
-          model("survey", "<mesh><uri>bed.obj</uri></mesh>"),
+          model("survey", "<mesh><uri>bed.obj</uri></mesh>") +
+          model("pipeline", "<mesh><uri>pipe.obj</uri></mesh>") + marks_3_km_apart,
       "", {"GZ_SIM_RESOURCE_PATH=" + source_folder + "/tests/data/worlds"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, testing::Not(HasSubstr("millimetres"))) << result.err;
+}
+
+TEST_F(CheckedWorld, asks_of_a_tiny_mesh_only_if_it_is_scaled) {
+  write("bolt.obj", "v 0 0 0\nv 0.003 0 0\nv 0 0.003 0.001\nf 1 2 3\n");
+  const ProcessResult result =
+      check(model("bolt", "<mesh><uri>bolt.obj</uri></mesh>") +
+            model("twice", "<mesh><uri>bolt.obj</uri><scale>0.001 0.001 0.001</scale></mesh>"));
+  EXPECT_THAT(result.err, Not(HasSubstr("body 'bolt'")));
+  EXPECT_THAT(result.err, HasSubstr("body 'twice'"));
+  EXPECT_THAT(result.err, HasSubstr("is its mesh scaled twice?"));
+}
+
+/// A turned plane has a thickness of some 1e-16 m in floating point.
+TEST_F(CheckedWorld, has_sizes_to_the_micrometre) {
+  const ProcessResult result = check(
+      "<model name=\"wall\"><pose>5 0 0 0 1.5707963 0.3</pose><link name=\"l\"><visual name=\"v\"><geometry>"
+      "<plane><size>2 4</size><normal>1 0 0</normal></plane></geometry></visual></link></model>" +
+      model("plate", "<plane><size>2 4</size><normal>1 1 0</normal></plane>"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, Not(HasSubstr("e-1")));
 }
 
 TEST_F(CheckedWorld, without_a_surface_is_open_water_only_if_told_so) {
