@@ -19,8 +19,8 @@ double pulse_energy(const PhysicalModel& model, double step_m);
 
 /// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
 /// over the line, and over that in which it is received; a tone with rounded ends is sampled in the middle of
-/// the latter (docs/physics.md 2.6). Chirps are followed out to 16 cells to either side; all shares of an echo
-/// add up to the energy.
+/// the latter (docs/physics.md 2.6). Chirps are followed out to 16 cells to either side; all shares of an
+/// echo add up to the energy.
 class PulseResponse {
  public:
   using Pulse = PhysicalModel::Pulse;

@@ -4,8 +4,8 @@
 
 namespace sonard::render {
 
-/// Length over which a tone spreads energy, in metres: the integral over its intensity, whose peak is 1. It is
-/// c tau / 2, but no tone is shorter than the band of the transducer lets it be.
+/// Length over which a tone spreads energy, in metres: the integral over its intensity, whose peak is 1. It
+/// is c tau / 2, but no tone is shorter than the band of the transducer lets it be.
 /// @param cell_m PhysicalModel::range_cell_m, > 0. @param rounding_m PhysicalModel::tone_rounding_m
 double tone_length_m(double cell_m, double rounding_m);
 

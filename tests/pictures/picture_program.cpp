@@ -25,8 +25,8 @@ int run_picture_program(const PictureProgram& program, int argc, const char* con
   app.add_option("--radius", radius_px, "Pixels from the sonar to the full range")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    draw_halves(program.halves(names), folder, engine == "gpu" ? render::EngineKind::gpu : render::EngineKind::cpu,
-                radius_px);
+    draw_halves(program.halves(names), folder,
+                engine == "gpu" ? render::EngineKind::gpu : render::EngineKind::cpu, radius_px);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", program.name, error.what());
     return 1;

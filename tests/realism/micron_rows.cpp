@@ -48,8 +48,8 @@ std::vector<double> means(const std::vector<std::vector<double>>& lines) {
   return all;
 }
 
-/// Levels of a turn at the ranges of an even echo some 25 dB over the noise, without their mean at each range,
-/// which grows with the TVG.
+/// Levels of a turn at the ranges of an even echo some 25 dB over the noise, without their mean at each
+/// range, which grows with the TVG.
 std::vector<std::vector<double>> echo_turn(MicronClient& client) {
   std::vector<std::vector<double>> lines = turn(client, 1e-7F, 8, 12);
   for (std::size_t bin = 0; bin < lines.front().size(); ++bin) {
