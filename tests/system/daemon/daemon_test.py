@@ -334,6 +334,22 @@ class Signals(DaemonCase):
         self.configured(self.client())
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
+    @staticmethod
+    def children(program):
+        found = []
+        for process in filter(str.isdigit, os.listdir("/proc")):
+            with contextlib.suppress(OSError), open(f"/proc/{process}/stat", encoding="ascii") as file:
+                if int(file.read().rsplit(")", 1)[1].split()[1]) == program.pid:
+                    found.append(int(process))
+        return found
+
+    @staticmethod
+    def is_a_check(process):
+        """Not the copy of the daemon that is about to become one: the daemon waits for that."""
+        with contextlib.suppress(OSError), open(f"/proc/{process}/cmdline", "rb") as file:
+            return b"check" in file.read().split(b"\0")
+        return False
+
     def test_sigterm_ends_a_check_that_hangs(self):
         """The process that checks is stopped, as one that waits for a file server is."""
         daemon = self.start()
@@ -341,10 +357,7 @@ class Signals(DaemonCase):
         deadline = Deadline(PATIENCE_S)
         checks = []
         while not checks and not deadline.over():
-            for process in filter(str.isdigit, os.listdir("/proc")):
-                with contextlib.suppress(OSError), open(f"/proc/{process}/stat", encoding="ascii") as file:
-                    if int(file.read().rsplit(")", 1)[1].split()[1]) == daemon.pid:
-                        checks.append(int(process))
+            checks = [process for process in self.children(daemon) if self.is_a_check(process)]
         os.kill(checks[0], signal.SIGSTOP)
         code, took = daemon.terminate(PATIENCE_S)
         self.assertEqual(code, 0)
