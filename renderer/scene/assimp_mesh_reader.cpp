@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -208,9 +206,7 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::pat
     return importer.ReadFile(file.string(), steps);
   }
   // A COLLADA document names no file that its triangles need.
-  std::ifstream in(file, std::ios::binary);
-  const std::string document =
-      collada_for_assimp({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()});
+  const std::string document = collada_for_assimp(content_of(file));
   return importer.ReadFileFromMemory(document.data(), document.size(), steps, "dae");
 }
 

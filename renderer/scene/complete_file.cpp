@@ -5,8 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -222,9 +220,7 @@ void require_complete(const std::filesystem::path& file) {
   if (known == checks.end()) {
     return;
   }
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  known->check(bytes);
+  known->check(content_of(file));
 }
 
 }  // namespace sonard::render

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -47,6 +48,11 @@ ReaderJail reader_jail(const std::filesystem::path& file, std::vector<std::files
   jail.processor_limit_s = static_cast<unsigned int>(std::min(longest_s, base_s + size / bytes_per_s));
   jail.memory_limit_bytes += memory_bytes_per_byte * size;
   return jail;
+}
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 std::string head_of(const std::filesystem::path& file, std::size_t limit) {

@@ -27,6 +27,9 @@ void require_readable(const std::filesystem::path& file);
 /// @param readable the file, or all that it may name
 ReaderJail reader_jail(const std::filesystem::path& file, std::vector<std::filesystem::path> readable);
 
+/// All bytes of a file; none if it cannot be read.
+std::string content_of(const std::filesystem::path& file);
+
 /// Up to `limit` bytes from the start of a file.
 std::string head_of(const std::filesystem::path& file, std::size_t limit);
 

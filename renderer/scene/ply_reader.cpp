@@ -8,8 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -20,6 +18,8 @@
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "renderer/scene/local_file.hpp"
 
 namespace sonard::render {
 namespace {
@@ -328,8 +328,7 @@ class PlyBody {
 }  // namespace
 
 RawMesh read_ply(const std::filesystem::path& file, const std::string& submesh) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const std::string bytes = content_of(file);
   const PlyHeader header = header_of(bytes);
   const std::string_view body = std::string_view(bytes).substr(header.bytes);
   const RawPart part =

@@ -6,13 +6,13 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "renderer/scene/local_file.hpp"
 
 namespace sonard::render {
 namespace {
@@ -21,11 +21,6 @@ constexpr std::size_t header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
 /// More than this in a header means that it is no header.
 constexpr std::uint32_t plausible_triangles = 50'000'000;
-
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
