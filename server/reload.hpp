@@ -25,7 +25,7 @@ class Reload {
   /// @param text of the configuration in use, which outlives this
   Reload(const DaemonConfig& in_use, std::string text);
 
-  /// Reads the file once and checks these bytes: `sonard check --no-network` in a process of its own, then
+  /// Reads the file once and checks these bytes: `sonard check --no-network` in a separate process, then
   /// the ports and the recording folder that the configuration in use does not hold. Blocks for as long as
   /// the world takes to load, or until a stop is requested. Any one thread.
   /// @return why the daemon cannot begin anew; nullopt: it can

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts that a COLLADA document states of its own numbers (COLLADA 1.4.1, 5 and 6).
+// Finds COLLADA documents with fewer numbers than their counts state (COLLADA 1.4.1, 5 and 6).
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether all of a file is there. Most libraries read what is there of a file that is cut short.
+// Finds files that are cut short. Most libraries read such a file as far as it goes, without an error.
 #pragma once
 
 #include <filesystem>

@@ -25,7 +25,7 @@ std::span<const std::string_view> mesh_extensions();
 std::vector<MeshReader> mesh_readers(const std::filesystem::path& file);
 
 /// The triangles of the first of `readers` that finds one with an area, in the unit and the axes of the file
-/// (an FBX: in metres, z up). Each reader runs in a process of its own.
+/// (an FBX: in metres, z up). Each reader runs in a separate process.
 /// If no reader finds one, this returns the result of the first that can read the file. If a reader fails and
 /// a later one reads the file, that is a warning.
 /// @throws std::runtime_error with what each reader said, if none can read the file.

@@ -49,8 +49,8 @@ std::vector<int> discovery_sockets() {
   return sockets;
 }
 
-/// Passes what came by the loopback interface, and multicast that this machine sent on another interface, as
-/// a simulator here does that is not told of an address.
+/// Passes what came by the loopback interface, and multicast that this machine sent on another interface: a
+/// simulator here sends on another one unless IGN_IP names an address.
 void drop_other_machines(int socket) {
   const auto metadata = [](int field) { return static_cast<std::uint32_t>(SKF_AD_OFF + field); };
   std::array<sock_filter, 6> program{{

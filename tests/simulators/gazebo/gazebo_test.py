@@ -213,7 +213,7 @@ class Gazebo(link_test.LinkTest):
         elsewhere = self.publish_from_elsewhere(relay=HEAD_ADDRESS)  # nothing routes the group to the head yet
         time.sleep(4)  # discovery takes less than two
         elsewhere.kill()
-        # To the group, which a simulator joins here on all interfaces that is not told of an address.
+        # To the group, which a simulator here joins on all interfaces unless IGN_IP names an address.
         self.lab.topside.ip("route", "add", "239.0.0.0/8", "dev", "eth0")
         self.lab.start(self.lab.head, PUBLISHER, "/bystander", "200", "1", "ignition.msgs.Pose_V", "rov", *["0"] * 6)
         self.publish_from_elsewhere(relay="")

@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, CutMesh,
                                          MeshFormat{"grid.fbx", "fbxa"}, MeshFormat{"grid.osgt", nullptr},
                                          MeshFormat{"grid.osgb", nullptr}, MeshFormat{"grid.ive", nullptr}));
 
-// The buffer of a .gltf is a file of its own.
+// A .gltf keeps its buffer in another file.
 TEST(CutBuffer, IsRefused) {
   const test::TempFolder folder;
   Assimp::Exporter exporter;
