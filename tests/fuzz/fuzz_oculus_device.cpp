@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes of two clients, images, faults and pauses against an Oculus, and what it sends
 // against the code of a client. Promises: every message that leaves is whole and of the head's own protocol;
-// a second client is sent away; the next deadline lies in the future; every job can be rendered, and every
-// record played; time goes on whatever comes in.
+// of two clients one is sent away, the first only after a silence; the next deadline lies in the future;
+// every job can be rendered, and every record played; time goes on whatever comes in.
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -82,19 +82,20 @@ class Bench {
     run_until(now_ + event.delay);
     switch (event.kind) {
       case come_or_go:
-        connected_ = !connected_;
-        if (connected_) {
-          host_.connected();
-          step(sonard::ClientCame{peer_of(0)});
+        if (client_) {
+          const Peer gone = *std::exchange(client_, std::nullopt);
+          step(sonard::ClientGone{gone});
         } else {
-          step(sonard::ClientGone{peer_of(0)});
+          takes_place(peer_of(0));
+          step(sonard::ClientCame{peer_of(0)});
         }
         break;
       case other_comes:
-        if (connected_) {
-          step(sonard::ClientCame{peer_of(1)});
-          require(sent_away_, "a second client is sent away");
-          step(sonard::ClientGone{peer_of(1)});
+        if (client_) {
+          const Peer other = *client_ == peer_of(0) ? peer_of(1) : peer_of(0);
+          step(sonard::ClientCame{other});
+          require(last_.disconnect.size() == 1, "of two clients one is sent away");
+          step(sonard::ClientGone{last_.disconnect.front()});
         }
         break;
       case image:
@@ -117,6 +118,12 @@ class Bench {
   }
 
  private:
+  void takes_place(const Peer& client) {
+    client_ = client;
+    came_ = now_;
+    host_.connected();
+  }
+
   void receive(const Event& event) {
     std::vector<std::uint8_t> bytes = event.datagram;
     if (!event.as_is) {
@@ -142,7 +149,7 @@ class Bench {
       require(decode_status(outgoing.bytes).has_value(), "a status is whole");
       return;
     }
-    require(connected_ && outgoing.peer == peer_of(0), "messages are for the client");
+    require(client_ == outgoing.peer, "messages are for the client");
     const HostStatistics before = host_.statistics();
     host_.receive(now_, outgoing.bytes);
     const HostStatistics& after = host_.statistics();
@@ -153,7 +160,7 @@ class Bench {
 
   void check_job(const PingJob& job) const {
     require(!job_.has_value(), "one job at a time");
-    require(connected_, "nobody wants it");
+    require(client_.has_value(), "nobody wants it");
     require(job.bins() >= 1 && job.bins() <= 3, "a job can be rendered");
     require(job.native_bin_m > 0.0 && job.native_bin_m < 1000.0, "its rows have a length");
     require(job.beams == 256 || job.beams == 512, "it has beams");
@@ -165,12 +172,13 @@ class Bench {
 
   void step(const sonard::Event& event) {
     last_ = device_.step(now_, event);
-    sent_away_ = false;
+    const auto* other = std::get_if<sonard::ClientCame>(&event);
+    if (other != nullptr && client_ && std::ranges::count(last_.disconnect, *client_) > 0) {
+      require(now_ - came_ >= Device::most_silence, "a client that has just come stays");
+      takes_place(other->who);
+    }
     for (const Outgoing& outgoing : last_.send) {
       check_message(outgoing);
-    }
-    for (const Peer& peer : last_.disconnect) {
-      sent_away_ = sent_away_ || peer == peer_of(1);
     }
     if (last_.render) {
       check_job(*last_.render);
@@ -210,8 +218,8 @@ class Bench {
   DeviceConfig config_;
   Device device_{config_, now_};
   Host host_;
-  bool connected_ = false;
-  bool sent_away_ = false;
+  std::optional<Peer> client_;
+  TimePoint came_{};  ///< the client
   Actions last_;
   std::optional<PingJob> job_;
 };
