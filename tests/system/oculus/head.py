@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import re
 import select
 import socket
 import sys
@@ -21,6 +22,7 @@ WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 START_S = 60
 PATIENCE_S = 30  # for what has no time of its own
 STATUS_PORT = 52102
+TOO_SLOW = r"\d+ messages were dropped: the client reads too slowly"
 
 CONFIG = """
 engine: cpu
@@ -151,6 +153,24 @@ class HeadCase(unittest.TestCase):
 
     def tearDown(self):
         self.assertNotRegex(self.daemon.output(), "Z (error|critical) ")
+
+    def view(self, pings, *options):
+        """Takes pings by sonarview; what it printed. Where a busy machine kept it from reading, it may miss some: those
+        that the daemon says it dropped."""
+        told = self.times_too_slow()
+        viewer = self.start(os.path.join(self.PROGRAMS, "sonarview"), "oculus", "--pings", str(pings), *options,
+                            machine=self.client_machine)
+        code = viewer.wait(PATIENCE_S)
+        summary = re.search(rf"summary pings={pings} .* pings_missed=(\d+) ", viewer.output())
+        self.assertIsNotNone(summary, viewer.tail())
+        missed = int(summary[1])
+        self.assertEqual(code, 4 if missed else 0, viewer.tail())
+        if missed:
+            self.daemon.wait_for_line(TOO_SLOW, PATIENCE_S, told + 1)
+        return viewer.output()
+
+    def times_too_slow(self):
+        return sum(bool(re.search(TOO_SLOW, line)) for line in self.daemon.lines)
 
     def client(self, address=None, greeted=True, **settings):
         """Waits until the head has seen that its last client is gone."""

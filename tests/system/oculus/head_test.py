@@ -12,10 +12,8 @@ import struct
 import time
 
 import messages
-from head import DEMO, PATIENCE_S, Deadline, HeadCase, example, main
+from head import DEMO, PATIENCE_S, TOO_SLOW, Deadline, HeadCase, example, main
 from messages import DUMMY, HIGH, LOW, PING, STANDBY, USER_CONFIG
-
-TOO_SLOW = r"\d+ messages were dropped: the client reads too slowly"
 
 
 class Demo(HeadCase):
@@ -26,11 +24,9 @@ class Demo(HeadCase):
     # ---- Our own client
 
     def test_sonarview_finds_the_head_and_draws_512_beams(self):
-        view = [os.path.join(self.PROGRAMS, "sonarview"), "oculus", "--out", self.folder]
-        viewer = self.start(*view, "--pings", "5", "--log-pings")
-        self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
-        self.assertRegex(viewer.output(), r"summary pings=5 .* pings_missed=0 .* messages_bad=0 bytes_dropped=0 images_written=2 ")
-        self.assertRegex(viewer.output(), r"ping id=\d+ mode=1 frequency_hz=750000 ranges=1165 beams=512 .* bits=8 ")
+        output = self.view(5, "--log-pings", "--out", self.folder)
+        self.assertRegex(output, r"summary .* messages_bad=0 bytes_dropped=0 images_written=2 ")
+        self.assertRegex(output, r"ping id=\d+ mode=1 frequency_hz=750000 ranges=1165 beams=512 .* bits=8 ")
         for picture in ("fan-last.png", "polar-last.png"):
             with open(os.path.join(self.folder, picture), "rb") as file:
                 self.assertEqual(file.read(4), b"\x89PNG")
@@ -111,7 +107,7 @@ class Demo(HeadCase):
 
     def test_the_makers_code_fires_without_a_length_after_each_ping(self):
         client = self.client()
-        said = sum(bool(re.search(TOO_SLOW, line)) for line in self.daemon.lines)
+        said = self.times_too_slow()
         client.write(example("fire_vendor"))
         times, ids = [], []
         for _ in range(12):
